@@ -1,0 +1,18 @@
+// Files that appear whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace lapwing {
+
+// Writes beside the target under a temporary name, flushes, then renames. On any error the target is
+// as it was, the temporary is gone, and an InputError names the path and the system's reason.
+// Creates missing parent folders.
+void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
+
+// Throws InputError naming the path and the reason; refuses folders and files above `limit_bytes`.
+std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes = 256u << 20);
+
+}  // namespace lapwing

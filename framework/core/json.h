@@ -1,0 +1,19 @@
+// JSON text to and from Value.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "framework/core/value.h"
+
+namespace lapwing {
+
+// `indent` < 0 writes one line. Numbers are written shortest round-trip, so equal values give equal
+// bytes. Throws Error on NaN and infinity, naming the key path: JSON cannot hold them.
+std::string to_json(const Value& value, int indent = 2);
+
+// Throws InputError naming `source`, line and column on malformed or truncated text, and on
+// repeated keys.
+Value from_json(std::string_view text, const std::string& source);
+
+}  // namespace lapwing

@@ -1,0 +1,77 @@
+// Finds plugins on the search path, lists them from their sidecars, opens a library at first use.
+//
+// A sidecar is `NAME.json` beside `NAME.so`: the descriptors as data, written by the build. Listing
+// plugins and checking configuration read sidecars only and load no code. Reads are thread-safe.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/core/parameters.h"
+#include "framework/plugin/plugin.h"
+
+namespace lapwing {
+
+struct PluginEntry {
+  std::string kind;
+  std::string name;
+  std::string version;
+  std::string summary;
+  std::string reference;
+  std::string preset_of;            // the plugin that this is another name of, or empty
+  std::vector<std::string> extensions;
+  ParameterTable parameters;        // a preset's defaults are already laid over the plugin's
+  std::string abi_tag;
+  std::filesystem::path library;
+};
+
+class Registry {
+ public:
+  // Reads every sidecar in `folders` (and one level of sub-folders), first folder first. Throws
+  // InputError when two plugins of one kind have one name (naming both files) or a sidecar is
+  // malformed. A folder that does not exist is skipped.
+  explicit Registry(std::vector<std::filesystem::path> folders);
+  ~Registry();
+  Registry(Registry&&) noexcept;
+
+  const std::vector<std::filesystem::path>& folders() const;
+  // Sorted by kind, then name.
+  const std::vector<PluginEntry>& entries() const;
+
+  // InputError naming the known names and the nearest one, at `origin`.
+  const PluginEntry& find(std::string_view kind, std::string_view name,
+                          const Origin& origin = {}) const;
+
+  // Checks `given` (a map of parameters, without `type`) against the plugin's table, opens its
+  // library and creates it. Errors: InputError for bad parameters, a library that does not open
+  // (with the loader's reason) or has another ABI tag (with both tags and the cure); PluginError
+  // when the plugin's own code throws anything but InputError.
+  template <class Interface>
+  std::unique_ptr<Interface> create(std::string_view name, const Value& given = {},
+                                    const std::string& key_path = "") const {
+    return std::unique_ptr<Interface>(
+        static_cast<Interface*>(create_untyped(Interface::kKind, name, given, key_path)));
+  }
+
+  // The extension's table, or null.
+  const void* extension(std::string_view kind, std::string_view name, std::string_view id) const;
+
+ private:
+  void* create_untyped(std::string_view kind, std::string_view name, const Value& given,
+                       const std::string& key_path) const;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// --plugin-path folders, LAPWING_PLUGIN_PATH, $XDG_DATA_HOME/lapwing/plugins, then the folder of the
+// build or install tree that this library itself was loaded from; in this order.
+std::vector<std::filesystem::path> plugin_search_path(
+    const std::vector<std::filesystem::path>& from_command_line);
+
+// The sidecar text of a library: opens it and dumps its descriptors.
+std::string describe_library(const std::filesystem::path& library);
+
+}  // namespace lapwing

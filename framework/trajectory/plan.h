@@ -1,0 +1,58 @@
+// The plan document: all that a flight needs and all that the verifier may look at.
+//
+// `plan.json` holds no wall-clock figure: the same script, configuration and seed give the same
+// bytes. Sections after the task are opaque to this room.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/core/value.h"
+#include "framework/trajectory/environment.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace lapwing {
+
+// Geodetic origin of the world frame (WGS 84).
+struct GeodeticOrigin {
+  double latitude_deg = 0, longitude_deg = 0, altitude = 0;  // altitude in m above the ellipsoid
+};
+
+struct KeyframeTask {
+  double time = 0;                 // s
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m
+  std::optional<double> yaw;       // rad
+  double tolerance = 0.5;          // m
+  double time_tolerance = 0.1;     // s
+  double yaw_tolerance = 0.1745;   // rad
+};
+
+struct Task {
+  std::vector<KeyframeTask> keyframes;
+};
+
+struct Plan {
+  static constexpr int kFormat = 1;
+  std::string mission;             // name as the script gave it
+  std::string kind;                // film, race, ...
+  std::optional<GeodeticOrigin> geodetic_origin;
+  Value vehicle;                   // as vehicle/vehicle.h writes it, camera included
+  Trajectory trajectory;
+  Environment environment;
+  std::optional<double> budget;    // s of flight
+  Task task;
+  Value configuration;             // effective, with overrides
+  Value solver;                    // solver report
+  Value certificate;               // as verify writes it
+};
+
+Value to_value(const Plan& plan);
+// Throws InputError listing every missing, misspelt, mistyped or non-finite field.
+Plan plan_from_value(const Value& value);
+
+void write_plan(const Plan& plan, const std::filesystem::path& path);
+Plan read_plan(const std::filesystem::path& path);
+
+}  // namespace lapwing

@@ -1,0 +1,74 @@
+// What a vehicle file states: body, rotors, limits, gimbal, camera. SI, radians.
+//
+// The body is a rigid quadrotor; the limits are those of the vehicle, whatever a problem asks for.
+// The verifier judges every plan against them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "framework/core/parameters.h"
+
+namespace lapwing {
+
+struct Rotors {
+  double thrust_max = 0;          // N, one rotor (F_max of thesis 3.8.3)
+  double thrust_min = 0;          // N, one rotor
+  double torque_coefficient = 0;  // m, drag torque = coefficient * thrust (k_M / k_F)
+  double arm_length = 0;          // m, rotor axis to centre of mass
+  bool diagonal = false;          // arms at 45 degrees to the body axes; else along them (fig. 3.11)
+};
+
+struct GimbalLimits {
+  double yaw_min = 0, yaw_max = 0;      // rad, relative to the body; equal when it cannot turn
+  double pitch_min = 0, pitch_max = 0;  // rad, positive up
+  double yaw_rate_max = 0;              // rad/s
+  double pitch_rate_max = 0;            // rad/s
+};
+
+struct Camera {
+  std::string name;
+  int width = 0, height = 0;                // pixels
+  double focal_x = 0, focal_y = 0;          // pixels
+  double principal_x = 0, principal_y = 0;  // pixels, from the upper left corner's centre
+};
+
+struct Vehicle {
+  std::string name;
+  double mass = 0;                                      // kg
+  Eigen::Vector3d inertia = Eigen::Vector3d::Zero();    // kg m^2, body axes, diagonal
+  Rotors rotors;
+  double yaw_share = 0;           // beta of 3.8.3: share of the largest yaw moment that is kept usable
+  double speed_across_max = 0;    // m/s, horizontal
+  double climb_speed_max = 0;     // m/s
+  double descent_speed_max = 0;   // m/s
+  double acceleration_across_max = 0;          // m/s^2, horizontal
+  std::optional<double> acceleration_up_max;   // m/s^2; absent: the rotors alone limit it
+  std::optional<double> acceleration_down_max; // m/s^2
+  double yaw_rate_max = 0;        // rad/s
+  double flight_time = 0;         // s on one battery
+  std::optional<GimbalLimits> gimbal;
+  Camera camera;
+
+  // Bounds of thesis 3.8.3 with the lower one that its statement needs (README.md, reading 3.2):
+  // every thrust norm in [thrust_min, thrust_max] together with every |yaw torque| up to
+  // yaw_torque_max keeps each rotor within its limits, with no roll or pitch moment.
+  double thrust_max() const;      // N, (1 - beta/2) 4 F_max
+  double thrust_min() const;      // N, at least (beta/2) 4 F_max and what the rotors' minimum asks
+  double yaw_torque_max() const;  // N m, beta 2 M_max
+};
+
+// The table of a vehicle file (degrees as *_deg) and of a camera file.
+ParameterTable vehicle_table();
+ParameterTable camera_table();
+
+// Throws InputError when limits contradict each other or the vehicle cannot hover.
+Vehicle vehicle_from(const Parameters& vehicle, const Parameters& camera, std::string name);
+
+// Round trip through a plan.
+Value to_value(const Vehicle& vehicle);
+Vehicle vehicle_from_value(const Value& value);
+
+}  // namespace lapwing

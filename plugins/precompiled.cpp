@@ -1,0 +1,1 @@
+// Carries the header that all plugins share precompiled; see CMakeLists.txt.
