@@ -1,0 +1,116 @@
+// The trajectory problem (thesis 3.5):
+//
+//   minimise    sum_k  w_k  sum_i  || r_k(x_i, ..., x_{i+q}) ||^2     cost terms
+//   subject to  x_{i+1} = f(x_i, u_i, h_i)                             vehicle models
+//               lower <= g_c(x_i, ..., x_{i+q}) <= upper               constraints
+//               x_min <= x <= x_max                                    bounds
+//
+// Build it: models, free blocks, costs, constraints, guesses; then `finish`, which binds every term
+// and computes all sparsity once. From then on it is const, and all evaluation is thread-safe as long
+// as each thread has an Evaluation of its own.
+//
+// Points are `Stages`: one column per stage, blocks at StageLayout offsets. Steps are taken in the
+// tangent space, one *column* of the solver's matrices per number that is not constant.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include "framework/problem/constraint.h"
+#include "framework/problem/cost_term.h"
+#include "framework/problem/vehicle_model.h"
+
+namespace lapwing {
+
+using Stages = Eigen::MatrixXd;  // stage size x number of stages
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+enum class StepMode { fixed, free };  // free: one common step, a variable
+
+enum class Curvature { gauss_newton, exact };
+
+// The local model: cost ~ value + g'd + d'Hd/2, rows lower <= c + A d <= upper, x_min <= x+d <= x_max.
+struct LocalModel {
+  double cost = 0;
+  Eigen::VectorXd gradient;           // columns
+  SparseMatrix hessian;               // columns x columns, lower triangle
+  Eigen::VectorXd values;             // rows: c
+  SparseMatrix jacobian;              // rows x columns
+  Eigen::VectorXd row_lower, row_upper;
+  Eigen::VectorXd step_lower, step_upper;  // x_min - x, x_max - x
+};
+
+struct TermCost {
+  std::string name;
+  double cost = 0;             // weighted
+  double unweighted = 0;
+};
+
+struct Violation {
+  std::string name;            // "speed_limit", "quadrotor"
+  std::string row;             // "speed_limit.x at 3.4 s"
+  double amount = 0;           // in the constraint's own unit, >= 0
+  double time = 0;             // s
+};
+
+class TrajectoryProblem {
+ public:
+  TrajectoryProblem(Vehicle vehicle, Horizon horizon, Environment environment = {},
+                    StepMode step_mode = StepMode::fixed);
+  ~TrajectoryProblem();
+  TrajectoryProblem(TrajectoryProblem&&) noexcept;
+
+  // -- building -----------------------------------------------------------------------------------
+  void add_model(std::string name, std::unique_ptr<VehicleModel> model);
+  void add_block(BlockSpec block);                             // role free
+  void add_cost(std::string name, double weight, std::unique_ptr<CostTerm> term);
+  void add_constraint(std::string name, std::unique_ptr<Constraint> constraint);
+  // Initial guess: samples in time, linear in between, constant outside; velocities, accelerations
+  // and inputs follow from it through the models' from_sample.
+  void set_path_guess(std::vector<double> times, std::vector<Eigen::Vector3d> positions,
+                      std::vector<double> yaws);
+  void set_block_guess(const std::string& block, std::vector<double> times,
+                       std::vector<Eigen::VectorXd> values);
+  // Binds all terms. InputError naming the term when one does not fit.
+  void finish();
+
+  // -- what there is --------------------------------------------------------------------------------
+  const Vehicle& vehicle() const;
+  const Horizon& horizon() const;
+  const Environment& environment() const;
+  const StageLayout& layout() const;
+  int columns() const;
+  int rows() const;                       // dynamics first, then constraints that are not bounds
+  bool quadratic() const;                 // every residual affine, every row affine
+  std::string column_name(int column) const;   // "position.x at 3.2 s"
+  std::string row_name(int row) const;         // "camera_angle at 5.7 s"
+  double time(const Stages& at, int stage) const;
+
+  // -- points ---------------------------------------------------------------------------------------
+  Stages initial_guess() const;           // the same for every solver
+  Stages retract(const Stages& at, const Eigen::VectorXd& step) const;
+  Trajectory trajectory(const Stages& at) const;
+
+  // -- evaluation -----------------------------------------------------------------------------------
+  double cost(const Stages& at) const;
+  std::vector<TermCost> term_costs(const Stages& at) const;
+  // Row values c, as in LocalModel.
+  Eigen::VectorXd row_values(const Stages& at) const;
+  // Fills `model`; its sparsity is the same at every call. `multipliers` (one per row) is needed for
+  // exact curvature only: H += sum multipliers_r d2 c_r.
+  void linearise(const Stages& at, LocalModel& model, Curvature curvature = Curvature::gauss_newton,
+                 const Eigen::VectorXd* multipliers = nullptr) const;
+  // Worst violation of every constraint, model and bound by name; largest first.
+  std::vector<Violation> violations(const Stages& at) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lapwing
