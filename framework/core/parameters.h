@@ -118,7 +118,7 @@ class Parameters {
   const Value& value() const { return value_; }
 
  private:
-  friend Parameters check(const ParameterTable&, const Value&, const std::string&, Diagnostics&);
+  friend class ParameterChecker;
   struct Entry {
     std::string name;
     bool present = false;

@@ -1,0 +1,39 @@
+#include "framework/core/error.h"
+
+namespace lapwing {
+
+std::string Origin::to_string() const {
+  return line > 0 ? source + ":" + std::to_string(line) : source;
+}
+
+namespace {
+
+std::string located(const Origin& origin, const std::string& message) {
+  const std::string where = origin.to_string();
+  return where.empty() ? message : where + ": " + message;
+}
+
+}  // namespace
+
+InputError::InputError(const Origin& origin, const std::string& message)
+    : Error(located(origin, message)) {}
+
+void Diagnostics::add(const Origin& origin, const std::string& key_path,
+                      const std::string& message) {
+  lines_.push_back(located(origin, key_path.empty() ? message : key_path + ": " + message));
+}
+
+std::string Diagnostics::to_string() const {
+  std::string text;
+  for (const std::string& line : lines_) {
+    if (!text.empty()) text += '\n';
+    text += line;
+  }
+  return text;
+}
+
+void Diagnostics::throw_if_any() const {
+  if (!empty()) throw InputError(to_string());
+}
+
+}  // namespace lapwing

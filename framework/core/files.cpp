@@ -1,0 +1,138 @@
+#include "framework/core/files.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string reason(int code) {
+  return std::strerror(code);
+}
+
+[[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
+  throw InputError("cannot write '" + path.string() + "': " + why);
+}
+
+[[noreturn]] void cannot_read(const fs::path& path, const std::string& why) {
+  throw InputError("cannot read '" + path.string() + "': " + why);
+}
+
+// Owns the temporary until it is renamed into place.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  }
+  ~TemporaryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!path_.empty() && created_) ::unlink(path_.c_str());
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  bool opened() {
+    created_ = descriptor_ >= 0;
+    return created_;
+  }
+  bool keep_mode(mode_t mode) { return ::fchmod(descriptor_, mode) == 0; }
+  bool write(std::string_view contents) {
+    while (!contents.empty()) {
+      const ssize_t written = ::write(descriptor_, contents.data(), contents.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      contents.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return ::fsync(descriptor_) == 0;
+  }
+  bool move_to(const fs::path& target) {
+    const int descriptor = descriptor_;
+    descriptor_ = -1;
+    if (::close(descriptor) != 0) return false;
+    if (::rename(path_.c_str(), target.c_str()) != 0) return false;
+    created_ = false;
+    return true;
+  }
+
+ private:
+  fs::path path_;
+  int descriptor_ = -1;
+  bool created_ = false;
+};
+
+// The name must survive a power cut as well as the contents do.
+void flush_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);  // some file systems refuse; the file itself is safe
+  ::close(descriptor);
+}
+
+}  // namespace
+
+void write_file_atomically(const fs::path& path, std::string_view contents) {
+  if (path.filename().empty()) cannot_write(path, "the path names no file");
+  std::error_code code;
+  // A link is followed, so that it still points to the file afterwards.
+  fs::path target = fs::is_symlink(path, code) ? fs::weakly_canonical(path, code) : path;
+  if (code && code != std::errc::no_such_file_or_directory) cannot_write(path, code.message());
+  fs::path folder = target.parent_path();
+  if (folder.empty()) folder = ".";
+  fs::create_directories(folder, code);
+  if (code) cannot_write(path, "cannot create folder '" + folder.string() + "': " + code.message());
+
+  struct stat existing {};
+  const bool exists = ::stat(target.c_str(), &existing) == 0;
+  if (exists && S_ISDIR(existing.st_mode)) cannot_write(path, "it is a folder");
+  if (exists && !S_ISREG(existing.st_mode)) cannot_write(path, "it is not a regular file");
+
+  static std::atomic<unsigned> counter{0};
+  TemporaryFile temporary(folder / ("." + target.filename().string() + ".tmp-" +
+                                    std::to_string(::getpid()) + "-" + std::to_string(counter++)));
+  if (!temporary.opened()) cannot_write(path, reason(errno));
+  if (exists && !temporary.keep_mode(existing.st_mode & 07777)) cannot_write(path, reason(errno));
+  if (!temporary.write(contents)) cannot_write(path, reason(errno));
+  if (!temporary.move_to(target)) cannot_write(path, reason(errno));
+  flush_folder(folder);
+}
+
+std::string read_file(const fs::path& path, std::size_t limit_bytes) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) cannot_read(path, reason(errno));
+  struct Closer {
+    int descriptor;
+    ~Closer() { ::close(descriptor); }
+  } closer{descriptor};
+  struct stat info {};
+  if (::fstat(descriptor, &info) != 0) cannot_read(path, reason(errno));
+  if (S_ISDIR(info.st_mode)) cannot_read(path, "it is a folder");
+
+  std::string contents;
+  if (S_ISREG(info.st_mode)) {
+    contents.reserve(std::min(static_cast<std::size_t>(info.st_size), limit_bytes));
+  }
+  char buffer[1 << 16];
+  for (;;) {
+    const ssize_t count = ::read(descriptor, buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) cannot_read(path, reason(errno));
+    if (count == 0) return contents;
+    if (contents.size() + static_cast<std::size_t>(count) > limit_bytes) {
+      cannot_read(path, "it is larger than " + std::to_string(limit_bytes) + " bytes");
+    }
+    contents.append(buffer, static_cast<std::size_t>(count));
+  }
+}
+
+}  // namespace lapwing
