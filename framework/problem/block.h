@@ -2,10 +2,12 @@
 //
 // A stage x_i of the trajectory problem is a column of numbers, cut into blocks: position[3], yaw,
 // force[3], target[3], step, ... A block's topology says how two of its values differ and how a
-// step is taken from one: on a line, plain subtraction and addition; for a unit quaternion (w first),
-// the rotation vector in the body frame. Solvers move in the tangent space: `tangent_size` numbers.
+// step is taken from one: on a line, plain subtraction and addition; for a unit quaternion (w
+// first), the rotation vector in the body frame. Solvers move in the tangent space: `tangent_size`
+// numbers.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +43,17 @@ void block_retract(const BlockSpec& block, const double* at, const double* delta
 // d retract(at, delta) / d delta at delta = 0: size x tangent_size.
 Eigen::MatrixXd retraction_jacobian(const BlockSpec& block, const double* at);
 
+// Jacobians of block_difference with respect to tangent steps of `from` and of `to`:
+// tangent_size x tangent_size each.
+struct DifferenceJacobians {
+  Eigen::MatrixXd from, to;
+};
+DifferenceJacobians difference_jacobians(const BlockSpec& block, const double* from,
+                                         const double* to);
+
+// "position.x", "rotors.2", "yaw": the name of one number of a block.
+std::string component_name(const BlockSpec& block, int component);
+
 // Blocks in order, with their offsets in the stage column and in its tangent space.
 class StageLayout {
  public:
@@ -57,6 +70,7 @@ class StageLayout {
   int find(std::string_view name) const;
   // InputError naming the known blocks and the nearest one.
   int index(std::string_view name) const;
+  std::vector<int> indices(std::initializer_list<std::string_view> names) const;
 
  private:
   std::vector<BlockSpec> blocks_;

@@ -2,8 +2,8 @@
 //
 //   lower_k <= g_k(x_i, ..., x_{i+window-1}) <= upper_k,   lower == upper for an equation
 //
-// A constraint returns g and dg/dx (stage_function.h) and its bounds, which do not change once it is
-// bound. Infinite bounds mean none.
+// A constraint returns g and dg/dx (stage_function.h) and its bounds, which do not change once it
+// is bound. Infinite bounds mean none.
 #pragma once
 
 #include "framework/problem/stage_function.h"

@@ -3,8 +3,8 @@
 //   y_k = f_k(x_i, ..., x_{i+window-1}),   k one *instance*, i its first stage
 //
 // Two layers. This is the virtual one: one call evaluates a range of instances, the kernel gathers
-// the blocks that were asked for and scatters the small dense Jacobians. Authors mostly use the layer
-// above, `differentiable.h`, and write only the formula.
+// the blocks that were asked for and scatters the small dense Jacobians. Authors mostly use the
+// layer above, `differentiable.h`, and write only the formula.
 //
 // Life cycle: created from its parameters, bound once to a problem (`bind`), const afterwards.
 // evaluate and curvature are called from several threads at once, each with its own Workspace; they
@@ -22,10 +22,12 @@
 
 namespace lapwing {
 
-// Stages in time: with fixed times one constant step.
+// Stages in time, one step apart. A free step is a variable, equal for all stages; `step` is then
+// its guess.
 struct Horizon {
-  int stages = 0;     // at least 2
-  double step = 0;    // s, between neighbouring stages (the guess of it where steps are free)
+  int stages = 0;   // at least 2
+  double step = 0;  // s
+  bool step_free = false;
   double duration() const { return (stages - 1) * step; }
 };
 
@@ -38,9 +40,9 @@ struct ProblemSetting {
 };
 
 struct FunctionShape {
-  std::vector<int> blocks;       // layout indices of the blocks read, in the order gathered
-  int window = 1;                // neighbouring stages read by one instance
-  int rows = 0;                  // results of one instance
+  std::vector<int> blocks;  // layout indices of the blocks read, in the order gathered
+  int window = 1;           // neighbouring stages read by one instance
+  int rows = 0;             // results of one instance
   // Which instances there are. Both empty: one for every window inside the horizon. `stages`: the
   // first stage of each. `times` (window 1 only): one at each time, in s; between two stages the
   // kernel reads states off the vehicle model's flow, inputs as held, free blocks linearly.
@@ -49,7 +51,7 @@ struct FunctionShape {
   // A cost that stands for an integral over time: the kernel weights each instance by its step, so
   // that weights do not depend on the number of stages.
   bool integral = false;
-  bool affine = false;           // the Jacobian is constant, the curvature zero
+  bool affine = false;  // the Jacobian is constant, the curvature zero
   // Constraints only: the results are the gathered inputs themselves, in order. The kernel turns
   // such rows into bounds on variables.
   bool identity = false;
@@ -87,8 +89,8 @@ class StageFunction {
   //   inputs   [count][n]  stage by stage, in each the blocks in the order of the shape
   //   values   [count][m]
   //   jacobian [count][m][n], or null; written whole, zeros included
-  virtual void evaluate(InstanceRange range, const double* inputs, double* values,
-                        double* jacobian, Workspace& workspace) const = 0;
+  virtual void evaluate(InstanceRange range, const double* inputs, double* values, double* jacobian,
+                        Workspace& workspace) const = 0;
 
   // hessian [count][n][n] += sum_m multipliers[count][m] d2 values_m / d inputs^2 (symmetric, both
   // halves). Called only where the shape is not affine.

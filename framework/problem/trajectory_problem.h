@@ -6,8 +6,13 @@
 //               x_min <= x <= x_max                                    bounds
 //
 // Build it: models, free blocks, costs, constraints, guesses; then `finish`, which binds every term
-// and computes all sparsity once. From then on it is const, and all evaluation is thread-safe as long
-// as each thread has an Evaluation of its own.
+// and computes all sparsity once. From then on it is const, and all evaluation is thread-safe as
+// long as each thread has an Evaluation of its own.
+//
+// Blocks `time` and `step` are always there: constants with a fixed step; with a free one,
+// variables chained by t_{i+1} = t_i + h_i and h_{i+1} = h_i. The last stage's inputs move nothing
+// and equal those before. A free block named `target` becomes the target of the trajectory's
+// samples.
 //
 // Points are `Stages`: one column per stage, blocks at StageLayout offsets. Steps are taken in the
 // tangent space, one *column* of the solver's matrices per number that is not constant.
@@ -30,44 +35,42 @@ namespace lapwing {
 using Stages = Eigen::MatrixXd;  // stage size x number of stages
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-enum class StepMode { fixed, free };  // free: one common step, a variable
-
 enum class Curvature { gauss_newton, exact };
 
-// The local model: cost ~ value + g'd + d'Hd/2, rows lower <= c + A d <= upper, x_min <= x+d <= x_max.
+// The local model: cost ~ value + g'd + d'Hd/2, rows lower <= c + A d <= upper, x_min <= x+d <=
+// x_max.
 struct LocalModel {
   double cost = 0;
-  Eigen::VectorXd gradient;           // columns
-  SparseMatrix hessian;               // columns x columns, lower triangle
-  Eigen::VectorXd values;             // rows: c
-  SparseMatrix jacobian;              // rows x columns
+  Eigen::VectorXd gradient;  // columns
+  SparseMatrix hessian;      // columns x columns, lower triangle
+  Eigen::VectorXd values;    // rows: c
+  SparseMatrix jacobian;     // rows x columns
   Eigen::VectorXd row_lower, row_upper;
   Eigen::VectorXd step_lower, step_upper;  // x_min - x, x_max - x
 };
 
 struct TermCost {
   std::string name;
-  double cost = 0;             // weighted
+  double cost = 0;  // weighted
   double unweighted = 0;
 };
 
 struct Violation {
-  std::string name;            // "speed_limit", "quadrotor"
-  std::string row;             // "speed_limit.x at 3.4 s"
-  double amount = 0;           // in the constraint's own unit, >= 0
-  double time = 0;             // s
+  std::string name;   // "speed_limit", "quadrotor"
+  std::string row;    // "speed_limit.x at 3.4 s"
+  double amount = 0;  // in the constraint's own unit, >= 0
+  double time = 0;    // s
 };
 
 class TrajectoryProblem {
  public:
-  TrajectoryProblem(Vehicle vehicle, Horizon horizon, Environment environment = {},
-                    StepMode step_mode = StepMode::fixed);
+  TrajectoryProblem(Vehicle vehicle, Horizon horizon, Environment environment = {});
   ~TrajectoryProblem();
   TrajectoryProblem(TrajectoryProblem&&) noexcept;
 
   // -- building -----------------------------------------------------------------------------------
   void add_model(std::string name, std::unique_ptr<VehicleModel> model);
-  void add_block(BlockSpec block);                             // role free
+  void add_block(BlockSpec block);  // role free
   void add_cost(std::string name, double weight, std::unique_ptr<CostTerm> term);
   void add_constraint(std::string name, std::unique_ptr<Constraint> constraint);
   // Initial guess: samples in time, linear in between, constant outside; velocities, accelerations
@@ -79,30 +82,33 @@ class TrajectoryProblem {
   // Binds all terms. InputError naming the term when one does not fit.
   void finish();
 
-  // -- what there is --------------------------------------------------------------------------------
+  // -- what there is
+  // --------------------------------------------------------------------------------
   const Vehicle& vehicle() const;
   const Horizon& horizon() const;
   const Environment& environment() const;
   const StageLayout& layout() const;
   int columns() const;
-  int rows() const;                       // dynamics first, then constraints that are not bounds
-  bool quadratic() const;                 // every residual affine, every row affine
-  std::string column_name(int column) const;   // "position.x at 3.2 s"
-  std::string row_name(int row) const;         // "camera_angle at 5.7 s"
+  int rows() const;        // dynamics first, then constraints that are not bounds
+  bool quadratic() const;  // every residual affine, every row affine
+  std::string column_name(int column) const;  // "position.x at 3.2 s"
+  std::string row_name(int row) const;        // "camera_angle at 5.7 s"
   double time(const Stages& at, int stage) const;
 
-  // -- points ---------------------------------------------------------------------------------------
-  Stages initial_guess() const;           // the same for every solver
+  // -- points
+  // ---------------------------------------------------------------------------------------
+  Stages initial_guess() const;  // the same for every solver
   Stages retract(const Stages& at, const Eigen::VectorXd& step) const;
   Trajectory trajectory(const Stages& at) const;
 
-  // -- evaluation -----------------------------------------------------------------------------------
+  // -- evaluation
+  // -----------------------------------------------------------------------------------
   double cost(const Stages& at) const;
   std::vector<TermCost> term_costs(const Stages& at) const;
   // Row values c, as in LocalModel.
   Eigen::VectorXd row_values(const Stages& at) const;
-  // Fills `model`; its sparsity is the same at every call. `multipliers` (one per row) is needed for
-  // exact curvature only: H += sum multipliers_r d2 c_r.
+  // Fills `model`; its sparsity is the same at every call. `multipliers` (one per row) is needed
+  // for exact curvature only: H += sum multipliers_r d2 c_r.
   void linearise(const Stages& at, LocalModel& model, Curvature curvature = Curvature::gauss_newton,
                  const Eigen::VectorXd* multipliers = nullptr) const;
   // Worst violation of every constraint, model and bound by name; largest first.

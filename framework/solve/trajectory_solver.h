@@ -1,9 +1,9 @@
 // A trajectory solver: from a problem and an initial guess to the best trajectory it finds.
 //
 // A solver reports, it never throws or aborts for what happens inside a solve. It honours its work
-// limit and cancellation, returns its best iterate so far, and takes a warm start. Work limits count
-// iterations, so that results repeat; the wall-clock guard is a guard, and a run that it ends is not
-// reproducible.
+// limit and cancellation, returns its best iterate so far, and takes a warm start. Work limits
+// count iterations, so that results repeat; the wall-clock guard is a guard, and a run that it ends
+// is not reproducible.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@
 namespace lapwing {
 
 enum class SolveStatus {
-  optimal,           // feasible, and no better point nearby, to the solver's tolerances
-  feasible,          // feasible, stopped before it was shown to be optimal
-  infeasible,        // no feasible point nearby; the report names what cannot be met
+  optimal,     // feasible, and no better point nearby, to the solver's tolerances
+  feasible,    // feasible, stopped before it was shown to be optimal
+  infeasible,  // no feasible point nearby; the report names what cannot be met
   iteration_limit,
   time_limit,
   cancelled,
-  unsupported,       // the solver does not take problems of this kind
+  unsupported,  // the solver does not take problems of this kind
   numerical_error,
 };
 const char* to_string(SolveStatus status);
@@ -30,20 +30,20 @@ const char* to_string(SolveStatus status);
 struct SolveIteration {
   int iteration = 0;
   double cost = 0;
-  double violation = 0;      // worst row violation
-  double step = 0;           // accepted step length in (0, 1]
-  std::vector<double> terms; // weighted cost per term, in the order of SolveReport::terms
+  double violation = 0;       // worst row violation
+  double step = 0;            // accepted step length in (0, 1]
+  std::vector<double> terms;  // weighted cost per term, in the order of SolveReport::terms
 };
 
 struct SolveReport {
   SolveStatus status = SolveStatus::numerical_error;
-  std::string message;       // why, in one sentence
+  std::string message;  // why, in one sentence
   int iterations = 0;
   double cost = 0;
   std::vector<TermCost> terms;
   std::vector<Violation> violations;  // worst of each constraint, largest first
   std::vector<SolveIteration> history;
-  double seconds = 0;        // wall clock; never written into plan.json
+  double seconds = 0;  // wall clock; never written into plan.json
 };
 
 // As data for plan.json: no wall-clock figure in it.
@@ -52,21 +52,21 @@ Value to_value(const SolveReport& report, const std::string& solver_name);
 // Where to begin: a point, and the row multipliers of an earlier solve where there are any.
 struct WarmStart {
   Stages stages;
-  Eigen::VectorXd row_multipliers;     // empty, or one per row
-  Eigen::VectorXd bound_multipliers;   // empty, or one per column
+  Eigen::VectorXd row_multipliers;    // empty, or one per row
+  Eigen::VectorXd bound_multipliers;  // empty, or one per column
 };
 
 struct SolveRequest {
-  std::optional<WarmStart> warm_start;       // absent: the problem's initial guess
-  std::optional<int> iteration_limit;        // absent: the solver's own parameter
-  std::optional<double> wall_clock_guard;    // s
+  std::optional<WarmStart> warm_start;     // absent: the problem's initial guess
+  std::optional<int> iteration_limit;      // absent: the solver's own parameter
+  std::optional<double> wall_clock_guard;  // s
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
 };
 
 struct SolveResult {
   SolveReport report;
-  WarmStart point;                           // the best iterate, to be read or to start from
+  WarmStart point;  // the best iterate, to be read or to start from
 };
 
 class TrajectorySolver {
@@ -75,7 +75,8 @@ class TrajectorySolver {
   static constexpr const char* kKind = "trajectory_solver";
   virtual ~TrajectorySolver() = default;
 
-  virtual SolveResult solve(const TrajectoryProblem& problem, const SolveRequest& request) const = 0;
+  virtual SolveResult solve(const TrajectoryProblem& problem,
+                            const SolveRequest& request) const = 0;
 };
 
 }  // namespace lapwing

@@ -1,0 +1,326 @@
+#include "framework/problem/bound_function.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace lapwing {
+namespace {
+
+constexpr double kOnStage = 1e-9;  // s, nearer to a stage than this is on it
+
+std::string seconds_text(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g s", std::round(seconds * 1e6) / 1e6);
+  return text;
+}
+
+}  // namespace
+
+BoundFunction::BoundFunction(std::string name, StageFunction& function, const StageColumns& columns,
+                             const ProblemSetting& setting)
+    : name_(std::move(name)), function_(&function) {
+  try {
+    shape_ = function.bind(setting);
+  } catch (const InputError& error) {
+    throw InputError(name_ + ": " + error.what());
+  }
+  if (shape_.rows < 1 || shape_.window < 1 || shape_.window > columns.horizon.stages)
+    throw InputError(name_ + ": needs " + std::to_string(shape_.window) +
+                     " neighbouring stages, the problem has " +
+                     std::to_string(columns.horizon.stages));
+  if (!shape_.times.empty() && shape_.window != 1)
+    throw Error(name_ + ": a function at given times reads one stage");
+  if (!shape_.times.empty() && columns.horizon.step_free)
+    throw InputError(name_ + ": given times need a fixed step");
+  for (int w = 0; w < shape_.window; ++w)
+    for (const int block : shape_.blocks) inputs_ += columns.layout.block(block).size;
+  row_names_ = shape_.row_names;
+  time_offset_ = columns.layout.offset(columns.time_block);
+  list_instances(columns);
+  list_columns(columns);
+
+  bool models_affine = true;
+  for (const BoundModel& model : columns.models) models_affine &= model.model->affine();
+  bool lines = true;
+  for (const int block : shape_.blocks)
+    lines &= columns.layout.block(block).topology == Topology::line;
+  const bool constant =
+      shape_.affine && lines && !columns.horizon.step_free && (!sampled_ || models_affine);
+  if (constant) {
+    Stages at = Stages::Zero(columns.layout.size(), columns.horizon.stages);
+    for (int i = 0; i < columns.horizon.stages; ++i) {
+      at(columns.layout.offset(columns.time_block), i) = i * columns.horizon.step;
+      at(columns.layout.offset(columns.step_block), i) = columns.horizon.step;
+    }
+    std::vector<double> values(instances() * rows()), jacobian(values.size() * width_);
+    Workspace workspace;
+    evaluate(columns, at, values.data(), &jacobian, workspace);
+    constant_ = std::move(jacobian);
+  }
+}
+
+void BoundFunction::list_instances(const StageColumns& columns) {
+  const int last = columns.horizon.stages - shape_.window;
+  if (!shape_.times.empty()) {
+    const double step = columns.horizon.step, end = columns.horizon.duration();
+    for (const double time : shape_.times) {
+      if (!(time >= -kOnStage && time <= end + kOnStage))
+        throw InputError(name_ + ": time " + seconds_text(time) + " lies outside the duration of " +
+                         seconds_text(end));
+      int stage = std::min(static_cast<int>(time / step), last);
+      double offset = time - stage * step;
+      if (step - offset < kOnStage && stage < last) ++stage, offset = 0;
+      if (std::abs(offset) < kOnStage || stage == last) offset = 0;
+      sampled_ |= offset > 0;
+      stage_.push_back(stage);
+      offset_.push_back(offset);
+      nominal_.push_back(time);
+    }
+    return;
+  }
+  std::vector<int> stages = shape_.stages;
+  if (stages.empty())
+    for (int i = 0; i <= last; ++i) stages.push_back(i);
+  for (const int stage : stages) {
+    if (stage < 0 || stage > last) throw Error(name_ + ": asks for a stage outside the horizon");
+    stage_.push_back(stage);
+    offset_.push_back(0.0);
+    nominal_.push_back(stage * columns.horizon.step);
+  }
+}
+
+void BoundFunction::list_columns(const StageColumns& columns) {
+  direct_ = !sampled_;
+  for (const int block : shape_.blocks)
+    direct_ &= columns.layout.block(block).topology == Topology::line;
+  step_column_ = shape_.integral && columns.horizon.step_free;
+  for (int k = 0; k < instances(); ++k) {
+    if (sampled_) {
+      for (const int stage : {stage_[k], stage_[k] + 1})
+        for (int i = 0; i < columns.per_stage; ++i)
+          columns_.push_back(stage < columns.horizon.stages ? stage * columns.per_stage + i : -1);
+    } else {
+      for (int w = 0; w < shape_.window; ++w)
+        for (const int block : shape_.blocks)
+          for (int i = 0; i < columns.layout.block(block).tangent_size(); ++i)
+            columns_.push_back(
+                columns.column(stage_[k] + w, columns.layout.tangent_offset(block) + i));
+    }
+    if (step_column_)
+      columns_.push_back(
+          columns.column(stage_[k], columns.layout.tangent_offset(columns.step_block)));
+  }
+  width_ = instances() ? static_cast<int>(columns_.size()) / instances() : 0;
+}
+
+double BoundFunction::time(const Stages& at, int instance) const {
+  if (at.size() == 0) return nominal_[instance];
+  return at.col(stage_[instance])(time_offset_) + offset_[instance];
+}
+
+std::string BoundFunction::row_name(int instance, int row) const {
+  std::string part;
+  if (!row_names_.empty())
+    part = "." + row_names_[row];
+  else if (rows() > 1)
+    part = "." + std::to_string(row);
+  return name_ + part + " at " + seconds_text(nominal_[instance]);
+}
+
+void BoundFunction::gather(const StageColumns& columns, const Stages& at, int instance,
+                           double* inputs, RowMajor* chain) const {
+  if (sampled_) return gather_sampled(columns, at, instance, inputs, chain);
+  if (chain) chain->setZero(inputs_, width_);
+  int row = 0, column = 0;
+  for (int w = 0; w < shape_.window; ++w) {
+    const double* stage = at.col(stage_[instance] + w).data();
+    for (const int index : shape_.blocks) {
+      const BlockSpec& block = columns.layout.block(index);
+      const double* value = stage + columns.layout.offset(index);
+      std::copy_n(value, block.size, inputs + row);
+      if (chain)
+        chain->block(row, column, block.size, block.tangent_size()) =
+            retraction_jacobian(block, value);
+      row += block.size;
+      column += block.tangent_size();
+    }
+  }
+}
+
+void BoundFunction::gather_sampled(const StageColumns& columns, const Stages& at, int instance,
+                                   double* inputs, RowMajor* chain) const {
+  const StageLayout& layout = columns.layout;
+  const int stage = stage_[instance];
+  const int next = std::min(stage + 1, columns.horizon.stages - 1);
+  const double fraction = offset_[instance] / columns.horizon.step;
+  // The whole stage between the two, and its derivative with respect to both.
+  Eigen::VectorXd between = at.col(stage);
+  RowMajor derivative;
+  const auto tangent = [&](int block) { return layout.tangent_offset(block); };
+  const auto inside = [&](int number) { return columns.column_in_stage[number]; };
+  if (chain) derivative.setZero(layout.size(), width_);
+  for (int b = 0; b < layout.count(); ++b) {
+    const BlockSpec& block = layout.block(b);
+    const int at_row = layout.offset(b);
+    if (block.role == BlockRole::free)
+      between.segment(at_row, block.size) +=
+          fraction * (at.col(next) - at.col(stage)).segment(at_row, block.size);
+    if (!chain || block.role == BlockRole::state || block.role == BlockRole::clock) continue;
+    for (int i = 0; i < block.size; ++i) {
+      const double later = block.role == BlockRole::free ? fraction : 0.0;
+      derivative(at_row + i, inside(tangent(b) + i)) = 1.0 - later;
+      if (later > 0) derivative(at_row + i, columns.per_stage + inside(tangent(b) + i)) = later;
+    }
+  }
+  between(time_offset_) = nominal_[instance];
+  for (const BoundModel& model : columns.models)
+    flow_between(columns, model, at, instance, between, chain ? &derivative : nullptr);
+  int row = 0;
+  for (const int b : shape_.blocks) {
+    const int size = layout.block(b).size;
+    std::copy_n(between.data() + layout.offset(b), size, inputs + row);
+    row += size;
+  }
+  if (!chain) return;
+  chain->setZero(inputs_, width_);
+  row = 0;
+  for (const int b : shape_.blocks) {
+    const int size = layout.block(b).size;
+    chain->middleRows(row, size) = derivative.middleRows(layout.offset(b), size);
+    row += size;
+  }
+}
+
+void BoundFunction::flow_between(const StageColumns& columns, const BoundModel& model,
+                                 const Stages& at, int instance, Eigen::VectorXd& between,
+                                 RowMajor* derivative) const {
+  const StageLayout& layout = columns.layout;
+  const int arguments = model.arguments(), stage = stage_[instance];
+  std::vector<double> x(arguments), next(model.states), jacobian(model.states * arguments);
+  columns.gather_model(model, at, stage, offset_[instance], x.data());
+  Workspace workspace;
+  model.model->flow({0, 1}, x.data(), next.data(), derivative ? jacobian.data() : nullptr,
+                    workspace);
+  int state = 0;
+  for (const int b : model.state_blocks) {
+    const int size = layout.block(b).size;
+    std::copy_n(next.data() + state, size, between.data() + layout.offset(b));
+    if (derivative) {
+      int argument = 0;
+      for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
+        for (const int from : *blocks) {
+          const BlockSpec& block = layout.block(from);
+          const int column = columns.column_in_stage[layout.tangent_offset(from)];
+          columns.to_tangent(block, at.col(stage).data() + layout.offset(from),
+                             jacobian.data() + state * arguments + argument, size, arguments,
+                             derivative->data() + layout.offset(b) * width_ + column, width_);
+          argument += block.size;
+        }
+    }
+    state += size;
+  }
+}
+
+const double* BoundFunction::evaluate(const StageColumns& columns, const Stages& at, double* values,
+                                      std::vector<double>* jacobian, Workspace& workspace) const {
+  constexpr int kChunk = 64;
+  const bool compute = jacobian && constant_.empty();
+  const int m = rows();
+  if (compute) jacobian->resize(static_cast<std::size_t>(instances()) * m * width_);
+  double* const x = workspace.doubles(2, static_cast<std::size_t>(kChunk) * inputs_);
+  double* const j = workspace.doubles(3, static_cast<std::size_t>(kChunk) * m * inputs_);
+  RowMajor chain;
+  for (int first = 0; first < instances(); first += kChunk) {
+    const int count = std::min(kChunk, instances() - first);
+    for (int k = 0; k < count; ++k) gather(columns, at, first + k, x + k * inputs_, nullptr);
+    double* const v = values + first * m;
+    const bool in_place = compute && direct_ && !step_column_;
+    double* const out =
+        compute ? jacobian->data() + static_cast<std::size_t>(first) * m * width_ : nullptr;
+    function_->evaluate({first, count}, x, v, !compute ? nullptr : in_place ? out : j, workspace);
+    for (int k = 0; k < count; ++k) {
+      double* const row = compute ? out + static_cast<std::size_t>(k) * m * width_ : nullptr;
+      if (compute && !in_place) {
+        Eigen::Map<RowMajor> target(row, m, width_);
+        const Eigen::Map<const RowMajor> source(j + k * m * inputs_, m, inputs_);
+        if (direct_) {
+          target.leftCols(inputs_) = source;
+        } else {
+          gather(columns, at, first + k, x + k * inputs_, &chain);
+          target.noalias() = source * chain;
+        }
+        if (step_column_) target.rightCols(1).setZero();
+      }
+      if (shape_.integral) weight_rows(columns, at, first + k, v + k * m, row);
+    }
+  }
+  if (!jacobian) return nullptr;
+  return compute ? jacobian->data() : constant_.data();
+}
+
+// Multiplies by the root of the step, with its derivative where the step is free.
+void BoundFunction::weight_rows(const StageColumns& columns, const Stages& at, int instance,
+                                double* values, double* jacobian) const {
+  const double root = std::sqrt(columns.step(at, stage_[instance]));
+  if (jacobian) {
+    Eigen::Map<RowMajor> j(jacobian, rows(), width_);
+    j *= root;
+    if (step_column_)
+      for (int r = 0; r < rows(); ++r) j(r, width_ - 1) += 0.5 / root * values[r];
+  }
+  for (int r = 0; r < rows(); ++r) values[r] *= root;
+}
+
+void BoundFunction::curvature(const StageColumns& columns, const Stages& at,
+                              const double* multipliers, std::vector<double>& hessian,
+                              Workspace& workspace) const {
+  const int m = rows(), n = inputs_;
+  hessian.assign(static_cast<std::size_t>(instances()) * width_ * width_, 0.0);
+  std::vector<double> x(n), v(m), j(m * n), h(n * n), scaled(m);
+  RowMajor chain;
+  for (int k = 0; k < instances(); ++k) {
+    gather(columns, at, k, x.data(), &chain);
+    const double step = columns.step(at, stage_[k]);
+    const double root = shape_.integral ? std::sqrt(step) : 1.0;
+    for (int r = 0; r < m; ++r) scaled[r] = root * multipliers[k * m + r];
+    std::fill(h.begin(), h.end(), 0.0);
+    if (!shape_.affine) function_->curvature({k, 1}, x.data(), scaled.data(), h.data(), workspace);
+    Eigen::Map<RowMajor> result(hessian.data() + static_cast<std::size_t>(k) * width_ * width_,
+                                width_, width_);
+    result.noalias() = chain.transpose() * Eigen::Map<RowMajor>(h.data(), n, n) * chain;
+    if (direct_ && !step_column_) continue;
+    function_->evaluate({k, 1}, x.data(), v.data(), j.data(), workspace);
+    const Eigen::Map<const Eigen::VectorXd> lambda(multipliers + k * m, m);
+    const Eigen::VectorXd slope =
+        Eigen::Map<const RowMajor>(j.data(), m, n).transpose() * lambda;  // d(lambda.v)/d inputs
+    if (!sampled_) add_retraction_curvature(columns, at, k, root * slope, result);
+    if (step_column_) {
+      // root(h) v: cross terms between the root and v, and the root's own curvature.
+      const Eigen::VectorXd cross = (0.5 / root) * (chain.transpose() * slope);
+      result.col(width_ - 1) += cross;
+      result.row(width_ - 1) += cross.transpose();
+      const double value = lambda.dot(Eigen::Map<const Eigen::VectorXd>(v.data(), m));
+      result(width_ - 1, width_ - 1) -= 0.25 / (step * root) * value;
+    }
+  }
+}
+
+// A quaternion moved by d is q + E d - |d|^2 q / 8 + ...: curvature of its own.
+void BoundFunction::add_retraction_curvature(const StageColumns& columns, const Stages& at,
+                                             int instance, const Eigen::VectorXd& slope,
+                                             Eigen::Ref<RowMajor> result) const {
+  int row = 0, column = 0;
+  for (int w = 0; w < shape_.window; ++w)
+    for (const int index : shape_.blocks) {
+      const BlockSpec& block = columns.layout.block(index);
+      if (block.topology == Topology::quaternion) {
+        const auto q = at.col(stage_[instance] + w).segment<4>(columns.layout.offset(index));
+        const double bend = -0.25 * q.dot(slope.segment<4>(row));
+        result.diagonal().segment<3>(column).array() += bend;
+      }
+      row += block.size;
+      column += block.tangent_size();
+    }
+}
+
+}  // namespace lapwing

@@ -1,0 +1,177 @@
+// The rows that the kernel makes itself: dynamics, held last inputs, the clock.
+#include "framework/problem/trajectory_problem_impl.h"
+
+namespace lapwing {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// d (rotation step of q) / d q, the left inverse of the retraction's Jacobian: tangent x size.
+Eigen::MatrixXd tangent_projection(const BlockSpec& block, const double* at) {
+  const Eigen::MatrixXd jacobian = retraction_jacobian(block, at);
+  if (block.topology == Topology::line) return jacobian;
+  return 4.0 * jacobian.transpose();
+}
+
+// d arguments of a model's flow / d tangents of state and input, and the step: square but for
+// quaternions.
+RowMajor argument_chain(const StageColumns& columns, const BoundModel& model, const Stages& at,
+                        int stage) {
+  const StageLayout& layout = columns.layout;
+  const int width = static_cast<int>(columns.model_columns(model, stage).size());
+  RowMajor chain = RowMajor::Zero(model.arguments(), width);
+  int row = 0, column = 0;
+  for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
+    for (const int b : *blocks) {
+      const BlockSpec& block = layout.block(b);
+      chain.block(row, column, block.size, block.tangent_size()) =
+          retraction_jacobian(block, at.col(stage).data() + layout.offset(b));
+      row += block.size;
+      column += block.tangent_size();
+    }
+  chain(row, column) = 1.0;
+  return chain;
+}
+
+// A quaternion moved by d is q + E d - |d|^2 q / 8 + ...: curvature of its own, where `slope` is
+// the derivative of the bent quantity with respect to the flow's arguments.
+void add_retraction_curvature(const StageColumns& columns, const BoundModel& model,
+                              const Stages& at, int stage, const Eigen::VectorXd& slope,
+                              RowMajor& hessian) {
+  int row = 0, column = 0;
+  for (const int b : model.state_blocks) {
+    const BlockSpec& block = columns.layout.block(b);
+    if (block.topology == Topology::quaternion)
+      hessian.diagonal().segment<3>(column).array() -=
+          0.25 * at.col(stage).segment<4>(columns.layout.offset(b)).dot(slope.segment<4>(row));
+    row += block.size;
+    column += block.tangent_size();
+  }
+}
+
+}  // namespace
+
+void evaluate_model_step(const StageColumns& columns, const BoundModel& model, const Stages& at,
+                         int stage, bool derivatives, ModelStep& result) {
+  const StageLayout& layout = columns.layout;
+  std::vector<double> x(model.arguments()), next(model.states);
+  RowMajor jacobian;
+  if (derivatives) jacobian.resize(model.states, model.arguments());
+  columns.gather_model(model, at, stage, columns.step(at, stage), x.data());
+  Workspace workspace;
+  model.model->flow({0, 1}, x.data(), next.data(), derivatives ? jacobian.data() : nullptr,
+                    workspace);
+  result.values.resize(model.state_tangents);
+  RowMajor flow;
+  if (derivatives) {
+    flow = jacobian * argument_chain(columns, model, at, stage);
+    result.jacobian.setZero(model.state_tangents, flow.cols() + model.state_tangents);
+  }
+  int row = 0, state = 0;
+  for (const int b : model.state_blocks) {
+    const BlockSpec& block = layout.block(b);
+    const int t = block.tangent_size();
+    const double* there = at.col(stage + 1).data() + layout.offset(b);
+    block_difference(block, next.data() + state, there, result.values.data() + row);
+    if (derivatives) {
+      const DifferenceJacobians d = difference_jacobians(block, next.data() + state, there);
+      result.jacobian.block(row, 0, t, flow.cols()) =
+          d.from * tangent_projection(block, next.data() + state) *
+          flow.middleRows(state, block.size);
+      result.jacobian.block(row, flow.cols() + row, t, t) = d.to;
+    }
+    row += t;
+    state += block.size;
+  }
+}
+
+void TrajectoryProblem::Impl::dynamics_values(const Stages& at, double* values) const {
+  const int stages = columns.horizon.stages;
+  ModelStep step;
+  double* out = values;
+  for (const BoundModel& model : columns.models) {
+    for (int i = 0; i + 1 < stages; ++i, out += model.state_tangents) {
+      evaluate_model_step(columns, model, at, i, false, step);
+      std::copy_n(step.values.data(), model.state_tangents, out);
+    }
+    for (const int b : model.input_blocks)
+      for (int k = 0; k < columns.layout.block(b).size; ++k) {
+        const int row = columns.layout.offset(b) + k;
+        *out++ = at(row, stages - 1) - at(row, stages - 2);
+      }
+  }
+  if (!columns.horizon.step_free) return;
+  const int time = columns.layout.offset(columns.time_block);
+  const int length = columns.layout.offset(columns.step_block);
+  for (int i = 0; i + 1 < stages; ++i) {
+    *out++ = at(time, i + 1) - at(time, i) - at(length, i);
+    *out++ = at(length, i + 1) - at(length, i);
+  }
+}
+
+void TrajectoryProblem::Impl::dynamics_jacobian(const Stages& at, double* values,
+                                                double* jacobian) const {
+  const int stages = columns.horizon.stages;
+  const int* slot = model_slots.data();
+  ModelStep step;
+  dynamics_values(at, values);
+  for (const BoundModel& model : columns.models) {
+    // One Jacobian serves all stages where it is constant.
+    const bool constant = model.model->affine() && !columns.horizon.step_free;
+    for (int i = 0; i + 1 < stages; ++i) {
+      if (i == 0 || !constant) evaluate_model_step(columns, model, at, i, true, step);
+      for (Eigen::Index k = 0; k < step.jacobian.size(); ++k, ++slot)
+        if (*slot >= 0) jacobian[*slot] = step.jacobian.data()[k];
+    }
+  }
+  const int* fixed = fixed_slots.data();
+  for (const BoundModel& model : columns.models)
+    for (int k = 0; k < model.inputs; ++k) {
+      jacobian[*fixed++] = -1.0;
+      jacobian[*fixed++] = 1.0;
+    }
+  if (!columns.horizon.step_free) return;
+  for (int i = 0; i + 1 < stages; ++i)
+    for (const double entry : {-1.0, 1.0, -1.0, -1.0, 1.0}) jacobian[*fixed++] = entry;
+}
+
+void TrajectoryProblem::Impl::dynamics_curvature(const Stages& at, const double* multipliers,
+                                                 double* hessian) const {
+  const StageLayout& layout = columns.layout;
+  const int* slot = model_hessian_slots.data();
+  Workspace workspace;
+  for (const BoundModel& model : columns.models) {
+    if (model.model->affine() && !columns.horizon.step_free) continue;
+    const int n = model.arguments();
+    std::vector<double> x(n), next(model.states);
+    RowMajor jacobian(model.states, n), bend(n, n);
+    for (int i = 0; i + 1 < columns.horizon.stages; ++i) {
+      columns.gather_model(model, at, i, columns.step(at, i), x.data());
+      model.model->flow({0, 1}, x.data(), next.data(), jacobian.data(), workspace);
+      // Multipliers of the flow's own numbers: the row is the difference from the flow.
+      Eigen::VectorXd ambient(model.states);
+      int row = 0, state = 0;
+      for (const int b : model.state_blocks) {
+        const BlockSpec& block = layout.block(b);
+        const double* there = at.col(i + 1).data() + layout.offset(b);
+        const DifferenceJacobians d = difference_jacobians(block, next.data() + state, there);
+        const Eigen::Map<const Eigen::VectorXd> lambda(
+            multipliers + model.first_row + i * model.state_tangents + row, block.tangent_size());
+        ambient.segment(state, block.size) =
+            (d.from * tangent_projection(block, next.data() + state)).transpose() * lambda;
+        row += block.tangent_size();
+        state += block.size;
+      }
+      bend.setZero();
+      model.model->curvature({0, 1}, x.data(), ambient.data(), bend.data(), workspace);
+      const RowMajor chain = argument_chain(columns, model, at, i);
+      RowMajor tangent = chain.transpose() * bend * chain;
+      add_retraction_curvature(columns, model, at, i, jacobian.transpose() * ambient, tangent);
+      for (int a = 0; a < tangent.rows(); ++a)
+        for (int b = 0; b <= a; ++b, ++slot)
+          if (*slot >= 0) hessian[*slot] += tangent(a, b);
+    }
+  }
+}
+
+}  // namespace lapwing

@@ -1,0 +1,310 @@
+#include "framework/problem/trajectory_problem.h"
+
+#include <cmath>
+
+#include "framework/problem/trajectory_problem_impl.h"
+
+namespace lapwing {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kShortestStep = 1e-3;  // s, lower bound of a free step
+
+// Linear between the guess's times, constant outside.
+Eigen::VectorXd interpolate(const BlockGuess& guess, double time) {
+  const auto& t = guess.times;
+  const auto after = std::upper_bound(t.begin(), t.end(), time);
+  if (after == t.begin()) return guess.values.front();
+  if (after == t.end()) return guess.values.back();
+  const std::size_t k = after - t.begin();
+  const double span = t[k] - t[k - 1];
+  const double s = span > 0 ? (time - t[k - 1]) / span : 1.0;
+  return (1.0 - s) * guess.values[k - 1] + s * guess.values[k];
+}
+
+void check_guess(const std::vector<double>& times, std::size_t values, const std::string& what) {
+  if (times.empty() || times.size() != values)
+    throw InputError("guess of " + what + " needs as many values as times, at least one");
+  for (std::size_t k = 0; k < times.size(); ++k)
+    if (!std::isfinite(times[k]) || (k > 0 && times[k] < times[k - 1]))
+      throw InputError("guess of " + what + ": times must be finite and in order");
+}
+
+}  // namespace
+
+TrajectoryProblem::TrajectoryProblem(Vehicle vehicle, Horizon horizon, Environment environment)
+    : impl_(std::make_unique<Impl>()) {
+  if (horizon.stages < 2 || !(horizon.step > 0) || !std::isfinite(horizon.duration()))
+    throw InputError("a trajectory needs at least 2 stages and a positive step");
+  impl_->vehicle = std::move(vehicle);
+  impl_->environment = std::move(environment);
+  impl_->columns.horizon = horizon;
+}
+TrajectoryProblem::~TrajectoryProblem() = default;
+TrajectoryProblem::TrajectoryProblem(TrajectoryProblem&&) noexcept = default;
+
+void TrajectoryProblem::add_model(std::string name, std::unique_ptr<VehicleModel> model) {
+  StageColumns& columns = impl_->columns;
+  model->bind(impl_->vehicle);
+  BoundModel bound;
+  bound.name = std::move(name);
+  for (const BlockSpec& block : model->blocks()) {
+    if (block.role != BlockRole::state && block.role != BlockRole::input)
+      throw Error(bound.name + ": block '" + block.name + "' is neither state nor input");
+    const bool state = block.role == BlockRole::state;
+    (state ? bound.state_blocks : bound.input_blocks).push_back(columns.layout.add(block));
+    (state ? bound.states : bound.inputs) += block.size;
+    if (state) bound.state_tangents += block.tangent_size();
+  }
+  bound.model = std::move(model);
+  columns.models.push_back(std::move(bound));
+}
+
+void TrajectoryProblem::add_block(BlockSpec block) {
+  block.role = BlockRole::free;
+  impl_->columns.layout.add(std::move(block));
+}
+
+void TrajectoryProblem::add_cost(std::string name, double weight, std::unique_ptr<CostTerm> term) {
+  if (!(weight >= 0) || !std::isfinite(weight))
+    throw InputError(name + ": a weight is at least 0 and finite");
+  impl_->costs.push_back({std::move(name), weight, std::move(term), nullptr, {}});
+}
+
+void TrajectoryProblem::add_constraint(std::string name, std::unique_ptr<Constraint> constraint) {
+  ConstraintEntry entry;
+  entry.name = std::move(name);
+  entry.constraint = std::move(constraint);
+  impl_->constraints.push_back(std::move(entry));
+}
+
+void TrajectoryProblem::set_path_guess(std::vector<double> times,
+                                       std::vector<Eigen::Vector3d> positions,
+                                       std::vector<double> yaws) {
+  check_guess(times, positions.size(), "path");
+  check_guess(times, yaws.size(), "path");
+  impl_->path_positions = {"position", times, {positions.begin(), positions.end()}};
+  impl_->path_yaws = {"yaw", times, {}};
+  for (const double yaw : yaws)
+    impl_->path_yaws.values.push_back(Eigen::VectorXd::Constant(1, yaw));
+}
+
+void TrajectoryProblem::set_block_guess(const std::string& block, std::vector<double> times,
+                                        std::vector<Eigen::VectorXd> values) {
+  const BlockSpec& spec = impl_->columns.layout.block(impl_->columns.layout.index(block));
+  check_guess(times, values.size(), block);
+  for (const Eigen::VectorXd& value : values)
+    if (value.size() != spec.size)
+      throw InputError("guess of " + block + " needs " + std::to_string(spec.size) + " numbers");
+  impl_->guesses.push_back({block, std::move(times), std::move(values)});
+}
+
+void TrajectoryProblem::finish() {
+  if (impl_->finished) throw Error("a trajectory problem is finished once");
+  if (impl_->columns.models.empty()) throw InputError("a trajectory problem needs a vehicle model");
+  impl_->add_clock();
+  impl_->bind_terms();
+  impl_->build_patterns();
+  impl_->finished = true;
+}
+
+// Blocks `time` and `step`, then the columns: every number but the constants.
+void TrajectoryProblem::Impl::add_clock() {
+  StageLayout& layout = columns.layout;
+  columns.time_block =
+      layout.add({.name = "time", .size = 1, .unit = "s", .role = BlockRole::clock});
+  columns.step_block =
+      layout.add({.name = "step", .size = 1, .unit = "s", .role = BlockRole::clock});
+  for (int b = 0; b < layout.count(); ++b) {
+    const bool constant = layout.block(b).role == BlockRole::clock && !columns.horizon.step_free;
+    for (int i = 0; i < layout.block(b).tangent_size(); ++i)
+      columns.column_in_stage.push_back(constant ? -1 : columns.per_stage++);
+  }
+  bounds.resize(columns.total());
+  model_bounds();
+  if (!columns.horizon.step_free) return;
+  bound_owners.push_back("clock");
+  const int owner = static_cast<int>(bound_owners.size()) - 1;
+  tighten(columns.column(0, layout.tangent_offset(columns.time_block)), 0.0, 0.0, owner);
+  for (int i = 0; i < columns.horizon.stages; ++i)
+    tighten(columns.column(i, layout.tangent_offset(columns.step_block)), kShortestStep, kInfinity,
+            owner);
+}
+
+void TrajectoryProblem::Impl::model_bounds() {
+  for (const BoundModel& model : columns.models) {
+    const int owner = static_cast<int>(bound_owners.size());
+    bound_owners.push_back(model.name);
+    std::vector<double> lower(model.states + model.inputs), upper(lower.size());
+    model.model->bounds(lower.data(), upper.data());
+    int number = 0;
+    for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
+      for (const int index : *blocks) {
+        const BlockSpec& block = columns.layout.block(index);
+        for (int i = 0; i < block.size; ++i, ++number)
+          if (block.topology == Topology::line)
+            for (int stage = 0; stage < columns.horizon.stages; ++stage)
+              tighten(columns.column(stage, columns.layout.tangent_offset(index) + i),
+                      lower[number], upper[number], owner);
+      }
+  }
+}
+
+void TrajectoryProblem::Impl::tighten(int column, double lower, double upper, int owner) {
+  ColumnBound& bound = bounds[column];
+  if (lower > bound.lower) bound.lower = lower, bound.lower_owner = owner;
+  if (upper < bound.upper) bound.upper = upper, bound.upper_owner = owner;
+}
+
+void TrajectoryProblem::Impl::bind_terms() {
+  const ProblemSetting setting{columns.layout, columns.horizon, vehicle, environment};
+  for (CostEntry& cost : costs) {
+    cost.bound = std::make_unique<BoundFunction>(cost.name, *cost.term, columns, setting);
+    quadratic &= !cost.bound->curved();
+  }
+  for (const BoundModel& model : columns.models)
+    affine_rows &= model.model->affine() && !columns.horizon.step_free;
+  for (ConstraintEntry& entry : constraints) {
+    entry.bound = std::make_unique<BoundFunction>(entry.name, *entry.constraint, columns, setting);
+    const BoundFunction& bound = *entry.bound;
+    const int numbers = bound.instances() * bound.rows();
+    entry.lower.resize(numbers);
+    entry.upper.resize(numbers);
+    entry.constraint->bounds({0, bound.instances()}, entry.lower.data(), entry.upper.data());
+    for (int r = 0; r < numbers; ++r)
+      if (std::isnan(entry.lower[r]) || std::isnan(entry.upper[r]))
+        throw Error(entry.name + ": a bound is not a number");
+    bool lines = true;
+    for (const int block : bound.shape().blocks)
+      lines &= columns.layout.block(block).topology == Topology::line &&
+               columns.layout.block(block).role != BlockRole::clock;
+    entry.is_bounds = bound.shape().identity && bound.shape().times.empty() && lines;
+    if (entry.is_bounds) {
+      bound_owners.push_back(entry.name);
+      take_bounds(entry, static_cast<int>(bound_owners.size()) - 1);
+    } else {
+      affine_rows &= !bound.curved();
+    }
+  }
+  quadratic &= affine_rows;
+}
+
+void TrajectoryProblem::Impl::take_bounds(ConstraintEntry& entry, int owner) {
+  const BoundFunction& bound = *entry.bound;
+  if (bound.rows() != bound.width())
+    throw Error(entry.name + ": an identity has as many rows as inputs");
+  for (int k = 0; k < bound.instances(); ++k)
+    for (int r = 0; r < bound.rows(); ++r)
+      tighten(bound.columns(k)[r], entry.lower[k * bound.rows() + r],
+              entry.upper[k * bound.rows() + r], owner);
+}
+
+const Vehicle& TrajectoryProblem::vehicle() const {
+  return impl_->vehicle;
+}
+const Horizon& TrajectoryProblem::horizon() const {
+  return impl_->columns.horizon;
+}
+const Environment& TrajectoryProblem::environment() const {
+  return impl_->environment;
+}
+const StageLayout& TrajectoryProblem::layout() const {
+  return impl_->columns.layout;
+}
+int TrajectoryProblem::columns() const {
+  return impl_->columns.total();
+}
+int TrajectoryProblem::rows() const {
+  return impl_->rows;
+}
+bool TrajectoryProblem::quadratic() const {
+  return impl_->quadratic;
+}
+
+double TrajectoryProblem::time(const Stages& at, int stage) const {
+  return at(impl_->columns.layout.offset(impl_->columns.time_block), stage);
+}
+
+Stages TrajectoryProblem::initial_guess() const {
+  const StageColumns& columns = impl_->columns;
+  const int count = columns.horizon.stages;
+  const double step = columns.horizon.step;
+  Stages at = Stages::Zero(columns.layout.size(), count);
+  std::vector<Sample> samples(count);
+  for (int i = 0; i < count; ++i) {
+    samples[i].time = i * step;
+    if (impl_->path_positions.times.empty()) continue;
+    samples[i].position = interpolate(impl_->path_positions, samples[i].time);
+    samples[i].yaw = interpolate(impl_->path_yaws, samples[i].time)(0);
+  }
+  for (int i = 0; i + 1 < count; ++i) {
+    samples[i].velocity = (samples[i + 1].position - samples[i].position) / step;
+    samples[i].yaw_rate = (samples[i + 1].yaw - samples[i].yaw) / step;
+  }
+  for (int i = 0; i < count; ++i) {
+    samples[i].force = impl_->vehicle.mass * kGravity * Eigen::Vector3d::UnitZ();
+    for (const BoundModel& model : columns.models) {
+      std::vector<double> numbers(model.states + model.inputs);
+      model.model->from_sample(samples[i], numbers.data());
+      const double* from = numbers.data();
+      for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
+        for (const int b : *blocks) {
+          const int size = columns.layout.block(b).size;
+          std::copy_n(from, size, at.col(i).data() + columns.layout.offset(b));
+          from += size;
+        }
+    }
+    at(columns.layout.offset(columns.time_block), i) = samples[i].time;
+    at(columns.layout.offset(columns.step_block), i) = step;
+    for (int b = 0; b < columns.layout.count(); ++b)
+      if (columns.layout.block(b).role == BlockRole::free &&
+          columns.layout.block(b).topology == Topology::quaternion)
+        at(columns.layout.offset(b), i) = 1.0;
+    for (const BlockGuess& guess : impl_->guesses) {
+      const int b = columns.layout.index(guess.block);
+      at.col(i).segment(columns.layout.offset(b), columns.layout.block(b).size) =
+          interpolate(guess, samples[i].time);
+    }
+  }
+  return at;
+}
+
+Stages TrajectoryProblem::retract(const Stages& at, const Eigen::VectorXd& step) const {
+  const StageColumns& columns = impl_->columns;
+  const StageLayout& layout = columns.layout;
+  Stages result = at;
+  std::vector<double> delta(layout.tangent_size());
+  for (int i = 0; i < columns.horizon.stages; ++i) {
+    for (int t = 0; t < layout.tangent_size(); ++t) {
+      const int column = columns.column(i, t);
+      delta[t] = column < 0 ? 0.0 : step(column);
+    }
+    for (int b = 0; b < layout.count(); ++b)
+      block_retract(layout.block(b), at.col(i).data() + layout.offset(b),
+                    delta.data() + layout.tangent_offset(b),
+                    result.col(i).data() + layout.offset(b));
+  }
+  return result;
+}
+
+Trajectory TrajectoryProblem::trajectory(const Stages& at) const {
+  const StageColumns& columns = impl_->columns;
+  Trajectory result;
+  for (const BoundModel& model : columns.models) model.model->describe(result);
+  const int target = columns.layout.find("target");
+  result.has_target = target >= 0 && columns.layout.block(target).size == 3;
+  result.samples.resize(columns.horizon.stages);
+  for (int i = 0; i < columns.horizon.stages; ++i) {
+    Sample& sample = result.samples[i];
+    sample.time = time(at, i);
+    for (const BoundModel& model : columns.models) {
+      std::vector<double> numbers(model.arguments());
+      columns.gather_model(model, at, i, 0.0, numbers.data());
+      model.model->to_sample(numbers.data(), sample);
+    }
+    if (result.has_target) sample.target = at.col(i).segment<3>(columns.layout.offset(target));
+  }
+  return result;
+}
+
+}  // namespace lapwing
