@@ -40,14 +40,14 @@ struct ProblemSetting {
 };
 
 struct FunctionShape {
-  std::vector<int> blocks;  // layout indices of the blocks read, in the order gathered
-  int window = 1;           // neighbouring stages read by one instance
-  int rows = 0;             // results of one instance
+  std::vector<int> blocks = {};  // layout indices of the blocks read, in the order gathered
+  int window = 1;                // neighbouring stages read by one instance
+  int rows = 0;                  // results of one instance
   // Which instances there are. Both empty: one for every window inside the horizon. `stages`: the
   // first stage of each. `times` (window 1 only): one at each time, in s; between two stages the
   // kernel reads states off the vehicle model's flow, inputs as held, free blocks linearly.
-  std::vector<int> stages;
-  std::vector<double> times;
+  std::vector<int> stages = {};
+  std::vector<double> times = {};
   // A cost that stands for an integral over time: the kernel weights each instance by its step, so
   // that weights do not depend on the number of stages.
   bool integral = false;
@@ -55,7 +55,7 @@ struct FunctionShape {
   // Constraints only: the results are the gathered inputs themselves, in order. The kernel turns
   // such rows into bounds on variables.
   bool identity = false;
-  std::vector<std::string> row_names;  // "x", "y", "z"; empty: numbered
+  std::vector<std::string> row_names = {};  // "x", "y", "z"; empty: numbered
 };
 
 // Scratch memory of one thread: grows on first use, never shrinks.

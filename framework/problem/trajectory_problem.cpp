@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "framework/core/units.h"
 #include "framework/problem/trajectory_problem_impl.h"
 
 namespace lapwing {

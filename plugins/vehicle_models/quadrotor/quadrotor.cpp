@@ -1,0 +1,86 @@
+// The thesis's approximate quadrotor: a point mass with yaw (3.1 to 3.3), exact zero-order hold.
+//
+//   m r'' = F + m g        I_psi psi'' = M_psi
+//   r+ = r + h v + h^2/2 a      v+ = v + h a      a = F/m + g
+//
+//   p:add_model { type = "quadrotor" }
+#include "framework/core/units.h"
+#include "framework/plugin/plugin.h"
+#include "framework/problem/differentiable.h"
+
+namespace lapwing {
+namespace {
+
+class Quadrotor final : public DifferentiableModel<Quadrotor, 8, 4> {
+ public:
+  static constexpr PluginText kText{"quadrotor", "1.0.0",
+                                    "point mass with yaw, forces held over a step",
+                                    "thesis 3.5.1, (3.1) to (3.3)"};
+  static ParameterTable parameters() { return {}; }
+  explicit Quadrotor(const Parameters&) {}
+
+  void bind(const Vehicle& vehicle) override {
+    mass_ = vehicle.mass;
+    yaw_inertia_ = vehicle.inertia.z();
+  }
+
+  std::vector<BlockSpec> blocks() const override {
+    return {{.name = "position", .size = 3, .unit = "m"},
+            {.name = "yaw", .size = 1, .unit = "rad"},
+            {.name = "velocity", .size = 3, .unit = "m/s"},
+            {.name = "yaw_rate", .size = 1, .unit = "rad/s"},
+            {.name = "force", .size = 3, .unit = "N", .role = BlockRole::input},
+            {.name = "yaw_torque", .size = 1, .unit = "N m", .role = BlockRole::input}};
+  }
+
+  bool affine() const override { return true; }
+
+  template <class T>
+  void next_state(const T* state, const T* input, const T& step, T* next) const {
+    const T half_squared = 0.5 * step * step;
+    for (int i = 0; i < 4; ++i) {
+      const T acceleration = i < 3 ? input[i] * (1.0 / mass_) - (i == 2 ? kGravity : 0.0)
+                                   : input[3] * (1.0 / yaw_inertia_);
+      next[i] = state[i] + step * state[4 + i] + half_squared * acceleration;
+      next[4 + i] = state[4 + i] + step * acceleration;
+    }
+  }
+
+  void to_sample(const double* numbers, Sample& sample) const override {
+    sample.position = Eigen::Vector3d(numbers);
+    sample.yaw = numbers[3];
+    sample.velocity = Eigen::Vector3d(numbers + 4);
+    sample.yaw_rate = numbers[7];
+    sample.force = Eigen::Vector3d(numbers + 8);
+    sample.yaw_torque = numbers[11];
+    sample.acceleration = sample.force / mass_ - kGravity * Eigen::Vector3d::UnitZ();
+  }
+
+  void from_sample(const Sample& sample, double* numbers) const override {
+    Eigen::Map<Eigen::Vector3d>(numbers + 0) = sample.position;
+    numbers[3] = sample.yaw;
+    Eigen::Map<Eigen::Vector3d>(numbers + 4) = sample.velocity;
+    numbers[7] = sample.yaw_rate;
+    Eigen::Map<Eigen::Vector3d>(numbers + 8) = sample.force;
+    numbers[11] = sample.yaw_torque;
+  }
+
+  // The limits of the vehicle are constraints of their own: input_limits, state_limits.
+  void bounds(double* lower, double* upper) const override {
+    std::fill_n(lower, 12, -std::numeric_limits<double>::infinity());
+    std::fill_n(upper, 12, std::numeric_limits<double>::infinity());
+  }
+
+  void describe(Trajectory& trajectory) const override {
+    trajectory.model = MotionModel::force;
+    trajectory.inputs_held = true;
+  }
+
+ private:
+  double mass_ = 1.0, yaw_inertia_ = 1.0;
+};
+
+}  // namespace
+}  // namespace lapwing
+
+LAPWING_PLUGINS(lapwing::Quadrotor)
