@@ -10,23 +10,19 @@
 #include <vector>
 
 #include "framework/core/value.h"
+#include "framework/geometry/geodetic.h"
 #include "framework/trajectory/environment.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace lapwing {
 
-// Geodetic origin of the world frame (WGS 84).
-struct GeodeticOrigin {
-  double latitude_deg = 0, longitude_deg = 0, altitude = 0;  // altitude in m above the ellipsoid
-};
-
 struct KeyframeTask {
-  double time = 0;                 // s
+  double time = 0;                                     // s
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m
-  std::optional<double> yaw;       // rad
-  double tolerance = 0.5;          // m
-  double time_tolerance = 0.1;     // s
-  double yaw_tolerance = 0.1745;   // rad
+  std::optional<double> yaw;                           // rad
+  double tolerance = 0.5;                              // m
+  double time_tolerance = 0.1;                         // s
+  double yaw_tolerance = 0.1745;                       // rad
 };
 
 struct Task {
@@ -35,24 +31,31 @@ struct Task {
 
 struct Plan {
   static constexpr int kFormat = 1;
-  std::string mission;             // name as the script gave it
-  std::string kind;                // film, race, ...
-  std::optional<GeodeticOrigin> geodetic_origin;
-  Value vehicle;                   // as vehicle/vehicle.h writes it, camera included
+  std::string mission;                           // name as the script gave it
+  std::string kind;                              // film, race, ...
+  std::optional<GeodeticPoint> geodetic_origin;  // of the world frame
+  Value vehicle;                                 // as vehicle/vehicle.h writes it, camera included
   Trajectory trajectory;
   Environment environment;
-  std::optional<double> budget;    // s of flight
+  std::optional<double> budget;  // s of flight
   Task task;
-  Value configuration;             // effective, with overrides
-  Value solver;                    // solver report
-  Value certificate;               // as verify writes it
+  Value configuration;  // effective, with overrides
+  Value solver;         // solver report
+  Value certificate;    // as verify writes it
 };
 
+// The document. SI and radians; a sample has the fields of its motion model alone; sections that
+// are absent (no origin, no budget, null values) have no key.
 Value to_value(const Plan& plan);
-// Throws InputError listing every missing, misspelt, mistyped or non-finite field.
+// Throws InputError listing every missing, misspelt, mistyped or non-finite field, and another
+// format number. It judges form alone: times out of order or a vehicle that contradicts itself are
+// for the verifier to report.
 Plan plan_from_value(const Value& value);
 
-void write_plan(const Plan& plan, const std::filesystem::path& path);
+// The bytes of plan.json; equal plans give equal bytes. Throws Error naming the key of a number
+// that is not finite, which JSON cannot hold.
+std::string plan_text(const Plan& plan);
+void write_plan(const Plan& plan, const std::filesystem::path& path);  // whole or not at all
 Plan read_plan(const std::filesystem::path& path);
 
 }  // namespace lapwing

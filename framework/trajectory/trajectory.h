@@ -38,7 +38,7 @@ struct Trajectory {
   bool inputs_held = true;  // held until the next sample, or linear between samples
   bool has_gimbal = false;
   bool has_target = false;
-  std::vector<Sample> samples;  // times strictly increasing, at least one
+  std::vector<Sample> samples;  // at least one; first at 0, times strictly increasing
 
   double duration() const {
     return samples.empty() ? 0.0 : samples.back().time - samples.front().time;

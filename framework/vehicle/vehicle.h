@@ -18,7 +18,7 @@ struct Rotors {
   double thrust_min = 0;          // N, one rotor
   double torque_coefficient = 0;  // m, drag torque = coefficient * thrust (k_M / k_F)
   double arm_length = 0;          // m, rotor axis to centre of mass
-  bool diagonal = false;          // arms at 45 degrees to the body axes; else along them (fig. 3.11)
+  bool diagonal = false;  // arms at 45 degrees to the body axes; else along them (fig. 3.11)
 };
 
 struct GimbalLimits {
@@ -37,18 +37,18 @@ struct Camera {
 
 struct Vehicle {
   std::string name;
-  double mass = 0;                                      // kg
-  Eigen::Vector3d inertia = Eigen::Vector3d::Zero();    // kg m^2, body axes, diagonal
+  double mass = 0;                                    // kg
+  Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  // kg m^2, body axes, diagonal
   Rotors rotors;
-  double yaw_share = 0;           // beta of 3.8.3: share of the largest yaw moment that is kept usable
-  double speed_across_max = 0;    // m/s, horizontal
-  double climb_speed_max = 0;     // m/s
-  double descent_speed_max = 0;   // m/s
-  double acceleration_across_max = 0;          // m/s^2, horizontal
-  std::optional<double> acceleration_up_max;   // m/s^2; absent: the rotors alone limit it
-  std::optional<double> acceleration_down_max; // m/s^2
-  double yaw_rate_max = 0;        // rad/s
-  double flight_time = 0;         // s on one battery
+  double yaw_share = 0;  // beta of 3.8.3: share of the largest yaw moment that is kept usable
+  double speed_across_max = 0;                  // m/s, horizontal
+  double climb_speed_max = 0;                   // m/s
+  double descent_speed_max = 0;                 // m/s
+  double acceleration_across_max = 0;           // m/s^2, horizontal
+  std::optional<double> acceleration_up_max;    // m/s^2; absent: the rotors alone limit it
+  std::optional<double> acceleration_down_max;  // m/s^2
+  double yaw_rate_max = 0;                      // rad/s
+  double flight_time = 0;                       // s on one battery
   std::optional<GimbalLimits> gimbal;
   Camera camera;
 
@@ -56,18 +56,20 @@ struct Vehicle {
   // every thrust norm in [thrust_min, thrust_max] together with every |yaw torque| up to
   // yaw_torque_max keeps each rotor within its limits, with no roll or pitch moment.
   double thrust_max() const;      // N, (1 - beta/2) 4 F_max
-  double thrust_min() const;      // N, at least (beta/2) 4 F_max and what the rotors' minimum asks
+  double thrust_min() const;      // N, (beta/2) 4 F_max + 4 F_min
   double yaw_torque_max() const;  // N m, beta 2 M_max
 };
 
-// The table of a vehicle file (degrees as *_deg) and of a camera file.
+// The table of a vehicle file and of a camera file; angles in degrees, in keys that end in _deg.
 ParameterTable vehicle_table();
 ParameterTable camera_table();
 
-// Throws InputError when limits contradict each other or the vehicle cannot hover.
+// Throws InputError with everything that contradicts itself: limits, body, gimbal, camera, or a
+// vehicle that cannot hover between thrust_min and thrust_max.
 Vehicle vehicle_from(const Parameters& vehicle, const Parameters& camera, std::string name);
 
-// Round trip through a plan.
+// Round trip through a plan, SI and radians. `vehicle_from_value` throws InputError listing every
+// missing, misspelt, mistyped or non-finite field, and every contradiction.
 Value to_value(const Vehicle& vehicle);
 Vehicle vehicle_from_value(const Value& value);
 

@@ -1,0 +1,124 @@
+#include "framework/vehicle/vehicle_check.h"
+
+#include <cstdio>
+
+#include "framework/core/units.h"
+
+namespace lapwing {
+namespace {
+
+std::string text_of(double value, const char* unit) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.6g%s%s", value, *unit ? " " : "", unit);
+  return buffer;
+}
+
+// One pass over everything that a vehicle must satisfy; `add` takes a key and a message.
+class Checker {
+ public:
+  using Add = std::function<void(const std::string&, const std::string&)>;
+  Checker(const Vehicle& vehicle, Add add) : v_(vehicle), add_(std::move(add)) {}
+
+  void run() {
+    body();
+    const bool body_is_sound = sound_;
+    limits();
+    if (v_.gimbal) gimbal(*v_.gimbal);
+    camera();
+    if (body_is_sound) hover();
+  }
+
+ private:
+  void require(bool good, const std::string& key, const std::string& message) {
+    if (good) return;
+    sound_ = false;
+    add_(key, message);
+  }
+  void positive(double value, const std::string& key) {
+    require(std::isfinite(value) && value > 0, key, "must be above 0, is " + text_of(value, ""));
+  }
+
+  void body() {
+    positive(v_.mass, "mass");
+    const Eigen::Vector3d& i = v_.inertia;
+    require(i.allFinite() && (i.array() > 0).all(), "inertia", "each entry must be above 0");
+    // A body's moments of inertia obey the triangle inequality; equality is a flat plate.
+    require(2 * i.maxCoeff() <= i.sum() * (1 + 1e-9), "inertia",
+            "no body has a moment of inertia larger than the sum of the other two");
+    positive(v_.rotors.thrust_max, "rotors.thrust");
+    require(v_.rotors.thrust_min >= 0 && v_.rotors.thrust_min < v_.rotors.thrust_max,
+            "rotors.thrust",
+            "the smallest thrust of a rotor (" + text_of(v_.rotors.thrust_min, "N") +
+                ") must be at least 0 and below the largest (" +
+                text_of(v_.rotors.thrust_max, "N") + ")");
+    positive(v_.rotors.torque_coefficient, "rotors.torque_coefficient");
+    positive(v_.rotors.arm_length, "rotors.arm_length");
+    require(v_.yaw_share > 0 && v_.yaw_share < 1, "yaw_share",
+            "must lie between 0 and 1, both excluded, is " + text_of(v_.yaw_share, ""));
+  }
+
+  void hover() {
+    const double weight = v_.mass * kGravity;
+    const std::string bounds = text_of(v_.thrust_min(), "N") + " to " +
+                               text_of(v_.thrust_max(), "N") + " with yaw_share " +
+                               text_of(v_.yaw_share, "");
+    require(v_.thrust_min() < v_.thrust_max(), "yaw_share",
+            "leaves no thrust to choose from: the bounds are " + bounds);
+    require(v_.thrust_min() < weight && weight < v_.thrust_max(), "mass",
+            "the vehicle cannot hover: its weight is " + text_of(weight, "N") +
+                ", its usable thrust " + bounds);
+  }
+
+  void limits() {
+    positive(v_.speed_across_max, "limits.speed_across");
+    positive(v_.climb_speed_max, "limits.climb_speed");
+    positive(v_.descent_speed_max, "limits.descent_speed");
+    positive(v_.acceleration_across_max, "limits.acceleration_across");
+    if (v_.acceleration_up_max) positive(*v_.acceleration_up_max, "limits.acceleration_up");
+    if (v_.acceleration_down_max) positive(*v_.acceleration_down_max, "limits.acceleration_down");
+    positive(v_.yaw_rate_max, "limits.yaw_rate_deg");
+    positive(v_.flight_time, "flight_time");
+  }
+
+  void gimbal(const GimbalLimits& g) {
+    axis("yaw", g.yaw_min, g.yaw_max, g.yaw_rate_max, std::numbers::pi);
+    axis("pitch", g.pitch_min, g.pitch_max, g.pitch_rate_max, std::numbers::pi / 2);
+  }
+
+  void axis(const std::string& name, double low, double high, double rate, double largest) {
+    const std::string range =
+        text_of(degrees(low), "") + " to " + text_of(degrees(high), "degrees");
+    const double slack = 1e-9;
+    require(low <= high, "gimbal." + name + "_deg", "the range " + range + " is empty");
+    require(low >= -largest - slack && high <= largest + slack, "gimbal." + name + "_deg",
+            "the range " + range + " leaves -" + text_of(degrees(largest), "") + " to " +
+                text_of(degrees(largest), "degrees"));
+    require(std::isfinite(rate) && rate >= 0, "gimbal." + name + "_rate_deg",
+            "must be at least 0, is " + text_of(degrees(rate), ""));
+    require(low >= high || rate > 0, "gimbal." + name + "_rate_deg",
+            "the gimbal has a range of " + range + " but no rate to turn with");
+  }
+
+  void camera() {
+    const Camera& c = v_.camera;
+    require(c.width >= 1 && c.height >= 1, "camera.image_size",
+            "both sizes must be at least 1 pixel");
+    require(c.focal_x > 0 && c.focal_y > 0, "camera.focal_length", "both entries must be above 0");
+    require(c.principal_x >= -0.5 && c.principal_x <= c.width - 0.5 && c.principal_y >= -0.5 &&
+                c.principal_y <= c.height - 0.5,
+            "camera.principal_point", "must lie within the image");
+  }
+
+  const Vehicle& v_;
+  Add add_;
+  bool sound_ = true;
+};
+
+}  // namespace
+
+void check_vehicle(const Vehicle& vehicle,
+                   const std::function<void(const std::string&, const std::string&)>& add) {
+  Checker(vehicle, add).run();
+}
+
+}  // namespace lapwing

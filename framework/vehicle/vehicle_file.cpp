@@ -1,0 +1,159 @@
+// Vehicle and camera files: tables and conversion from degrees.
+#include "framework/core/units.h"
+#include "framework/vehicle/vehicle.h"
+#include "framework/vehicle/vehicle_check.h"
+
+namespace lapwing {
+namespace {
+
+ParameterTable rotors_table() {
+  ParameterTable table;
+  table.required_numbers("thrust", 2, "N", "smallest and largest thrust of one rotor", at_least(0))
+      .required_number("torque_coefficient", "m", "drag torque of a rotor over its thrust",
+                       above(0))
+      .required_number("arm_length", "m", "from a rotor's axis to the centre of mass", above(0))
+      .choice("layout", "diagonal", {"diagonal", "along_axes"},
+              "arms at 45 degrees to the body's axes, or along them");
+  return table;
+}
+
+ParameterTable limits_table() {
+  ParameterTable table;
+  table.required_number("speed_across", "m/s", "largest horizontal speed", above(0))
+      .required_number("climb_speed", "m/s", "largest speed upwards", above(0))
+      .required_number("descent_speed", "m/s", "largest speed downwards", above(0))
+      .required_number("acceleration_across", "m/s^2", "largest horizontal acceleration", above(0))
+      .optional_number("acceleration_up", "m/s^2", "absent: the rotors alone limit it", above(0))
+      .optional_number("acceleration_down", "m/s^2", "absent: the rotors alone limit it", above(0))
+      .required_number("yaw_rate_deg", "deg/s", "largest yaw rate", above(0));
+  return table;
+}
+
+ParameterTable gimbal_table() {
+  ParameterTable table;
+  table
+      .optional_numbers("yaw_deg", 2, "deg", "range against the body; equal ends: it cannot turn",
+                        between(-180, 180))
+      .optional_number("yaw_rate_deg", "deg/s", "largest rate of the gimbal's yaw", at_least(0))
+      .optional_numbers("pitch_deg", 2, "deg", "range, positive up", between(-90, 90))
+      .optional_number("pitch_rate_deg", "deg/s", "largest rate of the gimbal's pitch",
+                       at_least(0));
+  return table;
+}
+
+// All of the gimbal's keys or none of them: a camera fixed to the body has no gimbal table.
+std::optional<GimbalLimits> gimbal_from(const Parameters& table, Diagnostics& errors) {
+  int given = 0;
+  const ParameterTable known = gimbal_table();
+  for (const ParameterSpec& spec : known.specs()) given += table.has(spec.name);
+  if (given == 0) return std::nullopt;
+  for (const ParameterSpec& spec : known.specs()) {
+    if (!table.has(spec.name)) {
+      errors.add(table.origin(), "gimbal." + spec.name,
+                 "missing: a gimbal needs both ranges and both rates");
+    }
+  }
+  if (given != static_cast<int>(known.specs().size())) return std::nullopt;
+  const auto yaw = table.numbers("yaw_deg");
+  const auto pitch = table.numbers("pitch_deg");
+  return GimbalLimits{.yaw_min = radians(yaw[0]),
+                      .yaw_max = radians(yaw[1]),
+                      .pitch_min = radians(pitch[0]),
+                      .pitch_max = radians(pitch[1]),
+                      .yaw_rate_max = radians(table.number("yaw_rate_deg")),
+                      .pitch_rate_max = radians(table.number("pitch_rate_deg"))};
+}
+
+Camera camera_from(const Parameters& table, const std::string& name, Diagnostics& errors) {
+  Camera camera;
+  camera.name = name;
+  const auto size = table.numbers("image_size");
+  if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1])) {
+    errors.add(table.origin("image_size"), "image_size", "expected whole numbers of pixels");
+    return camera;
+  }
+  camera.width = static_cast<int>(size[0]);
+  camera.height = static_cast<int>(size[1]);
+  camera.focal_x = table.numbers("focal_length")[0];
+  camera.focal_y = table.numbers("focal_length")[1];
+  camera.principal_x = table.numbers("principal_point")[0];
+  camera.principal_y = table.numbers("principal_point")[1];
+  return camera;
+}
+
+void read_limits(const Parameters& limits, Vehicle& vehicle) {
+  vehicle.speed_across_max = limits.number("speed_across");
+  vehicle.climb_speed_max = limits.number("climb_speed");
+  vehicle.descent_speed_max = limits.number("descent_speed");
+  vehicle.acceleration_across_max = limits.number("acceleration_across");
+  if (limits.has("acceleration_up")) vehicle.acceleration_up_max = limits.number("acceleration_up");
+  if (limits.has("acceleration_down")) {
+    vehicle.acceleration_down_max = limits.number("acceleration_down");
+  }
+  vehicle.yaw_rate_max = radians(limits.number("yaw_rate_deg"));
+}
+
+// Where the value of a dotted key was written, in the vehicle's file or the camera's.
+Origin origin_of(const Parameters& vehicle, const Parameters& camera, const std::string& key) {
+  const std::size_t dot = key.find('.');
+  if (dot == std::string::npos) return vehicle.origin(key);
+  const std::string table = key.substr(0, dot), name = key.substr(dot + 1);
+  if (table == "camera") return camera.origin(name);
+  return vehicle.table(table).origin(name);
+}
+
+}  // namespace
+
+ParameterTable vehicle_table() {
+  ParameterTable table;
+  table.required_number("mass", "kg", "take-off mass, camera included", between(0.01, 100))
+      .required_numbers("inertia", 3, "kg m^2", "moments of inertia about the body's axes",
+                        above(0))
+      .table("rotors", rotors_table(), "four equal rotors")
+      .number("yaw_share", 0.2, "",
+              "share of the largest yaw moment that stays usable at every thrust (beta of 3.8.3)",
+              {.minimum = 0, .maximum = 1, .minimum_excluded = true})
+      .table("limits", limits_table(), "what the vehicle may do, whatever a problem asks for")
+      .required_number("flight_time", "s", "time in the air on one battery", above(0))
+      .table("gimbal", gimbal_table(), "absent: the camera is fixed to the body")
+      .required_text("camera", "the camera file, such as cameras/action");
+  return table;
+}
+
+ParameterTable camera_table() {
+  ParameterTable table;
+  table.required_numbers("image_size", 2, "px", "width and height", between(1, 1 << 20))
+      .required_numbers("focal_length", 2, "px", "along the image's x and y", above(0))
+      .required_numbers("principal_point", 2, "px", "from the centre of the upper left pixel");
+  return table;
+}
+
+Vehicle vehicle_from(const Parameters& vehicle, const Parameters& camera, std::string name) {
+  Diagnostics errors;
+  Vehicle result;
+  result.name = std::move(name);
+  result.mass = vehicle.number("mass");
+  const auto inertia = vehicle.numbers("inertia");
+  result.inertia = {inertia[0], inertia[1], inertia[2]};
+  const Parameters& rotors = vehicle.table("rotors");
+  result.rotors = {.thrust_max = rotors.numbers("thrust")[1],
+                   .thrust_min = rotors.numbers("thrust")[0],
+                   .torque_coefficient = rotors.number("torque_coefficient"),
+                   .arm_length = rotors.number("arm_length"),
+                   .diagonal = rotors.text("layout") == "diagonal"};
+  result.yaw_share = vehicle.number("yaw_share");
+  result.flight_time = vehicle.number("flight_time");
+  read_limits(vehicle.table("limits"), result);
+  result.gimbal = gimbal_from(vehicle.table("gimbal"), errors);
+  const std::string& camera_file = vehicle.text("camera");
+  result.camera =
+      camera_from(camera, camera_file.substr(camera_file.find_last_of('/') + 1), errors);
+  errors.throw_if_any();
+  check_vehicle(result, [&](const std::string& key, const std::string& message) {
+    errors.add(origin_of(vehicle, camera, key), key, message);
+  });
+  errors.throw_if_any();
+  return result;
+}
+
+}  // namespace lapwing
