@@ -146,7 +146,7 @@ std::vector<Fields> Fields::tables(std::string_view name) {
   const auto& list = field->as_list();
   tables.reserve(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
-    tables.emplace_back(list[i], path_of(name) + "[" + std::to_string(i) + "]", *errors_);
+    tables.emplace_back(list[i], path_of(name) + "[" + std::to_string(i + 1) + "]", *errors_);
   }
   return tables;
 }

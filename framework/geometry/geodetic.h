@@ -15,9 +15,9 @@ struct GeodeticPoint {
 // Throws InputError when a figure is not finite or out of range; `what` names the point.
 void check_geodetic(const GeodeticPoint& point, const char* what);
 
-// The point in the frame whose origin is `origin`: x east, y north, z up, m. Its ground is the plane
-// that touches the ellipsoid at the origin, so a point far away at the same altitude lies below
-// z = 0. Throws InputError as above.
+// The point in the frame whose origin is `origin`: x east, y north, z up, m. Its ground is the
+// plane that touches the ellipsoid at the origin, so a point far away at the same altitude lies
+// below z = 0. Throws InputError as above.
 Eigen::Vector3d to_local(const GeodeticPoint& origin, const GeodeticPoint& point);
 
 // The inverse.

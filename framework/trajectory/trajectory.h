@@ -17,20 +17,20 @@ enum class MotionModel { force, rotors, path };
 
 // World frame W: x east, y north, z up. Yaw about z, 0 along +x, counter-clockwise, unwrapped.
 struct Sample {
-  double time = 0;                                            // s
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();         // m, W
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();         // m/s, W
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();     // m/s^2, W
-  double yaw = 0;                                             // rad
-  double yaw_rate = 0;                                        // rad/s
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();            // N, W; model force
-  double yaw_torque = 0;                                      // N m; model force
+  double time = 0;                                                  // s
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();               // m, W
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();               // m/s, W
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();           // m/s^2, W
+  double yaw = 0;                                                   // rad
+  double yaw_rate = 0;                                              // rad/s
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();                  // N, W; model force
+  double yaw_torque = 0;                                            // N m; model force
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // R_WB; model rotors
-  Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();       // rad/s, body; model rotors
-  Eigen::Vector4d rotor_thrusts = Eigen::Vector4d::Zero();    // N; model rotors
-  double gimbal_yaw = 0, gimbal_pitch = 0;                    // rad; where has_gimbal
-  double gimbal_yaw_rate = 0, gimbal_pitch_rate = 0;          // rad/s; where has_gimbal
-  Eigen::Vector3d target = Eigen::Vector3d::Zero();           // m, W; where has_target
+  Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();             // rad/s, body; model rotors
+  Eigen::Vector4d rotor_thrusts = Eigen::Vector4d::Zero();          // N; model rotors
+  double gimbal_yaw = 0, gimbal_pitch = 0;                          // rad; where has_gimbal
+  double gimbal_yaw_rate = 0, gimbal_pitch_rate = 0;                // rad/s; where has_gimbal
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();                 // m, W; where has_target
 };
 
 struct Trajectory {

@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/trajectory/interpolate.h"
+
+namespace lapwing {
+namespace {
+
+// Motion under an acceleration that changes linearly over one second, integrated by hand.
+Sample cubic_sample(double t, const Eigen::Vector3d& a0, const Eigen::Vector3d& jerk) {
+  Sample s;
+  s.time = t;
+  s.position = a0 * t * t / 2 + jerk * t * t * t / 6;
+  s.velocity = a0 * t + jerk * t * t / 2;
+  s.acceleration = a0 + jerk * t;
+  s.yaw = 0.2 * t * t - 0.1 * t * t * t;
+  s.yaw_rate = 0.4 * t - 0.3 * t * t;
+  s.gimbal_pitch = -0.1 * t * t;
+  s.gimbal_pitch_rate = -0.2 * t;
+  return s;
+}
+
+void expect_near(const Sample& a, const Sample& b) {
+  EXPECT_NEAR((a.position - b.position).norm(), 0, 1e-12);
+  EXPECT_NEAR((a.velocity - b.velocity).norm(), 0, 1e-12);
+  EXPECT_NEAR((a.acceleration - b.acceleration).norm(), 0, 1e-12);
+  EXPECT_NEAR(a.yaw, b.yaw, 1e-12);
+  EXPECT_NEAR(a.yaw_rate, b.yaw_rate, 1e-12);
+  EXPECT_NEAR(a.gimbal_pitch, b.gimbal_pitch, 1e-12);
+  EXPECT_NEAR(a.gimbal_pitch_rate, b.gimbal_pitch_rate, 1e-12);
+}
+
+TEST(Interpolate, LinearInputsGiveTheExactMotion) {
+  const Eigen::Vector3d a0(1, -2, 0.5), jerk(3, 1, -4);
+  Trajectory trajectory;
+  trajectory.inputs_held = false;
+  trajectory.has_gimbal = true;
+  for (const double t : {0.0, 0.4, 1.0}) trajectory.samples.push_back(cubic_sample(t, a0, jerk));
+  for (const double t : {0.0, 0.1, 0.4, 0.77, 1.0}) {
+    expect_near(sample_at(trajectory, t), cubic_sample(t, a0, jerk));
+  }
+}
+
+TEST(Interpolate, HeldInputsStayUntilTheNextSample) {
+  const Eigen::Vector3d a(1, -2, 0.5);
+  Trajectory trajectory;
+  trajectory.samples = {cubic_sample(0, a, {0, 0, 0}), cubic_sample(1, a, {0, 0, 0})};
+  trajectory.samples[0].force = {1, 2, 3};
+  trajectory.samples[1].force = {7, 8, 9};
+  trajectory.samples[1].acceleration = {9, 9, 9};
+  const Sample s = sample_at(trajectory, 0.6);
+  EXPECT_NEAR((s.position - a * 0.18).norm(), 0, 1e-12);
+  EXPECT_EQ(s.acceleration, a);
+  EXPECT_EQ(s.force, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(Interpolate, PathIsStraight) {
+  Trajectory trajectory;
+  trajectory.model = MotionModel::path;
+  trajectory.samples.resize(2);
+  trajectory.samples[1].time = 2;
+  trajectory.samples[1].position = {4, 0, 2};
+  trajectory.samples[1].yaw = 1;
+  const Sample s = sample_at(trajectory, 0.5);
+  EXPECT_EQ(s.position, Eigen::Vector3d(1, 0, 0.5));
+  EXPECT_EQ(s.velocity, Eigen::Vector3d(2, 0, 1));
+  EXPECT_DOUBLE_EQ(s.yaw, 0.25);
+}
+
+TEST(Interpolate, OutsideTheSamplesIsAnError) {
+  Trajectory trajectory;
+  EXPECT_THROW(sample_at(trajectory, 0), Error);
+  trajectory.samples.resize(2);
+  trajectory.samples[1].time = 1;
+  EXPECT_THROW(sample_at(trajectory, 1.1), Error);
+  EXPECT_THROW(sample_at(trajectory, -0.1), Error);
+  EXPECT_THROW(sample_at(trajectory, std::nan("")), Error);
+  EXPECT_EQ(sample_at(trajectory, 1 + 1e-9).time, 1);
+}
+
+}  // namespace
+}  // namespace lapwing

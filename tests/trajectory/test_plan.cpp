@@ -1,0 +1,191 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "framework/core/json.h"
+#include "framework/trajectory/plan.h"
+
+namespace lapwing {
+namespace {
+
+using testing::HasSubstr;
+
+Plan small_plan(MotionModel model = MotionModel::force) {
+  Plan plan;
+  plan.mission = "castle \"flyover\" \xc3\xa9";
+  plan.kind = "film";
+  plan.geodetic_origin = GeodeticPoint{47.1, 8.2, 400};
+  plan.vehicle = Value::map();
+  plan.vehicle.set("name", "solo");
+  plan.trajectory.model = model;
+  plan.trajectory.has_gimbal = true;
+  plan.trajectory.has_target = true;
+  for (int i = 0; i < 3; ++i) {
+    Sample s;
+    s.time = 0.1 * i;
+    s.position = {1.0 / 3, i, 2};
+    s.velocity = {0, 10.0, 1e-17};
+    s.acceleration = {1, 2, 3};
+    s.yaw = 0.3;
+    s.yaw_rate = -0.1;
+    s.force = {0, 0, 14.7};
+    s.yaw_torque = 0.01;
+    s.orientation = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5);
+    s.body_rates = {0.1, 0.2, 0.3};
+    s.rotor_thrusts = {1, 2, 3, 4};
+    s.gimbal_pitch = -0.7;
+    s.target = {5, 6, 7};
+    plan.trajectory.samples.push_back(s);
+  }
+  plan.environment.margin = 0.4;
+  plan.environment.spheres.push_back({"tree", {1, 2, 3}, 4});
+  plan.environment.boxes.push_back({"house", {1, 2, 3}, {4, 5, 6}});
+  plan.budget = 120;
+  plan.task.keyframes.push_back({.time = 0.1, .position = {0, 1, 2}, .yaw = 0.5});
+  plan.task.keyframes.push_back({.time = 0.2, .position = {0, 2, 2}});
+  plan.configuration = Value::map();
+  plan.configuration.set("weights", 3);
+  return plan;
+}
+
+Plan reread(const Plan& plan) {
+  return plan_from_value(from_json(plan_text(plan), "plan.json"));
+}
+
+std::string error_of(const Value& value) {
+  try {
+    plan_from_value(value);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+void erase(Value& map, const std::string& key) {
+  std::erase_if(map.as_map(), [&](const auto& entry) { return entry.first == key; });
+}
+
+TEST(Plan, RoundTripIsByteStableForEveryModel) {
+  for (const auto model : {MotionModel::force, MotionModel::rotors, MotionModel::path}) {
+    const Plan plan = small_plan(model);
+    const std::string text = plan_text(plan);
+    EXPECT_EQ(plan_text(reread(plan)), text);
+    EXPECT_EQ(plan_text(reread(reread(plan))), text);
+  }
+}
+
+TEST(Plan, ValuesSurvive) {
+  const Plan plan = reread(small_plan());
+  EXPECT_EQ(plan.mission, "castle \"flyover\" \xc3\xa9");
+  EXPECT_EQ(plan.geodetic_origin->longitude_deg, 8.2);
+  EXPECT_EQ(plan.trajectory.samples[1].position, Eigen::Vector3d(1.0 / 3, 1, 2));
+  EXPECT_EQ(plan.trajectory.samples[1].velocity.z(), 1e-17);
+  EXPECT_EQ(plan.trajectory.samples[2].gimbal_pitch, -0.7);
+  EXPECT_EQ(plan.environment.boxes[0].upper.z(), 6);
+  EXPECT_EQ(plan.task.keyframes[0].yaw, 0.5);
+  EXPECT_FALSE(plan.task.keyframes[1].yaw);
+  EXPECT_EQ(plan.configuration.at("weights").as_integer(), 3);
+  EXPECT_TRUE(plan.solver.is_null());
+}
+
+TEST(Plan, SampleHasTheFieldsOfItsModelAlone) {
+  const auto keys = [](MotionModel model) {
+    std::vector<std::string> names;
+    const Value plan = to_value(small_plan(model));
+    for (const auto& [key, value] : plan.at("samples").as_list()[0].as_map()) names.push_back(key);
+    return names;
+  };
+  using testing::Contains;
+  using testing::Not;
+  EXPECT_THAT(keys(MotionModel::force), Contains("force"));
+  EXPECT_THAT(keys(MotionModel::force), Not(Contains("orientation")));
+  EXPECT_THAT(keys(MotionModel::rotors), Contains("rotor_thrusts"));
+  EXPECT_THAT(keys(MotionModel::rotors), Not(Contains("yaw_torque")));
+  EXPECT_THAT(keys(MotionModel::path), Not(Contains("velocity")));
+}
+
+TEST(Plan, OptionalSectionsHaveNoKey) {
+  Plan plan = small_plan();
+  plan.budget.reset();
+  plan.geodetic_origin.reset();
+  plan.configuration = {};
+  const Value value = to_value(plan);
+  EXPECT_EQ(value.find("budget"), nullptr);
+  EXPECT_EQ(value.find("configuration"), nullptr);
+  EXPECT_EQ(value.at("frame").find("geodetic_origin"), nullptr);
+  EXPECT_FALSE(reread(plan).budget);
+}
+
+TEST(Plan, EveryErrorIsListed) {
+  Value value = to_value(small_plan());
+  value.set("misson", "x");
+  erase(value, "kind");
+  auto& samples = value.find("samples")->as_list();
+  samples[0].set("time", "soon");
+  samples[1].set("position", Value(Value::List{1.0, std::nan(""), 2.0}));
+  samples[2].set("yaw_torq", 0.0);
+  value.find("task")->find("keyframes")->as_list()[1].set("tolerance", INFINITY);
+  value.find("environment")->find("spheres")->as_list()[0].set("radius", Value::map());
+  value.find("motion")->set("inputs", "wobbly");
+  value.find("frame")->find("geodetic_origin")->set("latitude_deg", 95.0);
+  const std::string message = error_of(value);
+  EXPECT_THAT(message, HasSubstr("misson: unknown; did you mean 'mission'?"));
+  EXPECT_THAT(message, HasSubstr("kind: missing"));
+  EXPECT_THAT(message, HasSubstr("samples[1].time: expected a number, got a text"));
+  EXPECT_THAT(message, HasSubstr("samples[2].position: expected a list of 3 finite numbers"));
+  EXPECT_THAT(message, HasSubstr("samples[3].yaw_torq: unknown; did you mean 'yaw_torque'?"));
+  EXPECT_THAT(message, HasSubstr("task.keyframes[2].tolerance: expected a finite number"));
+  EXPECT_THAT(message, HasSubstr("environment.spheres[1].radius: expected a number, got a map"));
+  EXPECT_THAT(message, HasSubstr("motion.inputs: expected one of: held, linear"));
+  EXPECT_THAT(message, HasSubstr("latitude must lie between"));
+}
+
+TEST(Plan, FieldsOfAnotherModelAreUnknown) {
+  Value value = to_value(small_plan());
+  value.find("samples")->as_list()[0].set("orientation", Value(Value::List{1.0, 0.0, 0.0, 0.0}));
+  EXPECT_THAT(error_of(value), HasSubstr("samples[1].orientation: unknown"));
+}
+
+TEST(Plan, MissingTablesAreReportedOnce) {
+  const std::string message = error_of(Value::map());
+  EXPECT_THAT(message, HasSubstr("motion: missing"));
+  EXPECT_THAT(message, HasSubstr("vehicle: missing"));
+  EXPECT_THAT(message, testing::Not(HasSubstr("motion.model")));
+  EXPECT_THAT(error_of(Value(3)), HasSubstr("expected a map"));
+}
+
+TEST(Plan, RefusesOtherFormatsAndNoSamples) {
+  Value value = to_value(small_plan());
+  value.set("format", 2);
+  value.set("samples", Value::list());
+  EXPECT_THAT(error_of(value), HasSubstr("this version reads format 1"));
+  EXPECT_THAT(error_of(value), HasSubstr("at least one sample"));
+}
+
+TEST(Plan, NotANumberCannotBeWritten) {
+  Plan plan = small_plan();
+  plan.trajectory.samples[1].yaw = std::nan("");
+  const auto path = std::filesystem::path(testing::TempDir()) / "lapwing_nan_plan.json";
+  std::filesystem::remove(path);
+  EXPECT_THROW(write_plan(plan, path), Error);
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(Plan, TruncatedFileIsOneClearError) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "lapwing_truncated_plan.json";
+  const std::string text = plan_text(small_plan());
+  std::ofstream(path) << text.substr(0, text.size() / 2);
+  try {
+    read_plan(path);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("lapwing_truncated_plan.json"));
+  }
+  EXPECT_THROW(read_plan(path.string() + ".absent"), InputError);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace lapwing
