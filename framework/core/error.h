@@ -62,4 +62,26 @@ class Diagnostics {
   std::vector<std::string> lines_;
 };
 
+// Runs `body`, the call named `call` of plugin `plugin`. InputError, PluginError and Cancelled pass;
+// anything else that it throws becomes a PluginError with both names.
+template <class Body>
+decltype(auto) call_plugin(const std::string& plugin, const std::string& call, Body&& body) {
+  const auto failed = [&](const std::string& what) {
+    return PluginError("plugin '" + plugin + "' failed in " + call + ": " + what);
+  };
+  try {
+    return body();
+  } catch (const InputError&) {
+    throw;
+  } catch (const PluginError&) {
+    throw;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw failed(error.what());
+  } catch (...) {
+    throw failed("an exception of unknown type");
+  }
+}
+
 }  // namespace lapwing

@@ -7,9 +7,9 @@
 
 namespace lapwing {
 
-// Writes beside the target under a temporary name, flushes, then renames. On any error the target is
-// as it was, the temporary is gone, and an InputError names the path and the system's reason.
-// Creates missing parent folders.
+// Writes beside the target under a temporary name, flushes, then renames. On any error the target
+// is as it was, the temporary is gone, and an InputError names the path and the system's reason.
+// Creates missing parent folders; follows a link; refuses what is no regular file.
 void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
 // Throws InputError naming the path and the reason; refuses folders and files above `limit_bytes`.

@@ -111,7 +111,8 @@ class ParameterChecker {
     const bool is_table = spec.type == ParameterType::table;
     Value fallback = spec.default_value;
     if (!value && is_table) fallback = Value::map();
-    if (!value && spec.type == ParameterType::tables) fallback = Value::list();
+    if (!value && spec.type == ParameterType::tables && fallback.is_null())
+      fallback = Value::list();
     fallback.with_origin({"default", 0});
     if (!value) value = &fallback;
     if (value->is_null() && value == &fallback) return;  // optional and absent

@@ -1,19 +1,33 @@
-# lapwing_add_plugin(KIND NAME [SOURCES file...] [LIBRARIES target...])
+# lapwing_add_plugin(KIND NAME [SOURCES file...] [LIBRARIES target...] [OUTPUT folder])
 #
-# Builds lib/plugins/KINDs/NAME.so from NAME.cpp with one exported symbol, undefined symbols as link
-# errors, and the sidecar NAME.json beside it.
+# Builds lib/plugins/KINDs/NAME.so (or folder/NAME.so) from NAME.cpp with one exported symbol,
+# undefined symbols as link errors, and the sidecar NAME.json beside it.
+set(LAPWING_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/plugin_exports.map)
+
 function(lapwing_add_plugin kind name)
-  cmake_parse_arguments(PLUGIN "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(PLUGIN "" "OUTPUT" "SOURCES;LIBRARIES" ${ARGN})
+  if(PLUGIN_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "lapwing_add_plugin(${kind} ${name}): unknown ${PLUGIN_UNPARSED_ARGUMENTS}")
+  endif()
   if(NOT PLUGIN_SOURCES)
     set(PLUGIN_SOURCES ${name}.cpp)
+  endif()
+  if(NOT PLUGIN_OUTPUT)
+    set(folder ${kind}s)
+    string(REGEX REPLACE "^utilitys$" "utilities" folder ${folder})
+    string(REGEX REPLACE "^informations$" "information" folder ${folder})
+    set(PLUGIN_OUTPUT ${CMAKE_BINARY_DIR}/lib/plugins/${folder})
   endif()
   set(target lapwing_${kind}_${name})
   add_library(${target} MODULE ${PLUGIN_SOURCES})
   target_link_libraries(${target} PRIVATE lapwing ${PLUGIN_LIBRARIES})
+  # The export list also hides what the visibility flags cannot: instances of library templates.
   set_target_properties(${target} PROPERTIES
-    PREFIX "" OUTPUT_NAME ${name}
-    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/plugins/${kind}s
-    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+    PREFIX "" SUFFIX ".so" OUTPUT_NAME ${name}
+    LIBRARY_OUTPUT_DIRECTORY ${PLUGIN_OUTPUT}
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    LINK_DEPENDS ${LAPWING_PLUGIN_EXPORTS})
+  target_link_options(${target} PRIVATE -Wl,--version-script=${LAPWING_PLUGIN_EXPORTS})
   if(NOT LAPWING_SANITIZE)
     target_link_options(${target} PRIVATE -Wl,--no-undefined)
   endif()
@@ -21,8 +35,8 @@ function(lapwing_add_plugin kind name)
     target_precompile_headers(${target} REUSE_FROM lapwing_plugin_precompiled)
   endif()
   add_custom_command(TARGET ${target} POST_BUILD
-    COMMAND lapwing_sidecar $<TARGET_FILE:${target}>
-            ${CMAKE_BINARY_DIR}/lib/plugins/${kind}s/${name}.json
+    COMMAND lapwing_sidecar $<TARGET_FILE:${target}> ${PLUGIN_OUTPUT}/${name}.json
+    BYPRODUCTS ${PLUGIN_OUTPUT}/${name}.json
     COMMENT "Describing ${kind} ${name}" VERBATIM)
   add_dependencies(${target} lapwing_sidecar)
   set_property(GLOBAL APPEND PROPERTY LAPWING_PLUGINS ${target})

@@ -1,0 +1,61 @@
+#include "framework/plugin/library.h"
+
+#include <dlfcn.h>
+
+#include <map>
+#include <mutex>
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+
+namespace {
+
+const PluginLibrary* open_new(const std::filesystem::path& path) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError("cannot open plugin library '" + path.string() + "': " + why);
+  };
+  void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) {
+    const char* why = ::dlerror();
+    refuse(why ? why : "unknown reason");
+  }
+  // Never closed, not even when it is refused: its static objects may be registered somewhere.
+  void* symbol = ::dlsym(handle, kPluginLibrarySymbol);
+  if (!symbol) {
+    refuse(std::string("it has no symbol '") + kPluginLibrarySymbol +
+           "'; a plugin library ends with LAPWING_PLUGINS(Class)");
+  }
+  const auto function = reinterpret_cast<PluginLibraryFunction>(symbol);
+  const PluginLibrary* library =
+      call_plugin(path.filename().string(), kPluginLibrarySymbol, [&] { return function(); });
+  if (!library || !library->abi_tag) refuse("it returns no description of itself");
+  require_abi_tag(library->abi_tag, path);
+  if (library->count == 0) refuse("it holds no plugin");
+  return library;
+}
+
+}  // namespace
+
+const PluginLibrary& open_library(const std::filesystem::path& path) {
+  static std::mutex mutex;
+  static std::map<std::filesystem::path, const PluginLibrary*> open;
+  std::error_code code;
+  const std::filesystem::path full = std::filesystem::canonical(path, code);
+  if (code) {
+    throw InputError("cannot open plugin library '" + path.string() + "': " + code.message());
+  }
+  const std::lock_guard<std::mutex> lock(mutex);
+  const auto found = open.find(full);
+  if (found != open.end()) return *found->second;
+  return *open.emplace(full, open_new(full)).first->second;
+}
+
+void require_abi_tag(const std::string& tag, const std::filesystem::path& library) {
+  if (tag == kAbiTag) return;
+  throw InputError("plugin library '" + library.string() + "' was built as [" + tag +
+                   "], this host as [" + kAbiTag +
+                   "]; rebuild the plugin with this host's headers, compiler and build type");
+}
+
+}  // namespace lapwing

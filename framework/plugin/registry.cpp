@@ -1,0 +1,203 @@
+#include "framework/plugin/registry.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <set>
+#include <tuple>
+
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+#include "framework/plugin/library.h"
+#include "framework/plugin/sidecar.h"
+
+namespace lapwing {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Files with this extension in `folder` and one level below, sorted, so that errors repeat.
+std::vector<fs::path> files_below(const fs::path& folder, std::string_view extension) {
+  std::vector<fs::path> files;
+  std::error_code code;
+  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, code);
+  for (; !code && it != fs::recursive_directory_iterator(); it.increment(code)) {
+    if (it.depth() >= 1) it.disable_recursion_pending();
+    if (it->path().extension() == extension && it->is_regular_file(code)) {
+      files.push_back(it->path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool is_older(const fs::path& a, const fs::path& b) {
+  std::error_code code_a, code_b;
+  const auto time_a = fs::last_write_time(a, code_a);
+  const auto time_b = fs::last_write_time(b, code_b);
+  return !code_a && !code_b && time_a < time_b;
+}
+
+std::string in_quotes(std::string_view text) {
+  return "'" + std::string(text) + "'";
+}
+
+}  // namespace
+
+struct Registry::Impl {
+  std::vector<fs::path> folders;
+  std::vector<PluginEntry> entries;
+  std::vector<fs::path> undescribed;        // libraries without a sidecar
+  std::map<fs::path, fs::path> sidecar_of;  // by library
+  mutable std::mutex mutex;
+  mutable std::set<fs::path> compared;  // libraries whose sidecar was found true
+
+  void read_folder(const fs::path& folder, std::set<fs::path>& seen);
+  void read_sidecar(const fs::path& file);
+  void refuse_duplicates() const;
+  const PluginLibrary& open(const PluginEntry& entry) const;
+  const PluginDescriptor& descriptor(const PluginEntry& entry) const;
+};
+
+void Registry::Impl::read_folder(const fs::path& folder, std::set<fs::path>& seen) {
+  for (const fs::path& file : files_below(folder, ".json")) {
+    std::error_code code;
+    // The same folder may be on the path twice; two names of one file are no duplicate.
+    if (seen.insert(fs::weakly_canonical(file, code)).second) read_sidecar(file);
+  }
+  for (const fs::path& file : files_below(folder, ".so")) {
+    if (!sidecar_of.count(file)) undescribed.push_back(file);
+  }
+}
+
+void Registry::Impl::read_sidecar(const fs::path& file) {
+  const Value sidecar = from_json(read_file(file), file.string());
+  std::vector<PluginEntry> found = entries_from_sidecar(sidecar, file);
+  const fs::path library = found.front().library;
+  if (!fs::exists(library)) {
+    throw InputError("plugin sidecar '" + file.string() + "' describes '" + library.string() +
+                     "', which does not exist; rebuild the plugin or remove the sidecar");
+  }
+  sidecar_of[library] = file;
+  entries.insert(entries.end(), found.begin(), found.end());
+  // A library newer than its sidecar may have changed under it; only looking inside tells. A copied
+  // tree passes here, because what is compared is what they say.
+  if (is_older(file, library) && found.front().abi_tag == kAbiTag) open(found.front());
+}
+
+void Registry::Impl::refuse_duplicates() const {
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    const PluginEntry& a = entries[i - 1];
+    const PluginEntry& b = entries[i];
+    if (a.kind != b.kind || a.name != b.name) continue;
+    throw InputError("two plugins of kind " + a.kind + " are named " + in_quotes(a.name) + ": " +
+                     in_quotes(a.library.string()) + " and " + in_quotes(b.library.string()) +
+                     "; remove one or rename it");
+  }
+}
+
+const PluginLibrary& Registry::Impl::open(const PluginEntry& entry) const {
+  require_abi_tag(entry.abi_tag, entry.library);
+  const PluginLibrary& library = open_library(entry.library);
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (compared.count(entry.library)) return library;
+  const fs::path& file = sidecar_of.at(entry.library);
+  const Value written = from_json(read_file(file), file.string());
+  if (!(from_json(to_json(describe_as_value(entry.library)), "") == written)) {
+    throw InputError("plugin sidecar '" + file.string() + "' does not describe '" +
+                     entry.library.string() +
+                     "' as it is now; rebuild the plugin, or run lapwing_sidecar on both");
+  }
+  compared.insert(entry.library);
+  return library;
+}
+
+const PluginDescriptor& Registry::Impl::descriptor(const PluginEntry& entry) const {
+  const PluginLibrary& library = open(entry);
+  const std::string& name = entry.preset_of.empty() ? entry.name : entry.preset_of;
+  for (std::size_t i = 0; i < library.count; ++i) {
+    const PluginDescriptor& candidate = library.descriptors[i];
+    if (entry.kind == candidate.kind && name == candidate.text.name) return candidate;
+  }
+  throw Error("a sidecar that equals its library names a plugin that the library lacks");
+}
+
+Registry::Registry(std::vector<fs::path> folders) : impl_(std::make_unique<Impl>()) {
+  impl_->folders = std::move(folders);
+  std::set<fs::path> seen;
+  for (const fs::path& folder : impl_->folders) impl_->read_folder(folder, seen);
+  std::stable_sort(impl_->entries.begin(), impl_->entries.end(),
+                   [](const PluginEntry& a, const PluginEntry& b) {
+                     return std::tie(a.kind, a.name) < std::tie(b.kind, b.name);
+                   });
+  impl_->refuse_duplicates();
+}
+
+Registry::~Registry() = default;
+Registry::Registry(Registry&&) noexcept = default;
+
+const std::vector<fs::path>& Registry::folders() const {
+  return impl_->folders;
+}
+const std::vector<PluginEntry>& Registry::entries() const {
+  return impl_->entries;
+}
+
+const PluginEntry& Registry::find(std::string_view kind, std::string_view name,
+                                  const Origin& origin) const {
+  std::vector<std::string> known;
+  std::string list;
+  std::string elsewhere;
+  for (const PluginEntry& entry : impl_->entries) {
+    if (entry.kind != kind) {
+      if (entry.name == name) elsewhere = entry.kind;
+      continue;
+    }
+    if (entry.name == name) return entry;
+    known.push_back(entry.name);
+    list += (list.empty() ? "" : ", ") + entry.name;
+  }
+  std::string message = "unknown " + std::string(kind) + " " + in_quotes(name);
+  const std::string nearest = nearest_name(name, known);
+  if (!nearest.empty()) message += "; did you mean " + in_quotes(nearest) + "?";
+  if (!elsewhere.empty())
+    message += "; there is a plugin of that name, but its kind is " + elsewhere;
+  for (const fs::path& library : impl_->undescribed) {
+    if (library.stem() != name) continue;
+    message += "; " + in_quotes(library.string()) + " has no sidecar: run lapwing_sidecar on it";
+  }
+  if (list.empty()) {
+    message += "; no plugin of that kind was found in";
+    for (const fs::path& folder : impl_->folders) message += " " + in_quotes(folder.string());
+  } else {
+    message += "; known: " + list;
+  }
+  throw InputError(origin, message);
+}
+
+void* Registry::create_untyped(std::string_view kind, std::string_view name, const Value& given,
+                               const std::string& key_path) const {
+  const PluginEntry& entry = find(kind, name, given.origin());
+  const Parameters parameters = check(entry.parameters, given, key_path);
+  const PluginDescriptor& descriptor = impl_->descriptor(entry);
+  void* created = call_plugin(entry.name, "create", [&] { return descriptor.create(parameters); });
+  if (!created) throw PluginError("plugin '" + entry.name + "' failed in create: it returned null");
+  return created;
+}
+
+const void* Registry::extension(std::string_view kind, std::string_view name,
+                                std::string_view id) const {
+  const PluginEntry& entry = find(kind, name);
+  // The sidecar answers "no" without loading code.
+  if (std::find(entry.extensions.begin(), entry.extensions.end(), id) == entry.extensions.end()) {
+    return nullptr;
+  }
+  const PluginDescriptor& descriptor = impl_->descriptor(entry);
+  for (const Extension& extension : call_plugin(entry.name, "extensions", descriptor.extensions)) {
+    if (extension.id == id) return extension.table;
+  }
+  return nullptr;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,23 @@
+# Plugins for the tests of room plugin, kept out of the folder where plugins are looked for.
+set(fixtures ${CMAKE_CURRENT_LIST_DIR}/fixtures)
+set(fixture_output ${CMAKE_BINARY_DIR}/tests/plugin_fixtures)
+
+# Whole plugins, built as every plugin is.
+lapwing_add_plugin(fixture good SOURCES ${fixtures}/good.cpp OUTPUT ${fixture_output}/whole)
+lapwing_add_plugin(fixture throwing SOURCES ${fixtures}/throwing.cpp OUTPUT ${fixture_output}/whole)
+lapwing_add_plugin(fixture duplicate SOURCES ${fixtures}/duplicate.cpp
+                   OUTPUT ${fixture_output}/duplicate)
+add_dependencies(test_plugin lapwing_fixture_good lapwing_fixture_throwing
+                 lapwing_fixture_duplicate)
+
+# Broken ones, which lapwing_add_plugin would refuse to build: they have no sidecar.
+foreach(name other_abi no_symbol undefined_symbol throwing_library bad_preset)
+  add_library(fixture_${name} MODULE ${fixtures}/${name}.cpp)
+  target_link_libraries(fixture_${name} PRIVATE lapwing)
+  set_target_properties(fixture_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
+    LIBRARY_OUTPUT_DIRECTORY ${fixture_output}/broken CXX_VISIBILITY_PRESET hidden)
+  add_dependencies(test_plugin fixture_${name})
+endforeach()
+# The tests compare every plugin with its sidecar, so all of them must be there.
+get_property(all_plugins GLOBAL PROPERTY LAPWING_PLUGINS)
+add_dependencies(test_plugin ${all_plugins})
