@@ -1,0 +1,38 @@
+// The quasi-definite system of the interior point: assembled once, refactored with new diagonals.
+// Internal to the room.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/SparseCholesky>
+
+#include "framework/solve/equilibration.h"
+
+namespace lapwing {
+
+class KktSystem {
+ public:
+  // Takes the values of a scaled problem. Analyses the sparsity unless it is the same as before.
+  void set_up(const QuadraticProgram& problem, const std::vector<char>& fixed,
+              const std::vector<RowKind>& rows);
+  // `diagonal`: D_x (added to P) and D_s (inverted below). False when no regularisation helps.
+  bool factorise(const Eigen::VectorXd& diagonal);
+  // Solves without the regularisation, by refinement.
+  Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+
+ private:
+  bool same_pattern(const QuadraticProgram& problem) const;
+  void analyse(const QuadraticProgram& problem);
+
+  int n_ = 0, m_ = 0;
+  std::vector<int> hessian_outer_, hessian_inner_, jacobian_outer_, jacobian_inner_;
+  std::vector<int> hessian_slots_, jacobian_slots_, diagonal_slots_;
+  std::vector<char> fixed_;
+  std::vector<RowKind> rows_;
+  Eigen::VectorXd base_diagonal_;       // P's
+  Eigen::VectorXd regularisation_;      // added to the diagonal, signed
+  Eigen::SparseMatrix<double> matrix_;  // lower triangle
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factors_;
+};
+
+}  // namespace lapwing

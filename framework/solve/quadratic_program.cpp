@@ -1,0 +1,64 @@
+#include "framework/solve/quadratic_program.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lapwing {
+namespace {
+
+double largest(const Eigen::VectorXd& v) {
+  return v.size() ? v.cwiseAbs().maxCoeff() : 0.0;
+}
+
+// Worst violation of lower <= v <= upper; `scale` grows with |v| where a bound is finite.
+double violation(const Eigen::VectorXd& v, const Eigen::VectorXd& lower,
+                 const Eigen::VectorXd& upper, double& scale) {
+  double worst = 0;
+  for (int i = 0; i < v.size(); ++i) {
+    worst = std::max({worst, lower(i) - v(i), v(i) - upper(i)});
+    if (std::isfinite(lower(i)) || std::isfinite(upper(i))) scale = std::max(scale, std::abs(v(i)));
+  }
+  return worst;
+}
+
+// Sum of the bounds that positive and negative multipliers push against; pushing against none is
+// charged to the dual residual through `leak`.
+double support(const Eigen::VectorXd& multipliers, const Eigen::VectorXd& lower,
+               const Eigen::VectorXd& upper, double& leak) {
+  double sum = 0;
+  for (int i = 0; i < multipliers.size(); ++i) {
+    const double z = multipliers(i), bound = z > 0 ? lower(i) : upper(i);
+    if (std::isfinite(bound))
+      sum += z * bound;
+    else
+      leak = std::max(leak, std::abs(z));
+  }
+  return sum;
+}
+
+}  // namespace
+
+QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::VectorXd& x,
+                             const Eigen::VectorXd& row_multipliers,
+                             const Eigen::VectorXd& bound_multipliers) {
+  const Eigen::VectorXd px = problem.hessian.selfadjointView<Eigen::Lower>() * x;
+  const Eigen::VectorXd ax = problem.jacobian * x;
+  const Eigen::VectorXd aty = problem.jacobian.transpose() * row_multipliers;
+  QuadraticResiduals result;
+  double scale = 0, leak = 0;
+  const double rows = violation(ax, problem.row_lower, problem.row_upper, scale);
+  const double bounds = violation(x, problem.x_lower, problem.x_upper, scale);
+  result.primal = std::max(rows, bounds) / (1.0 + scale);
+  const double quadratic = x.dot(px);
+  const double primal = 0.5 * quadratic + problem.gradient.dot(x);
+  const double dual = -0.5 * quadratic +
+                      support(row_multipliers, problem.row_lower, problem.row_upper, leak) +
+                      support(bound_multipliers, problem.x_lower, problem.x_upper, leak);
+  result.dual = std::max(leak, largest(px + problem.gradient - aty - bound_multipliers)) /
+                (1.0 + std::max({largest(px), largest(aty), largest(problem.gradient),
+                                 largest(bound_multipliers)}));
+  result.gap = std::abs(primal - dual) / (1.0 + std::abs(primal));
+  return result;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,58 @@
+// A sparse convex quadratic program and what a solver says of it.
+//
+//   minimise  x'Px/2 + c'x   subject to  row_lower <= A x <= row_upper,  x_lower <= x <= x_upper
+//
+// Equal bounds make an equation or fix a variable; infinite ones are none.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+namespace lapwing {
+
+struct QuadraticProgram {
+  Eigen::SparseMatrix<double> hessian;   // P, n x n, lower triangle; positive semidefinite
+  Eigen::VectorXd gradient;              // c, n
+  Eigen::SparseMatrix<double> jacobian;  // A, m x n
+  Eigen::VectorXd row_lower, row_upper;  // m
+  Eigen::VectorXd x_lower, x_upper;      // n
+
+  int variables() const { return static_cast<int>(gradient.size()); }
+  int rows() const { return static_cast<int>(jacobian.rows()); }
+  double objective(const Eigen::VectorXd& x) const {
+    return 0.5 * x.dot(hessian.selfadjointView<Eigen::Lower>() * x) + gradient.dot(x);
+  }
+};
+
+enum class QuadraticStatus {
+  optimal,
+  infeasible,  // no point meets the rows and bounds; the multipliers are a certificate
+  unbounded,   // the cost falls for ever along `x`
+  iteration_limit,
+  cancelled,
+  numerical_error,
+};
+
+struct QuadraticResult {
+  QuadraticStatus status = QuadraticStatus::numerical_error;
+  Eigen::VectorXd x;
+  // P x + c = A' row_multipliers + bound_multipliers; positive where a lower bound pushes.
+  Eigen::VectorXd row_multipliers, bound_multipliers;
+  int iterations = 0;
+  double primal_residual = 0;  // relative, see residuals()
+  double dual_residual = 0;
+  double gap = 0;  // relative duality gap
+};
+
+// Relative residuals of any primal-dual point, from the problem's own numbers:
+//   primal  worst violation of a row or bound, over 1 + the largest |A x| or |x| at a finite bound
+//   dual    |P x + c - A'y - z|, over 1 + the largest of |P x|, |A'y|, |c|, |z|
+//   gap     |primal - dual objective| over 1 + |primal objective|
+struct QuadraticResiduals {
+  double primal = 0, dual = 0, gap = 0;
+};
+QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::VectorXd& x,
+                             const Eigen::VectorXd& row_multipliers,
+                             const Eigen::VectorXd& bound_multipliers);
+
+}  // namespace lapwing
