@@ -27,6 +27,10 @@ std::string with_unit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + " " + unit;
 }
 
+std::string in_unit(const std::string& text, const std::string& unit) {
+  return unit.empty() ? text : text + " in " + unit;
+}
+
 // What was written, for messages.
 std::string shown(const Value& value) {
   char buffer[32];
@@ -189,7 +193,7 @@ class ParameterChecker {
       const bool one_of_many = spec.type == ParameterType::numbers;
       errors_.add(value.origin(), path,
                   "expected " +
-                      std::string(one_of_many ? with_unit("a number", spec.unit) : expected(spec)) +
+                      std::string(one_of_many ? in_unit("a number", spec.unit) : expected(spec)) +
                       ", got " + shown(value));
       return std::nullopt;
     }
@@ -275,10 +279,10 @@ class ParameterChecker {
       case ParameterType::integer:
         return "an integer";
       case ParameterType::number:
-        return with_unit("a number", spec.unit);
+        return in_unit("a number", spec.unit);
       case ParameterType::numbers:
-        return with_unit(spec.size > 0 ? "a list of " + spec.type_name() : "a list of numbers",
-                         spec.unit);
+        return in_unit(spec.size > 0 ? "a list of " + spec.type_name() : "a list of numbers",
+                       spec.unit);
       case ParameterType::text:
         return "a text";
       case ParameterType::choice:
