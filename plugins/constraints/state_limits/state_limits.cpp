@@ -1,0 +1,140 @@
+// Limits of the flight: speed across, climb, descent, yaw rate, acceleration, and a box to stay in.
+//
+//   d_k . v_xy  <= cos(pi/n) speed_across           d_k: n directions around a circle, so that the
+//   d_k . F_xy  <= cos(pi/n) m acceleration_across  polygon lies inside the circle of the limit
+//   -descent <= v_z <= climb,  |yaw_rate| <= its limit,  lower <= position <= upper
+//
+// Limits are the vehicle's; a parameter may tighten one, never loosen it. Velocity is linear
+// between stages as long as forces are held, so what holds at the stages holds between them;
+// position is a parabola there and may pass its box by up to h^2 a / 8.
+//
+//   p:add_constraint { type = "state_limits", speed_across = 5, lower = {-50, -50, 0} }
+#include <numbers>
+
+#include "framework/core/units.h"
+#include "framework/plugin/plugin.h"
+#include "framework/problem/differentiable.h"
+
+namespace lapwing {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
+ public:
+  static constexpr PluginText kText{"state_limits", "1.0.0",
+                                    "speeds, accelerations and places stay within limits",
+                                    "thesis 3.5.1"};
+  static ParameterTable parameters() {
+    const std::string tighter = ", where tighter than the vehicle's";
+    return ParameterTable{}
+        .integer("sides", 16, "sides of the polygon for limits across; even", between(4, 64))
+        .optional_number("speed_across", "m/s", "horizontal speed" + tighter, above(0))
+        .optional_number("climb_speed", "m/s", "speed upwards" + tighter, above(0))
+        .optional_number("descent_speed", "m/s", "speed downwards" + tighter, above(0))
+        .optional_number("yaw_rate", "rad/s", "yaw rate" + tighter, above(0))
+        .optional_number("acceleration_across", "m/s^2", "horizontal acceleration" + tighter,
+                         above(0))
+        .optional_numbers("lower", 3, "m", "lowest position, world")
+        .optional_numbers("upper", 3, "m", "highest position, world");
+  }
+
+  explicit StateLimits(const Parameters& parameters)
+      : given_(parameters), sides_(static_cast<int>(parameters.integer("sides"))) {
+    if (sides_ % 2 != 0)
+      throw InputError(parameters.origin("sides"),
+                       "sides: expected an even number, got " + std::to_string(sides_));
+    for (int k = 0; k < sides_ / 2; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / sides_;
+      directions_.emplace_back(std::cos(angle), std::sin(angle));
+    }
+  }
+
+  FunctionShape declare(const ProblemSetting& setting) {
+    const Vehicle& vehicle = setting.vehicle;
+    mass_ = vehicle.mass;
+    inside_ = given_.has("lower") || given_.has("upper");
+    lower_.clear(), upper_.clear(), names_.clear();
+    const double inscribed = std::cos(std::numbers::pi / sides_);
+    polygon("speed_across", inscribed * limit("speed_across", vehicle.speed_across_max));
+    row("climb", -limit("descent_speed", vehicle.descent_speed_max),
+        limit("climb_speed", vehicle.climb_speed_max));
+    const double yaw_rate = limit("yaw_rate", vehicle.yaw_rate_max);
+    row("yaw_rate", -yaw_rate, yaw_rate);
+    polygon("acceleration_across",
+            inscribed * limit("acceleration_across", vehicle.acceleration_across_max));
+    row("acceleration_up", -vehicle.acceleration_down_max.value_or(kInfinity),
+        vehicle.acceleration_up_max.value_or(kInfinity));
+    if (inside_) place();
+    FunctionShape shape{.blocks = setting.layout.indices({"velocity", "yaw_rate", "force"}),
+                        .rows = static_cast<int>(names_.size()),
+                        .affine = true,
+                        .row_names = names_};
+    if (inside_) shape.blocks.push_back(setting.layout.index("position"));
+    return shape;
+  }
+
+  template <class T>
+  void residual(const Stage<T>& stage, Rows<T>& rows) const {
+    const auto velocity = stage.template vector<3>(0), force = stage.template vector<3>(2);
+    int r = 0;
+    for (const Eigen::Vector2d& d : directions_)
+      rows[r++] = d.x() * velocity.x() + d.y() * velocity.y();
+    rows[r++] = velocity.z();
+    rows[r++] = stage.scalar(1);
+    for (const Eigen::Vector2d& d : directions_)
+      rows[r++] = (d.x() * force.x() + d.y() * force.y()) / mass_;
+    rows[r++] = force.z() / mass_ - kGravity;
+    if (!inside_) return;
+    for (int i = 0; i < 3; ++i) rows[r++] = stage.data(3)[i];
+  }
+
+  void bounds(InstanceRange range, double* lower, double* upper) const override {
+    for (int k = 0; k < range.count; ++k) {
+      lower = std::copy(lower_.begin(), lower_.end(), lower);
+      upper = std::copy(upper_.begin(), upper_.end(), upper);
+    }
+  }
+
+ private:
+  double limit(const char* name, double of_vehicle) const {
+    if (!given_.has(name)) return of_vehicle;
+    const double given = given_.number(name);
+    if (given <= of_vehicle) return given;
+    throw InputError(given_.origin(name), std::string(name) + ": " + std::to_string(given) +
+                                              " is beyond the vehicle's own limit of " +
+                                              std::to_string(of_vehicle));
+  }
+  void row(std::string name, double low, double high) {
+    names_.push_back(std::move(name));
+    lower_.push_back(low);
+    upper_.push_back(high);
+  }
+  void polygon(const std::string& name, double half) {
+    for (int k = 0; k < sides_ / 2; ++k) row(name + "." + std::to_string(k), -half, half);
+  }
+  void place() {
+    for (int i = 0; i < 3; ++i) {
+      const double low = given_.has("lower") ? given_.numbers("lower")[i] : -kInfinity;
+      const double high = given_.has("upper") ? given_.numbers("upper")[i] : kInfinity;
+      const char axis[] = {static_cast<char>('x' + i), '\0'};
+      if (low > high)
+        throw InputError(given_.origin("lower"),
+                         std::string("lower and upper: nothing lies between them in ") + axis);
+      row(std::string("position.") + axis, low, high);
+    }
+  }
+
+  Parameters given_;
+  int sides_;
+  double mass_ = 1;
+  bool inside_ = false;
+  std::vector<Eigen::Vector2d> directions_;
+  std::vector<std::string> names_;
+  std::vector<double> lower_, upper_;
+};
+
+}  // namespace
+}  // namespace lapwing
+
+LAPWING_PLUGINS(lapwing::StateLimits)
