@@ -51,6 +51,12 @@ std::string TrajectoryProblem::column_name(int column) const {
   throw Error("no such column");
 }
 
+std::string TrajectoryProblem::bound_name(int column, bool lower) const {
+  const ColumnBound& bound = impl_->bounds.at(column);
+  const int owner = lower ? bound.lower_owner : bound.upper_owner;
+  return (owner < 0 ? "" : impl_->bound_owners[owner] + ": ") + column_name(column);
+}
+
 std::string TrajectoryProblem::row_name(int row) const {
   if (row < impl_->dynamics_rows) return impl_->dynamics_row_name(row);
   for (const ConstraintEntry& entry : impl_->constraints) {

@@ -218,6 +218,9 @@ int TrajectoryProblem::columns() const {
 int TrajectoryProblem::rows() const {
   return impl_->rows;
 }
+int TrajectoryProblem::dynamics_rows() const {
+  return impl_->dynamics_rows;
+}
 bool TrajectoryProblem::quadratic() const {
   return impl_->quadratic;
 }

@@ -89,10 +89,13 @@ class TrajectoryProblem {
   const Environment& environment() const;
   const StageLayout& layout() const;
   int columns() const;
-  int rows() const;        // dynamics first, then constraints that are not bounds
-  bool quadratic() const;  // every residual affine, every row affine
+  int rows() const;           // dynamics first, then constraints that are not bounds
+  int dynamics_rows() const;  // the first ones: flow, held inputs, clock
+  bool quadratic() const;     // every residual affine, every row affine
   std::string column_name(int column) const;  // "position.x at 3.2 s"
   std::string row_name(int row) const;        // "camera_angle at 5.7 s"
+  // "input_limits: force.x at 3.2 s", the bound on a column with who set it.
+  std::string bound_name(int column, bool lower) const;
   double time(const Stages& at, int stage) const;
 
   // -- points

@@ -129,7 +129,7 @@ RandomProblem feasible(Random& random) {
 
 TEST(InteriorPoint, AnswersRandomFeasibleProblems) {
   Random random(11);
-  for (int k = 0; k < 150; ++k) {
+  for (int k = 0; k < 200; ++k) {
     const RandomProblem known = feasible(random);
     const QuadraticResult result = InteriorPoint().solve(known.program);
     ASSERT_EQ(result.status, QuadraticStatus::optimal) << "problem " << k;
@@ -144,7 +144,7 @@ TEST(InteriorPoint, AnswersRandomFeasibleProblems) {
 // A feasible program and one more row that a combination of its rows and bounds forbids.
 TEST(InteriorPoint, AnswersRandomInfeasibleProblems) {
   Random random(12);
-  for (int k = 0; k < 100; ++k) {
+  for (int k = 0; k < 200; ++k) {
     QuadraticProgram program = feasible(random).program;
     const int n = program.variables(), m = program.rows();
     // Row: sum of w_i x_i over bounded variables, asked to exceed its largest value.

@@ -1,0 +1,296 @@
+// Iterative quadratic programming (thesis 3.6).
+//
+// Each iteration solves the quadratic model of the problem around the current trajectory,
+//
+//   minimise g'd + d'Hd/2   with   lower <= c + A d <= upper,   x_min <= x + d <= x_max,
+//
+// H Gauss-Newton, and takes x + alpha d with the longest alpha in 1, 1/2, 1/4, ... that lowers the
+// merit  phi(x) = cost(x) + nu * sum of violations  by a share of what the model promises; nu
+// exceeds every multiplier. A purely quadratic problem is one program and one full step.
+//
+// It stops as optimal when the violations are within `feasibility` and the model promises less than
+// `tolerance` * (1 + |cost|). Where the model's rows contradict each other its elastic form is
+// solved: the step then restores feasibility, and where it no longer can, the problem is
+// infeasible, and the report names the rows that give and the limits that hold them back.
+//
+//   solver: {type: iqp, iterations: 50}
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "framework/plugin/plugin.h"
+#include "framework/solve/elastic.h"
+#include "framework/solve/interior_point.h"
+#include "framework/solve/trajectory_solver.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kArmijo = 1e-4;         // share of the promised decrease that must come true
+constexpr double kShortestStep = 1e-6;   // shorter line-search steps end the solve
+constexpr double kMeritMargin = 1.5;     // merit weight over the largest multiplier
+constexpr double kElasticPenalty = 1e3;  // times 1 + |g|
+constexpr double kBinding = 1e-3;  // of the largest multiplier: a limit that stands in the way
+
+class Iqp final : public TrajectorySolver {
+ public:
+  static constexpr PluginText kText{
+      "iqp", "1.0.0", "iterative quadratic programming with a line search on the merit",
+      "thesis 3.6"};
+  static ParameterTable parameters() {
+    return ParameterTable{}
+        .integer("iterations", 50, "most quadratic programs to solve", between(1, 10000))
+        .number("tolerance", 1e-6, "",
+                "promised decrease, relative to the cost, that ends the solve",
+                between(1e-12, 1e-1))
+        .number("feasibility", 1e-6, "", "largest violation of a row, in its own unit",
+                between(1e-12, 1e-1));
+  }
+
+  explicit Iqp(const Parameters& parameters)
+      : iterations_(static_cast<int>(parameters.integer("iterations"))),
+        tolerance_(parameters.number("tolerance")),
+        feasibility_(parameters.number("feasibility")) {}
+
+  SolveResult solve(const TrajectoryProblem& problem, const SolveRequest& request) const override;
+
+ private:
+  int iterations_;
+  double tolerance_, feasibility_;
+};
+
+// One solve: the state that goes from iteration to iteration.
+class Solve {
+ public:
+  Solve(const TrajectoryProblem& problem, const SolveRequest& request, int iterations,
+        double tolerance, double feasibility)
+      : problem_(problem),
+        request_(request),
+        tolerance_(tolerance),
+        feasibility_(feasibility),
+        limit_(request.iteration_limit.value_or(iterations)),
+        start_(std::chrono::steady_clock::now()) {}
+
+  SolveResult run();
+
+ private:
+  struct Step {
+    QuadraticStatus status;
+    VectorXd d, rows, bounds;  // step and multipliers
+    bool elastic = false;
+  };
+
+  SolveStatus iterate();
+  Step quadratic_step();
+  Step elastic_step();
+  std::optional<SolveStatus> stopped() const;
+  bool line_search(const Step& step, double violation);
+  double total_violation(const Stages& at) const;
+  double worst_violation() const;
+  void record(double step);
+  std::string explain(const Step& step) const;
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+  const TrajectoryProblem& problem_;
+  const SolveRequest& request_;
+  double tolerance_, feasibility_;
+  int limit_;
+  std::chrono::steady_clock::time_point start_;
+  Stages at_;
+  VectorXd rows_, bounds_;  // multipliers
+  LocalModel model_;
+  QuadraticProgram program_;
+  InteriorPoint interior_point_;
+  double merit_weight_ = 0;
+  SolveReport report_;
+};
+
+SolveResult Solve::run() {
+  at_ = problem_.initial_guess();
+  if (request_.warm_start) {
+    const WarmStart& warm = *request_.warm_start;
+    if (warm.stages.rows() == at_.rows() && warm.stages.cols() == at_.cols()) at_ = warm.stages;
+    rows_ = warm.row_multipliers;
+    bounds_ = warm.bound_multipliers;
+  }
+  record(0.0);
+  report_.status = iterate();
+  report_.terms = problem_.term_costs(at_);
+  report_.cost = 0;
+  for (const TermCost& term : report_.terms) report_.cost += term.cost;
+  report_.violations = problem_.violations(at_);
+  report_.seconds = seconds();
+  return {std::move(report_), {at_, rows_, bounds_}};
+}
+
+// Cancelled or out of time between iterations.
+std::optional<SolveStatus> Solve::stopped() const {
+  if (request_.cancellation && request_.cancellation->cancelled()) return SolveStatus::cancelled;
+  if (request_.wall_clock_guard && seconds() > *request_.wall_clock_guard)
+    return SolveStatus::time_limit;
+  return {};
+}
+
+SolveStatus Solve::iterate() {
+  for (int k = 1; k <= limit_; ++k) {
+    if (const auto stop = stopped()) return *stop;
+    if (request_.progress)
+      request_.progress->report(-1.0, "quadratic program " + std::to_string(k));
+    problem_.linearise(at_, model_);
+    Step step = quadratic_step();
+    if (step.status == QuadraticStatus::infeasible) step = elastic_step();
+    if (step.status == QuadraticStatus::cancelled) return SolveStatus::cancelled;
+    if (step.status != QuadraticStatus::optimal) {
+      report_.message = step.status == QuadraticStatus::unbounded
+                            ? "the cost falls for ever: a term or a bound is missing"
+                            : "the quadratic program could not be solved to its tolerance";
+      return SolveStatus::numerical_error;
+    }
+    report_.iterations = k;
+    rows_ = step.rows;
+    bounds_ = step.bounds;
+    if (problem_.quadratic()) {
+      at_ = problem_.retract(at_, step.d);
+      record(1.0);
+      if (!step.elastic) return SolveStatus::optimal;
+      report_.message = explain(step);
+      return SolveStatus::infeasible;
+    }
+    const double violation = total_violation(at_);
+    const double promised =
+        -(model_.gradient.dot(step.d) +
+          0.5 * step.d.dot(model_.hessian.selfadjointView<Eigen::Lower>() * step.d));
+    const bool still = std::abs(promised) <= tolerance_ * (1.0 + std::abs(model_.cost));
+    if (still && worst_violation() <= feasibility_) return SolveStatus::optimal;
+    if (!line_search(step, violation)) {
+      if (worst_violation() <= feasibility_) return SolveStatus::feasible;
+      if (step.elastic) report_.message = explain(step);
+      return step.elastic ? SolveStatus::infeasible : SolveStatus::numerical_error;
+    }
+  }
+  return SolveStatus::iteration_limit;
+}
+
+Solve::Step Solve::quadratic_step() {
+  program_.hessian = model_.hessian;
+  program_.gradient = model_.gradient;
+  program_.jacobian = model_.jacobian;
+  program_.row_lower = model_.row_lower - model_.values;
+  program_.row_upper = model_.row_upper - model_.values;
+  program_.x_lower = model_.step_lower;
+  program_.x_upper = model_.step_upper;
+  InteriorPointOptions options;
+  options.cancellation = request_.cancellation;
+  std::optional<QuadraticWarmStart> warm;
+  if (rows_.size() == problem_.rows() && bounds_.size() == problem_.columns())
+    warm = QuadraticWarmStart{VectorXd::Zero(problem_.columns()), rows_, bounds_};
+  QuadraticResult result = interior_point_.solve(program_, options, warm);
+  if (warm && result.status != QuadraticStatus::optimal &&
+      result.status != QuadraticStatus::cancelled)
+    result = interior_point_.solve(program_, options);  // a bad start, not a bad program
+  return {result.status, result.x, result.row_multipliers, result.bound_multipliers};
+}
+
+// Relaxes what was asked for (all rows but the dynamics); if limits alone contradict each other,
+// those too.
+Solve::Step Solve::elastic_step() {
+  const double penalty =
+      kElasticPenalty *
+      (1.0 + (model_.gradient.size() ? model_.gradient.cwiseAbs().maxCoeff() : 0));
+  for (const bool bounds : {false, true}) {
+    QuadraticProgram hard = program_;
+    if (!bounds && (hard.x_lower.array() > hard.x_upper.array()).any()) continue;
+    const ElasticProgram elastic = make_elastic(hard, problem_.dynamics_rows(), bounds, penalty);
+    InteriorPointOptions options;
+    options.cancellation = request_.cancellation;
+    InteriorPoint solver;
+    const QuadraticResult result = solver.solve(elastic.program, options);
+    if (result.status == QuadraticStatus::infeasible && !bounds) continue;
+    return {result.status, result.x.head(elastic.variables),
+            result.row_multipliers.head(problem_.rows()),
+            result.bound_multipliers.head(elastic.variables), true};
+  }
+  return {QuadraticStatus::numerical_error, {}, {}, {}, true};
+}
+
+double Solve::total_violation(const Stages& at) const {
+  const VectorXd c = problem_.row_values(at);
+  return (model_.row_lower - c).cwiseMax(c - model_.row_upper).cwiseMax(0.0).sum();
+}
+
+double Solve::worst_violation() const {
+  const VectorXd& c = model_.values;
+  if (c.size() == 0) return 0.0;
+  return (model_.row_lower - c).cwiseMax(c - model_.row_upper).cwiseMax(0.0).maxCoeff();
+}
+
+bool Solve::line_search(const Step& step, double violation) {
+  const double largest = step.rows.size() ? step.rows.cwiseAbs().maxCoeff() : 0.0;
+  merit_weight_ = std::max(merit_weight_, kMeritMargin * largest);
+  const VectorXd predicted = model_.values + model_.jacobian * step.d;
+  const double left =
+      (model_.row_lower - predicted).cwiseMax(predicted - model_.row_upper).cwiseMax(0.0).sum();
+  const double slope =
+      std::min(0.0, model_.gradient.dot(step.d) - merit_weight_ * (violation - left));
+  const double merit = model_.cost + merit_weight_ * violation;
+  const double noise = 1e-13 * (1.0 + std::abs(merit));
+  for (double alpha = 1.0; alpha > kShortestStep; alpha *= 0.5) {
+    const Stages next = problem_.retract(at_, alpha * step.d);
+    const double now = problem_.cost(next) + merit_weight_ * total_violation(next);
+    if (!(now <= merit + kArmijo * alpha * slope + noise)) continue;
+    at_ = next;
+    record(alpha);
+    return true;
+  }
+  return false;
+}
+
+void Solve::record(double step) {
+  SolveIteration entry;
+  entry.iteration = static_cast<int>(report_.history.size());
+  entry.step = step;
+  for (const TermCost& term : problem_.term_costs(at_)) {
+    entry.cost += term.cost;
+    entry.terms.push_back(term.cost);
+  }
+  const std::vector<Violation> violations = problem_.violations(at_);
+  entry.violation = violations.empty() ? 0.0 : violations.front().amount;
+  report_.history.push_back(std::move(entry));
+}
+
+// "hard_keyframe.x at 5 s misses by 2.3; in the way: state_limits: velocity.x at 4.1 s"
+std::string Solve::explain(const Step& step) const {
+  const std::vector<Violation> violations = problem_.violations(at_);
+  if (violations.empty()) return "the constraints contradict each other";
+  char amount[32];
+  std::snprintf(amount, sizeof amount, "%.3g", violations.front().amount);
+  std::string text = violations.front().row + " is missed by " + amount;
+  Eigen::Index column = -1;
+  const double largest = step.bounds.size() ? step.bounds.cwiseAbs().maxCoeff(&column) : 0.0;
+  double rows = 0;
+  Eigen::Index row = -1;
+  const Eigen::Index first = problem_.dynamics_rows();
+  for (Eigen::Index r = first; r < step.rows.size(); ++r)
+    if (std::abs(step.rows(r)) > rows &&
+        problem_.row_name(static_cast<int>(r)) != violations.front().row)
+      rows = std::abs(step.rows(r)), row = r;
+  if (largest > kBinding * rows && column >= 0)
+    text +=
+        "; in the way: " + problem_.bound_name(static_cast<int>(column), step.bounds(column) > 0);
+  else if (row >= 0)
+    text += "; in the way: " + problem_.row_name(static_cast<int>(row));
+  return text;
+}
+
+SolveResult Iqp::solve(const TrajectoryProblem& problem, const SolveRequest& request) const {
+  return Solve(problem, request, iterations_, tolerance_, feasibility_).run();
+}
+
+}  // namespace
+}  // namespace lapwing
+
+LAPWING_PLUGINS(lapwing::Iqp)

@@ -1,0 +1,17 @@
+# Debian packages that Lapwing needs; sourced by the other scripts.
+lapwing_packages=(
+  g++ cmake ninja-build ccache pkg-config
+  libeigen3-dev libyaml-cpp-dev liblua5.4-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  libcli11-dev libgeographiclib-dev
+)
+lapwing_test_packages=(libgtest-dev chromium binutils)
+lapwing_bench_packages=(libbenchmark-dev coinor-libipopt-dev)
+
+# Prints the packages among "$@" that are not installed.
+lapwing_missing() {
+  local package
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      printf '%s\n' "$package"
+  done
+}

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Builds everything and runs the tests: scripts/test.sh [--long] [ctest options].
+# Checks the budgets on the way: cold build 10 minutes, tests 5 minutes, no source above 15 s.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. scripts/packages.sh
+. scripts/build.sh
+readonly build_budget=600 test_budget=300 source_budget=15
+
+labels=(-LE long)
+if [ "${1:-}" = --long ]; then labels=(); shift; fi
+scripts/setup.sh --yes --for build --for test
+if [ -z "${LAPWING_DATA:-}" ] && [ -d ../shared/data ]; then
+  LAPWING_DATA=$(cd ../shared/data && pwd)
+  export LAPWING_DATA
+fi
+[ -n "${LAPWING_DATA:-}" ] || echo "LAPWING_DATA is not set: tests on real inputs will be skipped"
+
+cold=false
+[ -f build/release/.ninja_log ] || cold=true
+lapwing_build release all
+echo "Built in ${lapwing_build_seconds} s"
+if $cold && [ "$lapwing_build_seconds" -gt "$build_budget" ]; then
+  echo "test.sh: the cold build took ${lapwing_build_seconds} s, its budget is ${build_budget} s" >&2
+  exit 1
+fi
+# .ninja_log: start, end (ms), time stamp, output, command hash.
+slow=$(awk -v limit=$((source_budget * 1000)) \
+  '$4 ~ /\.o$/ && $2 - $1 > limit { print ($2 - $1) / 1000 " s  " $4 }' build/release/.ninja_log)
+if [ -n "$slow" ]; then
+  printf 'test.sh: sources that compile longer than %s s:\n%s\n' "$source_budget" "$slow" >&2
+  [ -z "${CI:-}" ] && exit 1
+fi
+
+began=$SECONDS
+ctest --test-dir build/release --output-on-failure --no-tests=error -j 2 "${labels[@]}" "$@"
+took=$((SECONDS - began))
+echo "Tests ran in $took s"
+if [ ${#labels[@]} -gt 0 ] && [ "$took" -gt "$test_budget" ]; then
+  echo "test.sh: the tests took $took s, their budget is $test_budget s" >&2
+  exit 1
+fi
