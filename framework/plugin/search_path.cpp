@@ -1,10 +1,9 @@
 // Where plugins are looked for.
 
-#include <dlfcn.h>
-
 #include <cstdlib>
 
 #include "framework/core/error.h"
+#include "framework/core/library_path.h"
 #include "framework/core/log.h"
 #include "framework/plugin/registry.h"
 
@@ -43,14 +42,12 @@ void add_from_user(std::vector<fs::path>& folders) {
 
 // An install keeps plugins apart from other projects' libraries, in <libdir>/lapwing/plugins.
 void add_from_tree(std::vector<fs::path>& folders) {
-  Dl_info info{};
-  if (::dladdr(reinterpret_cast<const void*>(&plugin_search_path), &info) == 0) return;
+  const fs::path folder = library_folder();
+  if (folder.empty()) return;
   std::error_code code;
-  const fs::path library = fs::canonical(info.dli_fname, code);
-  if (code) return;
-  const fs::path installed = library.parent_path() / "lapwing" / "plugins";
+  const fs::path installed = folder / "lapwing" / "plugins";
   folders.push_back(fs::is_directory(installed, code) ? installed
-                                                      : library.parent_path() / "plugins");
+                                                      : folder / "plugins");
 }
 
 }  // namespace

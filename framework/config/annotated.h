@@ -1,0 +1,15 @@
+// Effective values as YAML that says where each came from.
+#pragma once
+
+#include <string>
+
+#include "framework/core/value.h"
+
+namespace lapwing {
+
+// One leaf a line, each with a comment: "# from shot.lua:12", "# --set" or "# default", aligned in
+// a column; none where the origin is not known. A list without maps in it stays on one line, and
+// its comment names every source of its entries. Reading the text back as YAML gives equal values.
+std::string annotated_yaml(const Value& value);
+
+}  // namespace lapwing

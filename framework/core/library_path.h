@@ -1,0 +1,11 @@
+// Where this library was loaded from, for what lies beside it: plugins, configurations, scripts.
+#pragma once
+
+#include <filesystem>
+
+namespace lapwing {
+
+// The folder that holds liblapwing, links resolved; empty when the system cannot tell.
+std::filesystem::path library_folder();
+
+}  // namespace lapwing
