@@ -19,7 +19,7 @@ namespace lapwing {
 struct KeyframeTask {
   double time = 0;                                     // s
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m
-  std::optional<double> yaw;                           // rad
+  std::optional<double> yaw = std::nullopt;            // rad
   double tolerance = 0.5;                              // m
   double time_tolerance = 0.1;                         // s
   double yaw_tolerance = 0.1745;                       // rad

@@ -1,0 +1,111 @@
+// What the verifier checks: the list, and how the worst value of a check is kept.
+//
+// Internal to this room; callers include verify.h.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "framework/trajectory/plan.h"
+#include "framework/vehicle/vehicle.h"
+#include "framework/verify/certificate.h"
+#include "framework/verify/motion.h"
+#include "framework/verify/tolerances.h"
+
+namespace lapwing {
+
+struct CheckKind {
+  const char* name;
+  CheckGroup group;
+  bool required;
+  const char* unit;
+};
+
+// Every certificate lists all of these, in this order.
+inline constexpr std::array kCheckKinds{
+    CheckKind{"document", CheckGroup::safety, true, ""},
+    CheckKind{"defect_position", CheckGroup::safety, true, "m"},
+    CheckKind{"defect_velocity", CheckGroup::safety, true, "m/s"},
+    CheckKind{"defect_yaw", CheckGroup::safety, true, "rad"},
+    CheckKind{"defect_yaw_rate", CheckGroup::safety, true, "rad/s"},
+    CheckKind{"defect_gimbal", CheckGroup::safety, true, "rad"},
+    CheckKind{"drift", CheckGroup::safety, true, ""},
+    CheckKind{"stated_acceleration", CheckGroup::safety, true, "m/s^2"},
+    CheckKind{"thrust_max", CheckGroup::safety, true, "N"},
+    CheckKind{"thrust_min", CheckGroup::safety, true, "N"},
+    CheckKind{"force_up", CheckGroup::safety, true, "N"},
+    CheckKind{"yaw_torque", CheckGroup::safety, true, "N m"},
+    CheckKind{"rotor_thrust", CheckGroup::safety, true, "N"},
+    CheckKind{"speed_across", CheckGroup::safety, true, "m/s"},
+    CheckKind{"climb_speed", CheckGroup::safety, true, "m/s"},
+    CheckKind{"descent_speed", CheckGroup::safety, true, "m/s"},
+    CheckKind{"acceleration_across", CheckGroup::safety, true, "m/s^2"},
+    CheckKind{"acceleration_up", CheckGroup::safety, true, "m/s^2"},
+    CheckKind{"acceleration_down", CheckGroup::safety, true, "m/s^2"},
+    CheckKind{"yaw_rate", CheckGroup::safety, true, "rad/s"},
+    CheckKind{"gimbal_yaw", CheckGroup::safety, true, "rad"},
+    CheckKind{"gimbal_pitch", CheckGroup::safety, true, "rad"},
+    CheckKind{"gimbal_yaw_rate", CheckGroup::safety, true, "rad/s"},
+    CheckKind{"gimbal_pitch_rate", CheckGroup::safety, true, "rad/s"},
+    CheckKind{"clearance", CheckGroup::safety, true, "m"},
+    CheckKind{"flight_time", CheckGroup::safety, true, "s"},
+    CheckKind{"budget", CheckGroup::safety, true, "s"},
+    CheckKind{"closed_loop", CheckGroup::safety, false, ""},
+    CheckKind{"keyframe_time", CheckGroup::task, true, "s"},
+    CheckKind{"keyframe_miss", CheckGroup::task, true, "m"},
+    CheckKind{"keyframe_yaw", CheckGroup::task, true, "rad"},
+    CheckKind{"framing", CheckGroup::task, true, ""},
+    CheckKind{"gates", CheckGroup::task, true, ""},
+    CheckKind{"drawing", CheckGroup::task, true, ""},
+    CheckKind{"coverage", CheckGroup::task, true, ""},
+};
+
+// A check of that name, with its group, unit and whether it is required.
+Check make_check(std::string_view name);
+Check skipped_check(std::string_view name, std::string reason);
+
+// The tolerance that a limit of this size has.
+double tolerance_of(double limit);
+
+// Fills in the result; a value that is not finite fails.
+Check judged(Check check, double worst, double limit, double tolerance, double at,
+             bool at_least = false);
+
+// Keeps the worst of many values against one limit.
+class Worst {
+ public:
+  Worst(std::string_view name, double limit, double tolerance, bool at_least = false);
+  Worst(std::string_view name, double limit) : Worst(name, limit, tolerance_of(limit)) {}
+
+  // True when this value is the worst so far. A value that is not a number stays the worst.
+  bool see(double value, double time);
+  double value() const { return value_; }
+  double excess() const;  // beyond the limit when positive
+  Check check() const;
+
+ private:
+  std::string name_;
+  double limit_, tolerance_, value_ = 0, at_ = 0;
+  bool at_least_, seen_ = false;
+};
+
+// Everything that a check may read.
+struct Subject {
+  const Plan& plan;
+  const Vehicle& vehicle;
+  Motion& motion;
+};
+
+// The families. Each appends its checks; `document` also yields the vehicle that it read.
+struct Document {
+  Check check;
+  Vehicle vehicle;
+};
+Document check_document(const Plan& plan);
+void check_dynamics(const Subject& subject, Certificate& certificate);
+void check_limits(const Subject& subject, Certificate& certificate);
+void check_clearance(const Subject& subject, Certificate& certificate);
+void check_time(const Subject& subject, Certificate& certificate);
+void check_task(const Subject& subject, Certificate& certificate);
+
+}  // namespace lapwing

@@ -1,0 +1,142 @@
+// Whether the plan holds together at all: everything that the other checks take for granted.
+#include <cstdio>
+
+#include "framework/verify/checks.h"
+
+namespace lapwing {
+namespace {
+
+constexpr std::size_t kListed = 5;  // problems named in the certificate
+
+class Reader {
+ public:
+  explicit Reader(const Plan& plan) : plan_(plan) {}
+
+  Document read() {
+    Document document;
+    read_vehicle(document.vehicle);
+    samples();
+    environment();
+    task();
+    if (problems_.empty()) steps(document.vehicle);
+    const auto count = static_cast<double>(problems_.size());
+    document.check = judged(make_check("document"), count, 0, 0, at_);
+    document.check.detail = listed();
+    return document;
+  }
+
+ private:
+  void add(const std::string& problem) { problems_.push_back(problem); }
+
+  std::string listed() const {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(problems_.size(), kListed); ++i) {
+      text += (i ? "; " : "") + problems_[i];
+    }
+    if (problems_.size() > kListed) {
+      text += "; and " + std::to_string(problems_.size() - kListed) + " more";
+    }
+    return text;
+  }
+
+  void read_vehicle(Vehicle& vehicle) {
+    try {
+      vehicle = vehicle_from_value(plan_.vehicle);
+    } catch (const std::exception& error) {
+      add(error.what());
+      return;
+    }
+    if (plan_.trajectory.has_gimbal && !vehicle.gimbal) {
+      add("the plan moves a gimbal that the vehicle does not have");
+    }
+  }
+
+  static bool sound(double number) { return std::abs(number) <= tolerances::kLargestNumber; }
+  static bool sound(const Eigen::Vector3d& v) {
+    return sound(v.x()) && sound(v.y()) && sound(v.z());
+  }
+  static bool sound(const Sample& s) {
+    return sound(s.time) && sound(s.position) && sound(s.velocity) && sound(s.acceleration) &&
+           sound(s.yaw) && sound(s.yaw_rate) && sound(s.force) && sound(s.yaw_torque) &&
+           sound(s.gimbal_yaw) && sound(s.gimbal_pitch) && sound(s.gimbal_yaw_rate) &&
+           sound(s.gimbal_pitch_rate) && sound(s.target);
+  }
+
+  void samples() {
+    const auto& samples = plan_.trajectory.samples;
+    if (plan_.trajectory.model != MotionModel::force) {
+      add("this version verifies the motion model 'force' alone");
+    }
+    if (samples.empty()) return add("the plan has no sample");
+    if (!(std::abs(samples[0].time) <= tolerances::kStartTime)) {
+      add("the first sample is not at time 0");
+    }
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const std::string name = "sample " + std::to_string(i + 1);
+      if (!sound(samples[i])) {
+        add(name + " holds a number that is not finite or beyond 1e7");
+      } else if (i > 0 && !(samples[i].time > samples[i - 1].time)) {
+        at_ = samples[i].time;
+        add(name + " is not later than the one before it");
+      }
+    }
+  }
+
+  void environment() {
+    const Environment& environment = plan_.environment;
+    if (!(environment.margin >= 0) || !sound(environment.margin)) {
+      add("the margin must be at least 0");
+    }
+    for (const Sphere& sphere : environment.spheres) {
+      if (!sound(sphere.center) || !(sphere.radius > 0) || !sound(sphere.radius)) {
+        add("sphere '" + sphere.name + "' must have a centre and a radius above 0");
+      }
+    }
+    for (const Box& box : environment.boxes) {
+      if (!sound(box.lower) || !sound(box.upper) ||
+          !(box.lower.array() < box.upper.array()).all()) {
+        add("box '" + box.name + "' must have its lower corner below its upper one");
+      }
+    }
+  }
+
+  void task() {
+    if (plan_.budget && !(*plan_.budget > 0 && sound(*plan_.budget))) {
+      add("the budget must be above 0");
+    }
+    for (std::size_t i = 0; i < plan_.task.keyframes.size(); ++i) {
+      const KeyframeTask& k = plan_.task.keyframes[i];
+      const std::string name = "keyframe " + std::to_string(i + 1);
+      if (!sound(k.time) || !sound(k.position) || !sound(k.yaw.value_or(0))) {
+        add(name + " holds a number that is not finite or beyond 1e7");
+      }
+      if (!(k.tolerance > 0 && k.time_tolerance >= 0 && k.yaw_tolerance > 0) ||
+          !sound(k.tolerance) || !sound(k.time_tolerance) || !sound(k.yaw_tolerance)) {
+        add(name + " needs tolerances above 0 (of time: at least 0)");
+      }
+    }
+  }
+
+  void steps(const Vehicle& vehicle) {
+    const double total = Motion(plan_.trajectory, vehicle).total_steps();
+    if (total <= tolerances::kLargestSteps) return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "following the motion would take %.3g steps, more than %.0g: the samples are too "
+                  "coarse for their inputs",
+                  total, tolerances::kLargestSteps);
+    add(text);
+  }
+
+  const Plan& plan_;
+  std::vector<std::string> problems_;
+  double at_ = 0;
+};
+
+}  // namespace
+
+Document check_document(const Plan& plan) {
+  return Reader(plan).read();
+}
+
+}  // namespace lapwing

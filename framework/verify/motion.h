@@ -1,0 +1,56 @@
+// The verifier's own integration of the motion model `force` (thesis 3.1), thesis 3.5.3 for the
+// gimbal:
+//
+//   m r'' = F + m g,   I_psi psi'' = M_psi,   gimbal angle' = gimbal rate
+//
+// Between two samples the inputs F, M_psi and the gimbal rates are held or linear. Each interval
+// starts from what its first sample states.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "framework/trajectory/trajectory.h"
+#include "framework/vehicle/vehicle.h"
+
+namespace lapwing {
+
+struct MotionPoint {
+  double time = 0;                                         // s
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();      // m, W
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      // m/s, W
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, W; from the force
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();         // N, W
+  double yaw = 0, yaw_rate = 0, yaw_torque = 0;            // rad, rad/s, N m
+  double gimbal_yaw = 0, gimbal_pitch = 0;                 // rad
+  double gimbal_yaw_rate = 0, gimbal_pitch_rate = 0;       // rad/s
+};
+
+class Motion {
+ public:
+  // Keeps references; `trajectory` must have finite numbers and increasing times.
+  Motion(const Trajectory& trajectory, const Vehicle& vehicle);
+
+  std::size_t intervals() const { return trajectory_.samples.size() - 1; }
+  // Steps of all intervals together, as a number: a hostile plan may ask for more than fit
+  // anything.
+  double total_steps() const;
+
+  // The motion from sample `interval` to the time of the next one by Runge-Kutta 4, both ends
+  // included. Steps are as tolerances.h says. Valid until the next call.
+  std::span<const MotionPoint> integrate(std::size_t interval);
+
+  // What sample `index` itself states.
+  MotionPoint stated(std::size_t index) const;
+
+ private:
+  double steps(std::size_t interval) const;
+
+  const Trajectory& trajectory_;
+  double mass_, yaw_inertia_;
+  std::vector<MotionPoint> points_;
+};
+
+}  // namespace lapwing

@@ -1,0 +1,41 @@
+// Every tolerance of the verifier, with its unit.
+#pragma once
+
+namespace lapwing::tolerances {
+
+// A limit may be passed by this share of itself, and by no less than the floor in its own unit:
+// limits of zero exist (a gimbal that cannot turn), and numbers are rounded.
+inline constexpr double kLimitShare = 1e-4;
+inline constexpr double kLimitFloor = 1e-6;
+inline constexpr double kGimbalAngle = 1e-4;  // rad; angles have limits of zero by nature
+inline constexpr double kClearance = 1e-3;    // m
+
+// Between a sample and the motion integrated from the sample before it, per interval.
+inline constexpr double kPositionDefect = 1e-3;         // m
+inline constexpr double kVelocityDefect = 1e-2;         // m/s
+inline constexpr double kYawDefect = 3.4906585e-3;      // rad, 0.2 degrees
+inline constexpr double kYawRateDefect = 3.4906585e-2;  // rad/s, 2 degrees/s
+inline constexpr double kGimbalDefect = kYawDefect;     // rad
+
+// Defects of many short intervals add up: their sum over any kDriftWindow may not exceed this many
+// times the defect of one interval. Else samples a millisecond apart could teleport the vehicle.
+inline constexpr double kDriftWindow = 1.0;  // s
+inline constexpr double kDriftFactor = 10.0;
+
+// Between the acceleration that a sample states and force / mass + gravity.
+inline constexpr double kAcceleration = 1e-2;  // m/s^2
+
+// Resolution of the integrated motion: steps are short enough that between two of them the true
+// motion leaves the straight line, or passes what both ends show, by no more than this.
+inline constexpr double kStepMaximum = 0.02;    // s
+inline constexpr double kBulge = 1e-4;          // m
+inline constexpr double kHiddenSpeed = 2e-5;    // m/s, across, up or down
+inline constexpr double kHiddenYawRate = 2e-5;  // rad/s
+inline constexpr double kHiddenGimbal = 1e-6;   // rad
+
+// What a plan may hold at all.
+inline constexpr double kLargestNumber = 1e7;  // any figure of a sample or of the task, SI
+inline constexpr double kLargestSteps = 5e6;   // steps of integration
+inline constexpr double kStartTime = 1e-9;     // s, the first sample is at time 0
+
+}  // namespace lapwing::tolerances

@@ -1,0 +1,30 @@
+#include "framework/verify/verify.h"
+
+#include "framework/verify/checks.h"
+
+namespace lapwing {
+
+Certificate verify(const Plan& plan) {
+  Certificate certificate;
+  const Document document = check_document(plan);
+  certificate.checks.push_back(document.check);
+  if (!document.check.pass) {
+    for (std::size_t i = 1; i < kCheckKinds.size(); ++i) {
+      certificate.checks.push_back(
+          skipped_check(kCheckKinds[i].name, "the check 'document' failed"));
+    }
+    return certificate;
+  }
+  Motion motion(plan.trajectory, document.vehicle);
+  const Subject subject{plan, document.vehicle, motion};
+  check_dynamics(subject, certificate);
+  check_limits(subject, certificate);
+  check_clearance(subject, certificate);
+  check_time(subject, certificate);
+  certificate.checks.push_back(skipped_check(
+      "closed_loop", "this version has no simulator of the full vehicle under control"));
+  check_task(subject, certificate);
+  return certificate;
+}
+
+}  // namespace lapwing

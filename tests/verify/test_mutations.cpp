@@ -1,0 +1,146 @@
+// Each check is flipped, and it alone, by one small change of a good plan.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "framework/verify/checks.h"
+#include "framework/verify/verify.h"
+#include "tests/verify/reference_plan.h"
+
+namespace lapwing {
+namespace {
+
+std::set<std::string> failures_of(const Plan& plan) {
+  std::set<std::string> names;
+  for (const Check& check : verify(plan).failures()) names.insert(check.name);
+  return names;
+}
+
+struct Mutation {
+  Mutation(std::string flipped, std::function<void(Plan&)> how, ReferenceOptions of = {})
+      : check(std::move(flipped)), change(std::move(how)), options(of) {}
+  std::string check;  // the one that it flips
+  std::function<void(Plan&)> change;
+  ReferenceOptions options;
+};
+
+std::function<void(Plan&)> vehicle(std::function<void(Vehicle&)> change) {
+  return [change](Plan& plan) {
+    Vehicle v = vehicle_from_value(plan.vehicle);
+    change(v);
+    plan.vehicle = to_value(v);
+  };
+}
+
+Sample& sample(Plan& plan, std::size_t i) {
+  return plan.trajectory.samples.at(i);
+}
+Sample& last(Plan& plan) {
+  return plan.trajectory.samples.back();
+}
+
+// 0.5 mm a sample over a second of samples 20 ms apart: each is within its own tolerance.
+void creep(Plan& plan) {
+  double offset = 0;
+  for (std::size_t i = 0; i < plan.trajectory.samples.size(); ++i) {
+    if (i >= 100 && i < 150) offset += 0.0005;
+    sample(plan, i).position.y() += offset;
+  }
+}
+
+const std::vector<Mutation>& mutations() {
+  static const std::vector<Mutation> list{
+      {"document", [](Plan& p) { sample(p, 3).time = sample(p, 2).time; }},
+      {"defect_position", [](Plan& p) { sample(p, 40).position.y() += 0.002; }},
+      {"defect_velocity", [](Plan& p) { last(p).velocity.y() += 0.02; }},
+      {"defect_yaw", [](Plan& p) { sample(p, 40).yaw += 0.005; }},
+      {"defect_yaw_rate", [](Plan& p) { last(p).yaw_rate += 0.05; }},
+      {"defect_gimbal", [](Plan& p) { sample(p, 40).gimbal_pitch += 0.005; }},
+      {"drift", creep, {.step = 0.02}},
+      {"stated_acceleration", [](Plan& p) { sample(p, 9).acceleration.x() += 0.05; }},
+      {"thrust_max", vehicle([](Vehicle& v) { v.rotors.thrust_max = 4.22; })},
+      {"thrust_min", vehicle([](Vehicle& v) { v.rotors.thrust_min = 2.825; })},
+      {"yaw_torque", vehicle([](Vehicle& v) { v.rotors.torque_coefficient = 0.0005; })},
+      {"speed_across", vehicle([](Vehicle& v) { v.speed_across_max = 3; })},
+      {"climb_speed", vehicle([](Vehicle& v) { v.climb_speed_max = 0.5; })},
+      {"descent_speed", vehicle([](Vehicle& v) { v.descent_speed_max = 0.5; }), {.lift = -0.4}},
+      {"acceleration_across", vehicle([](Vehicle& v) { v.acceleration_across_max = 1; })},
+      {"acceleration_up", vehicle([](Vehicle& v) { v.acceleration_up_max = 0.2; })},
+      {"acceleration_down", vehicle([](Vehicle& v) { v.acceleration_down_max = 0.2; })},
+      {"yaw_rate", vehicle([](Vehicle& v) { v.yaw_rate_max = 0.1; })},
+      {"gimbal_yaw", vehicle([](Vehicle& v) { v.gimbal->yaw_max = 0.1; })},
+      {"gimbal_pitch", vehicle([](Vehicle& v) { v.gimbal->pitch_max = -0.4; })},
+      {"gimbal_pitch", vehicle([](Vehicle& v) { v.gimbal->pitch_min = -0.5; })},
+      {"gimbal_yaw_rate", vehicle([](Vehicle& v) { v.gimbal->yaw_rate_max = 0.02; })},
+      {"gimbal_pitch_rate", vehicle([](Vehicle& v) { v.gimbal->pitch_rate_max = 0.04; })},
+      {"clearance", [](Plan& p) { p.environment.spheres[0].radius = 2.51; }},
+      {"clearance", [](Plan& p) { p.environment.boxes[0].upper.y() = -0.49; }},
+      {"clearance", [](Plan& p) { p.environment.margin = 2.01; }},
+      {"flight_time", vehicle([](Vehicle& v) { v.flight_time = 7.9; })},
+      {"budget", [](Plan& p) { p.budget = 7.9; }},
+      {"keyframe_time", [](Plan& p) { p.task.keyframes[2].time = 8.2; }},
+      {"keyframe_miss", [](Plan& p) { p.task.keyframes[1].position.y() += 0.51; }},
+      {"keyframe_miss", [](Plan& p) { p.task.keyframes[1].time += 0.5; }},
+      {"keyframe_yaw", [](Plan& p) { *p.task.keyframes[2].yaw += 0.2; }},
+  };
+  return list;
+}
+
+TEST(Mutations, TheReferencePassesHeldAndLinearAndAtAnyStep) {
+  for (const bool held : {true, false}) {
+    for (const double step : {0.02, 0.1, 0.5}) {
+      for (const double lift : {0.4, -0.4}) {
+        const Plan plan = reference_plan({.held = held, .step = step, .lift = lift});
+        const Certificate certificate = verify(plan);
+        EXPECT_TRUE(certificate.feasible());
+        for (const Check& check : certificate.failures()) ADD_FAILURE() << to_line(check);
+        EXPECT_LT(*certificate.find("defect_position")->worst, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Mutations, EachFlipsItsCheckAndNoOther) {
+  for (const Mutation& mutation : mutations()) {
+    Plan plan = reference_plan(mutation.options);
+    ASSERT_TRUE(verify(plan).feasible()) << mutation.check;
+    mutation.change(plan);
+    EXPECT_EQ(failures_of(plan), std::set<std::string>{mutation.check});
+    EXPECT_FALSE(verify(plan).feasible());
+  }
+}
+
+TEST(Mutations, ForceDownwardsAloneIsRefused) {
+  // Thrust within its bounds, but for a tenth of a second the vehicle would have to fly upside
+  // down.
+  const Drive down{{0, 0, -13.5}}, up{{0, 0, 6.75}};
+  const Plan plan = PlanBuilder(true).add(0.1, down).add(0.2, up).finish();
+  EXPECT_EQ(failures_of(plan), std::set<std::string>{"force_up"});
+}
+
+TEST(Mutations, CoverEveryCheckThatIsMade) {
+  std::set<std::string> covered{"force_up", "acceleration_up", "acceleration_down"};
+  for (const Mutation& mutation : mutations()) covered.insert(mutation.check);
+  const Certificate certificate = verify(reference_plan());
+  for (const Check& check : certificate.checks) {
+    if (!check.skipped.empty()) continue;
+    EXPECT_TRUE(covered.count(check.name)) << check.name;
+  }
+}
+
+TEST(Mutations, EveryCertificateListsEveryCheckOnceInOrder) {
+  Plan broken = reference_plan();
+  broken.trajectory.samples.clear();
+  Plan single = reference_plan();
+  single.trajectory.samples.resize(1);
+  for (const Plan& plan : {reference_plan(), broken, single}) {
+    const Certificate certificate = verify(plan);
+    ASSERT_EQ(certificate.checks.size(), kCheckKinds.size());
+    for (std::size_t i = 0; i < kCheckKinds.size(); ++i) {
+      EXPECT_EQ(certificate.checks[i].name, kCheckKinds[i].name);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lapwing

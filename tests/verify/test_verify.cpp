@@ -1,0 +1,218 @@
+// Known answers: plans whose worst values can be written down.
+#include <gtest/gtest.h>
+
+#include "framework/core/json.h"
+#include "framework/verify/verify.h"
+#include "tests/verify/reference_plan.h"
+
+namespace lapwing {
+namespace {
+
+Check check_of(const Certificate& certificate, const char* name) {
+  const Check* check = certificate.find(name);
+  if (!check) throw Error(std::string("no check ") + name);
+  return *check;
+}
+
+void set_limit(Plan& plan, const char* name, double value) {
+  plan.vehicle.find("limits")->set(name, value);
+}
+
+// 3 m/s^2 for 2 s, then -3 m/s^2 for 2 s: 12 m, peak 6 m/s.
+Plan bang_bang() {
+  const Drive forward{{3, 0, 0}}, back{{-3, 0, 0}};
+  return PlanBuilder(true).add(2, forward).add(2, back).finish();
+}
+
+TEST(Verify, BangBangHasItsKnownFigures) {
+  const Plan plan = bang_bang();
+  EXPECT_NEAR(plan.trajectory.samples.back().position.x(), 12, 1e-12);
+  const Certificate c = verify(plan);
+  EXPECT_TRUE(c.feasible());
+  EXPECT_NEAR(*check_of(c, "speed_across").worst, 6, 1e-9);
+  EXPECT_NEAR(check_of(c, "speed_across").at, 2, 1e-9);
+  EXPECT_NEAR(*check_of(c, "acceleration_across").worst, 3, 1e-12);
+  EXPECT_NEAR(*check_of(c, "thrust_max").worst, 1.5 * std::hypot(3, kGravity), 1e-9);
+  EXPECT_NEAR(*check_of(c, "flight_time").worst, 4, 1e-12);
+  EXPECT_LT(*check_of(c, "defect_position").worst, 1e-12);
+}
+
+// Two samples, both at rest; in between the speed rises to 4 m/s and falls again.
+Plan hidden_peak() {
+  const Drive forward{{4, 0, 0}}, back{{-4, 0, 0}};
+  return PlanBuilder(false).add(4, forward, back).finish(back);
+}
+
+TEST(Verify, SpeedPeakBetweenSparseSamplesIsFound) {
+  Plan plan = hidden_peak();
+  ASSERT_EQ(plan.trajectory.samples.size(), 2u);
+  EXPECT_TRUE(verify(plan).feasible());
+  EXPECT_NEAR(*check_of(verify(plan), "speed_across").worst, 4, 1e-4);
+  EXPECT_NEAR(check_of(verify(plan), "speed_across").at, 2, 0.05);
+  set_limit(plan, "speed_across", 3.99);
+  EXPECT_FALSE(check_of(verify(plan), "speed_across").pass);
+  EXPECT_FALSE(verify(plan).feasible());
+}
+
+TEST(Verify, YawAndGimbalPeaksBetweenSparseSamplesAreFound) {
+  const Drive one{{0, 0, 0}, 0.5, 0.4, 0}, other{{0, 0, 0}, -0.5, -0.4, 0};
+  Plan plan = PlanBuilder(false).add(4, one, other).finish(other);
+  plan.trajectory.has_gimbal = true;
+  const Certificate c = verify(plan);
+  EXPECT_TRUE(c.feasible());
+  EXPECT_NEAR(*check_of(c, "yaw_rate").worst, 0.5, 1e-4);
+  EXPECT_NEAR(*check_of(c, "gimbal_yaw").worst, 0.4, 1e-4);
+}
+
+TEST(Verify, ThrustDipBetweenSparseSamplesIsFound) {
+  // The force swings from one side to the other: 11.3 N at both ends, 8 N in the middle.
+  const double up = 8 / 1.5 - kGravity;
+  const Drive left{{8 / 1.5, 0, up}}, right{{-8 / 1.5, 0, up}};
+  const Plan plan = PlanBuilder(false).add(1, left, right).finish(right);
+  EXPECT_NEAR(*check_of(verify(plan), "thrust_min").worst, 8, 1e-9);
+}
+
+TEST(Verify, HoveringIsSafeButMissesTheKeyframes) {
+  PlanBuilder builder(true);
+  for (int i = 0; i < 80; ++i) builder.add(0.1, {});
+  Plan plan = builder.finish();
+  plan.task.keyframes = {{.time = 0}, {.time = 8, .position = {3, 4, 0}}};
+  const Certificate c = verify(plan);
+  EXPECT_FALSE(c.feasible());
+  ASSERT_EQ(c.failures().size(), 1u);
+  EXPECT_EQ(to_line(c.failures()[0]), "keyframe_miss 5 m exceeds 0.5 m at 8 s (keyframe 2)");
+}
+
+TEST(Verify, KeyframeMayBeMetWithinItsTimeTolerance) {
+  Plan plan = bang_bang();  // 6 m/s at 2 s, where x = 6
+  plan.task.keyframes = {{.time = 2, .position = {6.59, 0, 0}, .tolerance = 0.01}};
+  EXPECT_TRUE(verify(plan).feasible());
+  plan.task.keyframes[0].time_tolerance = 0.05;
+  EXPECT_FALSE(verify(plan).feasible());
+  plan.task.keyframes[0].time_tolerance = 0;
+  EXPECT_NEAR(*check_of(verify(plan), "keyframe_miss").worst, 0.59, 1e-3);
+}
+
+TEST(Verify, WorstKeyframeIsJudgedAgainstItsOwnTolerance) {
+  Plan plan = bang_bang();
+  plan.task.keyframes = {{.time = 0, .position = {0, 0.4, 0}, .tolerance = 0.5},
+                         {.time = 4, .position = {12, 0.2, 0}, .tolerance = 0.1}};
+  const Check check = check_of(verify(plan), "keyframe_miss");
+  EXPECT_NEAR(*check.worst, 0.2, 1e-6);
+  EXPECT_EQ(check.limit, 0.1);
+  EXPECT_EQ(check.detail, "keyframe 2");
+}
+
+TEST(Verify, KeyframeYawCountsOnTheCircle) {
+  Plan plan = reference_plan();
+  *plan.task.keyframes[2].yaw += 4 * std::numbers::pi;
+  EXPECT_TRUE(verify(plan).feasible());
+  *plan.task.keyframes[2].yaw += std::numbers::pi;
+  EXPECT_NEAR(*check_of(verify(plan), "keyframe_yaw").worst, std::numbers::pi, 1e-4);
+}
+
+// x = 5 t, y = t^2 - 2 t over 2 s: both samples lie on y = 0, the path dips to y = -1 at t = 1.
+Plan dip() {
+  Sample start;
+  start.velocity = {5, -2, 0};
+  return PlanBuilder(true, start).add(2, {{0, 2, 0}}).finish({{0, 2, 0}});
+}
+
+TEST(Verify, ObstacleGrazedBetweenSamplesIsFound) {
+  Plan plan = dip();
+  plan.environment.spheres = {{"pole", {5, -3, 0}, 0.5}};
+  const Check check = check_of(verify(plan), "clearance");
+  EXPECT_LE(*check.worst, 1.5);
+  EXPECT_NEAR(*check.worst, 1.5, 3e-4);
+  EXPECT_NEAR(check.at, 1, 0.05);
+  EXPECT_EQ(check.detail, "sphere 'pole'");
+  plan.environment.margin = 1.502;
+  EXPECT_FALSE(verify(plan).feasible());
+  plan.environment.margin = 1.49;
+  EXPECT_TRUE(verify(plan).feasible());
+}
+
+TEST(Verify, ClearanceOfBoxesHasKnownValues) {
+  Plan plan = dip();
+  const auto clearance = [&](const Eigen::Vector3d& lower, const Eigen::Vector3d& upper) {
+    plan.environment.boxes = {{"", lower, upper}};
+    return *check_of(verify(plan), "clearance").worst;
+  };
+  EXPECT_NEAR(clearance({4, -3, -1}, {6, -2, 1}), 1, 3e-4);         // its upper face below the dip
+  EXPECT_NEAR(clearance({4, -3, 3}, {6, -1, 4}), 3, 3e-4);          // an edge above the dip
+  EXPECT_NEAR(clearance({-4, -9, -9}, {-3, 9, 9}), 3, 3e-4);        // behind the start
+  EXPECT_NEAR(clearance({4, -1.4, -9}, {6, -0.8, 9}), -0.2, 5e-3);  // the dip enters 0.2 m
+  EXPECT_EQ(check_of(verify(plan), "clearance").detail, "box 1");
+  EXPECT_FALSE(verify(plan).feasible());
+}
+
+TEST(Verify, FastPassThroughAThinWallBetweenSamplesIsFound) {
+  Plan plan = hidden_peak();  // 10.67 m between two samples
+  plan.environment.boxes = {{"wall", {5, -1, -1}, {5.001, 1, 1}}};
+  EXPECT_LT(*check_of(verify(plan), "clearance").worst, 0);
+}
+
+TEST(Verify, ManyTinyDefectsMayNotTeleport) {
+  // Samples a millisecond apart that hover by their inputs and advance 0.9 mm each.
+  PlanBuilder builder(true);
+  for (int i = 0; i < 2000; ++i) builder.add(0.001, {});
+  Plan plan = builder.finish();
+  for (std::size_t i = 0; i < plan.trajectory.samples.size(); ++i) {
+    plan.trajectory.samples[i].position.x() += 0.0009 * static_cast<double>(i);
+  }
+  const Certificate c = verify(plan);
+  EXPECT_TRUE(check_of(c, "defect_position").pass);
+  EXPECT_NEAR(*check_of(c, "drift").worst, 90, 1);
+  EXPECT_FALSE(c.feasible());
+}
+
+TEST(Verify, TheLastSampleIsJudgedToo) {
+  Plan plan = reference_plan();
+  plan.trajectory.samples.back().force.setZero();
+  plan.trajectory.samples.back().acceleration = {0, 0, -kGravity};
+  EXPECT_FALSE(check_of(verify(plan), "thrust_min").pass);
+}
+
+TEST(Verify, LimitsHaveATenThousandthToSpare) {
+  Plan plan = bang_bang();
+  set_limit(plan, "speed_across", 6 / 1.00009);
+  EXPECT_TRUE(verify(plan).feasible());
+  set_limit(plan, "speed_across", 6 / 1.0002);
+  EXPECT_FALSE(verify(plan).feasible());
+}
+
+TEST(Verify, FailureReadsAsOneLine) {
+  Plan plan = bang_bang();
+  set_limit(plan, "speed_across", 5);
+  set_limit(plan, "yaw_rate", radians(90));
+  EXPECT_EQ(to_line(verify(plan).failures().at(0)), "speed_across 6 m/s exceeds 5 m/s at 2 s");
+  plan = reference_plan();
+  plan.vehicle.find("gimbal")->set("pitch_min", radians(-30));
+  const std::string line = to_line(verify(plan).failures().at(0));
+  EXPECT_EQ(line, "gimbal_pitch -40.11 deg falls below -30 deg at 8 s");
+}
+
+TEST(Verify, CertificateInsideThePlanIsNotLookedAt) {
+  Plan plan = bang_bang();
+  plan.certificate = verify(plan).to_value();
+  set_limit(plan, "speed_across", 5);
+  EXPECT_FALSE(verify(plan).feasible());
+}
+
+TEST(Verify, SameVerdictFromTheWrittenFile) {
+  const Plan plan = reference_plan();
+  const Plan reread = plan_from_value(from_json(plan_text(plan), "plan.json"));
+  EXPECT_EQ(verify(plan).to_value(), verify(reread).to_value());
+}
+
+TEST(Verify, WhatDoesNotApplyIsSkippedWithAReason) {
+  const Certificate c = verify(bang_bang());
+  for (const char* name : {"clearance", "budget", "keyframe_miss", "framing", "gimbal_pitch",
+                           "coverage", "closed_loop", "rotor_thrust"}) {
+    EXPECT_FALSE(check_of(c, name).skipped.empty()) << name;
+  }
+  EXPECT_FALSE(check_of(c, "closed_loop").required);
+}
+
+}  // namespace
+}  // namespace lapwing
