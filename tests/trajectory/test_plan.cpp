@@ -25,7 +25,7 @@ Plan small_plan(MotionModel model = MotionModel::force) {
   for (int i = 0; i < 3; ++i) {
     Sample s;
     s.time = 0.1 * i;
-    s.position = {1.0 / 3, i, 2};
+    s.position = {1.0 / 3, double(i), 2};
     s.velocity = {0, 10.0, 1e-17};
     s.acceleration = {1, 2, 3};
     s.yaw = 0.3;
