@@ -6,6 +6,9 @@ cd "$(dirname "$0")/.."
 . scripts/packages.sh
 . scripts/build.sh
 scripts/setup.sh --yes --for build --for bench
-lapwing_build bench all
+mkdir -p build
+cmake --preset release -DLAPWING_BENCH=ON >build/bench_configure.log 2>&1 ||
+  { tail -n 30 build/bench_configure.log >&2; exit 1; }
+lapwing_build release lapwing_bench lapwing_all_plugins
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-exec build/bench/bin/lapwing_bench "$@"
+exec build/release/bin/lapwing_bench "$@"

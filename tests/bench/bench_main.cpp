@@ -1,0 +1,82 @@
+// Runs the benchmarks and prints the ratios that the README claims, from medians of one run.
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+namespace {
+
+// Prints as usual and keeps the medians.
+class Medians final : public benchmark::ConsoleReporter {
+ public:
+  struct Entry {
+    double milliseconds = 0;
+    std::map<std::string, double> counters;
+  };
+
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      failed_ |= run.error_occurred;
+      if (run.aggregate_name != "median") continue;
+      Entry& entry = entries_[run.run_name.function_name];
+      entry.milliseconds = run.GetAdjustedRealTime();
+      for (const auto& [name, counter] : run.counters) entry.counters[name] = counter.value;
+    }
+  }
+
+  const Entry* find(const std::string& name) const {
+    const auto found = entries_.find(name);
+    return found == entries_.end() ? nullptr : &found->second;
+  }
+  bool failed() const { return failed_; }
+
+ private:
+  std::map<std::string, Entry> entries_;
+  bool failed_ = false;
+};
+
+// "A is N times as fast as B", with the bound that is claimed. False when it is not met.
+bool ratio(const Medians& medians, const char* ours, const char* opponent, double at_least) {
+  const Medians::Entry* a = medians.find(ours);
+  const Medians::Entry* b = medians.find(opponent);
+  if (!a || !b) return true;  // filtered out
+  const double times = b->milliseconds / a->milliseconds;
+  const double cost = a->counters.at("cost"), other = b->counters.at("cost");
+  const double difference = std::abs(cost - other) / std::max(1.0, std::abs(other));
+  std::printf(
+      "%s: %.1f times as fast as %s (claimed: %.0f); costs differ by %.1e (allowed: 1e-06), "
+      "relative residual %.1e (allowed: 1e-08)\n",
+      ours, times, opponent, at_least, difference, a->counters.at("residual"));
+  return times >= at_least && difference <= 1e-6 && a->counters.at("residual") <= 1e-8;
+}
+
+bool growth(const Medians& medians, const char* small, const char* large, double at_most) {
+  const Medians::Entry* a = medians.find(small);
+  const Medians::Entry* b = medians.find(large);
+  if (!a || !b) return true;
+  const double times = b->milliseconds / a->milliseconds;
+  std::printf("%s: %.1f times the time of %s (claimed: at most %.0f)\n", large, times, small,
+              at_most);
+  return times <= at_most;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string repetitions = "--benchmark_repetitions=5";
+  std::string aggregates = "--benchmark_report_aggregates_only=true";
+  std::vector<char*> arguments{argv[0], repetitions.data(), aggregates.data()};
+  arguments.insert(arguments.end(), argv + 1, argv + argc);
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+  Medians medians;
+  benchmark::RunSpecifiedBenchmarks(&medians);
+  std::printf("\n");
+  const bool held = ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s", 8) &
+                    ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s_mehrotra", 8) &
+                    growth(medians, "interior_point/flight_30s", "interior_point/flight_300s", 15);
+  return held && !medians.failed() ? 0 : 1;
+}

@@ -1,0 +1,78 @@
+#include "tests/bench/bench_problems.h"
+
+#include "framework/core/random.h"
+
+namespace lapwing {
+namespace {
+
+constexpr double kStep = 0.1;                      // s
+constexpr double kKeyframeInterval = 30.0 / 11.0;  // s: 12 keyframes in 30 s
+
+// A 1.5 kg camera drone with the limits of thesis 3.8.3.
+Vehicle drone() {
+  Vehicle vehicle;
+  vehicle.name = "bench";
+  vehicle.mass = 1.5;
+  vehicle.inertia = {0.02, 0.02, 0.035};
+  vehicle.rotors = {
+      .thrust_max = 7.4, .thrust_min = 0.2, .torque_coefficient = 0.016, .arm_length = 0.23};
+  vehicle.yaw_share = 0.2;
+  vehicle.speed_across_max = 10;
+  vehicle.climb_speed_max = 2.5;
+  vehicle.descent_speed_max = 2;
+  vehicle.acceleration_across_max = 4;
+  vehicle.yaw_rate_max = 1.5;
+  return vehicle;
+}
+
+Value term(std::initializer_list<std::pair<const char*, Value>> entries) {
+  Value map = Value::map();
+  for (const auto& [key, value] : entries) map.set(key, value);
+  return map;
+}
+
+}  // namespace
+
+TrajectoryProblem quadratic_flight(const Registry& registry, double seconds, std::uint64_t seed) {
+  const int stages = static_cast<int>(std::lround(seconds / kStep));
+  const Horizon horizon{.stages = stages, .step = seconds / (stages - 1)};
+  TrajectoryProblem problem(drone(), horizon);
+  problem.add_model("quadrotor", registry.create<VehicleModel>("quadrotor"));
+  Random random(seed);
+  const int count = static_cast<int>(std::lround(seconds / 30.0 * 12.0));
+  std::vector<double> times, yaws(count, 0.0);
+  std::vector<Eigen::Vector3d> positions;
+  Value keyframes = Value::list();
+  Eigen::Vector3d at(0, 0, 5);
+  for (int k = 0; k < count; ++k) {
+    times.push_back(std::min(k * kKeyframeInterval * seconds / (kKeyframeInterval * (count - 1)),
+                             horizon.duration()));
+    at += Eigen::Vector3d(random.uniform(-8, 8), random.uniform(-8, 8), random.uniform(-3, 3));
+    positions.push_back(at);
+    keyframes.push_back(
+        term({{"time", times.back()}, {"value", Value::List{at.x(), at.y(), at.z()}}}));
+  }
+  problem.add_cost("keyframe", 10.0,
+                   registry.create<CostTerm>("keyframe", term({{"keyframes", keyframes}})));
+  problem.add_cost("snap", 1e-3, registry.create<CostTerm>("derivative", term({{"order", 4}})));
+  problem.add_cost("yaw", 1e-2, registry.create<CostTerm>("yaw_derivative"));
+  problem.add_constraint("input_limits", registry.create<Constraint>("input_limits"));
+  problem.add_constraint("boundary_state", registry.create<Constraint>("boundary_state"));
+  problem.set_path_guess(times, positions, yaws);
+  problem.finish();
+  return problem;
+}
+
+QuadraticProgram program_of(const TrajectoryProblem& problem) {
+  LocalModel model;
+  problem.linearise(problem.initial_guess(), model);
+  return {model.hessian,
+          model.gradient,
+          model.jacobian,
+          model.row_lower - model.values,
+          model.row_upper - model.values,
+          model.step_lower,
+          model.step_upper};
+}
+
+}  // namespace lapwing
