@@ -1,0 +1,286 @@
+#include "framework/export/report.h"
+
+#include <charconv>
+
+#include "framework/core/error.h"
+#include "framework/export/report_assets.h"
+#include "framework/export/report_data.h"
+
+namespace lapwing {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (c == '\'')
+      out += "&#39;";
+    else if ((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f)
+      out += "\xEF\xBF\xBD";  // a control character, which HTML may not hold
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string base64(const std::string& bytes) {
+  static constexpr char kLetters[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) {
+      return i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u;
+    };
+    const unsigned group = byte(0) << 16 | byte(1) << 8 | byte(2);
+    for (int k = 0; k < 4; ++k) {
+      const bool padding = i + static_cast<std::size_t>(k) > bytes.size();
+      out += padding ? '=' : kLetters[group >> (18 - 6 * k) & 63];
+    }
+  }
+  return out;
+}
+
+const char* mark_class(Mark mark) {
+  switch (mark) {
+    case Mark::pass:
+      return "pass";
+    case Mark::fail:
+      return "fail";
+    case Mark::skipped:
+      return "skipped";
+    case Mark::none:
+      break;
+  }
+  return "";
+}
+
+const char* mark_word(Mark mark) {
+  switch (mark) {
+    case Mark::pass:
+      return "pass";
+    case Mark::fail:
+      return "fail";
+    case Mark::skipped:
+      return "skipped";
+    case Mark::none:
+      break;
+  }
+  return "";
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return escaped(name) + (unit.empty() ? "" : " <span class=\"unit\">" + escaped(unit) + "</span>");
+}
+
+class Page {
+ public:
+  explicit Page(const Report& report) : report_(report) {}
+
+  std::string html() {
+    head();
+    for (std::size_t i = 0; i < report_.sections.size(); ++i) section(i);
+    out_ += "</main>\n<script type=\"application/json\" id=\"report-data\">";
+    out_ += report_data(report_);
+    out_ += "</script>\n<script>\n\"use strict\";\n(() => {\n";
+    out_ += kReportScript;
+    out_ += "})();\n</script>\n</body>\n</html>\n";
+    return std::move(out_);
+  }
+
+ private:
+  void head() {
+    const std::string title = escaped(report_.title);
+    out_ += "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
+            title +
+            "</title>\n"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+            "<meta name=\"color-scheme\" content=\"light dark\">\n"
+            "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+            "style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n<style>\n";
+    out_ += kReportStyle;
+    out_ +=
+        "</style>\n<script>\n"
+        "window.onerror = (message, source, line) => {\n"
+        "  document.documentElement.dataset.error = message + \" (line \" + line + \")\";\n"
+        "};\n</script>\n</head>\n<body>\n<header>\n<div class=\"headline\"><h1>" +
+        title + "</h1>";
+    if (!report_.status.empty()) {
+      out_ += "<span class=\"badge " + std::string(mark_class(report_.status_mark)) + "\">" +
+              escaped(report_.status) + "</span>";
+    }
+    out_ += "</div>\n";
+    if (!report_.subtitle.empty()) {
+      out_ += "<p class=\"subtitle\">" + escaped(report_.subtitle) + "</p>\n";
+    }
+    out_ += "<nav aria-label=\"Sections\">";
+    for (std::size_t i = 0; i < report_.sections.size(); ++i) {
+      out_ += "<a href=\"#section-" + std::to_string(i + 1) + "\">" +
+              escaped(report_.sections[i].title) + "</a>";
+    }
+    out_ +=
+        "</nav>\n</header>\n<main>\n<noscript><p class=\"notice\">The drawings of this page are "
+        "made by a script inside it; tables and text are complete without.</p></noscript>\n";
+  }
+
+  static bool half_width(const Block& block) {
+    return std::holds_alternative<Chart>(block) || std::holds_alternative<PathView>(block);
+  }
+
+  void section(std::size_t index) {
+    const Section& s = report_.sections[index];
+    section_ = &s;
+    const std::string id = "section-" + std::to_string(index + 1);
+    out_ += "<section id=\"" + id + "\" aria-labelledby=\"" + id + "-title\">\n<h2 id=\"" + id +
+            "-title\">" + escaped(s.title) + "</h2>\n<div class=\"blocks\">\n";
+    for (std::size_t i = 0, run = 0; i < s.blocks.size(); ++i) {
+      // Two drawings share a row; the odd one of a run has a row of its own.
+      run = half_width(s.blocks[i]) ? run + 1 : 0;
+      const bool last = i + 1 == s.blocks.size() || !half_width(s.blocks[i + 1]);
+      wide_ = !half_width(s.blocks[i]) || (last && run % 2 == 1);
+      std::visit([this](const auto& b) { block(b); }, s.blocks[i]);
+    }
+    out_ += "</div>\n</section>\n";
+  }
+
+  [[noreturn]] void fail(const std::string& block, const std::string& message) const {
+    throw Error("report section '" + section_->title + "', block '" + block + "': " + message);
+  }
+
+  void block(const TextBlock& text) {
+    if (!text.folded_title.empty()) {
+      out_ +=
+          "<details class=\"block wide\"><summary>" + escaped(text.folded_title) + "</summary>\n";
+    } else {
+      out_ += "<div class=\"block text wide\">\n";
+    }
+    if (text.preformatted) {
+      out_ += "<pre tabindex=\"0\">" + escaped(text.text) + "</pre>\n";
+    } else {
+      for (std::size_t begin = 0; begin < text.text.size();) {
+        const std::size_t end = std::min(text.text.find("\n\n", begin), text.text.size());
+        out_ += "<p>" + escaped(text.text.substr(begin, end - begin)) + "</p>\n";
+        begin = end + 2;
+      }
+    }
+    out_ += text.folded_title.empty() ? "</div>\n" : "</details>\n";
+  }
+
+  void block(const Facts& facts) {
+    out_ += "<dl class=\"block facts wide\">\n";
+    for (const Fact& f : facts.facts) {
+      out_ += "<div class=\"" + std::string(mark_class(f.mark)) + "\"><dt>" + escaped(f.label) +
+              "</dt><dd>" + with_unit(f.value, f.unit) + "</dd></div>\n";
+    }
+    out_ += "</dl>\n";
+  }
+
+  void block(const Table& table) {
+    bool marked = false;
+    std::vector<bool> numeric(table.columns.size(), !table.rows.empty());
+    for (const TableRow& row : table.rows) {
+      if (row.cells.size() != table.columns.size()) {
+        fail(table.title, "a row has " + std::to_string(row.cells.size()) + " cells for " +
+                              std::to_string(table.columns.size()) + " columns");
+      }
+      marked = marked || row.mark != Mark::none;
+      for (std::size_t i = 0; i < row.cells.size(); ++i) {
+        const auto* text = std::get_if<std::string>(&row.cells[i]);
+        if (text && !text->empty()) numeric[i] = false;
+      }
+    }
+    out_ += "<div class=\"block table wide\" tabindex=\"0\" role=\"region\" aria-label=\"" +
+            escaped(table.title) + "\"><table>";
+    if (!table.title.empty()) out_ += "<caption>" + escaped(table.title) + "</caption>";
+    out_ += "\n<thead><tr>";
+    const auto kind = [&](std::size_t i) { return numeric[i] ? " class=\"number\"" : ""; };
+    if (marked) out_ += "<th scope=\"col\">result</th>";
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      out_ += std::string("<th scope=\"col\"") + kind(i) + ">" +
+              with_unit(table.columns[i].name, table.columns[i].unit) + "</th>";
+    }
+    out_ += "</tr></thead>\n<tbody>\n";
+    for (const TableRow& row : table.rows) {
+      out_ += "<tr class=\"" + std::string(mark_class(row.mark)) + "\">";
+      if (marked) out_ += "<td class=\"mark\">" + std::string(mark_word(row.mark)) + "</td>";
+      for (std::size_t i = 0; i < row.cells.size(); ++i) {
+        const auto* value = std::get_if<double>(&row.cells[i]);
+        out_ += std::string("<td") + kind(i) + ">" +
+                (value ? number_text(*value) : escaped(std::get<std::string>(row.cells[i]))) +
+                "</td>";
+      }
+      out_ += "</tr>\n";
+    }
+    out_ += "</tbody></table></div>\n";
+  }
+
+  void block(const Chart& chart) { figure("chart", chart.title); }
+  void block(const PathView& view) { figure("path", view.title); }
+  void block(const Scene3D& scene) { figure("scene", scene.title); }
+
+  void figure(const std::string& kind, const std::string& title) {
+    out_ += "<figure class=\"block " + kind + (wide_ ? " wide" : "") + "\" data-block=\"" +
+            std::to_string(drawn_++) + "\"><figcaption>" + escaped(title) +
+            "</figcaption></figure>\n";
+  }
+
+  void block(const Image& image) {
+    if (image.png.compare(0, 8, "\x89PNG\r\n\x1a\n") != 0) {
+      fail(image.caption, "the image is no PNG file");
+    }
+    out_ += "<figure class=\"block image wide\"><img alt=\"" + escaped(image.caption) +
+            "\" src=\"data:image/png;base64," + base64(image.png) + "\"><figcaption>" +
+            escaped(image.caption) + "</figcaption></figure>\n";
+  }
+
+  const Report& report_;
+  const Section* section_ = nullptr;
+  bool wide_ = false;
+  int drawn_ = 0;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string render_html(const Report& report) {
+  return Page(report).html();
+}
+
+std::string number_text(double value, int digits) {
+  if (!std::isfinite(value)) return "\u2013";
+  if (value == 0) return "0";
+  char text[64];
+  const double size = std::abs(value);
+  const auto format =
+      size >= 1e6 || size < 1e-4 ? std::chars_format::scientific : std::chars_format::fixed;
+  int precision = digits - 1;
+  if (format == std::chars_format::fixed) {
+    precision = std::clamp(digits - 1 - static_cast<int>(std::floor(std::log10(size))), 0, 9);
+  }
+  std::string out(text, std::to_chars(text, text + sizeof text, value, format, precision).ptr);
+  std::size_t exponent = std::min(out.find('e'), out.size());
+  if (out.find('.') < exponent) {
+    std::size_t end = exponent;
+    while (out[end - 1] == '0') --end;
+    if (out[end - 1] == '.') --end;
+    out.erase(end, exponent - end);
+    exponent = std::min(out.find('e'), out.size());
+  }
+  std::string readable;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const bool padding = i > exponent && out[i] == '0' && i + 1 < out.size() && i < exponent + 3;
+    if (out[i] == '-')
+      readable += "\u2212";
+    else if (out[i] != '+' && !padding)
+      readable += out[i];
+  }
+  return readable;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,161 @@
+// The page model of a run's report, and its rendering as one HTML file.
+//
+// Neutral: it knows series, drawings, tables, images and text, and nothing of any mission kind;
+// kinds fill it. Everything is copied into the model; nothing refers to files or to the network.
+// Texts are plain, UTF-8, and may hold anything: they are escaped when rendered.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "framework/trajectory/environment.h"
+
+namespace lapwing {
+
+// Draws the eye to how a row, a fact or the whole report came out.
+enum class Mark { none, pass, fail, skipped };
+
+struct TextBlock {
+  std::string text;           // paragraphs, a blank line between them
+  bool preformatted = false;  // keep line breaks and columns: configuration, code
+  std::string folded_title;   // not empty: shown as a closed fold of that title
+};
+
+struct Fact {
+  std::string label;
+  std::string value;
+  std::string unit;
+  Mark mark = Mark::none;
+};
+
+struct Facts {
+  std::vector<Fact> facts;
+};
+
+struct TableColumn {
+  std::string name;
+  std::string unit;
+};
+
+// A number that is not finite shows as a dash.
+using TableCell = std::variant<std::string, double>;
+
+struct TableRow {
+  std::vector<TableCell> cells;  // one per column
+  Mark mark = Mark::none;        // any row marked: the table gains a column that says so in words
+};
+
+struct Table {
+  std::string title;
+  std::vector<TableColumn> columns;
+  std::vector<TableRow> rows;
+};
+
+// Charts with equal x label and unit share one cursor.
+struct Axis {
+  std::string label;
+  std::string unit;
+  bool logarithmic = false;  // y only; values that are not positive are gaps
+  bool whole = false;        // ticks at whole numbers only
+};
+
+struct Series {
+  std::string name;
+  std::vector<double> x;  // finite, not decreasing
+  std::vector<double> y;  // as many; not finite: a gap
+  bool stepped = false;   // y holds until the next x
+};
+
+struct LimitLine {
+  std::string label;
+  double value = 0;
+};
+
+struct Marker {
+  std::string label;
+  double x = 0;
+};
+
+struct Span {
+  std::string label;
+  double from = 0, to = 0;
+};
+
+struct Chart {
+  std::string title;
+  Axis x, y;
+  std::vector<Series> series;
+  std::vector<LimitLine> limits;
+  std::vector<Marker> markers;
+  std::vector<Span> spans;
+};
+
+struct Polyline {
+  std::string name;
+  std::vector<Eigen::Vector3d> points;  // m, world; not finite: a gap
+  std::vector<double> along;            // per point, on the axis Drawing::along; or empty
+  std::vector<double> values;           // per point, for colour, as Drawing::value; or empty
+};
+
+struct LabelledPoint {
+  std::string label;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, world, finite
+};
+
+// Lines and bodies in the world frame (x east, y north, z up).
+struct Drawing {
+  std::vector<Polyline> lines;
+  std::vector<LabelledPoint> points;
+  std::vector<Sphere> spheres;
+  std::vector<Box> boxes;
+  Axis along;  // what Polyline::along counts; a chart over the same axis shares its cursor
+  Axis value;  // what Polyline::values hold
+};
+
+// Looking down (east to the right), north (east to the right) or west (north to the right).
+enum class Projection { above, from_south, from_east };
+
+struct PathView {
+  std::string title;
+  Projection projection = Projection::above;
+  Drawing drawing;
+};
+
+struct Scene3D {
+  std::string title;
+  Drawing drawing;
+};
+
+struct Image {
+  std::string png;      // the bytes of a PNG file
+  std::string caption;  // also read out in place of the image
+};
+
+using Block = std::variant<TextBlock, Facts, Table, Chart, PathView, Scene3D, Image>;
+
+struct Section {
+  std::string title;
+  std::vector<Block> blocks;
+};
+
+struct Report {
+  std::string title;
+  std::string subtitle;
+  std::string status;  // a badge, "certified"; none when empty
+  Mark status_mark = Mark::none;
+  std::vector<Section> sections;
+};
+
+// One self-contained page: style, script and data inside, no network, the same bytes for the same
+// report. Throws Error naming section and block when the model contradicts itself: lengths that
+// differ, an x that is not finite or goes back, a row that does not fit its columns, bytes that
+// are no PNG.
+std::string render_html(const Report& report);
+
+// Four significant digits, a true minus sign, a dash for what is not finite.
+std::string number_text(double value, int digits = 4);
+
+}  // namespace lapwing

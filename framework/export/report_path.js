@@ -1,0 +1,171 @@
+// Path views: a drawing projected onto a plane, both axes to the same scale, as SVG.
+
+const projections = {
+  above: { across: 0, up: 1, names: ["east", "north"] },
+  from_south: { across: 0, up: 2, names: ["east", "up"] },
+  from_east: { across: 1, up: 2, names: ["north", "up"] },
+};
+
+// Lowest and highest corner of everything in a drawing that is finite.
+function drawingBounds(drawing) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  const include = (p) => {
+    if (!p.every(finite)) return;
+    for (let k = 0; k < 3; ++k) {
+      low[k] = Math.min(low[k], p[k]);
+      high[k] = Math.max(high[k], p[k]);
+    }
+  };
+  for (const l of drawing.lines) for (let i = 0; i < l.x.length; ++i) include(linePoint(l, i));
+  for (const p of drawing.points) include(p.at);
+  for (const s of drawing.spheres) {
+    include(s.center.map((v) => v - s.radius));
+    include(s.center.map((v) => v + s.radius));
+  }
+  for (const b of drawing.boxes) { include(b.lower); include(b.upper); }
+  return low[0] <= high[0] ? { low, high } : { low: [-1, -1, -1], high: [1, 1, 1] };
+}
+const linePoint = (line, i) => [line.x[i], line.y[i], line.z[i]];
+
+function makePath(figure, spec) {
+  const drawing = spec.drawing, view = projections[spec.projection];
+  if (drawing.lines.length > 1) {
+    const legend = child(figure, "div", "legend");
+    drawing.lines.forEach((l, i) => {
+      const entry = child(legend, "span", "");
+      child(entry, "i", "").style.borderColor = color(i);
+      entry.append(l.name);
+    });
+  }
+  const plot = child(figure, "div", "plot");
+  const tip = makeTip(plot);
+  const { low, high } = drawingBounds(drawing);
+  const flat = (p) => [p[view.across], p[view.up]];
+  let svg, sx, sy, cursor;
+
+  function draw() {
+    const width = Math.max(plot.clientWidth, 220), left = 46, right = width - 14, top = 26;
+    let [x0, y0] = flat(low), [x1, y1] = flat(high);
+    const pad = Math.max(0.06 * Math.max(x1 - x0, y1 - y0), 0.5);
+    x0 -= pad; x1 += pad; y0 -= pad; y1 += pad;
+    const wanted = (right - left) * (y1 - y0) / (x1 - x0);
+    const tall = clamp(wanted, width < 600 ? 150 : 190, width < 600 ? 300 : 420);
+    const scale = Math.min((right - left) / (x1 - x0), tall / (y1 - y0));
+    // The direction with room to spare shows more of the world, centred.
+    const halfX = (right - left) / scale / 2, halfY = tall / scale / 2;
+    [x0, x1] = [(x0 + x1) / 2 - halfX, (x0 + x1) / 2 + halfX];
+    [y0, y1] = [(y0 + y1) / 2 - halfY, (y0 + y1) / 2 + halfY];
+    const area = { left, right, top, bottom: top + tall };
+    sx = (v) => left + (v - x0) * scale;
+    sy = (v) => area.bottom - (v - y0) * scale;
+    const old = svg;
+    svg = document.createElementNS(svgSpace, "svg");
+    const set = { viewBox: `0 0 ${width} ${area.bottom + 38}`, role: "img", tabindex: 0,
+      "aria-label": `${spec.title}: ${view.names[0]} from ${numberText(flat(low)[0])} to ` +
+        `${numberText(flat(high)[0])} m, ${view.names[1]} from ${numberText(flat(low)[1])} to ` +
+        `${numberText(flat(high)[1])} m` };
+    for (const key in set) svg.setAttribute(key, set[key]);
+    const step = roundTicks(x0, x1, (right - left) / 70).step;
+    const yStep = Math.max(step, roundTicks(y0, y1, tall / 26).step);
+    drawAxes(svg, area, roundTicks(x0, x1, (x1 - x0) / step).ticks,
+      roundTicks(y0, y1, (y1 - y0) / yStep).ticks, sx, sy, `${view.names[0]} [m]`,
+      `${view.names[1]} [m]`);
+    drawBodies();
+    drawLines();
+    drawPoints();
+    cursor = svgChild(svg, "circle", { class: "dot", r: 5, visibility: "hidden",
+      style: "fill:var(--s1)" });
+    listen();
+    if (old) old.replaceWith(svg); else plot.prepend(svg);
+  }
+
+  function drawBodies() {
+    for (const s of drawing.spheres) {
+      const [x, y] = flat(s.center);
+      const node = svgChild(svg, "circle", { class: "body", cx: sx(x), cy: sy(y),
+        r: Math.max(0, sx(x + s.radius) - sx(x)) });
+      svgChild(node, "title", {}, s.label);
+    }
+    for (const b of drawing.boxes) {
+      const [x0, y0] = flat(b.lower), [x1, y1] = flat(b.upper);
+      const node = svgChild(svg, "rect", { class: "body", x: sx(x0), y: sy(y1),
+        width: Math.max(0, sx(x1) - sx(x0)), height: Math.max(0, sy(y0) - sy(y1)) });
+      svgChild(node, "title", {}, b.label);
+    }
+  }
+
+  function drawLines() {
+    let points = 0;
+    drawing.lines.forEach((l, index) => {
+      let d = "", pen = false, lastX = NaN, lastY = NaN;
+      for (let i = 0; i < l.x.length; ++i) {
+        const p = linePoint(l, i);
+        if (!p.every(finite)) { pen = false; continue; }
+        ++points;
+        const [a, b] = flat(p), x = sx(a), y = sy(b);
+        if (pen && i + 1 < l.x.length && Math.hypot(x - lastX, y - lastY) < 0.3) continue;
+        d += pen ? `L${x.toFixed(1)} ${y.toFixed(1)}` : `M${x.toFixed(1)} ${y.toFixed(1)}h0`;
+        [pen, lastX, lastY] = [true, x, y];
+      }
+      svgChild(svg, "path", { class: "series", d, style: `stroke:${color(index)}` });
+    });
+    svg.setAttribute("data-points", points);
+  }
+
+  function drawPoints() {
+    const free = makeLabelSpace();
+    for (const p of drawing.points) {
+      const [a, b] = flat(p.at), x = sx(a), y = sy(b);
+      svgChild(svg, "circle", { class: "point", cx: x, cy: y, r: 3.5 });
+      const wide = labelWidth(p.label);
+      // Right of the point, else left of it, else above or below; else the point stands alone.
+      for (const [dx, dy] of [[7, -5], [-7 - wide, -5], [-wide / 2, -10], [-wide / 2, 18],
+        [7, 14]]) {
+        if (!free(x + dx, y + dy, wide)) continue;
+        svgChild(svg, "text", { class: "point-label", x: x + dx, y: y + dy }, p.label);
+        break;
+      }
+    }
+  }
+
+  function show(x, own) {
+    tip.hide();
+    cursor.setAttribute("visibility", "hidden");
+    const line = drawing.lines.find((l) => l.along && l.along.length);
+    if (x === null || !line) return;
+    const i = nearest(line.along, x), p = linePoint(line, i);
+    if (!p.every(finite)) return;
+    const [a, b] = flat(p);
+    cursor.setAttribute("cx", sx(a));
+    cursor.setAttribute("cy", sy(b));
+    cursor.setAttribute("visibility", "visible");
+    if (!own) return;
+    const rows = view.names.map((name, k) => [name, `${numberText(flat(p)[k])} m`]);
+    if (line.values) {
+      rows.push([drawing.value.label, withUnit(numberText(line.values[i]), drawing.value.unit)]);
+    }
+    tip.show(sx(a), sy(b), `${drawing.along.label} ` +
+      withUnit(numberText(line.along[i]), drawing.along.unit), rows);
+  }
+
+  function listen() {
+    svg.addEventListener("pointermove", (event) => {
+      const box = svg.getBoundingClientRect(), zoom = svg.viewBox.baseVal.width / box.width;
+      const px = (event.clientX - box.left) * zoom, py = (event.clientY - box.top) * zoom;
+      let best = 30, found = null;
+      for (const l of drawing.lines) {
+        for (let i = 0; l.along && i < l.x.length; ++i) {
+          if (!linePoint(l, i).every(finite)) continue;
+          const [a, b] = flat(linePoint(l, i));
+          const distance = Math.hypot(sx(a) - px, sy(b) - py);
+          if (distance < best) [best, found] = [distance, l.along[i]];
+        }
+      }
+      moveCursor(drawing.along, found, figure);
+    });
+    svg.addEventListener("pointerleave", () => moveCursor(drawing.along, null, figure));
+  }
+
+  cursors.push({ key: axisKey(drawing.along), show, source: figure });
+  return draw;
+}
