@@ -79,6 +79,11 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return escaped(name) + (unit.empty() ? "" : " <span class=\"unit\">" + escaped(unit) + "</span>");
 }
 
+std::string column_title(const TableColumn& column) {
+  const std::string unit = escaped(column.unit);
+  return escaped(column.name) + (unit.empty() ? "" : " <span class=\"unit\">[" + unit + "]</span>");
+}
+
 class Page {
  public:
   explicit Page(const Report& report) : report_(report) {}
@@ -202,8 +207,8 @@ class Page {
     const auto kind = [&](std::size_t i) { return numeric[i] ? " class=\"number\"" : ""; };
     if (marked) out_ += "<th scope=\"col\">result</th>";
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      out_ += std::string("<th scope=\"col\"") + kind(i) + ">" +
-              with_unit(table.columns[i].name, table.columns[i].unit) + "</th>";
+      out_ += std::string("<th scope=\"col\"") + kind(i) + ">" + column_title(table.columns[i]) +
+              "</th>";
     }
     out_ += "</tr></thead>\n<tbody>\n";
     for (const TableRow& row : table.rows) {

@@ -58,13 +58,7 @@ function seriesPath(series, sx, sy, log, columns) {
 }
 
 function makeChart(figure, spec) {
-  const legend = child(figure, "div", "legend");
-  spec.series.forEach((s, i) => {
-    const entry = child(legend, "span", "");
-    child(entry, "i", "").style.cssText = `border-color:${color(i)};` +
-      (i >= 8 ? "border-top-style:dashed" : "");
-    entry.append(s.name);
-  });
+  if (spec.series.length > 1) drawLegend(figure, spec.series);
   const plot = child(figure, "div", "plot");
   const tip = makeTip(plot);
   const domain = chartDomain(spec);
@@ -77,9 +71,10 @@ function makeChart(figure, spec) {
   function draw() {
     const width = Math.max(plot.clientWidth, 220);
     const height = clamp(Math.round(width * 0.5), 190, 280);
-    area = { left: 52, right: width - 12, top: 26, bottom: height - 38 };
+    area = { left: 52, right: width - 12, top: spec.markers.length ? 34 : 22,
+      bottom: height - 38 };
     const yTicks = spec.y.log ? powerTicks(...domain.y, 6)
-      : roundTicks(...domain.y, (area.bottom - area.top) / 38, spec.y.whole).ticks;
+      : roundTicks(...domain.y, (area.bottom - area.top) / 30, spec.y.whole).ticks;
     area.left = Math.max(30, ...yTicks.map((t) => 14 + labelWidth(t.text)));
     const [x0, x1] = domain.x, y = domain.y.map((v) => (spec.y.log ? Math.log10(v) : v));
     sx = (v) => area.left + (v - x0) / (x1 - x0) * (area.right - area.left);
@@ -114,18 +109,21 @@ function makeChart(figure, spec) {
 
   function drawMarkers() {
     const free = makeLabelSpace();
-    for (const m of spec.markers) {
+    const crowded = spec.markers.length * 16 > area.right - area.left;
+    const stride = Math.ceil(spec.markers.length * 18 / (area.right - area.left));
+    spec.markers.forEach((m, i) => {
       const x = sx(m.x), half = labelWidth(m.label) / 2;
-      svgChild(svg, "line", { class: "marker", x1: x, x2: x, y1: area.top, y2: area.bottom });
+      svgChild(svg, "line", { class: "marker", x1: x, x2: x, y1: area.top,
+        y2: crowded ? area.top + 5 : area.bottom });
       const at = clamp(x, area.left + half, area.right - half);
-      if (free(at - half, 0, 2 * half)) {
-        svgChild(svg, "text", { x: at, y: area.top - 3, "text-anchor": "middle" }, m.label);
+      if (i % stride === 0 && free(at - half, 0, 2 * half)) {
+        svgChild(svg, "text", { x: at, y: area.top - 4, "text-anchor": "middle" }, m.label);
       }
-    }
+    });
   }
 
   function drawSeries() {
-    let points = 0;
+    let points = 0, samples = 0;
     spec.series.forEach((s, i) => {
       const path = seriesPath(s, sx, sy, spec.y.log, Math.round(area.right - area.left));
       const line = svgChild(svg, "path", { class: "series", d: path.d,
@@ -139,8 +137,10 @@ function makeChart(figure, spec) {
         });
       }
       points += path.count;
+      samples += s.y.filter(finite).length;
     });
-    svg.setAttribute("data-points", points);
+    svg.setAttribute("data-points", points);    // drawn
+    svg.setAttribute("data-samples", samples);  // that they stand for
   }
 
   function drawLimits() {
@@ -151,7 +151,7 @@ function makeChart(figure, spec) {
       const y = sy(l.value), below = l.value < (low + high) / 2;
       svgChild(svg, "line", { class: "limit", x1: area.left, x2: area.right, y1: y, y2: y });
       const text = `${l.label} ${numberText(l.value, 3)}`;
-      const at = y + (below ? 13 : -5);
+      const at = y + (below ? -5 : 13);
       if (free(area.right - labelWidth(text), at, labelWidth(text))) {
         svgChild(svg, "text", { class: "limit-label", x: area.right - 2, y: at,
           "text-anchor": "end" }, text);

@@ -118,7 +118,17 @@ function drawAxes(svg, area, xTicks, yTicks, sx, sy, xTitle, yTitle) {
   svgChild(svg, "path", { class: "frame", d: `M${area.left} ${area.top}V${area.bottom}` +
     `H${area.right}` });
   svgChild(svg, "text", { x: area.right, y: area.bottom + 32, "text-anchor": "end" }, xTitle);
-  svgChild(svg, "text", { x: 0, y: area.top - 13 }, yTitle);
+  svgChild(svg, "text", { x: 0, y: 11 }, yTitle);
+}
+
+function drawLegend(figure, entries) {
+  const legend = child(figure, "div", "legend");
+  entries.forEach((e, i) => {
+    const entry = child(legend, "span", "");
+    child(entry, "i", "").style.cssText = `border-color:${color(i)};` +
+      (i >= 8 ? "border-top-style:dashed" : "");
+    entry.append(e.name);
+  });
 }
 
 // Where labels already are, so that a new one is left out rather than written over them.

@@ -29,14 +29,7 @@ const linePoint = (line, i) => [line.x[i], line.y[i], line.z[i]];
 
 function makePath(figure, spec) {
   const drawing = spec.drawing, view = projections[spec.projection];
-  if (drawing.lines.length > 1) {
-    const legend = child(figure, "div", "legend");
-    drawing.lines.forEach((l, i) => {
-      const entry = child(legend, "span", "");
-      child(entry, "i", "").style.borderColor = color(i);
-      entry.append(l.name);
-    });
-  }
+  if (drawing.lines.length > 1) drawLegend(figure, drawing.lines);
   const plot = child(figure, "div", "plot");
   const tip = makeTip(plot);
   const { low, high } = drawingBounds(drawing);
@@ -44,12 +37,12 @@ function makePath(figure, spec) {
   let svg, sx, sy, cursor;
 
   function draw() {
-    const width = Math.max(plot.clientWidth, 220), left = 46, right = width - 14, top = 26;
+    const width = Math.max(plot.clientWidth, 220), left = 46, right = width - 14, top = 22;
     let [x0, y0] = flat(low), [x1, y1] = flat(high);
     const pad = Math.max(0.06 * Math.max(x1 - x0, y1 - y0), 0.5);
     x0 -= pad; x1 += pad; y0 -= pad; y1 += pad;
     const wanted = (right - left) * (y1 - y0) / (x1 - x0);
-    const tall = clamp(wanted, width < 600 ? 150 : 190, width < 600 ? 300 : 420);
+    const tall = clamp(wanted, 210, width < 600 ? 300 : 420);
     const scale = Math.min((right - left) / (x1 - x0), tall / (y1 - y0));
     // The direction with room to spare shows more of the world, centred.
     const halfX = (right - left) / scale / 2, halfY = tall / scale / 2;
@@ -109,14 +102,17 @@ function makePath(figure, spec) {
       }
       svgChild(svg, "path", { class: "series", d, style: `stroke:${color(index)}` });
     });
-    svg.setAttribute("data-points", points);
+    svg.setAttribute("data-samples", points);
   }
 
   function drawPoints() {
     const free = makeLabelSpace();
     for (const p of drawing.points) {
-      const [a, b] = flat(p.at), x = sx(a), y = sy(b);
+      const [x, y] = [sx(flat(p.at)[0]), sy(flat(p.at)[1])];
       svgChild(svg, "circle", { class: "point", cx: x, cy: y, r: 3.5 });
+    }
+    for (const p of drawing.points) {
+      const [x, y] = [sx(flat(p.at)[0]), sy(flat(p.at)[1])];
       const wide = labelWidth(p.label);
       // Right of the point, else left of it, else above or below; else the point stands alone.
       for (const [dx, dy] of [[7, -5], [-7 - wide, -5], [-wide / 2, -10], [-wide / 2, 18],

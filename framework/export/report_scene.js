@@ -18,6 +18,9 @@ function makeScene(figure, spec) {
   const ground = low[2] < 0 || low[2] > 2 * size ? low[2] : 0;
   const [least, most] = extent(drawing.lines.map((l) => l.values || []));
   const gridStep = roundTicks(0, 2 * size, 7).step;
+  const from = [0, 1].map((k) => Math.floor(low[k] / gridStep) * gridStep);
+  const to = [0, 1].map((k) => Math.ceil(high[k] / gridStep) * gridStep);
+  for (const k of [0, 1]) if (to[k] === from[k]) { to[k] += gridStep; from[k] -= gridStep; }
   canvas.setAttribute("aria-label", `${spec.title}: ${drawing.lines.length} paths and ` +
     `${drawing.points.length} points in ${numberText(high[0] - low[0], 3)} m by ` +
     `${numberText(high[1] - low[1], 3)} m, up to ${numberText(high[2], 3)} m high; arrow keys ` +
@@ -36,6 +39,27 @@ function makeScene(figure, spec) {
       ramp: [0, 1, 2, 3].map((i) => rgb(get(`ramp${i}`))) };
   }
 
+  // Scale and place so that everything just fits when seen from home.
+  let fit = { scale: 1, x: 0, y: 0 };
+  function fitHome() {
+    const now = view;
+    view = { ...home };
+    fit = { scale: 1, x: 0, y: 0 };
+    const [x, y] = [[], []];
+    for (let i = 0; i < 16; ++i) {
+      // The corners of everything, and those of the ground grid.
+      const p = project(i < 8 ? [0, 1, 2].map((k) => (i >> k & 1 ? high : low)[k])
+        : [...[0, 1].map((k) => (i >> k & 1 ? to : from)[k]), ground]);
+      x.push(p.x);
+      y.push(p.y);
+    }
+    const [left, right] = extent([x]), [top, bottom] = extent([y]);
+    const scale = Math.min((width - 84) / (right - left), (height - 76) / (bottom - top));
+    fit = { scale, x: (width / 2 - (left + right) / 2) * scale,
+      y: (height / 2 - (top + bottom) / 2) * scale - 12 };
+    view = now;
+  }
+
   // Pixels, depth (larger is farther) and pixels per metre there.
   function project(p) {
     const c = Math.cos(view.turn), s = Math.sin(view.turn);
@@ -44,10 +68,9 @@ function makeScene(figure, spec) {
     const right = c * x + s * y, away = -s * x + c * y;
     const depth = away * ct - z * st, up = away * st + z * ct;
     const distance = 4.5 * size;
-    const scale = 0.47 * Math.min(height, width * 0.8) / size * view.zoom * distance
-      / Math.max(distance + depth, 0.05 * distance);
-    return { x: width / 2 + view.panX + right * scale, y: height / 2 + view.panY - up * scale,
-      depth, scale };
+    const scale = fit.scale * view.zoom * distance / Math.max(distance + depth, 0.05 * distance);
+    return { x: width / 2 + fit.x + view.panX + right * scale,
+      y: height / 2 + fit.y + view.panY - up * scale, depth, scale };
   }
 
   const pen = canvas.getContext("2d");
@@ -72,9 +95,6 @@ function makeScene(figure, spec) {
   }
 
   function drawGround() {
-    const from = [0, 1].map((k) => Math.floor(low[k] / gridStep) * gridStep);
-    const to = [0, 1].map((k) => Math.ceil(high[k] / gridStep) * gridStep);
-    for (const k of [0, 1]) if (to[k] === from[k]) { to[k] += gridStep; from[k] -= gridStep; }
     const at = (k, v, other) => project(k === 0 ? [v, other, ground] : [other, v, ground]);
     for (const k of [0, 1]) {
       const o = 1 - k;
@@ -151,8 +171,8 @@ function makeScene(figure, spec) {
 
   function drawPoints() {
     const free = makeLabelSpace();
-    for (const p of drawing.points) {
-      const c = project(p.at);
+    const places = drawing.points.map((p) => project(p.at));
+    for (const c of places) {
       pen.setLineDash([]);
       pen.beginPath();
       pen.arc(c.x, c.y, 3.5, 0, 2 * Math.PI);
@@ -161,15 +181,16 @@ function makeScene(figure, spec) {
       pen.strokeStyle = theme.ink;
       pen.lineWidth = 1.5;
       pen.stroke();
-      if (p.label && free(c.x - labelWidth(p.label) / 2, c.y, labelWidth(p.label))) {
-        write(p.label, c.x, c.y - 9, theme.ink);
-      }
     }
+    drawing.points.forEach((p, i) => {
+      const { x, y } = places[i], wide = labelWidth(p.label);
+      if (p.label && free(x - wide / 2, y, wide)) write(p.label, x, y - 9, theme.ink);
+    });
   }
 
   function drawAxesCorner() {
     const c = Math.cos(view.turn), s = Math.sin(view.turn), st = Math.sin(view.tilt);
-    const o = { x: 50, y: height - 48 };
+    const o = { x: 44, y: 56 };
     for (const [name, dx, dy] of [["east", c, s * st], ["north", s, -c * st],
       ["up", 0, -Math.cos(view.tilt)]]) {
       stroke([o, { x: o.x + 26 * dx, y: o.y + 26 * dy }], theme.muted, 1.4);
@@ -199,7 +220,7 @@ function makeScene(figure, spec) {
     drawPoints();
     drawAxesCorner();
     drawCursor();
-    canvas.dataset.points = drawing.lines.reduce((n, l) => n + l.x.length, 0);
+    canvas.dataset.samples = drawing.lines.reduce((n, l) => n + l.x.length, 0);
     canvas.dataset.view = [view.turn, view.tilt, view.zoom, view.panX, view.panY]
       .map((v) => v.toFixed(3)).join(" ");
   }
@@ -237,7 +258,7 @@ function makeScene(figure, spec) {
     child(ramp, "i", "");
     ramp.append(withUnit(numberText(most, 3), drawing.value.unit));
   }
-  for (const [name, to] of [["turned", home], ["from above", { ...home, turn: 0,
+  for (const [name, to] of [["reset", home], ["from above", { ...home, turn: 0,
     tilt: Math.PI / 2 }], ["from the south", { ...home, turn: 0, tilt: 0 }]]) {
     child(controls, "button", "", name).addEventListener("click", () => change({ ...to }));
   }
@@ -255,6 +276,7 @@ function makeScene(figure, spec) {
     canvas.height = Math.round(height * ratio);
     canvas.style.height = `${height}px`;
     readTheme();
+    fitHome();
     render();
   };
 }

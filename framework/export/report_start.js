@@ -1,5 +1,6 @@
 // Draws every figure of the page from its data, and again when its width or its colours change.
 
+performance.mark("draw-begin");
 const data = JSON.parse(document.getElementById("report-data").textContent);
 
 function resolve(node) {
@@ -20,6 +21,7 @@ for (const figure of document.querySelectorAll("figure[data-block]")) {
   draw();
   drawn.set(figure, { draw, width: figure.clientWidth });
 }
+performance.mark("draw-end");
 
 const sizes = new ResizeObserver((entries) => {
   for (const { target } of entries) {

@@ -160,7 +160,7 @@ TEST(Report, SaysTheResultOfMarkedRowsInWords) {
                        "<td class=\"number\">21.25</td>"));
   EXPECT_TRUE(contains(html, "<tr class=\"fail\"><td class=\"mark\">fail</td>"));
   EXPECT_TRUE(contains(html, "<tr class=\"skipped\"><td class=\"mark\">skipped</td>"));
-  EXPECT_TRUE(contains(html, "worst <span class=\"unit\">N</span>"));
+  EXPECT_TRUE(contains(html, "worst <span class=\"unit\">[N]</span>"));
 }
 
 TEST(Report, IsTheSameEachTimeAndNeedsNoNetwork) {

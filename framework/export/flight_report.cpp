@@ -1,0 +1,282 @@
+#include "framework/export/flight_report.h"
+
+#include <numbers>
+
+#include "framework/core/json.h"
+#include "framework/core/units.h"
+#include "framework/export/flight_charts.h"
+#include "framework/trajectory/interpolate.h"
+#include "framework/vehicle/vehicle.h"
+
+namespace lapwing {
+namespace {
+
+bool is_skipped(const Value& check) {
+  const Value* reason = check.find("skipped");
+  return reason != nullptr && !reason->is_null();
+}
+
+bool is_required(const Value& check) {
+  const Value* required = check.find("required");
+  return required == nullptr || required->as_boolean();
+}
+
+double number_or_gap(const Value& map, const char* key) {
+  const Value* value = map.find(key);
+  return value == nullptr || value->is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                              : value->as_number();
+}
+
+std::string text_or_nothing(const Value& map, const char* key) {
+  const Value* value = map.find(key);
+  return value == nullptr || value->is_null() ? "" : value->as_text();
+}
+
+// Checks in the order of the certificate; `failing` keeps those that fail and are required.
+Table check_table(const Value& certificate, bool failing) {
+  Table table{failing ? "Why the flight is not certified" : "Checks of the certificate",
+              {{"check", ""}, {"worst", ""}, {"limit", ""}, {"unit", ""}, {"at", "s"}, {"", ""}},
+              {}};
+  for (const Value& check : certificate.at("checks").as_list()) {
+    const std::string& name = check.at("name").as_text();
+    if (is_skipped(check)) {
+      if (failing) continue;
+      table.rows.push_back({{name, "", "", "", "", check.at("skipped").as_text()}, Mark::skipped});
+      continue;
+    }
+    const bool pass = check.at("pass").as_boolean();
+    if (failing && (pass || !is_required(check))) continue;
+    table.rows.push_back({{name, number_or_gap(check, "worst"), number_or_gap(check, "limit"),
+                           text_or_nothing(check, "unit"), number_or_gap(check, "at"),
+                           is_required(check) ? "" : "reported, not required"},
+                          pass ? Mark::pass : Mark::fail});
+  }
+  return table;
+}
+
+struct Verdict {
+  std::string text;  // empty where there is no certificate
+  std::string count;
+  Mark mark = Mark::none;
+};
+
+Verdict verdict_of(const Value& certificate) {
+  if (certificate.is_null()) return {};
+  int passed = 0, judged = 0;
+  for (const Value& check : certificate.at("checks").as_list()) {
+    if (is_skipped(check) || !is_required(check)) continue;
+    ++judged;
+    passed += check.at("pass").as_boolean() ? 1 : 0;
+  }
+  const bool feasible = certificate.at("feasible").as_boolean();
+  return {feasible ? "certified" : "not certified",
+          std::to_string(passed) + " of " + std::to_string(judged),
+          feasible ? Mark::pass : Mark::fail};
+}
+
+double length_of(const Trajectory& trajectory) {
+  double length = 0;
+  for (std::size_t i = 1; i < trajectory.samples.size(); ++i) {
+    length += (trajectory.samples[i].position - trajectory.samples[i - 1].position).norm();
+  }
+  return length;
+}
+
+Section summary_section(const Plan& plan, const Vehicle& vehicle) {
+  const Verdict verdict = verdict_of(plan.certificate);
+  double fastest = 0;
+  for (const Sample& s : plan.trajectory.samples) fastest = std::max(fastest, s.velocity.norm());
+  Facts facts;
+  facts.facts = {{"vehicle", vehicle.name, ""},
+                 {"duration", number_text(plan.trajectory.duration()), "s"},
+                 {"path length", number_text(length_of(plan.trajectory)), "m"}};
+  if (plan.trajectory.model != MotionModel::path) {
+    facts.facts.push_back({"top speed", number_text(fastest, 3), "m/s"});
+  }
+  if (plan.budget) facts.facts.push_back({"budget", number_text(*plan.budget), "s"});
+  facts.facts.push_back({"keyframes", std::to_string(plan.task.keyframes.size()), ""});
+  facts.facts.push_back({"samples", std::to_string(plan.trajectory.samples.size()), ""});
+  if (!plan.solver.is_null()) {
+    facts.facts.push_back(
+        {"solver", plan.solver.at("name").as_text() + ", " + plan.solver.at("status").as_text(),
+         ""});
+  }
+  if (!verdict.text.empty()) {
+    facts.facts.push_back({"required checks passed", verdict.count, "", verdict.mark});
+  }
+  Section section{"Summary", {std::move(facts)}};
+  if (verdict.mark == Mark::fail) section.blocks.push_back(check_table(plan.certificate, true));
+  return section;
+}
+
+// Distance to a keyframe at its time, and the smallest within its time tolerance.
+struct Miss {
+  double at_time = std::numeric_limits<double>::quiet_NaN();
+  double closest = std::numeric_limits<double>::quiet_NaN();
+  double yaw = std::numeric_limits<double>::quiet_NaN();
+};
+
+Miss miss_of(const Trajectory& trajectory, const KeyframeTask& keyframe) {
+  const double begin = trajectory.samples.front().time, end = trajectory.samples.back().time;
+  const auto distance = [&](double time) {
+    return (sample_at(trajectory, time).position - keyframe.position).norm();
+  };
+  Miss miss;
+  if (keyframe.time >= begin && keyframe.time <= end) {
+    miss.at_time = distance(keyframe.time);
+    if (keyframe.yaw) {
+      miss.yaw = std::abs(std::remainder(sample_at(trajectory, keyframe.time).yaw - *keyframe.yaw,
+                                         2 * std::numbers::pi));
+    }
+  }
+  constexpr int kSteps = 50;
+  const double from = std::max(begin, keyframe.time - keyframe.time_tolerance);
+  const double to = std::min(end, keyframe.time + keyframe.time_tolerance);
+  for (int i = 0; i <= kSteps && from <= to; ++i) {
+    miss.closest = std::fmin(miss.closest, distance(from + (to - from) * i / kSteps));
+  }
+  miss.closest = std::fmin(miss.closest, miss.at_time);
+  return miss;
+}
+
+Section keyframe_section(const Plan& plan) {
+  Table table{"How close the flight comes to its keyframes",
+              {{"keyframe", ""},
+               {"time", "s"},
+               {"miss at its time", "m"},
+               {"closest within time tolerance", "m"},
+               {"tolerance", "m"},
+               {"yaw miss", "\u00b0"},
+               {"yaw tolerance", "\u00b0"}},
+              {}};
+  for (std::size_t i = 0; i < plan.task.keyframes.size(); ++i) {
+    const KeyframeTask& k = plan.task.keyframes[i];
+    const Miss miss = miss_of(plan.trajectory, k);
+    const bool met = miss.closest <= k.tolerance && (!k.yaw || miss.yaw <= k.yaw_tolerance);
+    table.rows.push_back({{std::to_string(i + 1), k.time, miss.at_time, miss.closest, k.tolerance,
+                           k.yaw ? TableCell(degrees(miss.yaw)) : TableCell(""),
+                           k.yaw ? TableCell(degrees(k.yaw_tolerance)) : TableCell("")},
+                          met ? Mark::pass : Mark::fail});
+  }
+  return {"Keyframes", {std::move(table)}};
+}
+
+// One series per term over the iterations, in the order in which the terms first occur.
+std::vector<Series> cost_series(const Value::List& history) {
+  std::vector<Series> series{{"all terms", {}, {}}};
+  for (const Value& iteration : history) {
+    const double number = iteration.at("iteration").as_number();
+    series[0].x.push_back(number);
+    series[0].y.push_back(iteration.at("cost").as_number());
+    const Value* terms = iteration.find("terms");
+    if (terms == nullptr) continue;
+    for (const auto& [name, cost] : terms->as_map()) {
+      auto found = std::find_if(series.begin() + 1, series.end(),
+                                [&name = name](const Series& s) { return s.name == name; });
+      if (found == series.end()) found = series.insert(found, Series{name, {}, {}});
+      found->x.push_back(number);
+      found->y.push_back(cost.as_number());
+    }
+  }
+  return series;
+}
+
+// Costs that span more than two decades read better on a logarithmic axis.
+bool spans_decades(const std::vector<Series>& series) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const Series& s : series) {
+    for (const double v : s.y) {
+      if (v > 0) low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  }
+  return high > 100 * low;
+}
+
+void add_history(const Value::List& history, Section& section) {
+  Chart costs;
+  costs.title = "Weighted cost per term";
+  costs.x = {"iteration", "", false, true};
+  costs.series = cost_series(history);
+  costs.y = {"cost", "", spans_decades(costs.series), false};
+  section.blocks.push_back(std::move(costs));
+  Series violation{"worst violation", {}, {}}, step{"step length", {}, {}};
+  for (const Value& iteration : history) {
+    const double number = iteration.at("iteration").as_number();
+    violation.x.push_back(number);
+    violation.y.push_back(number_or_gap(iteration, "violation"));
+    step.x.push_back(number);
+    step.y.push_back(number_or_gap(iteration, "step"));
+  }
+  Chart progress;
+  progress.title = "Violation and step length";
+  progress.x = {"iteration", "", false, true};
+  progress.series = {std::move(violation), std::move(step)};
+  progress.y = {"value", "", spans_decades(progress.series), false};
+  section.blocks.push_back(std::move(progress));
+}
+
+Section solver_section(const Value& solver) {
+  Section section{"Solver", {}};
+  const std::string& status = solver.at("status").as_text();
+  const bool solved = status == "optimal" || status == "feasible";
+  section.blocks.push_back(
+      Facts{{{"solver", solver.at("name").as_text(), ""},
+             {"status", status, "", solved ? Mark::pass : Mark::fail},
+             {"iterations", number_text(solver.at("iterations").as_number()), ""},
+             {"cost", number_text(solver.at("cost").as_number()), ""}}});
+  if (const std::string why = text_or_nothing(solver, "message"); !why.empty()) {
+    section.blocks.push_back(TextBlock{why, false, ""});
+  }
+  const Value* history = solver.find("history");
+  if (history && !history->as_list().empty()) add_history(history->as_list(), section);
+  const Value* terms = solver.find("terms");
+  if (terms && !terms->as_map().empty()) {
+    Table table{"Cost of the result", {{"term", ""}, {"weighted cost", ""}, {"share", "%"}}, {}};
+    double total = 0;
+    for (const auto& [name, cost] : terms->as_map()) total += cost.as_number();
+    for (const auto& [name, cost] : terms->as_map()) {
+      const double share = total > 0 ? std::round(1000 * cost.as_number() / total) / 10 : 0;
+      table.rows.push_back({{name, cost.as_number(), share}});
+    }
+    section.blocks.push_back(std::move(table));
+  }
+  return section;
+}
+
+}  // namespace
+
+std::vector<Section> flight_sections(const Plan& plan) {
+  if (plan.trajectory.samples.empty()) throw Error("a flight without samples has no report");
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  std::vector<Section> sections{summary_section(plan, vehicle), path_section(plan),
+                                motion_section(plan, vehicle)};
+  if (Section inputs = input_section(plan, vehicle); !inputs.blocks.empty()) {
+    sections.push_back(std::move(inputs));
+  }
+  sections.push_back(direction_section(plan, vehicle));
+  if (!plan.task.keyframes.empty()) sections.push_back(keyframe_section(plan));
+  if (!plan.solver.is_null()) sections.push_back(solver_section(plan.solver));
+  if (!plan.certificate.is_null()) {
+    sections.push_back({"Certificate", {check_table(plan.certificate, false)}});
+  }
+  if (!plan.configuration.is_null()) {
+    sections.push_back(
+        {"Configuration", {TextBlock{to_json(plan.configuration), true, "Effective values"}}});
+  }
+  return sections;
+}
+
+Report flight_report(const Plan& plan) {
+  const Verdict verdict = verdict_of(plan.certificate);
+  Report report;
+  report.title = plan.mission;
+  report.sections = flight_sections(plan);
+  report.subtitle = plan.kind + ", " + number_text(plan.trajectory.duration()) + " s with " +
+                    vehicle_from_value(plan.vehicle).name;
+  report.status = verdict.text.empty() ? "not judged" : verdict.text;
+  report.status_mark = verdict.mark;
+  return report;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,131 @@
+// A made-up flight with known numbers: a climbing wave around a tower, exact derivatives.
+#pragma once
+
+#include <cmath>
+
+#include "framework/core/units.h"
+#include "framework/trajectory/plan.h"
+#include "tests/vehicle/vehicle_fixture.h"
+
+namespace lapwing {
+
+// Position and its first two derivatives of a sum of sines in each direction.
+inline Sample synthetic_sample(double time, double duration, double mass) {
+  Sample s;
+  s.time = time;
+  const auto wave = [&](int axis, double offset, double size, double turns, double phase) {
+    const double w = 2 * std::numbers::pi * turns / duration;
+    s.position[axis] += offset + size * std::sin(w * time + phase);
+    s.velocity[axis] += size * w * std::cos(w * time + phase);
+    s.acceleration[axis] += -size * w * w * std::sin(w * time + phase);
+  };
+  const double turns = duration / 40;
+  wave(0, 4, 16 + duration / 20, turns, -1.4);
+  wave(0, 0, 2, 3 * turns, 0.3);
+  wave(1, -2, 11 + duration / 20, turns, 0.4);
+  wave(2, 9, 5, 1.3 * turns, -1.2);
+  s.yaw = std::atan2(s.velocity.y(), s.velocity.x());
+  const double across2 = s.velocity.head<2>().squaredNorm();
+  s.yaw_rate =
+      (s.velocity.x() * s.acceleration.y() - s.velocity.y() * s.acceleration.x()) / across2;
+  s.force = mass * (s.acceleration + Eigen::Vector3d(0, 0, kGravity));
+  s.yaw_torque = 0.02 * std::sin(time);
+  s.gimbal_pitch = radians(-35 + 25 * std::sin(0.4 * time));
+  s.gimbal_pitch_rate = radians(10 * std::cos(0.4 * time));
+  return s;
+}
+
+inline Value synthetic_certificate(bool feasible) {
+  const auto check = [](const char* name, double worst, double limit, const char* unit, double at,
+                        bool pass) {
+    Value c;
+    c.set("name", name);
+    c.set("worst", worst);
+    c.set("limit", limit);
+    c.set("unit", unit);
+    c.set("at", at);
+    c.set("pass", pass);
+    c.set("required", true);
+    return c;
+  };
+  Value checks = Value::list();
+  checks.push_back(check("dynamics_position_defect", 2.1e-7, 1e-3, "m", 4.2, true));
+  checks.push_back(check("thrust_maximum", 19.4, 28.8, "N", 3.4, true));
+  checks.push_back(check("speed_across", feasible ? 6.12 : 10.9, 10, "m/s", 5.7, feasible));
+  checks.push_back(check("acceleration_across", 1.03, 4, "m/s^2", 6.0, true));
+  checks.push_back(check("keyframe_miss", 0.21, 0.5, "m", 8.0, true));
+  Value skipped;
+  skipped.set("name", "clearance");
+  skipped.set("skipped", "the environment is empty");
+  checks.push_back(std::move(skipped));
+  Value tracking = check("closed_loop_tracking", 0.4, 0.3, "m", 7, false);
+  tracking.set("required", false);
+  checks.push_back(std::move(tracking));
+  Value certificate;
+  certificate.set("feasible", feasible);
+  certificate.set("checks", std::move(checks));
+  return certificate;
+}
+
+inline Value synthetic_solver() {
+  Value history = Value::list(), terms;
+  for (int i = 0; i < 9; ++i) {
+    terms = Value::map();
+    terms.set("keyframe", 900 * std::exp(-1.3 * i) + 1.2);
+    terms.set("derivative position", 40 * std::exp(-0.3 * i) + 8.25);
+    terms.set("input_effort", 0.5 + 0.05 * i);
+    double cost = 0;
+    for (const auto& [name, value] : terms.as_map()) cost += value.as_number();
+    Value iteration;
+    iteration.set("iteration", i);
+    iteration.set("cost", cost);
+    iteration.set("violation", std::pow(10.0, -i));
+    iteration.set("step", i < 2 ? 0.5 : 1.0);
+    iteration.set("terms", terms);
+    history.push_back(std::move(iteration));
+  }
+  Value solver;
+  solver.set("name", "iqp");
+  solver.set("status", "optimal");
+  solver.set("iterations", 9);
+  solver.set("cost", history.as_list().back().at("cost"));
+  solver.set("terms", terms);
+  solver.set("history", std::move(history));
+  return solver;
+}
+
+// `samples` samples over `duration` seconds and a keyframe every `spacing` seconds, each 0.2 m
+// beside the path.
+inline Plan synthetic_flight(double duration, int samples, double spacing, bool feasible = true) {
+  const Vehicle vehicle = read_vehicle(vehicle_file());
+  Plan plan;
+  plan.mission = "tower wave";
+  plan.kind = "film";
+  plan.vehicle = to_value(vehicle);
+  plan.trajectory.has_gimbal = true;
+  double before = 0;
+  for (int i = 0; i < samples; ++i) {
+    Sample s = synthetic_sample(duration * i / (samples - 1), duration, vehicle.mass);
+    s.yaw +=
+        i > 0 ? 2 * std::numbers::pi * std::round((before - s.yaw) / (2 * std::numbers::pi)) : 0;
+    before = s.yaw;
+    plan.trajectory.samples.push_back(s);
+  }
+  for (double t = 0; t <= duration; t += spacing) {
+    const Sample s = synthetic_sample(t, duration, vehicle.mass);
+    KeyframeTask keyframe;
+    keyframe.time = t;
+    keyframe.position = s.position + Eigen::Vector3d(0, 0, 0.2);
+    if (t > 0) keyframe.yaw = s.yaw;
+    plan.task.keyframes.push_back(keyframe);
+  }
+  plan.environment.spheres = {{"tree", {14, 8, 3}, 3}};
+  plan.environment.boxes = {{"tower", {-2, -4, 0}, {3, 1, 12}}};
+  plan.solver = synthetic_solver();
+  plan.certificate = synthetic_certificate(feasible);
+  plan.configuration.set("duration", duration);
+  plan.configuration.set("solver", "iqp");
+  return plan;
+}
+
+}  // namespace lapwing
