@@ -7,19 +7,10 @@
 #include "framework/export/flight_charts.h"
 #include "framework/trajectory/interpolate.h"
 #include "framework/vehicle/vehicle.h"
+#include "framework/verify/certificate.h"
 
 namespace lapwing {
 namespace {
-
-bool is_skipped(const Value& check) {
-  const Value* reason = check.find("skipped");
-  return reason != nullptr && !reason->is_null();
-}
-
-bool is_required(const Value& check) {
-  const Value* required = check.find("required");
-  return required == nullptr || required->as_boolean();
-}
 
 double number_or_gap(const Value& map, const char* key) {
   const Value* value = map.find(key);
@@ -32,46 +23,67 @@ std::string text_or_nothing(const Value& map, const char* key) {
   return value == nullptr || value->is_null() ? "" : value->as_text();
 }
 
-// Checks in the order of the certificate; `failing` keeps those that fail and are required.
-Table check_table(const Value& certificate, bool failing) {
-  Table table{failing ? "Why the flight is not certified" : "Checks of the certificate",
+// What a check says, in the units of the page.
+TableRow check_row(const Check& check) {
+  if (!check.skipped.empty()) {
+    return {{check.name, "", "", "", "", check.skipped}, Mark::skipped};
+  }
+  const bool angle = check.unit.starts_with("rad");
+  const auto shown = [&](double value) { return angle ? degrees(value) : value; };
+  std::string unit = angle ? "\u00b0" + check.unit.substr(3) : check.unit;
+  if (unit.ends_with("^2")) unit.replace(unit.size() - 2, 2, "\u00b2");
+  std::string remark = check.required ? "" : "reported, not required";
+  if (!check.detail.empty()) remark += (remark.empty() ? "" : "; ") + check.detail;
+  return {{check.name, check.worst ? TableCell(shown(*check.worst)) : TableCell(""),
+           (check.at_least ? "\u2265 " : "\u2264 ") + number_text(shown(check.limit)), unit,
+           check.worst ? TableCell(check.at) : TableCell(""), remark},
+          check.pass ? Mark::pass : Mark::fail};
+}
+
+Table check_table(std::string title, const std::vector<Check>& checks) {
+  Table table{std::move(title),
               {{"check", ""}, {"worst", ""}, {"limit", ""}, {"unit", ""}, {"at", "s"}, {"", ""}},
               {}};
-  for (const Value& check : certificate.at("checks").as_list()) {
-    const std::string& name = check.at("name").as_text();
-    if (is_skipped(check)) {
-      if (failing) continue;
-      table.rows.push_back({{name, "", "", "", "", check.at("skipped").as_text()}, Mark::skipped});
-      continue;
-    }
-    const bool pass = check.at("pass").as_boolean();
-    if (failing && (pass || !is_required(check))) continue;
-    table.rows.push_back({{name, number_or_gap(check, "worst"), number_or_gap(check, "limit"),
-                           text_or_nothing(check, "unit"), number_or_gap(check, "at"),
-                           is_required(check) ? "" : "reported, not required"},
-                          pass ? Mark::pass : Mark::fail});
-  }
+  for (const Check& check : checks) table.rows.push_back(check_row(check));
   return table;
 }
 
 struct Verdict {
-  std::string text;  // empty where there is no certificate
-  std::string count;
+  std::string text = "not judged";
+  std::string count;  // empty where there is no certificate
   Mark mark = Mark::none;
+  std::vector<Check> failures;
 };
 
-Verdict verdict_of(const Value& certificate) {
-  if (certificate.is_null()) return {};
-  int passed = 0, judged = 0;
-  for (const Value& check : certificate.at("checks").as_list()) {
-    if (is_skipped(check) || !is_required(check)) continue;
-    ++judged;
-    passed += check.at("pass").as_boolean() ? 1 : 0;
+Verdict verdict_of(const Plan& plan) {
+  if (plan.certificate.is_null()) return {};
+  const Certificate certificate = Certificate::from_value(plan.certificate);
+  int passed = 0, made = 0;
+  for (const Check& check : certificate.checks) {
+    if (!check.required || !check.skipped.empty()) continue;
+    ++made;
+    passed += check.pass ? 1 : 0;
   }
-  const bool feasible = certificate.at("feasible").as_boolean();
+  const bool feasible = certificate.feasible();
   return {feasible ? "certified" : "not certified",
-          std::to_string(passed) + " of " + std::to_string(judged),
-          feasible ? Mark::pass : Mark::fail};
+          std::to_string(passed) + " of " + std::to_string(made),
+          feasible ? Mark::pass : Mark::fail, certificate.failures()};
+}
+
+Section certificate_section(const Plan& plan) {
+  const Certificate certificate = Certificate::from_value(plan.certificate);
+  Section section{"Certificate", {}};
+  for (const CheckGroup group : {CheckGroup::safety, CheckGroup::task}) {
+    std::vector<Check> checks;
+    for (const Check& check : certificate.checks) {
+      if (check.group == group) checks.push_back(check);
+    }
+    if (checks.empty()) continue;
+    section.blocks.push_back(check_table(
+        group == CheckGroup::safety ? "Safety: the vehicle can fly it" : "Task: what was asked",
+        checks));
+  }
+  return section;
 }
 
 double length_of(const Trajectory& trajectory) {
@@ -83,7 +95,7 @@ double length_of(const Trajectory& trajectory) {
 }
 
 Section summary_section(const Plan& plan, const Vehicle& vehicle) {
-  const Verdict verdict = verdict_of(plan.certificate);
+  const Verdict verdict = verdict_of(plan);
   double fastest = 0;
   for (const Sample& s : plan.trajectory.samples) fastest = std::max(fastest, s.velocity.norm());
   Facts facts;
@@ -101,11 +113,13 @@ Section summary_section(const Plan& plan, const Vehicle& vehicle) {
         {"solver", plan.solver.at("name").as_text() + ", " + plan.solver.at("status").as_text(),
          ""});
   }
-  if (!verdict.text.empty()) {
+  if (!verdict.count.empty()) {
     facts.facts.push_back({"required checks passed", verdict.count, "", verdict.mark});
   }
   Section section{"Summary", {std::move(facts)}};
-  if (verdict.mark == Mark::fail) section.blocks.push_back(check_table(plan.certificate, true));
+  if (!verdict.failures.empty()) {
+    section.blocks.push_back(check_table("Why the flight is not certified", verdict.failures));
+  }
   return section;
 }
 
@@ -258,7 +272,7 @@ std::vector<Section> flight_sections(const Plan& plan) {
   if (!plan.task.keyframes.empty()) sections.push_back(keyframe_section(plan));
   if (!plan.solver.is_null()) sections.push_back(solver_section(plan.solver));
   if (!plan.certificate.is_null()) {
-    sections.push_back({"Certificate", {check_table(plan.certificate, false)}});
+    sections.push_back(certificate_section(plan));
   }
   if (!plan.configuration.is_null()) {
     sections.push_back(
@@ -268,13 +282,13 @@ std::vector<Section> flight_sections(const Plan& plan) {
 }
 
 Report flight_report(const Plan& plan) {
-  const Verdict verdict = verdict_of(plan.certificate);
+  const Verdict verdict = verdict_of(plan);
   Report report;
   report.title = plan.mission;
   report.sections = flight_sections(plan);
   report.subtitle = plan.kind + ", " + number_text(plan.trajectory.duration()) + " s with " +
                     vehicle_from_value(plan.vehicle).name;
-  report.status = verdict.text.empty() ? "not judged" : verdict.text;
+  report.status = verdict.text;
   report.status_mark = verdict.mark;
   return report;
 }

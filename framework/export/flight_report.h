@@ -9,11 +9,10 @@
 namespace lapwing {
 
 // Summary, path, motion, inputs, keyframes, solver, certificate and configuration; sections for
-// which the plan holds nothing are left out. Angles in degrees. Certificate and solver report are
-// read as DESIGN of plan.json has them: {"feasible", "checks": [{"name", "worst", "limit", "unit",
-// "at", "pass", "required", "skipped"}]} and {"name", "status", "iterations", "cost", "terms",
-// "history": [{"iteration", "cost", "violation", "step", "terms"}]}.
-// Throws InputError naming the field when one of the two or the vehicle is malformed.
+// which the plan holds nothing are left out. Angles in degrees. The solver's report is read as
+// {"name", "status", "iterations", "cost", "message", "terms": {name: cost}, "history":
+// [{"iteration", "cost", "violation", "step", "terms"}]}; "message", "terms" and "history" may
+// lack. Throws InputError naming the field when certificate, solver report or vehicle is malformed.
 std::vector<Section> flight_sections(const Plan& plan);
 
 // The whole page: title, verdict, the sections above.

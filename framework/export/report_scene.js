@@ -112,7 +112,7 @@ function makeScene(figure, spec) {
         write(numberText(v), p.x, p.y + 4, theme.muted);
       }
       const middle = at(k, (from[k] + to[k]) / 2, near + (near === to[o] ? 1 : -1) * gridStep);
-      write(k === 0 ? "east [m]" : "north [m]", middle.x, middle.y + 4, theme.muted);
+      write(k === 0 ? "east [m]" : "north [m]", clamp(middle.x, 30, width - 30), middle.y + 4, theme.muted);
     }
   }
 
@@ -270,7 +270,7 @@ function makeScene(figure, spec) {
 
   return function draw() {
     width = Math.max(canvas.parentNode.clientWidth, 220);
-    height = clamp(Math.round(width * 0.56), 280, 540);
+    height = clamp(Math.round(width * 0.56), 230, 540);
     const ratio = window.devicePixelRatio || 1;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);

@@ -5,6 +5,7 @@
 
 #include "framework/core/units.h"
 #include "framework/trajectory/plan.h"
+#include "framework/verify/certificate.h"
 #include "tests/vehicle/vehicle_fixture.h"
 
 namespace lapwing {
@@ -35,35 +36,29 @@ inline Sample synthetic_sample(double time, double duration, double mass) {
   return s;
 }
 
-inline Value synthetic_certificate(bool feasible) {
-  const auto check = [](const char* name, double worst, double limit, const char* unit, double at,
-                        bool pass) {
-    Value c;
-    c.set("name", name);
-    c.set("worst", worst);
-    c.set("limit", limit);
-    c.set("unit", unit);
-    c.set("at", at);
-    c.set("pass", pass);
-    c.set("required", true);
-    return c;
+inline Certificate synthetic_certificate(bool feasible) {
+  const auto check = [](const char* name, CheckGroup group, double worst, double limit,
+                        const char* unit, double at) {
+    return Check{.name = name,
+                 .group = group,
+                 .worst = worst,
+                 .limit = limit,
+                 .unit = unit,
+                 .at = at,
+                 .pass = worst <= limit};
   };
-  Value checks = Value::list();
-  checks.push_back(check("dynamics_position_defect", 2.1e-7, 1e-3, "m", 4.2, true));
-  checks.push_back(check("thrust_maximum", 19.4, 28.8, "N", 3.4, true));
-  checks.push_back(check("speed_across", feasible ? 6.12 : 10.9, 10, "m/s", 5.7, feasible));
-  checks.push_back(check("acceleration_across", 1.03, 4, "m/s^2", 6.0, true));
-  checks.push_back(check("keyframe_miss", 0.21, 0.5, "m", 8.0, true));
-  Value skipped;
-  skipped.set("name", "clearance");
-  skipped.set("skipped", "the environment is empty");
-  checks.push_back(std::move(skipped));
-  Value tracking = check("closed_loop_tracking", 0.4, 0.3, "m", 7, false);
-  tracking.set("required", false);
-  checks.push_back(std::move(tracking));
-  Value certificate;
-  certificate.set("feasible", feasible);
-  certificate.set("checks", std::move(checks));
+  constexpr CheckGroup kSafety = CheckGroup::safety, kTask = CheckGroup::task;
+  Certificate certificate;
+  certificate.checks = {check("position_defect", kSafety, 2.1e-7, 1e-3, "m", 4.2),
+                        check("thrust_maximum", kSafety, 19.4, 28.8, "N", 3.4),
+                        check("speed_across", kSafety, feasible ? 6.12 : 10.9, 10, "m/s", 5.7),
+                        check("acceleration_across", kSafety, 1.03, 4, "m/s^2", 6),
+                        check("yaw_rate", kSafety, 0.5, 1.570796, "rad/s", 6),
+                        check("closed_loop_tracking", kSafety, 0.4, 0.3, "m", 7),
+                        check("keyframe_miss", kTask, 0.21, 0.5, "m", 8)};
+  certificate.checks[5].required = false;
+  certificate.checks.push_back(
+      {.name = "clearance", .skipped = "the environment is empty", .pass = false});
   return certificate;
 }
 
@@ -122,7 +117,7 @@ inline Plan synthetic_flight(double duration, int samples, double spacing, bool 
   plan.environment.spheres = {{"tree", {14, 8, 3}, 3}};
   plan.environment.boxes = {{"tower", {-2, -4, 0}, {3, 1, 12}}};
   plan.solver = synthetic_solver();
-  plan.certificate = synthetic_certificate(feasible);
+  plan.certificate = synthetic_certificate(feasible).to_value();
   plan.configuration.set("duration", duration);
   plan.configuration.set("solver", "iqp");
   return plan;
