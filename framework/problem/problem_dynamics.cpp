@@ -117,7 +117,7 @@ void TrajectoryProblem::Impl::dynamics_jacobian(const Stages& at, double* values
   dynamics_values(at, values);
   for (const BoundModel& model : columns.models) {
     // One Jacobian serves all stages where it is constant.
-    const bool constant = model.model->affine() && !columns.horizon.step_free;
+    const bool constant = constant_flow(model);
     for (int i = 0; i + 1 < stages; ++i) {
       if (i == 0 || !constant) evaluate_model_step(columns, model, at, i, true, step);
       for (Eigen::Index k = 0; k < step.jacobian.size(); ++k, ++slot)

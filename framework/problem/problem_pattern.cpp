@@ -26,13 +26,19 @@ void visit_pairs(const BoundFunction& bound, const std::vector<double>& jacobian
     }
 }
 
+// Any point serves where Jacobians are constant, as long as its step is the step.
+Stages constant_stages(const StageColumns& columns) {
+  Stages at = Stages::Zero(columns.layout.size(), columns.horizon.stages);
+  at.row(columns.layout.offset(columns.step_block)).setConstant(columns.horizon.step);
+  return at;
+}
+
 std::vector<double> constant_jacobian(const StageColumns& columns, const BoundFunction& bound) {
   if (!bound.constant_jacobian()) return {};
   std::vector<double> values(bound.instances() * bound.rows()), unused;
   Workspace workspace;
-  Stages at = Stages::Zero(columns.layout.size(), columns.horizon.stages);
-  at.row(columns.layout.offset(columns.step_block)).setConstant(columns.horizon.step);
-  const double* j = bound.evaluate(columns, at, values.data(), &unused, workspace);
+  const double* j =
+      bound.evaluate(columns, constant_stages(columns), values.data(), &unused, workspace);
   return {j, j + values.size() * bound.width()};
 }
 
@@ -59,6 +65,13 @@ std::vector<int> model_step_columns(const StageColumns& columns, const BoundMode
     for (int i = 0; i < columns.layout.block(b).tangent_size(); ++i)
       result.push_back(columns.column(stage + 1, columns.layout.tangent_offset(b) + i));
   return result;
+}
+
+bool TrajectoryProblem::Impl::constant_flow(const BoundModel& model) const {
+  bool lines = true;
+  for (const int b : model.state_blocks)
+    lines &= columns.layout.block(b).topology == Topology::line;
+  return lines && model.model->affine() && !columns.horizon.step_free;
 }
 
 void TrajectoryProblem::Impl::build_patterns() {
@@ -89,12 +102,19 @@ void TrajectoryProblem::Impl::build_patterns() {
     if (!entry.is_bounds && entry.bound->curved()) hessian_entries(*entry.bound, {}, h, nullptr);
   }
   const auto each_model_entry = [&](auto visit) {  // visit(row, column), column may be -1
-    for (const BoundModel& model : columns.models)
+    for (const BoundModel& model : columns.models) {
+      ModelStep sample;  // where the Jacobian never changes, its zeros are left out
+      const bool constant = constant_flow(model);
+      if (constant) evaluate_model_step(columns, model, constant_stages(columns), 0, true, sample);
       for (int i = 0; i + 1 < stages; ++i) {
         const std::vector<int> step = model_step_columns(columns, model, i);
         for (int r = 0; r < model.state_tangents; ++r)
-          for (const int c : step) visit(model.first_row + i * model.state_tangents + r, c);
+          for (std::size_t c = 0; c < step.size(); ++c) {
+            const bool zero = constant && sample.jacobian(r, static_cast<int>(c)) == 0.0;
+            visit(model.first_row + i * model.state_tangents + r, zero ? -1 : step[c]);
+          }
       }
+    }
   };
   const auto each_fixed_entry = [&](auto visit) {  // visit(row, column): held inputs, clock
     for (const BoundModel& model : columns.models) {

@@ -69,6 +69,7 @@ struct TrajectoryProblem::Impl {
   void model_bounds();
   // problem_pattern.cpp
   void build_patterns();
+  bool constant_flow(const BoundModel& model) const;  // its Jacobian never changes
   void add_gauss_newton(const CostEntry& cost, const double* jacobian, double* values) const;
   // problem_evaluation.cpp
   void dynamics_values(const Stages& at, double* values) const;

@@ -1,15 +1,20 @@
 #include "framework/solve/kkt_system.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace lapwing {
 namespace {
 
-constexpr double kRegularisation = 1e-9;  // first try, scaled numbers
-constexpr double kStronger = 100.0;       // factor of each further try
+// Static regularisation in scaled numbers: little on the variables, whose curvature may be tiny
+// (snap leaves whole cubics free), more on the rows, which keeps pivots far from zero. Refinement
+// takes both back.
+constexpr double kOfVariables = 1e-10;
+constexpr double kOfRows = 1e-6;
+constexpr double kStronger = 100.0;  // factor of each further try
 constexpr int kTries = 4;
 constexpr int kRefinements = 8;
-constexpr double kRefined = 1e-13;  // relative residual that is good enough
+constexpr double kRefined = 1e-9;  // relative residual that is good enough
 
 using Eigen::VectorXd;
 using Entry = Eigen::SparseMatrix<double>::InnerIterator;
@@ -42,16 +47,25 @@ void KktSystem::analyse(const QuadraticProgram& problem) {
 
   std::vector<Eigen::Triplet<double>> entries;
   for (int j = 0; j < n_; ++j) {
-    entries.emplace_back(j, j, 0.0);
-    for (Entry e(p, j); e; ++e)
-      if (e.row() > j) entries.emplace_back(e.row(), j, 0.0);
-    for (Entry e(a, j); e; ++e) entries.emplace_back(n_ + e.row(), j, 0.0);
+    for (Entry e(p, j); e; ++e) entries.emplace_back(e.row(), j, 1.0);
+    for (Entry e(a, j); e; ++e) entries.emplace_back(n_ + e.row(), j, 1.0);
   }
-  for (int r = 0; r < m_; ++r) entries.emplace_back(n_ + r, n_ + r, 0.0);
+  for (int i = 0; i < n_ + m_; ++i) entries.emplace_back(i, i, 1.0);
+  Eigen::SparseMatrix<double> lower(n_ + m_, n_ + m_);
+  lower.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(lower.selfadjointView<Eigen::Lower>(), order);
+  place_.resize(n_ + m_);
+  for (int k = 0; k < n_ + m_; ++k) place_[order.indices()(k)] = k;
+
+  for (auto& entry : entries) {
+    const int i = place_[entry.row()], j = place_[entry.col()];
+    entry = {std::min(i, j), std::max(i, j), 0.0};
+  }
   matrix_.resize(n_ + m_, n_ + m_);
   matrix_.setFromTriplets(entries.begin(), entries.end());
-
-  const auto slot = [&](int row, int column) {
+  const auto slot = [&](int i, int j) {
+    const int row = std::min(place_[i], place_[j]), column = std::max(place_[i], place_[j]);
     const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
     const int* end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
     return static_cast<int>(std::lower_bound(begin, end, row) - matrix_.innerIndexPtr());
@@ -91,22 +105,22 @@ void KktSystem::set_up(const QuadraticProgram& problem, const std::vector<char>&
 }
 
 bool KktSystem::factorise(const VectorXd& diagonal) {
-  double regularisation = kRegularisation;
+  double strength = 1.0;
   regularisation_.resize(n_ + m_);
-  for (int attempt = 0; attempt < kTries; ++attempt, regularisation *= kStronger) {
+  for (int attempt = 0; attempt < kTries; ++attempt, strength *= kStronger) {
     double* values = matrix_.valuePtr();
     for (int i = 0; i < n_; ++i) {
-      regularisation_(i) = regularisation;
+      regularisation_(place_[i]) = strength * kOfVariables;
       values[diagonal_slots_[i]] =
-          base_diagonal_(i) + (fixed_[i] ? 0.0 : diagonal(i)) + regularisation;
+          base_diagonal_(i) + (fixed_[i] ? 0.0 : diagonal(i)) + strength * kOfVariables;
     }
     for (int r = 0; r < m_; ++r) {
       const int i = n_ + r;
       const double exact = rows_[r] == RowKind::equation    ? 0.0
                            : rows_[r] == RowKind::unbounded ? -1.0
                                                             : -1.0 / diagonal(i);
-      regularisation_(i) = -regularisation;
-      values[diagonal_slots_[i]] = exact - regularisation;
+      regularisation_(place_[i]) = -strength * kOfRows;
+      values[diagonal_slots_[i]] = exact - strength * kOfRows;
     }
     factors_.factorize(matrix_);
     if (factors_.info() == Eigen::Success && factors_.vectorD().allFinite()) return true;
@@ -114,22 +128,66 @@ bool KktSystem::factorise(const VectorXd& diagonal) {
   return false;
 }
 
-VectorXd KktSystem::solve(const VectorXd& right) const {
-  VectorXd x = factors_.solve(right);
-  const double scale = right.size() ? right.cwiseAbs().maxCoeff() : 0.0;
-  double last = std::numeric_limits<double>::infinity();
-  VectorXd best = x;
-  for (int k = 0; k < kRefinements; ++k) {
-    VectorXd residual = right - matrix_.selfadjointView<Eigen::Lower>() * x;
-    residual += regularisation_.cwiseProduct(x);
-    const double size = residual.size() ? residual.cwiseAbs().maxCoeff() : 0.0;
-    if (!(size < last)) return best;
-    best = x;
-    last = size;
-    if (size <= kRefined * scale) return x;
-    x += factors_.solve(residual);
+// x = (L D L')^-1 right, plainly: Eigen's own solve copies and tests at every step.
+void KktSystem::backsolve(const VectorXd& right, VectorXd& x) const {
+  const Eigen::SparseMatrix<double>& l = factors_.matrixL().nestedExpression();
+  const int* const outer = l.outerIndexPtr();
+  const int* const inner = l.innerIndexPtr();
+  const double* const value = l.valuePtr();
+  const int size = n_ + m_;
+  x = right;
+  double* const v = x.data();
+  for (int j = 0; j < size; ++j) {
+    const double pivot = v[j];
+    for (int k = outer[j]; k < outer[j + 1]; ++k) v[inner[k]] -= value[k] * pivot;
   }
-  return best;
+  x = x.cwiseQuotient(factors_.vectorD());
+  for (int j = size - 1; j >= 0; --j) {
+    double sum = v[j];
+    for (int k = outer[j]; k < outer[j + 1]; ++k) sum -= value[k] * v[inner[k]];
+    v[j] = sum;
+  }
+}
+
+// result -= K x with the symmetric matrix, regularisation included.
+void KktSystem::subtract_product(const VectorXd& x, VectorXd& result) const {
+  const int* const outer = matrix_.outerIndexPtr();
+  const int* const inner = matrix_.innerIndexPtr();
+  const double* const value = matrix_.valuePtr();
+  for (int j = 0; j < n_ + m_; ++j) {
+    const double factor = x(j);
+    double sum = 0;
+    for (int k = outer[j]; k < outer[j + 1]; ++k) {
+      const int i = inner[k];
+      if (i != j) result(i) -= value[k] * factor;
+      sum += value[k] * x(i);
+    }
+    result(j) -= sum;
+  }
+}
+
+VectorXd KktSystem::solve(const VectorXd& right) const {
+  const int size = n_ + m_;
+  VectorXd ordered(size), x, best, residual, correction;
+  for (int i = 0; i < size; ++i) ordered(place_[i]) = right(i);
+  backsolve(ordered, x);
+  const double scale = size ? ordered.cwiseAbs().maxCoeff() : 0.0;
+  double last = std::numeric_limits<double>::infinity();
+  best = x;
+  for (int k = 0; k < kRefinements; ++k) {
+    residual = ordered + regularisation_.cwiseProduct(x);
+    subtract_product(x, residual);
+    const double error = size ? residual.cwiseAbs().maxCoeff() : 0.0;
+    if (!(error < last)) break;
+    best = x;
+    last = error;
+    if (error <= kRefined * scale) break;
+    backsolve(residual, correction);
+    x += correction;
+  }
+  VectorXd result(size);
+  for (int i = 0; i < size; ++i) result(i) = best(place_[i]);
+  return result;
 }
 
 }  // namespace lapwing

@@ -1,9 +1,10 @@
-// The quasi-definite system of the interior point: assembled once, refactored with new diagonals.
-// Internal to the room.
+// The quasi-definite system of the interior point: ordered and assembled once, refactored with new
+// diagonals. Internal to the room.
 #pragma once
 
 #include <vector>
 
+#include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 
 #include "framework/solve/equilibration.h"
@@ -21,18 +22,23 @@ class KktSystem {
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
 
  private:
+  using Factors =
+      Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper, Eigen::NaturalOrdering<int>>;
   bool same_pattern(const QuadraticProgram& problem) const;
   void analyse(const QuadraticProgram& problem);
+  void backsolve(const Eigen::VectorXd& right, Eigen::VectorXd& x) const;
+  void subtract_product(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
 
   int n_ = 0, m_ = 0;
   std::vector<int> hessian_outer_, hessian_inner_, jacobian_outer_, jacobian_inner_;
   std::vector<int> hessian_slots_, jacobian_slots_, diagonal_slots_;
+  std::vector<int> place_;  // of each number in the elimination order
   std::vector<char> fixed_;
   std::vector<RowKind> rows_;
   Eigen::VectorXd base_diagonal_;       // P's
-  Eigen::VectorXd regularisation_;      // added to the diagonal, signed
-  Eigen::SparseMatrix<double> matrix_;  // lower triangle
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factors_;
+  Eigen::VectorXd regularisation_;      // added to the diagonal, signed, in order
+  Eigen::SparseMatrix<double> matrix_;  // upper triangle, in order
+  Factors factors_;
 };
 
 }  // namespace lapwing
