@@ -7,6 +7,7 @@
 #include "framework/plugin/plugin.h"
 
 namespace lapwing {
+namespace {
 
 class Csv final : public Exporter {
  public:
@@ -98,6 +99,7 @@ class Csv final : public Exporter {
   }
 };
 
+}  // namespace
 }  // namespace lapwing
 
 LAPWING_PLUGINS(lapwing::Csv)
