@@ -46,7 +46,7 @@ TEST(Geodetic, DistantGroundSinksBelowThePlane) {
 
 TEST(Geodetic, RoundTripsToANanometre) {
   const GeodeticPoint origin{-33.86, 151.21, 20};
-  for (const Eigen::Vector3d p : {Eigen::Vector3d(120, -340, 55), Eigen::Vector3d(-2000, 10, 0)}) {
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(120, -340, 55), Eigen::Vector3d(-2000, 10, 0)}) {
     EXPECT_LT((to_local(origin, to_geodetic(origin, p)) - p).norm(), 1e-8);
   }
 }
