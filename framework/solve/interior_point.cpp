@@ -8,7 +8,9 @@
 #include <Eigen/SparseCholesky>
 
 #include "framework/core/error.h"
+#include "framework/solve/elastic.h"
 #include "framework/solve/equilibration.h"
+#include "framework/solve/infeasibility.h"
 #include "framework/solve/kkt_system.h"
 
 namespace lapwing {
@@ -17,7 +19,6 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kToBoundary = 0.995;    // share of the step to the boundary that is taken
-constexpr double kCertificate = 1e-8;    // relative size of a certificate's residual
 constexpr double kSmallestStep = 1e-10;  // shorter steps are a stall
 constexpr int kStalls = 3;               // stalls in a row that end a solve
 constexpr double kWarmFloor = 1e-3;      // least slack and multiplier of a warm start (scaled)
@@ -38,10 +39,6 @@ double step_to_boundary(const VectorXd& v, const VectorXd& d) {
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (d(i) < 0) step = std::min(step, -v(i) / d(i));
   return step;
-}
-
-double largest(const VectorXd& v) {
-  return v.size() ? v.cwiseAbs().maxCoeff() : 0.0;
 }
 
 }  // namespace
@@ -73,8 +70,10 @@ struct InteriorPoint::Impl {
   double step_length() const;
   void move(double step);
   QuadraticResult unscaled(const QuadraticProgram& problem) const;
-  bool proves_infeasible(const QuadraticProgram& problem, const QuadraticResult& at) const;
-  bool proves_unbounded(const QuadraticProgram& problem, const QuadraticResult& at) const;
+  void solve(const QuadraticProgram& problem, const InteriorPointOptions& options,
+             const std::optional<QuadraticWarmStart>& warm_start, QuadraticResult& result);
+  static bool contradicts(const QuadraticProgram& problem, const InteriorPointOptions& options,
+                          QuadraticResult& proof);
   QuadraticStatus iterate(const QuadraticProgram& problem, const InteriorPointOptions& options,
                           QuadraticResult& best);
 };
@@ -289,47 +288,6 @@ QuadraticResult InteriorPoint::Impl::unscaled(const QuadraticProgram& problem) c
   return result;
 }
 
-// Farkas: A'y + z = 0 with the bounds' support positive. The dual residual bounds how far from zero
-// P x + c keeps it; once the multipliers dwarf that, they are a certificate.
-bool InteriorPoint::Impl::proves_infeasible(const QuadraticProgram& problem,
-                                            const QuadraticResult& at) const {
-  VectorXd z = at.bound_multipliers;
-  const VectorXd aty = problem.jacobian.transpose() * at.row_multipliers;
-  for (int i = 0; i < n(); ++i)
-    if (fixed[i]) z(i) = -aty(i);
-  double value = 0;
-  const auto add = [&](double multiplier, double low, double high, double& leak) {
-    const double bound = multiplier > 0 ? low : high;
-    if (std::isfinite(bound))
-      value += multiplier * bound;
-    else
-      leak = std::max(leak, std::abs(multiplier));
-  };
-  double leak = 0;
-  for (int i = 0; i < n(); ++i) add(z(i), problem.x_lower(i), problem.x_upper(i), leak);
-  for (int r = 0; r < m(); ++r)
-    add(at.row_multipliers(r), problem.row_lower(r), problem.row_upper(r), leak);
-  const double residual = std::max(leak, largest(aty + z));
-  // Against any point of norm 1 + |x| the combination of rows cannot reach `value`.
-  return value > 0 && residual * (1.0 + largest(at.x)) < kCertificate * value;
-}
-
-bool InteriorPoint::Impl::proves_unbounded(const QuadraticProgram& problem,
-                                           const QuadraticResult& at) const {
-  const double fall = -problem.gradient.dot(at.x);
-  if (!(fall > 0)) return false;
-  const VectorXd px = problem.hessian.selfadjointView<Eigen::Lower>() * at.x;
-  const VectorXd ax = problem.jacobian * at.x;
-  double residual = largest(px);
-  const auto add = [&](double v, double low, double high) {
-    if (std::isfinite(low)) residual = std::max(residual, -v);
-    if (std::isfinite(high)) residual = std::max(residual, v);
-  };
-  for (int i = 0; i < n(); ++i) add(at.x(i), problem.x_lower(i), problem.x_upper(i));
-  for (int r = 0; r < m(); ++r) add(ax(r), problem.row_lower(r), problem.row_upper(r));
-  return residual * (1.0 + largest(problem.gradient)) < kCertificate * fall;
-}
-
 QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
                                              const InteriorPointOptions& options,
                                              QuadraticResult& best) {
@@ -346,11 +304,11 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     }
     best.iterations = iteration;
     if (merit <= options.tolerance) return QuadraticStatus::optimal;
-    if (proves_infeasible(problem, now)) {
+    if (is_infeasibility_certificate(problem, now)) {
       best = now;
       return QuadraticStatus::infeasible;
     }
-    if (proves_unbounded(problem, now)) {
+    if (is_unbounded_ray(problem, now.x)) {
       best = now;
       return QuadraticStatus::unbounded;
     }
@@ -399,13 +357,49 @@ QuadraticResult InteriorPoint::solve(const QuadraticProgram& problem,
     result.bound_multipliers = VectorXd::Zero(n);
     return result;
   }
-  impl_->set_up(problem);
-  if (warm_start && warm_start->x.size() == n)
-    impl_->start_warm(problem, *warm_start);
-  else
-    impl_->start_cold();
-  result.status = impl_->iterate(problem, options, result);
+  impl_->solve(problem, options, warm_start, result);
+  const bool undecided = result.status == QuadraticStatus::iteration_limit ||
+                         result.status == QuadraticStatus::numerical_error;
+  if (undecided && m > 0) {
+    QuadraticResult proof;
+    if (Impl::contradicts(problem, options, proof)) {
+      proof.iterations += result.iterations;
+      return proof;
+    }
+  }
   return result;
+}
+
+void InteriorPoint::Impl::solve(const QuadraticProgram& problem,
+                                const InteriorPointOptions& options,
+                                const std::optional<QuadraticWarmStart>& warm_start,
+                                QuadraticResult& result) {
+  set_up(problem);
+  if (warm_start && warm_start->x.size() == n())
+    start_warm(problem, *warm_start);
+  else
+    start_cold();
+  result.status = iterate(problem, options, result);
+}
+
+// The least sum of violations of the rows within the bounds: where it is not zero, its multipliers
+// are a certificate that nothing meets them.
+bool InteriorPoint::Impl::contradicts(const QuadraticProgram& problem,
+                                      const InteriorPointOptions& options, QuadraticResult& proof) {
+  QuadraticProgram rows_only = problem;
+  rows_only.hessian.setZero();
+  rows_only.gradient.setZero();
+  const ElasticProgram elastic = make_elastic(rows_only, 0, false, 1.0);
+  InteriorPointOptions again = options;
+  again.iteration_limit = std::max(options.iteration_limit, 100);
+  Impl phase_one;
+  QuadraticResult result;
+  phase_one.solve(elastic.program, again, {}, result);
+  proof = result;
+  proof.status = QuadraticStatus::infeasible;
+  proof.x = result.x.head(problem.variables());
+  proof.bound_multipliers = result.bound_multipliers.head(problem.variables());
+  return result.status == QuadraticStatus::optimal && is_infeasibility_certificate(problem, proof);
 }
 
 }  // namespace lapwing
