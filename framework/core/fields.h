@@ -27,6 +27,8 @@ class Fields {
   Fields(const Value& value, std::string key_path, Diagnostics& errors);
 
   bool has(std::string_view name) const { return value_->find(name) != nullptr; }
+  // A look at a field before reading it; null when absent.
+  const Value* find(std::string_view name) const { return value_->find(name); }
 
   // Finite numbers only.
   double number(std::string_view name);

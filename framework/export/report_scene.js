@@ -111,8 +111,8 @@ function makeScene(figure, spec) {
         last = p;
         write(numberText(v), p.x, p.y + 4, theme.muted);
       }
-      const middle = at(k, (from[k] + to[k]) / 2, near + (near === to[o] ? 1 : -1) * gridStep);
-      write(k === 0 ? "east [m]" : "north [m]", clamp(middle.x, 30, width - 30), middle.y + 4, theme.muted);
+      const p = at(k, (from[k] + to[k]) / 2, near + (near === to[o] ? 1 : -1) * gridStep);
+      write(k === 0 ? "east [m]" : "north [m]", clamp(p.x, 30, width - 30), p.y + 4, theme.muted);
     }
   }
 

@@ -1,0 +1,38 @@
+// Reports as data, so that mission scripts and files state their own sections.
+//
+//   report   title, subtitle, status, result, sections
+//   section  title, blocks
+//   block    type and what it needs:
+//     text   text, preformatted, folded
+//     facts  facts: label, value (text or number), unit, result
+//     table  title, columns: name, unit; rows: cells (text or number), result
+//     chart  title, x, y (axes), series: name, x, y, stepped; limits: label, value;
+//            markers: label, x; spans: label, from, to
+//     path   title, projection (above, from_south, from_east), and a drawing
+//     scene  title, and a drawing
+//     image  png_base64, caption
+//   axis     label, unit, whole, logarithmic (of y only)
+//   drawing  lines: name, points (triples), along, values; points: label, position;
+//            spheres: name, center, radius; boxes: name, lower, upper; along, value (axes)
+//   result   none, pass, fail, skipped
+//
+// Required are titles, names, labels, types, text, value, and the numbers of what is drawn; the
+// rest may lack. Units, frames and rules are those of report.h; in y and values null is a gap.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/core/value.h"
+#include "framework/export/report.h"
+
+namespace lapwing {
+
+// Throws InputError listing every key that is unknown, missing or of another type, or else the
+// first contradiction that render_html would refuse: what was read can be rendered.
+Report report_from_value(const Value& value);
+
+// A list of sections; `key_path` names it in messages.
+std::vector<Section> sections_from_value(const Value& value, const std::string& key_path);
+
+}  // namespace lapwing
