@@ -111,6 +111,7 @@ function makeScene(figure, spec) {
         last = p;
         write(numberText(v), p.x, p.y + 4, theme.muted);
       }
+      if (width < 500) continue;  // no room; the corner names the directions
       const p = at(k, (from[k] + to[k]) / 2, near + (near === to[o] ? 1 : -1) * gridStep);
       write(k === 0 ? "east [m]" : "north [m]", clamp(p.x, 30, width - 30), p.y + 4, theme.muted);
     }
@@ -191,6 +192,7 @@ function makeScene(figure, spec) {
   function drawAxesCorner() {
     const c = Math.cos(view.turn), s = Math.sin(view.turn), st = Math.sin(view.tilt);
     const o = { x: 44, y: 56 };
+    if (width < 500) write("grid in m", width - 4, height - 6, theme.muted, "right");
     for (const [name, dx, dy] of [["east", c, s * st], ["north", s, -c * st],
       ["up", 0, -Math.cos(view.tilt)]]) {
       stroke([o, { x: o.x + 26 * dx, y: o.y + 26 * dy }], theme.muted, 1.4);

@@ -127,6 +127,8 @@ TEST_F(ReportInBrowser, LongFlightsStaySmallAndQuick) {
 TEST_F(ReportInBrowser, DrawsWhatItPromisesAndAnswersPointerAndKeys) {
   const std::string html = render_html(flight_report(synthetic_flight(20, 201, 4)));
   const std::string dom = opened(html, std::string(kListFigures) + R"(
+// A browser without a window draws frames when it likes: before the first hover, take timers.
+window.requestAnimationFrame = (callback) => setTimeout(callback, 16);
 const root = document.documentElement.dataset;
 const figures = [...document.querySelectorAll("figure[data-block]")];
 const named = (title) => figures.find((f) => f.querySelector("figcaption").textContent === title);
@@ -146,8 +148,6 @@ speed.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight" }));
 root.next = named("Speed across").querySelector(".tip b").textContent;
 at(speed, "pointerleave", 0.5, 0.5);
 root.hidden = named("Speed across").querySelector(".tip").hidden;
-// Frames are rare in a browser without a window.
-window.requestAnimationFrame = (callback) => setTimeout(callback, 16);
 const canvas = document.querySelector("canvas");
 const views = [canvas.dataset.view];
 const then = (action) => new Promise((done) => {
