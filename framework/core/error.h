@@ -62,8 +62,8 @@ class Diagnostics {
   std::vector<std::string> lines_;
 };
 
-// Runs `body`, the call named `call` of plugin `plugin`. InputError, PluginError and Cancelled pass;
-// anything else that it throws becomes a PluginError with both names.
+// Runs `body`, the call named `call` of plugin `plugin`. InputError, PluginError and Cancelled
+// pass; anything else that it throws becomes a PluginError with both names.
 template <class Body>
 decltype(auto) call_plugin(const std::string& plugin, const std::string& call, Body&& body) {
   const auto failed = [&](const std::string& what) {

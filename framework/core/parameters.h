@@ -134,13 +134,15 @@ class Parameters {
 // Checks a map against a table and fills in defaults. Every unknown key (with the nearest known
 // one), wrong type, wrong unit, value out of range, missing required key and non-finite number goes
 // to `errors`; the result is meaningful only if none was added. Where a unit is declared, a text
-// such as "36 km/h" is converted to it, and another dimension is an error. `key_path` is prefixed to
-// keys in messages; null is taken as an empty map.
+// such as "36 km/h" is converted to it, and another dimension is an error. `key_path` is prefixed
+// to keys in messages; list entries count from 1. Null is taken as an empty map; a number without a
+// fraction is an integer; an empty list and an empty map are one thing, as an empty Lua table is.
 Parameters check(const ParameterTable& table, const Value& given, const std::string& key_path,
                  Diagnostics& errors);
 
 // As above; throws InputError with all errors.
-Parameters check(const ParameterTable& table, const Value& given, const std::string& key_path = "");
+Parameters check(const ParameterTable& table, const Value& given,
+                 const std::string& key_path = "");
 
 // The candidate with the smallest edit distance, or "" when none is near.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);

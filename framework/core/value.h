@@ -74,7 +74,9 @@ class Value {
 
 // Lays `over` on `base`: maps are merged key by key, everything else is replaced. A map that names
 // another `type` than the one below it replaces it whole: parameters of one plugin mean nothing to
-// another. A text laid over a map that has a `type` likewise replaces it.
+// another. A text is short for a map with that `type` alone: laid over a map of another type it
+// replaces it, over one of its own type it changes nothing; a map without a `type`, laid over a
+// text, keeps that text as its `type`.
 void merge(Value& base, const Value& over);
 
 }  // namespace lapwing

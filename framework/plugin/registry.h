@@ -1,7 +1,9 @@
 // Finds plugins on the search path, lists them from their sidecars, opens a library at first use.
 //
 // A sidecar is `NAME.json` beside `NAME.so`: the descriptors as data, written by the build. Listing
-// plugins and checking configuration read sidecars only and load no code. Reads are thread-safe.
+// plugins and checking configuration read sidecars only and load no code (but for a library that is
+// newer than its sidecar, which is opened to see whether it still is what the sidecar says). Every
+// library is compared with its sidecar when it is first opened. Reads are thread-safe.
 #pragma once
 
 #include <filesystem>
@@ -31,8 +33,9 @@ struct PluginEntry {
 class Registry {
  public:
   // Reads every sidecar in `folders` (and one level of sub-folders), first folder first. Throws
-  // InputError when two plugins of one kind have one name (naming both files) or a sidecar is
-  // malformed. A folder that does not exist is skipped.
+  // InputError when two plugins of one kind have one name (naming both files), or a sidecar is
+  // malformed, stale or without its library. A folder that does not exist is skipped; one that is
+  // named twice is read once.
   explicit Registry(std::vector<std::filesystem::path> folders);
   ~Registry();
   Registry(Registry&&) noexcept;
@@ -66,8 +69,10 @@ class Registry {
   std::unique_ptr<Impl> impl_;
 };
 
-// --plugin-path folders, LAPWING_PLUGIN_PATH, $XDG_DATA_HOME/lapwing/plugins, then the folder of the
-// build or install tree that this library itself was loaded from; in this order.
+// --plugin-path folders, LAPWING_PLUGIN_PATH, $XDG_DATA_HOME/lapwing/plugins, then the folder of
+// the tree that this library was loaded from: <libdir>/lapwing/plugins of an install, else
+// <libdir>/plugins; in this order. InputError when a folder of the command line is none; one of
+// LAPWING_PLUGIN_PATH is warned of.
 std::vector<std::filesystem::path> plugin_search_path(
     const std::vector<std::filesystem::path>& from_command_line);
 

@@ -1,0 +1,196 @@
+#include "tests/architecture/rules.h"
+
+namespace lapwing::architecture {
+namespace {
+
+void append(Violations& all, const Violations& some) {
+  all.insert(all.end(), some.begin(), some.end());
+}
+
+std::string listed(const Violations& violations) {
+  std::string text;
+  for (const std::string& violation : violations) text += "\n  " + violation;
+  return text;
+}
+
+TEST(Architecture, TheTreeKeepsItsRules) {
+  const std::vector<SourceFile> files = read_tree(LAPWING_SOURCE_DIR);
+  ASSERT_GT(files.size(), 50u);
+  Violations all = check_tree(files);
+  for (const SourceFile& file : files) {
+    append(all, check_includes(file));
+    append(all, check_third_party(file));
+    append(all, check_style(file));
+  }
+  EXPECT_TRUE(all.empty()) << listed(all);
+}
+
+// Each rule is shown to bite: a file that breaks it, and one beside it that does not.
+
+std::string included(const std::string& path, const std::string& include) {
+  const Violations found = check_includes({path, "// text\n#include \"" + include + "\"\n"});
+  return found.empty() ? "" : found.front();
+}
+
+struct Pair {
+  const char* file;
+  const char* include;
+};
+
+TEST(Rules, RoomsIncludeWhatTheTableAllows) {
+  const Pair allowed[] = {
+      {"framework/core/a.h", "framework/core/b.h"},
+      {"framework/verify/a.cpp", "framework/vehicle/b.h"},
+      {"framework/verify/a.cpp", "framework/core/b.h"},
+      {"framework/solve/a.cpp", "framework/problem/b.h"},
+      {"framework/solve/a.cpp", "framework/geometry/b.h"},
+      {"framework/conformance/a.cpp", "framework/plugin/registry.h"},
+      {"framework/mission/a.cpp", "framework/conformance/b.h"},
+      {"framework/app/a.cpp", "framework/mission/b.h"},
+      {"plugins/cost_terms/a/a.cpp", "framework/problem/cost_term.h"},
+      {"plugins/cost_terms/a/a.cpp", "framework/trajectory/b.h"},
+      {"plugins/cost_terms/a/a.cpp", "framework/plugin/plugin.h"},
+      {"plugins/cost_terms/a/a.cpp", "framework/core/units.h"},
+      {"plugins/cost_terms/a/a.cpp", "plugins/cost_terms/a/parts.h"},
+      {"plugins/trajectory_solvers/a/a.cpp", "framework/solve/b.h"},
+      {"tests/solve/a.cpp", "framework/app/b.h"},
+      {"tests/solve/a.cpp", "tests/solve/b.h"},
+  };
+  for (const Pair& pair : allowed) EXPECT_EQ(included(pair.file, pair.include), "") << pair.include;
+  const Pair refused[] = {
+      {"framework/core/a.h", "framework/geometry/b.h"},
+      {"framework/geometry/a.h", "framework/trajectory/b.h"},
+      {"framework/trajectory/a.h", "framework/vehicle/b.h"},
+      {"framework/verify/a.cpp", "framework/problem/b.h"},
+      {"framework/verify/a.cpp", "framework/solve/b.h"},
+      {"framework/verify/a.cpp", "framework/plugin/plugin.h"},
+      {"framework/problem/a.cpp", "framework/solve/b.h"},
+      {"framework/problem/a.cpp", "framework/config/yaml.h"},
+      {"framework/export/a.cpp", "framework/vehicle/b.h"},
+      {"framework/config/a.cpp", "framework/plugin/b.h"},
+      {"framework/plugin/a.cpp", "framework/config/b.h"},
+      {"framework/conformance/a.cpp", "framework/mission/b.h"},
+      {"framework/conformance/a.cpp", "framework/app/b.h"},
+      {"framework/mission/a.cpp", "framework/app/b.h"},
+      {"framework/app/a.cpp", "framework/kitchen/b.h"},
+      {"framework/kitchen/a.cpp", "framework/core/b.h"},
+      {"framework/solve/a.cpp", "plugins/cost_terms/a/a.h"},
+      {"framework/solve/a.cpp", "qp.h"},
+      {"plugins/cost_terms/a/a.cpp", "a.h"},
+      {"plugins/cost_terms/a/a.cpp", "plugins/cost_terms/b/b.h"},
+      {"plugins/cost_terms/a/a.cpp", "plugins/constraints/a/a.h"},
+      {"plugins/cost_terms/a/a.cpp", "framework/solve/b.h"},
+      {"plugins/cost_terms/a/a.cpp", "framework/plugin/registry.h"},
+      {"plugins/cost_terms/a/a.cpp", "framework/config/yaml.h"},
+      {"plugins/exporters/a/a.cpp", "framework/problem/b.h"},
+      {"plugins/toys/a/a.cpp", "framework/core/b.h"},
+      {"tests/solve/a.cpp", "helpers.h"},
+  };
+  for (const Pair& pair : refused) {
+    EXPECT_NE(included(pair.file, pair.include), "") << pair.file << " " << pair.include;
+  }
+  EXPECT_EQ(
+      included("framework/core/a.h", "framework/geometry/b.h"),
+      "framework/core/a.h:2: framework/geometry/b.h: room core may not include room geometry");
+  EXPECT_FALSE(check_includes({"framework/solve/a.h", "#include <framework/core/b.h>"}).empty());
+  EXPECT_FALSE(
+      check_includes({"framework/core/a.h", "  #  include \"framework/app/b.h\""}).empty());
+}
+
+TEST(Rules, ThirdPartyHeadersStayInTheirRoom) {
+  const auto count = [](const char* path, const char* include) {
+    return check_third_party({path, std::string("#include <") + include + ">\n"}).size();
+  };
+  EXPECT_EQ(count("framework/mission/a.h", "lua.hpp"), 0u);
+  EXPECT_EQ(count("framework/app/a.cpp", "lua.hpp"), 1u);
+  EXPECT_EQ(count("plugins/maps/a/a.cpp", "lauxlib.h"), 1u);
+  EXPECT_EQ(count("framework/config/yaml.cpp", "yaml-cpp/yaml.h"), 0u);
+  EXPECT_EQ(count("framework/config/yaml.h", "yaml-cpp/yaml.h"), 1u);
+  EXPECT_EQ(count("framework/vehicle/a.cpp", "yaml-cpp/yaml.h"), 1u);
+  EXPECT_EQ(count("framework/app/a.cpp", "CLI/CLI.hpp"), 0u);
+  EXPECT_EQ(count("framework/mission/a.cpp", "CLI/CLI.hpp"), 1u);
+  for (const char* header : {"spdlog/spdlog.h", "nlohmann/json.hpp", "fmt/format.h"}) {
+    EXPECT_EQ(count("framework/core/a.cpp", header), 0u);
+    EXPECT_EQ(count("framework/core/a.h", header), 1u);
+  }
+  EXPECT_EQ(count("framework/map/a.cpp", "embree3/rtcore.h"), 1u);
+  EXPECT_EQ(check_third_party({"framework/solve/a.cpp", "x = dlopen(path, 1);"}).size(), 1u);
+  EXPECT_EQ(check_third_party({"framework/plugin/a.cpp", "x = dlopen(path, 1);"}).size(), 0u);
+  const SourceFile one{"framework/geometry/a.cpp", "#include <GeographicLib/Geodesic.hpp>"};
+  const SourceFile two{"framework/geometry/b.cpp", "#include <GeographicLib/Geocentric.hpp>"};
+  EXPECT_TRUE(check_tree({one}).empty());
+  EXPECT_EQ(check_tree({one, two}).size(), 1u);
+}
+
+TEST(Rules, FilesAndTypesHaveNamesThatSaySomething) {
+  const auto count = [](const std::string& path, const std::string& text) {
+    return check_style({path, "#pragma once\n" + text}).size();
+  };
+  EXPECT_EQ(count("framework/core/units.h", "class Unit {};"), 0u);
+  for (const char* name : {"utils", "common", "helper", "manager", "context", "plan_utils",
+                           "string_helpers", "plugin_manager"}) {
+    EXPECT_EQ(count(std::string("framework/core/") + name + ".h", ""), 1u) << name;
+  }
+  for (const char* type : {"class PlanManager {", "struct RunContext {", "class StringUtils;",
+                           "namespace utils {", "struct Helper {"}) {
+    EXPECT_EQ(count("framework/core/a.h", type), 1u) << type;
+  }
+  EXPECT_EQ(count("framework/core/a.h", "class Contexture;"), 0u);
+  EXPECT_EQ(count("framework/core/PlanReader.h", ""), 1u);
+  EXPECT_EQ(count("framework/core/plan-reader.cpp", ""), 1u);
+}
+
+TEST(Rules, TextIsFinishedAndFitsTheScreen) {
+  const auto count = [](const std::string& path, const std::string& text) {
+    return check_style({path, text}).size();
+  };
+  EXPECT_EQ(count("framework/core/a.h", "int a;\n"), 1u);  // no #pragma once
+  EXPECT_EQ(count("framework/core/a.h", "#pragma once\nusing namespace std;\n"), 1u);
+  for (const char* path : {"framework/core/a.cpp", "scripts/mission/film.lua"}) {
+    EXPECT_EQ(count(path, std::string(100, 'x')), 0u);
+    EXPECT_EQ(count(path, std::string(101, 'x')), 1u);
+  }
+  std::string accents;
+  for (int i = 0; i < 100; ++i) accents += "ä";
+  EXPECT_EQ(count("framework/core/a.cpp", accents), 0u);
+  for (const char* path : {"framework/core/a.cpp", "plugins/a/README.md", "scripts/run.sh"}) {
+    EXPECT_EQ(count(path, std::string("// TO") + "DO later"), 1u);
+    EXPECT_EQ(count(path, std::string("# FIX") + "ME(me): now"), 1u);
+  }
+  std::string lines;
+  for (int i = 0; i < 249; ++i) lines += "x = 1\n";
+  EXPECT_EQ(count("scripts/mission/film.lua", lines), 0u);
+  EXPECT_EQ(count("scripts/mission/film.lua", lines + "x = 1\n"), 1u);
+  EXPECT_EQ(count("scripts/scene/castle.lua", lines + "x = 1\n"), 0u);
+}
+
+TEST(Rules, APluginHasOneName) {
+  const std::string folder = "plugins/cost_terms/keep_low/";
+  const std::vector<SourceFile> good{
+      {folder + "keep_low.cpp",
+       "class KeepLow final { static constexpr PluginText kText{\"keep_low\", \"1\"}; };\n"
+       "LAPWING_PLUGINS(lapwing::KeepLow)\n"},
+      {folder + "CMakeLists.txt", "lapwing_add_plugin(cost_term keep_low)\n"},
+      {folder + "README.md", "# keep_low\n"},
+  };
+  EXPECT_TRUE(check_tree(good).empty()) << listed(check_tree(good));
+  const auto changed = [&](std::size_t file, const std::string& from, const std::string& to) {
+    std::vector<SourceFile> files = good;
+    const std::size_t where = files[file].text.find(from);
+    files[file].text.replace(where, from.size(), to);
+    return check_tree(files).size();
+  };
+  EXPECT_EQ(changed(0, "\"keep_low\"", "\"keeplow\""), 1u);
+  EXPECT_EQ(changed(0, "class KeepLow", "class Keep_low"), 1u);
+  EXPECT_EQ(changed(0, "lapwing::KeepLow", "lapwing::KeepHigh"), 1u);
+  EXPECT_EQ(changed(1, "keep_low", "keep_high"), 1u);
+  EXPECT_EQ(changed(1, "cost_term ", "constraint "), 1u);
+  std::vector<SourceFile> renamed = good;
+  renamed[0].path = folder + "low.cpp";
+  EXPECT_EQ(check_tree(renamed).size(), 4u);  // the file, its kText, its class, its macro
+  EXPECT_EQ(check_tree({good[0], good[1]}).size(), 1u);  // no README
+  EXPECT_EQ(check_tree({good[0], good[2]}).size(), 1u);  // no CMake line
+}
+
+}  // namespace
+}  // namespace lapwing::architecture
