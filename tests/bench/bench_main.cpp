@@ -1,4 +1,6 @@
-// Runs the benchmarks and prints the ratios that the README claims, from medians of one run.
+// Runs the benchmarks and prints the ratios that the README claims, from medians of one run. All of
+// them are single-threaded, so that processor time is compared, which other work on the machine
+// disturbs least.
 #include <cstdio>
 #include <map>
 #include <string>
@@ -21,7 +23,7 @@ class Medians final : public benchmark::ConsoleReporter {
       failed_ |= run.error_occurred;
       if (run.aggregate_name != "median") continue;
       Entry& entry = entries_[run.run_name.function_name];
-      entry.milliseconds = run.GetAdjustedRealTime();
+      entry.milliseconds = run.GetAdjustedCPUTime();
       for (const auto& [name, counter] : run.counters) entry.counters[name] = counter.value;
     }
   }
