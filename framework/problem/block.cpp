@@ -42,9 +42,9 @@ Matrix3d skew(const Vector3d& v) {
 Matrix3d inverse_right_jacobian(const Vector3d& e) {
   const double angle = e.norm();
   const Matrix3d s = skew(e);
-  const double second = angle < 1e-4 ? 1.0 / 12.0 + angle * angle / 720.0
-                                     : 1.0 / (angle * angle) - (1.0 + std::cos(angle)) /
-                                                                   (2.0 * angle * std::sin(angle));
+  const double squared = angle * angle;
+  const double second = angle < 1e-2 ? 1.0 / 12.0 + squared / 720.0 + squared * squared / 30240.0
+                                     : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / squared;
   return Matrix3d::Identity() + 0.5 * s + second * s * s;
 }
 

@@ -26,7 +26,7 @@ enum class BlockRole { state, input, free, clock };
 struct BlockSpec {
   std::string name;  // snake_case
   int size = 1;
-  std::string unit;
+  std::string unit = {};
   BlockRole role = BlockRole::state;
   Topology topology = Topology::line;
 
@@ -50,6 +50,12 @@ struct DifferenceJacobians {
 };
 DifferenceJacobians difference_jacobians(const BlockSpec& block, const double* from,
                                          const double* to);
+
+// Second derivatives of multipliers . block_difference(from, to) with respect to tangent steps of
+// both, `from` first: 2 tangent_size squared, symmetric; zero on a line. `from` and `to` must be of
+// unit length.
+Eigen::MatrixXd difference_curvature(const BlockSpec& block, const double* from, const double* to,
+                                     const double* multipliers);
 
 // "position.x", "rotors.2", "yaw": the name of one number of a block.
 std::string component_name(const BlockSpec& block, int component);

@@ -28,8 +28,12 @@ BoundFunction::BoundFunction(std::string name, StageFunction& function, const St
     throw InputError(name_ + ": needs " + std::to_string(shape_.window) +
                      " neighbouring stages, the problem has " +
                      std::to_string(columns.horizon.stages));
-  if (!shape_.times.empty() && shape_.window != 1)
-    throw Error(name_ + ": a function at given times reads one stage");
+  if (shape_.blocks.empty()) throw Error(name_ + ": reads no block");
+  if (!shape_.row_names.empty() && static_cast<int>(shape_.row_names.size()) != shape_.rows)
+    throw Error(name_ + ": names " + std::to_string(shape_.row_names.size()) + " of " +
+                std::to_string(shape_.rows) + " rows");
+  if (!shape_.times.empty() && (shape_.window != 1 || !shape_.stages.empty()))
+    throw Error(name_ + ": a function at given times reads one stage and lists no others");
   if (!shape_.times.empty() && columns.horizon.step_free)
     throw InputError(name_ + ": given times need a fixed step");
   for (int w = 0; w < shape_.window; ++w)
@@ -37,6 +41,12 @@ BoundFunction::BoundFunction(std::string name, StageFunction& function, const St
   row_names_ = shape_.row_names;
   time_offset_ = columns.layout.offset(columns.time_block);
   list_instances(columns);
+  for (const int block : shape_.blocks) {
+    const BlockSpec& spec = columns.layout.block(block);
+    if (sampled_ && spec.topology == Topology::quaternion && spec.role != BlockRole::state)
+      throw Error(name_ + ": '" + spec.name +
+                  "' is an orientation of its own, which is not read between two stages");
+  }
   list_columns(columns);
 
   bool models_affine = true;
@@ -162,10 +172,11 @@ void BoundFunction::gather_sampled(const StageColumns& columns, const Stages& at
   for (int b = 0; b < layout.count(); ++b) {
     const BlockSpec& block = layout.block(b);
     const int at_row = layout.offset(b);
-    if (block.role == BlockRole::free)
+    if (block.role == BlockRole::free && block.topology == Topology::line)
       between.segment(at_row, block.size) +=
           fraction * (at.col(next) - at.col(stage)).segment(at_row, block.size);
     if (!chain || block.role == BlockRole::state || block.role == BlockRole::clock) continue;
+    if (block.topology == Topology::quaternion) continue;  // never read here
     for (int i = 0; i < block.size; ++i) {
       const double later = block.role == BlockRole::free ? fraction : 0.0;
       derivative(at_row + i, inside(tangent(b) + i)) = 1.0 - later;
@@ -293,7 +304,10 @@ void BoundFunction::curvature(const StageColumns& columns, const Stages& at,
     const Eigen::Map<const Eigen::VectorXd> lambda(multipliers + k * m, m);
     const Eigen::VectorXd slope =
         Eigen::Map<const RowMajor>(j.data(), m, n).transpose() * lambda;  // d(lambda.v)/d inputs
-    if (!sampled_) add_retraction_curvature(columns, at, k, root * slope, result);
+    if (sampled_)
+      add_flow_curvature(columns, at, k, root * slope, result);
+    else
+      add_retraction_curvature(columns, at, k, root * slope, result);
     if (step_column_) {
       // root(h) v: cross terms between the root and v, and the root's own curvature.
       const Eigen::VectorXd cross = (0.5 / root) * (chain.transpose() * slope);
@@ -302,6 +316,52 @@ void BoundFunction::curvature(const StageColumns& columns, const Stages& at,
       const double value = lambda.dot(Eigen::Map<const Eigen::VectorXd>(v.data(), m));
       result(width_ - 1, width_ - 1) -= 0.25 / (step * root) * value;
     }
+  }
+}
+
+// A sampled state is the model's flow, which may bend; `slope` is the derivative of the bent
+// quantity with respect to the instance's inputs.
+void BoundFunction::add_flow_curvature(const StageColumns& columns, const Stages& at, int instance,
+                                       const Eigen::VectorXd& slope,
+                                       Eigen::Ref<RowMajor> result) const {
+  const StageLayout& layout = columns.layout;
+  const int stage = stage_[instance];
+  for (const BoundModel& model : columns.models) {
+    if (model.model->affine()) continue;
+    const int n = model.arguments();
+    std::vector<double> x(n), next(model.states);
+    RowMajor jacobian(model.states, n), bend = RowMajor::Zero(n, n);
+    Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(model.states);
+    int state = 0;
+    for (const int b : model.state_blocks) {
+      const int size = layout.block(b).size;
+      int input = 0;
+      for (const int read : shape_.blocks) {
+        if (read == b) multipliers.segment(state, size) += slope.segment(input, size);
+        input += layout.block(read).size;
+      }
+      state += size;
+    }
+    columns.gather_model(model, at, stage, offset_[instance], x.data());
+    Workspace workspace;
+    model.model->flow({0, 1}, x.data(), next.data(), jacobian.data(), workspace);
+    model.model->curvature({0, 1}, x.data(), multipliers.data(), bend.data(), workspace);
+    const Eigen::VectorXd pull = jacobian.transpose() * multipliers;
+    RowMajor chain = RowMajor::Zero(n, width_);
+    int argument = 0;
+    for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
+      for (const int b : *blocks) {
+        const BlockSpec& block = layout.block(b);
+        const double* value = at.col(stage).data() + layout.offset(b);
+        const int column = columns.column_in_stage[layout.tangent_offset(b)];
+        chain.block(argument, column, block.size, block.tangent_size()) =
+            retraction_jacobian(block, value);
+        if (block.topology == Topology::quaternion)
+          result.diagonal().segment<3>(column).array() -=
+              0.25 * Eigen::Map<const Eigen::Vector4d>(value).dot(pull.segment<4>(argument));
+        argument += block.size;
+      }
+    result.noalias() += chain.transpose() * bend * chain;
   }
 }
 

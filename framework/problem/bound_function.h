@@ -59,6 +59,8 @@ class BoundFunction {
                     int instance, Eigen::VectorXd& between, RowMajor* derivative) const;
   void weight_rows(const StageColumns& columns, const Stages& at, int instance, double* values,
                    double* jacobian) const;
+  void add_flow_curvature(const StageColumns& columns, const Stages& at, int instance,
+                          const Eigen::VectorXd& slope, Eigen::Ref<RowMajor> result) const;
   void add_retraction_curvature(const StageColumns& columns, const Stages& at, int instance,
                                 const Eigen::VectorXd& slope, Eigen::Ref<RowMajor> result) const;
 

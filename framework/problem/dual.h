@@ -2,8 +2,9 @@
 //
 // Dual<S, N> is v + sum_k d[k] eps_k with eps_j eps_k = 0. With S = double it carries N first
 // derivatives; with S = Dual<double, N> second ones. Comparisons look at the value alone. At kinks
-// a subgradient is taken: abs'(0) = 0, min and max take the first argument on ties, and sqrt, norm
-// and hypot have derivative 0 at 0, so that a residual stays finite there.
+// a subgradient is taken: abs'(0) = 0, min and max take the first argument on ties, and sqrt, norm,
+// hypot, pow and atan2 have derivative 0 at 0 where they have none, so that a residual stays
+// finite.
 #pragma once
 
 #include <array>
@@ -47,7 +48,7 @@ struct Dual {
   }
   Dual& operator/=(const Dual& o) {
     const S inverse = S(1.0) / o.v;
-    const S quotient = v * inverse;
+    const S quotient = v / o.v;  // the very number that plain division gives
     for (int k = 0; k < N; ++k) d[k] = (d[k] - quotient * o.d[k]) * inverse;
     v = quotient;
     return *this;
@@ -131,10 +132,22 @@ template <class S, int N>
 Dual<S, N> max(const Dual<S, N>& a, const Dual<S, N>& b) {
   return a < b ? b : a;
 }
-// x^p for a constant p.
+template <class S, int N>
+Dual<S, N> hypot(const Dual<S, N>& x, const Dual<S, N>& y) {
+  using std::hypot;
+  Dual<S, N> r;
+  r.v = hypot(x.v, y.v);
+  if (value_of(r.v) == 0.0) return Dual<S, N>(0.0);
+  const S a = x.v / r.v, b = y.v / r.v;
+  for (int k = 0; k < N; ++k) r.d[k] = a * x.d[k] + b * y.d[k];
+  return r;
+}
+// x^p for a constant p. Below p = 1 the derivative at 0 is taken as 0, as that of sqrt.
 template <class S, int N>
 Dual<S, N> pow(const Dual<S, N>& x, double p) {
   using std::pow;
+  if (p == 0.0) return Dual<S, N>(1.0);
+  if (p > 0.0 && p < 1.0 && value_of(x) == 0.0) return Dual<S, N>(0.0);
   return x.chain(pow(x.v, p), S(p) * pow(x.v, p - 1.0));
 }
 

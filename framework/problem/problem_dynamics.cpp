@@ -49,7 +49,25 @@ void add_retraction_curvature(const StageColumns& columns, const BoundModel& mod
   }
 }
 
+// Curvature of a quaternion's row in the flow's tangent, which moves by `flow` times the arguments'
+// tangents, and in the next stage's, which stands at `next` among the columns. Lower triangle.
+void add_difference_curvature(const Eigen::MatrixXd& curvature, const RowMajor& flow,
+                              Eigen::Index next, RowMajor& hessian) {
+  const Eigen::Index width = flow.cols();
+  hessian.topLeftCorner(width, width) += flow.transpose() * curvature.topLeftCorner<3, 3>() * flow;
+  hessian.block(next, 0, 3, width) += curvature.bottomLeftCorner<3, 3>() * flow;
+  hessian.block<3, 3>(next, next) += curvature.bottomRightCorner<3, 3>();
+}
+
 }  // namespace
+
+std::vector<int> curvature_columns(const StageColumns& columns, const BoundModel& model,
+                                   int stage) {
+  for (const int b : model.state_blocks)
+    if (columns.layout.block(b).topology == Topology::quaternion)
+      return model_step_columns(columns, model, stage);
+  return columns.model_columns(model, stage);
+}
 
 void evaluate_model_step(const StageColumns& columns, const BoundModel& model, const Stages& at,
                          int stage, bool derivatives, ModelStep& result) {
@@ -144,10 +162,14 @@ void TrajectoryProblem::Impl::dynamics_curvature(const Stages& at, const double*
     if (model.model->affine() && !columns.horizon.step_free) continue;
     const int n = model.arguments();
     std::vector<double> x(n), next(model.states);
-    RowMajor jacobian(model.states, n), bend(n, n);
+    RowMajor jacobian(model.states, n), bend(n, n), tangent;
     for (int i = 0; i + 1 < columns.horizon.stages; ++i) {
       columns.gather_model(model, at, i, columns.step(at, i), x.data());
       model.model->flow({0, 1}, x.data(), next.data(), jacobian.data(), workspace);
+      const RowMajor chain = argument_chain(columns, model, at, i);
+      const auto width = chain.cols();
+      const auto all = static_cast<Eigen::Index>(curvature_columns(columns, model, i).size());
+      tangent.setZero(all, all);
       // Multipliers of the flow's own numbers: the row is the difference from the flow.
       Eigen::VectorXd ambient(model.states);
       int row = 0, state = 0;
@@ -155,17 +177,20 @@ void TrajectoryProblem::Impl::dynamics_curvature(const Stages& at, const double*
         const BlockSpec& block = layout.block(b);
         const double* there = at.col(i + 1).data() + layout.offset(b);
         const DifferenceJacobians d = difference_jacobians(block, next.data() + state, there);
+        const Eigen::MatrixXd projection = tangent_projection(block, next.data() + state);
         const Eigen::Map<const Eigen::VectorXd> lambda(
             multipliers + model.first_row + i * model.state_tangents + row, block.tangent_size());
-        ambient.segment(state, block.size) =
-            (d.from * tangent_projection(block, next.data() + state)).transpose() * lambda;
+        ambient.segment(state, block.size) = (d.from * projection).transpose() * lambda;
+        if (block.topology == Topology::quaternion)
+          add_difference_curvature(
+              difference_curvature(block, next.data() + state, there, lambda.data()),
+              projection * jacobian.middleRows(state, block.size) * chain, width + row, tangent);
         row += block.tangent_size();
         state += block.size;
       }
       bend.setZero();
       model.model->curvature({0, 1}, x.data(), ambient.data(), bend.data(), workspace);
-      const RowMajor chain = argument_chain(columns, model, at, i);
-      RowMajor tangent = chain.transpose() * bend * chain;
+      tangent.topLeftCorner(width, width) += chain.transpose() * bend * chain;
       add_retraction_curvature(columns, model, at, i, jacobian.transpose() * ambient, tangent);
       for (int a = 0; a < tangent.rows(); ++a)
         for (int b = 0; b <= a; ++b, ++slot)

@@ -22,6 +22,13 @@ void scatter(const BoundFunction& bound, const std::vector<int>& slots,
   }
 }
 
+bool same_pattern(const SparseMatrix& a, const SparseMatrix& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() && a.nonZeros() == b.nonZeros() &&
+         a.isCompressed() &&
+         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize(), b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
+}
+
 }  // namespace
 
 double TrajectoryProblem::Impl::stage_number(const Stages& at, int column) const {
@@ -97,9 +104,8 @@ void TrajectoryProblem::linearise(const Stages& at, LocalModel& model, Curvature
                                   const Eigen::VectorXd* multipliers) const {
   const Impl& p = *impl_;
   Workspace workspace;
-  if (model.hessian.nonZeros() != p.hessian_pattern.nonZeros()) model.hessian = p.hessian_pattern;
-  if (model.jacobian.nonZeros() != p.jacobian_pattern.nonZeros())
-    model.jacobian = p.jacobian_pattern;
+  if (!same_pattern(model.hessian, p.hessian_pattern)) model.hessian = p.hessian_pattern;
+  if (!same_pattern(model.jacobian, p.jacobian_pattern)) model.jacobian = p.jacobian_pattern;
   std::copy(p.constant_hessian.begin(), p.constant_hessian.end(), model.hessian.valuePtr());
   model.cost = 0;
   model.gradient.setZero(columns());

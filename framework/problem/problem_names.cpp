@@ -23,6 +23,7 @@ class Worst {
     auto [found, inserted] = index_.try_emplace(name, entries_.size());
     if (inserted) entries_.push_back({name, "", 0.0, 0.0});
     Violation& entry = entries_[found->second];
+    if (std::isnan(amount)) amount = std::numeric_limits<double>::infinity();
     if (!(amount > entry.amount)) return;
     entry.amount = amount;
     entry.time = time;
@@ -43,6 +44,7 @@ class Worst {
 
 std::string TrajectoryProblem::column_name(int column) const {
   const StageColumns& c = impl_->columns;
+  if (column < 0 || column >= c.total()) throw Error("no such column");
   const int stage = column / c.per_stage, inside = column % c.per_stage;
   for (int b = 0; b < c.layout.count(); ++b)
     for (int i = 0; i < c.layout.block(b).tangent_size(); ++i)
@@ -96,8 +98,9 @@ std::vector<Violation> TrajectoryProblem::violations(const Stages& at) const {
   Worst worst;
   for (int row = 0; row < p.dynamics_rows; ++row) {
     const auto name = [&] { return p.dynamics_row_name(row); };
+    const int intervals = p.columns.horizon.stages - 1;
     std::string owner = "clock";
-    double time = 0;
+    double time = this->time(at, std::clamp((row - p.dynamics_rows) / 2 + intervals, 0, intervals));
     for (const BoundModel& model : p.columns.models) {
       const int inside = row - model.first_row;
       const int flow_rows = model.state_tangents * (p.columns.horizon.stages - 1);

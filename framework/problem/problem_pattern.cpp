@@ -153,7 +153,7 @@ void TrajectoryProblem::Impl::build_patterns() {
     for (const BoundModel& model : columns.models) {
       if (model.model->affine() && !columns.horizon.step_free) continue;
       for (int i = 0; i + 1 < stages; ++i) {
-        const std::vector<int> c = columns.model_columns(model, i);
+        const std::vector<int> c = curvature_columns(columns, model, i);
         for (std::size_t a = 0; a < c.size(); ++a)
           for (std::size_t b = 0; b <= a; ++b)
             visit(c[a] < 0 || c[b] < 0 ? -1 : std::max(c[a], c[b]), std::min(c[a], c[b]));

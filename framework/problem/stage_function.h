@@ -61,7 +61,8 @@ struct FunctionShape {
 // Scratch memory of one thread: grows on first use, never shrinks.
 class Workspace {
  public:
-  // `count` doubles, uninitialised, valid until the next call with the same `slot` (0 to 3).
+  // `count` doubles, uninitialised, valid until the next call with the same `slot`. A function has
+  // slots 0 and 1 to itself; 2 and 3 are the kernel's, which keeps its arguments there.
   double* doubles(int slot, std::size_t count) {
     auto& buffer = buffers_[slot];
     if (buffer.size() < count) buffer.resize(count);

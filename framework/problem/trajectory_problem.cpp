@@ -11,8 +11,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kShortestStep = 1e-3;  // s, lower bound of a free step
 
-// Linear between the guess's times, constant outside.
-Eigen::VectorXd interpolate(const BlockGuess& guess, double time) {
+// Straight between the guess's times (for an orientation, the shortest turn), constant outside.
+Eigen::VectorXd interpolate(const BlockSpec& block, const BlockGuess& guess, double time) {
   const auto& t = guess.times;
   const auto after = std::upper_bound(t.begin(), t.end(), time);
   if (after == t.begin()) return guess.values.front();
@@ -20,15 +20,25 @@ Eigen::VectorXd interpolate(const BlockGuess& guess, double time) {
   const std::size_t k = after - t.begin();
   const double span = t[k] - t[k - 1];
   const double s = span > 0 ? (time - t[k - 1]) / span : 1.0;
-  return (1.0 - s) * guess.values[k - 1] + s * guess.values[k];
+  Eigen::VectorXd delta(block.tangent_size()), result(block.size);
+  block_difference(block, guess.values[k - 1].data(), guess.values[k].data(), delta.data());
+  delta *= s;
+  block_retract(block, guess.values[k - 1].data(), delta.data(), result.data());
+  return result;
 }
 
-void check_guess(const std::vector<double>& times, std::size_t values, const std::string& what) {
-  if (times.empty() || times.size() != values)
+const BlockSpec kPathPosition{.name = "position", .size = 3, .unit = "m"};
+const BlockSpec kPathYaw{.name = "yaw", .size = 1, .unit = "rad"};
+
+template <class Vectors>
+void check_guess(const std::vector<double>& times, const Vectors& values, const std::string& what) {
+  if (times.empty() || times.size() != values.size())
     throw InputError("guess of " + what + " needs as many values as times, at least one");
   for (std::size_t k = 0; k < times.size(); ++k)
     if (!std::isfinite(times[k]) || (k > 0 && times[k] < times[k - 1]))
       throw InputError("guess of " + what + ": times must be finite and in order");
+  for (const auto& value : values)
+    if (!value.allFinite()) throw InputError("guess of " + what + ": values must be finite");
 }
 
 }  // namespace
@@ -45,6 +55,7 @@ TrajectoryProblem::~TrajectoryProblem() = default;
 TrajectoryProblem::TrajectoryProblem(TrajectoryProblem&&) noexcept = default;
 
 void TrajectoryProblem::add_model(std::string name, std::unique_ptr<VehicleModel> model) {
+  impl_->expect_unfinished();
   StageColumns& columns = impl_->columns;
   model->bind(impl_->vehicle);
   BoundModel bound;
@@ -56,23 +67,28 @@ void TrajectoryProblem::add_model(std::string name, std::unique_ptr<VehicleModel
     (state ? bound.state_blocks : bound.input_blocks).push_back(columns.layout.add(block));
     (state ? bound.states : bound.inputs) += block.size;
     if (state) bound.state_tangents += block.tangent_size();
+    if (block.topology == Topology::quaternion && model->affine())
+      throw Error(bound.name + ": no model of an orientation is affine");
   }
   bound.model = std::move(model);
   columns.models.push_back(std::move(bound));
 }
 
 void TrajectoryProblem::add_block(BlockSpec block) {
+  impl_->expect_unfinished();
   block.role = BlockRole::free;
   impl_->columns.layout.add(std::move(block));
 }
 
 void TrajectoryProblem::add_cost(std::string name, double weight, std::unique_ptr<CostTerm> term) {
+  impl_->expect_unfinished();
   if (!(weight >= 0) || !std::isfinite(weight))
     throw InputError(name + ": a weight is at least 0 and finite");
   impl_->costs.push_back({std::move(name), weight, std::move(term), nullptr, {}});
 }
 
 void TrajectoryProblem::add_constraint(std::string name, std::unique_ptr<Constraint> constraint) {
+  impl_->expect_unfinished();
   ConstraintEntry entry;
   entry.name = std::move(name);
   entry.constraint = std::move(constraint);
@@ -82,31 +98,39 @@ void TrajectoryProblem::add_constraint(std::string name, std::unique_ptr<Constra
 void TrajectoryProblem::set_path_guess(std::vector<double> times,
                                        std::vector<Eigen::Vector3d> positions,
                                        std::vector<double> yaws) {
-  check_guess(times, positions.size(), "path");
-  check_guess(times, yaws.size(), "path");
+  BlockGuess yaw_guess{"yaw", times, {}};
+  for (const double yaw : yaws) yaw_guess.values.push_back(Eigen::VectorXd::Constant(1, yaw));
+  check_guess(times, positions, "path");
+  check_guess(times, yaw_guess.values, "path");
   impl_->path_positions = {"position", times, {positions.begin(), positions.end()}};
-  impl_->path_yaws = {"yaw", times, {}};
-  for (const double yaw : yaws)
-    impl_->path_yaws.values.push_back(Eigen::VectorXd::Constant(1, yaw));
+  impl_->path_yaws = std::move(yaw_guess);
 }
 
 void TrajectoryProblem::set_block_guess(const std::string& block, std::vector<double> times,
                                         std::vector<Eigen::VectorXd> values) {
   const BlockSpec& spec = impl_->columns.layout.block(impl_->columns.layout.index(block));
-  check_guess(times, values.size(), block);
-  for (const Eigen::VectorXd& value : values)
+  check_guess(times, values, block);
+  for (Eigen::VectorXd& value : values) {
     if (value.size() != spec.size)
       throw InputError("guess of " + block + " needs " + std::to_string(spec.size) + " numbers");
+    if (spec.topology == Topology::line) continue;
+    if (!(value.norm() > 0)) throw InputError("guess of " + block + ": a quaternion of length 0");
+    value.normalize();
+  }
   impl_->guesses.push_back({block, std::move(times), std::move(values)});
 }
 
 void TrajectoryProblem::finish() {
-  if (impl_->finished) throw Error("a trajectory problem is finished once");
+  impl_->expect_unfinished();
   if (impl_->columns.models.empty()) throw InputError("a trajectory problem needs a vehicle model");
   impl_->add_clock();
   impl_->bind_terms();
   impl_->build_patterns();
   impl_->finished = true;
+}
+
+void TrajectoryProblem::Impl::expect_unfinished() const {
+  if (finished) throw Error("a trajectory problem does not change once it is finished");
 }
 
 // Blocks `time` and `step`, then the columns: every number but the constants.
@@ -238,8 +262,8 @@ Stages TrajectoryProblem::initial_guess() const {
   for (int i = 0; i < count; ++i) {
     samples[i].time = i * step;
     if (impl_->path_positions.times.empty()) continue;
-    samples[i].position = interpolate(impl_->path_positions, samples[i].time);
-    samples[i].yaw = interpolate(impl_->path_yaws, samples[i].time)(0);
+    samples[i].position = interpolate(kPathPosition, impl_->path_positions, samples[i].time);
+    samples[i].yaw = interpolate(kPathYaw, impl_->path_yaws, samples[i].time)(0);
   }
   for (int i = 0; i + 1 < count; ++i) {
     samples[i].velocity = (samples[i + 1].position - samples[i].position) / step;
@@ -267,7 +291,7 @@ Stages TrajectoryProblem::initial_guess() const {
     for (const BlockGuess& guess : impl_->guesses) {
       const int b = columns.layout.index(guess.block);
       at.col(i).segment(columns.layout.offset(b), columns.layout.block(b).size) =
-          interpolate(guess, samples[i].time);
+          interpolate(columns.layout.block(b), guess, samples[i].time);
     }
   }
   return at;

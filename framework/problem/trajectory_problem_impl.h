@@ -57,11 +57,12 @@ struct TrajectoryProblem::Impl {
   int rows = 0;
   std::vector<int> model_slots;          // ModelStep::jacobian entries, [model][stage][row][column]
   std::vector<int> fixed_slots;          // held last inputs, then the clock
-  std::vector<int> model_hessian_slots;  // lower triangles over model_columns, [model][stage]
+  std::vector<int> model_hessian_slots;  // lower triangles over curvature_columns, [model][stage]
   SparseMatrix hessian_pattern, jacobian_pattern;
   std::vector<double> constant_hessian;  // values of costs whose Jacobian never changes
 
   // trajectory_problem.cpp
+  void expect_unfinished() const;
   void add_clock();
   void bind_terms();
   void take_bounds(ConstraintEntry& entry, int owner);
@@ -94,5 +95,8 @@ void evaluate_model_step(const StageColumns& columns, const BoundModel& model, c
 // Global columns of ModelStep::jacobian.
 std::vector<int> model_step_columns(const StageColumns& columns, const BoundModel& model,
                                     int stage);
+// Columns in which the rows of one model step bend: those of the flow's arguments, and with
+// quaternions all.
+std::vector<int> curvature_columns(const StageColumns& columns, const BoundModel& model, int stage);
 
 }  // namespace lapwing
