@@ -35,8 +35,8 @@ TableRow check_row(const Check& check) {
   std::string remark = check.required ? "" : "reported, not required";
   if (!check.detail.empty()) remark += (remark.empty() ? "" : "; ") + check.detail;
   return {{check.name, check.worst ? TableCell(shown(*check.worst)) : TableCell(""),
-           (check.at_least ? "\u2265\u00a0" : "\u2264\u00a0") + number_text(shown(check.limit)), unit,
-           check.worst ? TableCell(check.at) : TableCell(""), remark},
+           (check.at_least ? "\u2265\u00a0" : "\u2264\u00a0") + number_text(shown(check.limit)),
+           unit, check.worst ? TableCell(check.at) : TableCell(""), remark},
           check.pass ? Mark::pass : Mark::fail};
 }
 

@@ -1,5 +1,7 @@
 #include "tests/architecture/rules.h"
 
+#include "framework/core/files.h"
+
 namespace lapwing::architecture {
 namespace {
 
@@ -23,6 +25,17 @@ TEST(Architecture, TheTreeKeepsItsRules) {
     append(all, check_style(file));
   }
   EXPECT_TRUE(all.empty()) << listed(all);
+}
+
+TEST(Architecture, TheMapIsTrue) {
+  const std::filesystem::path root = std::filesystem::path(LAPWING_SOURCE_DIR) / "framework";
+  std::vector<std::string> existing;
+  for (const auto& item : std::filesystem::directory_iterator(root)) {
+    if (item.is_directory()) existing.push_back(item.path().filename().string());
+  }
+  const Violations found =
+      check_map({"framework/README.md", read_file(root / "README.md")}, existing);
+  EXPECT_TRUE(found.empty()) << listed(found);
 }
 
 // Each rule is shown to bite: a file that breaks it, and one beside it that does not.
@@ -66,7 +79,7 @@ TEST(Rules, RoomsIncludeWhatTheTableAllows) {
       {"framework/verify/a.cpp", "framework/plugin/plugin.h"},
       {"framework/problem/a.cpp", "framework/solve/b.h"},
       {"framework/problem/a.cpp", "framework/config/yaml.h"},
-      {"framework/export/a.cpp", "framework/vehicle/b.h"},
+      {"framework/export/a.cpp", "framework/problem/b.h"},
       {"framework/config/a.cpp", "framework/plugin/b.h"},
       {"framework/plugin/a.cpp", "framework/config/b.h"},
       {"framework/conformance/a.cpp", "framework/mission/b.h"},
@@ -162,6 +175,24 @@ TEST(Rules, TextIsFinishedAndFitsTheScreen) {
   EXPECT_EQ(count("scripts/mission/film.lua", lines), 0u);
   EXPECT_EQ(count("scripts/mission/film.lua", lines + "x = 1\n"), 1u);
   EXPECT_EQ(count("scripts/scene/castle.lua", lines + "x = 1\n"), 0u);
+}
+
+TEST(Rules, TheMapSaysWhatTheRulesSay) {
+  const std::string rows =
+      "| room | holds | may include |\n|---|---|---|\n"
+      "| `core` | errors | \u2013 |\n"
+      "| `verify` | checks | geometry, vehicle |\n"
+      "| `app` | commands | everything |\n";
+  const auto count = [&](const std::string& from, const std::string& to) {
+    std::string text = rows;
+    text.replace(text.find(from), from.size(), to);
+    return check_map({"README.md", text}, {"core", "verify", "app", "geometry", "vehicle"}).size();
+  };
+  EXPECT_EQ(count("core", "core"), 2u);  // geometry and vehicle are not listed
+  EXPECT_EQ(count("\u2013", "geometry"), 3u);
+  EXPECT_EQ(count("geometry, vehicle", "geometry"), 3u);
+  EXPECT_EQ(count("geometry, vehicle", "geometry, vehicle, solve"), 3u);
+  EXPECT_EQ(count("| `app`", "| app"), 3u);
 }
 
 TEST(Rules, APluginHasOneName) {

@@ -41,7 +41,7 @@ const std::map<std::string, Names>& rooms() {
       {"view", {"geometry", "map", "path"}},
       {"explore", {"geometry", "map", "view", "path"}},
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
-      {"export", {"geometry", "trajectory", "verify"}},
+      {"export", {"geometry", "trajectory", "vehicle", "verify"}},  // limits in reports
       {"config", {}},
       {"plugin", {}},
       {"conformance", without(kAllButApp, "mission")},
@@ -348,6 +348,37 @@ Violations check_tree(const std::vector<SourceFile>& files) {
     std::string message = header + " is included by more than one source:";
     for (const std::string& path : paths) message += " " + path;
     found.push_back(message);
+  }
+  return found;
+}
+
+Violations check_map(const SourceFile& map, const std::vector<std::string>& existing) {
+  static const std::regex kRow(R"(\| `(\w+)` \|[^|]*\| ([^|]*) \|)");
+  Violations found;
+  const Names there(existing.begin(), existing.end());
+  Names listed;
+  const std::vector<std::string> lines = split(map.text, '\n');
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    std::smatch match;
+    if (!std::regex_match(lines[i], match, kRow) || !rooms().count(match[1])) continue;
+    listed.insert(match[1]);
+    Names allowed;
+    for (const std::string& room : rooms().at(match[1])) {
+      if (there.count(room)) allowed.insert(room);
+    }
+    Names stated;
+    for (std::string room : split(match[2], ',')) {
+      room.erase(0, room.find_first_not_of(' '));
+      if (rooms().count(room)) stated.insert(room);
+    }
+    // "every room but app" is prose; only lists are compared.
+    const bool is_list = match[2] == "\u2013" || !stated.empty();
+    if (is_list && stated != allowed) {
+      found.push_back(at(map, i + 1) + "what room " + match[1].str() + " may include is not so");
+    }
+  }
+  for (const std::string& room : existing) {
+    if (!listed.count(room)) found.push_back(map.path + ": room " + room + " is not listed");
   }
   return found;
 }

@@ -23,6 +23,9 @@ Violations check_third_party(const SourceFile& file);
 Violations check_style(const SourceFile& file);
 // Rules over several files: one name per plugin, headers that one source alone may include.
 Violations check_tree(const std::vector<SourceFile>& files);
+// The kernel's map, framework/README.md: it lists every existing room, and what it says that a room
+// may include is what the rules say (rooms that do not exist yet left out).
+Violations check_map(const SourceFile& map, const std::vector<std::string>& existing);
 
 // Every text file of the project's folders; build output is left out.
 std::vector<SourceFile> read_tree(const std::filesystem::path& root);

@@ -60,7 +60,8 @@ TEST(InteriorPoint, SolvesTrapWithBadlyScaledRows) {
 }
 
 // Rest to rest from 0 to 5 in 5 s: the minimum-snap polynomial of degree 9 has c5..c9 = 0.2016,
-// -0.1344, 0.03456, -0.004032, 0.0001792. Snap is c4.. weighted: the cost is the integral of x''''^2.
+// -0.1344, 0.03456, -0.004032, 0.0001792. Snap is c4.. weighted: the cost is the integral of
+// x''''^2.
 TEST(InteriorPoint, FindsTheMinimumSnapPolynomial) {
   const double end = 5.0;
   MatrixXd p = MatrixXd::Zero(10, 10);
@@ -92,8 +93,8 @@ struct RandomProblem {
   VectorXd solution;
 };
 
-// A random program with a known optimum: the point and its multipliers are drawn first, the gradient
-// and the bounds made to fit. P may be singular; rows may repeat.
+// A random program with a known optimum: the point and its multipliers are drawn first, the
+// gradient and the bounds made to fit. P may be singular; rows may repeat.
 RandomProblem feasible(Random& random) {
   const int n = static_cast<int>(random.integer(1, 30));
   const int m = static_cast<int>(random.integer(0, 20));
