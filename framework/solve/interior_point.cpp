@@ -19,6 +19,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kToBoundary = 0.995;    // share of the step to the boundary that is taken
+constexpr double kLeastTarget = 1e-14;   // complementarity is not driven below
 constexpr double kSmallestStep = 1e-10;  // shorter steps are a stall
 constexpr int kStalls = 3;               // stalls in a row that end a solve
 constexpr double kWarmFloor = 1e-3;      // least slack and multiplier of a warm start (scaled)
@@ -69,7 +70,7 @@ struct InteriorPoint::Impl {
   void direction(double target, bool corrected);
   double step_length() const;
   void move(double step);
-  QuadraticResult unscaled(const QuadraticProgram& problem) const;
+  QuadraticResult unscaled(const QuadraticProgram& problem, QuadraticResiduals& r) const;
   void solve(const QuadraticProgram& problem, const InteriorPointOptions& options,
              const std::optional<QuadraticWarmStart>& warm_start, QuadraticResult& result);
   static bool contradicts(const QuadraticProgram& problem, const InteriorPointOptions& options,
@@ -264,7 +265,8 @@ void InteriorPoint::Impl::move(double step) {
   }
 }
 
-QuadraticResult InteriorPoint::Impl::unscaled(const QuadraticProgram& problem) const {
+QuadraticResult InteriorPoint::Impl::unscaled(const QuadraticProgram& problem,
+                                              QuadraticResiduals& r) const {
   QuadraticResult result;
   result.x = scaling.unscaled_x(w.head(n()));
   for (int i = 0; i < n(); ++i)
@@ -280,8 +282,7 @@ QuadraticResult InteriorPoint::Impl::unscaled(const QuadraticProgram& problem) c
                         problem.gradient - problem.jacobian.transpose() * result.row_multipliers;
   for (int i = 0; i < n(); ++i)
     if (fixed[i]) result.bound_multipliers(i) = left(i);
-  const QuadraticResiduals r =
-      residuals(problem, result.x, result.row_multipliers, result.bound_multipliers);
+  r = residuals(problem, result.x, result.row_multipliers, result.bound_multipliers);
   result.primal_residual = r.primal;
   result.dual_residual = r.dual;
   result.gap = r.gap;
@@ -294,7 +295,8 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
   int stalls = 0;
   double best_merit = std::numeric_limits<double>::infinity();
   for (int iteration = 0;; ++iteration) {
-    QuadraticResult now = unscaled(problem);
+    QuadraticResiduals r;
+    QuadraticResult now = unscaled(problem, r);
     now.iterations = iteration;
     const double merit = std::max({now.primal_residual, now.dual_residual, now.gap});
     if (!std::isfinite(merit)) return QuadraticStatus::numerical_error;
@@ -303,7 +305,10 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
       best = now;
     }
     best.iterations = iteration;
-    if (merit <= options.tolerance) return QuadraticStatus::optimal;
+    if (r.within(options.tolerance)) {
+      best = now;
+      return QuadraticStatus::optimal;
+    }
     if (is_infeasibility_certificate(problem, now)) {
       best = now;
       return QuadraticStatus::infeasible;
@@ -326,7 +331,7 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     const auto count = static_cast<double>(lower.t.size() + upper.t.size());
     if (count > 0) {
       const double ratio = after / (count * mu);
-      direction(mu * std::clamp(ratio * ratio * ratio, 1e-9, 1.0), true);
+      direction(std::max(kLeastTarget, mu * std::min(1.0, ratio * ratio * ratio)), true);
     }
     const double step = count > 0 ? std::min(1.0, kToBoundary * step_length()) : 1.0;
     stalls = step < kSmallestStep ? stalls + 1 : 0;

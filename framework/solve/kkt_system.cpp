@@ -107,6 +107,7 @@ void KktSystem::set_up(const QuadraticProgram& problem, const std::vector<char>&
 bool KktSystem::factorise(const VectorXd& diagonal) {
   double strength = 1.0;
   regularisation_.resize(n_ + m_);
+  weight_.setOnes(n_ + m_);
   for (int attempt = 0; attempt < kTries; ++attempt, strength *= kStronger) {
     double* values = matrix_.valuePtr();
     for (int i = 0; i < n_; ++i) {
@@ -121,6 +122,7 @@ bool KktSystem::factorise(const VectorXd& diagonal) {
                                                             : -1.0 / diagonal(i);
       regularisation_(place_[i]) = -strength * kOfRows;
       values[diagonal_slots_[i]] = exact - strength * kOfRows;
+      weight_(place_[i]) = exact < -1.0 ? -1.0 / exact : 1.0;
     }
     factors_.factorize(matrix_);
     if (factors_.info() == Eigen::Success && factors_.vectorD().allFinite()) return true;
@@ -171,13 +173,13 @@ VectorXd KktSystem::solve(const VectorXd& right) const {
   VectorXd ordered(size), x, best, residual, correction;
   for (int i = 0; i < size; ++i) ordered(place_[i]) = right(i);
   backsolve(ordered, x);
-  const double scale = size ? ordered.cwiseAbs().maxCoeff() : 0.0;
+  const double scale = size ? ordered.cwiseProduct(weight_).cwiseAbs().maxCoeff() : 0.0;
   double last = std::numeric_limits<double>::infinity();
   best = x;
   for (int k = 0; k < kRefinements; ++k) {
     residual = ordered + regularisation_.cwiseProduct(x);
     subtract_product(x, residual);
-    const double error = size ? residual.cwiseAbs().maxCoeff() : 0.0;
+    const double error = size ? residual.cwiseProduct(weight_).cwiseAbs().maxCoeff() : 0.0;
     if (!(error < last)) break;
     best = x;
     last = error;

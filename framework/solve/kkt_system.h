@@ -35,8 +35,11 @@ class KktSystem {
   std::vector<int> place_;  // of each number in the elimination order
   std::vector<char> fixed_;
   std::vector<RowKind> rows_;
-  Eigen::VectorXd base_diagonal_;       // P's
-  Eigen::VectorXd regularisation_;      // added to the diagonal, signed, in order
+  Eigen::VectorXd base_diagonal_;   // P's
+  Eigen::VectorXd regularisation_;  // added to the diagonal, signed, in order
+  // Rows far from their bounds have numbers of the size of 1 / D_s; in the measure of the residual
+  // they count by D_s, or they would hide the equations.
+  Eigen::VectorXd weight_;
   Eigen::SparseMatrix<double> matrix_;  // upper triangle, in order
   Factors factors_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lapwing {
 namespace {
@@ -36,12 +37,32 @@ double support(const Eigen::VectorXd& multipliers, const Eigen::VectorXd& lower,
   return sum;
 }
 
+constexpr double kRoundings = 20.0;  // roundings that add up in a sum of a few dozen terms
+
+// P x from the lower triangle, and the sum of its terms' magnitudes.
+Eigen::VectorXd symmetric_product(const Eigen::SparseMatrix<double>& lower,
+                                  const Eigen::VectorXd& x, Eigen::VectorXd& magnitude) {
+  Eigen::VectorXd product = Eigen::VectorXd::Zero(x.size());
+  magnitude.setZero(x.size());
+  for (int j = 0; j < lower.outerSize(); ++j)
+    for (Eigen::SparseMatrix<double>::InnerIterator e(lower, j); e; ++e) {
+      const auto i = e.row();
+      product(i) += e.value() * x(j);
+      magnitude(i) += std::abs(e.value() * x(j));
+      if (i == j) continue;
+      product(j) += e.value() * x(i);
+      magnitude(j) += std::abs(e.value() * x(i));
+    }
+  return product;
+}
+
 }  // namespace
 
 QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::VectorXd& x,
                              const Eigen::VectorXd& row_multipliers,
                              const Eigen::VectorXd& bound_multipliers) {
-  const Eigen::VectorXd px = problem.hessian.selfadjointView<Eigen::Lower>() * x;
+  Eigen::VectorXd magnitude;
+  const Eigen::VectorXd px = symmetric_product(problem.hessian, x, magnitude);
   const Eigen::VectorXd ax = problem.jacobian * x;
   const Eigen::VectorXd aty = problem.jacobian.transpose() * row_multipliers;
   QuadraticResiduals result;
@@ -49,15 +70,19 @@ QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::Vecto
   const double rows = violation(ax, problem.row_lower, problem.row_upper, scale);
   const double bounds = violation(x, problem.x_lower, problem.x_upper, scale);
   result.primal = std::max(rows, bounds) / (1.0 + scale);
-  const double quadratic = x.dot(px);
+  const double quadratic = x.dot(px), terms = x.cwiseAbs().dot(magnitude);
   const double primal = 0.5 * quadratic + problem.gradient.dot(x);
   const double dual = -0.5 * quadratic +
                       support(row_multipliers, problem.row_lower, problem.row_upper, leak) +
                       support(bound_multipliers, problem.x_lower, problem.x_upper, leak);
-  result.dual = std::max(leak, largest(px + problem.gradient - aty - bound_multipliers)) /
-                (1.0 + std::max({largest(px), largest(aty), largest(problem.gradient),
-                                 largest(bound_multipliers)}));
+  const double dual_scale = 1.0 + std::max({largest(px), largest(aty), largest(problem.gradient),
+                                            largest(bound_multipliers)});
+  result.dual =
+      std::max(leak, largest(px + problem.gradient - aty - bound_multipliers)) / dual_scale;
   result.gap = std::abs(primal - dual) / (1.0 + std::abs(primal));
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  result.dual_rounding = kRoundings * kEpsilon * largest(magnitude) / dual_scale;
+  result.gap_rounding = kRoundings * kEpsilon * terms / (1.0 + std::abs(primal));
   return result;
 }
 

@@ -5,6 +5,8 @@
 // Equal bounds make an equation or fix a variable; infinite ones are none.
 #pragma once
 
+#include <algorithm>
+
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
@@ -48,8 +50,17 @@ struct QuadraticResult {
 //   primal  worst violation of a row or bound, over 1 + the largest |A x| or |x| at a finite bound
 //   dual    |P x + c - A'y - z|, over 1 + the largest of |P x|, |A'y|, |c|, |z|
 //   gap     |primal - dual objective| over 1 + |primal objective|
+// The rounding fields say how far sums of the problem's size are from exact in double precision, on
+// the same scale: no solver can be asked for less. Snap costs reach it, for their large
+// coefficients cancel.
 struct QuadraticResiduals {
   double primal = 0, dual = 0, gap = 0;
+  double dual_rounding = 0, gap_rounding = 0;
+
+  bool within(double tolerance) const {
+    return primal <= tolerance && dual <= std::max(tolerance, dual_rounding) &&
+           gap <= std::max(tolerance, gap_rounding);
+  }
 };
 QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::VectorXd& x,
                              const Eigen::VectorXd& row_multipliers,
