@@ -1,0 +1,69 @@
+#include "framework/conformance/check.h"
+
+#include <cmath>
+
+#include "framework/conformance/function_checks.h"
+
+namespace lapwing {
+namespace {
+
+// Bounds are numbers, in order, and a range states the same as its instances one by one.
+void check_bounds(const BoundSubject& subject, Findings& findings) {
+  const auto& constraint = static_cast<const Constraint&>(subject.function);
+  const int m = subject.shape.rows, count = subject.count;
+  std::vector<double> lower(count * m, std::nan("")), upper(lower), low(m), high(m);
+  constraint.bounds({0, count}, lower.data(), upper.data());
+  for (int k = 0; k < count; ++k) {
+    constraint.bounds({k, 1}, low.data(), high.data());
+    for (int r = 0; r < m; ++r) {
+      const double l = lower[k * m + r], u = upper[k * m + r];
+      const std::string at = "row " + std::to_string(r) + " of instance " + std::to_string(k);
+      findings.expect("bounds", l <= u && l < HUGE_VAL && u > -HUGE_VAL, [&] {
+        return at + " lies between " + std::to_string(l) + " and " + std::to_string(u);
+      });
+      findings.expect("bounds", low[r] == l && high[r] == u,
+                      [&] { return at + " has other bounds alone than in a range"; });
+    }
+  }
+}
+
+template <class Kind>
+std::vector<CheckResult> check_registered(const Registry& registry, const PluginEntry& entry,
+                                          const CheckOptions& options,
+                                          std::vector<CheckResult> (*check)(const Subject<Kind>&,
+                                                                            const CheckOptions&)) {
+  return check(subject_of<Kind>(registry, entry), options);
+}
+
+}  // namespace
+
+std::vector<CheckResult> check_cost_term(const Subject<CostTerm>& subject,
+                                         const CheckOptions& options) {
+  Findings findings;
+  check_stage_function(subject.parameters, subject.create, options, findings,
+                       [](const BoundSubject&) {});
+  return std::move(findings).results();
+}
+
+std::vector<CheckResult> check_constraint(const Subject<Constraint>& subject,
+                                          const CheckOptions& options) {
+  Findings findings;
+  check_stage_function(subject.parameters, subject.create, options, findings,
+                       [&](const BoundSubject& bound) { check_bounds(bound, findings); });
+  return std::move(findings).results();
+}
+
+std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntry& entry,
+                                      const CheckOptions& options) {
+  if (entry.kind == CostTerm::kKind)
+    return check_registered<CostTerm>(registry, entry, options, check_cost_term);
+  if (entry.kind == Constraint::kKind)
+    return check_registered<Constraint>(registry, entry, options, check_constraint);
+  if (entry.kind == VehicleModel::kKind)
+    return check_registered<VehicleModel>(registry, entry, options, check_vehicle_model);
+  if (entry.kind == TrajectorySolver::kKind)
+    return check_registered<TrajectorySolver>(registry, entry, options, check_trajectory_solver);
+  return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
+}
+
+}  // namespace lapwing

@@ -1,0 +1,66 @@
+// What every plugin of a kind must pass.
+//
+// Each check is a library function that returns its findings, so that tests, `lapwing plugins
+// check` and authors outside this repository run the same ones. A subject is anything that can be
+// created from parameters: a registered plugin, or a class under test. Checks never throw; what a
+// subject throws becomes a finding. They are seeded and repeat.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/plugin/registry.h"
+#include "framework/problem/constraint.h"
+#include "framework/problem/cost_term.h"
+#include "framework/problem/vehicle_model.h"
+#include "framework/solve/trajectory_solver.h"
+
+namespace lapwing {
+
+enum class Outcome { passed, failed, skipped };
+
+struct CheckResult {
+  std::string name;  // "derivatives", "threads", ...
+  Outcome outcome = Outcome::passed;
+  std::string message;  // why it failed or was skipped: the first case found
+};
+
+template <class Kind>
+struct Subject {
+  std::string name;
+  ParameterTable parameters;
+  // From parameters that lack defaults; throws InputError for bad ones.
+  std::function<std::unique_ptr<Kind>(const Value&)> create;
+};
+
+struct CheckOptions {
+  std::uint64_t seed = 1;
+  // Number of heap allocations of the whole process so far. A library cannot count them; without
+  // this the allocation check is skipped.
+  std::function<std::int64_t()> allocations;
+};
+
+std::vector<CheckResult> check_cost_term(const Subject<CostTerm>& subject,
+                                         const CheckOptions& options = {});
+std::vector<CheckResult> check_constraint(const Subject<Constraint>& subject,
+                                          const CheckOptions& options = {});
+std::vector<CheckResult> check_vehicle_model(const Subject<VehicleModel>& subject,
+                                             const CheckOptions& options = {});
+std::vector<CheckResult> check_trajectory_solver(const Subject<TrajectorySolver>& subject,
+                                                 const CheckOptions& options = {});
+
+template <class Kind>
+Subject<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {
+  return {entry.name, entry.parameters, [&registry, name = entry.name](const Value& given) {
+            return registry.create<Kind>(name, given);
+          }};
+}
+
+// A plugin of any kind; of a kind without checks of its own, one skipped result that says so.
+std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntry& entry,
+                                      const CheckOptions& options = {});
+
+}  // namespace lapwing

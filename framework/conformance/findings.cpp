@@ -1,0 +1,51 @@
+#include "framework/conformance/findings.h"
+
+namespace lapwing {
+
+CheckResult& Findings::result(const std::string& check) {
+  for (CheckResult& known : results_)
+    if (known.name == check) return known;
+  results_.push_back({check, Outcome::passed, ""});
+  return results_.back();
+}
+
+void Findings::expect(const std::string& check, bool ok,
+                      const std::function<std::string()>& message) {
+  CheckResult& entry = result(check);
+  if (entry.outcome == Outcome::skipped) entry = {check, Outcome::passed, ""};
+  if (ok || entry.outcome == Outcome::failed) return;
+  entry.outcome = Outcome::failed;
+  entry.message = case_.empty() ? message() : message() + " (" + case_ + ")";
+}
+
+void Findings::fail(const std::string& check, const std::string& message) {
+  expect(check, false, [&] { return message; });
+}
+
+void Findings::skip(const std::string& check, const std::string& reason) {
+  for (const CheckResult& known : results_)
+    if (known.name == check) return;
+  results_.push_back({check, Outcome::skipped, reason});
+}
+
+bool Findings::failed(const std::string& check) const {
+  for (const CheckResult& known : results_)
+    if (known.name == check) return known.outcome == Outcome::failed;
+  return false;
+}
+
+bool Findings::survives(const std::string& check, const std::string& where,
+                        const std::function<void()>& call) {
+  try {
+    call();
+    expect(check, true, {});
+    return true;
+  } catch (const std::exception& error) {
+    fail(check, where + " throws: " + error.what());
+  } catch (...) {
+    fail(check, where + " throws something that is no exception");
+  }
+  return false;
+}
+
+}  // namespace lapwing

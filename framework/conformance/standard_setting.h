@@ -1,0 +1,45 @@
+// The problem that terms are bound to when they are checked. Internal to the room.
+#pragma once
+
+#include "framework/core/random.h"
+#include "framework/problem/stage_function.h"
+
+namespace lapwing {
+
+// A 1.5 kg camera drone, as configs/vehicles/solo.yaml states it.
+Vehicle standard_vehicle();
+
+struct StandardSetting {
+  StageLayout layout;  // blocks of the shipped vehicle models, `target`, `gimbal`, `time`, `step`
+  Horizon horizon;
+  Vehicle vehicle;
+  Environment environment;
+
+  explicit StandardSetting(bool step_free);
+  ProblemSetting setting() const { return {layout, horizon, vehicle, environment}; }
+};
+
+// The instances of a shape, each with its first stage or its time.
+struct Instances {
+  std::vector<double> times;  // s
+  int count() const { return static_cast<int>(times.size()); }
+};
+Instances instances_of(const FunctionShape& shape, const Horizon& horizon);
+
+// How numbers of an instance are laid out.
+struct InputPlace {
+  int stage = 0;  // in the window
+  int block = 0;  // layout index
+  int component = 0;
+};
+std::vector<InputPlace> input_places(const FunctionShape& shape, const StageLayout& layout);
+
+enum class InputKind { random, zero, coincident };
+
+// Inputs of all instances, [count][n]: plausible numbers for known blocks, unit quaternions, true
+// times; `zero` has zeros but for the clock and orientations, `coincident` equal stages. The clock
+// is the setting's, but a free step varies when random.
+std::vector<double> make_inputs(const StandardSetting& standard, const FunctionShape& shape,
+                                InputKind kind, Random& random);
+
+}  // namespace lapwing

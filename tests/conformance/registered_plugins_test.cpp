@@ -1,0 +1,61 @@
+// Every plugin of the build tree passes what its kind must pass.
+#include "framework/conformance/check.h"
+#include "tests/conformance/allocation_counter.h"
+
+namespace lapwing {
+
+void PrintTo(const PluginEntry& entry, std::ostream* out) {
+  *out << entry.kind << " " << entry.name;
+}
+
+namespace {
+
+const Registry& plugins() {
+  static const Registry registry({LAPWING_BUILD_DIR "/lib/plugins"});
+  return registry;
+}
+
+std::vector<PluginEntry> checked_entries() {
+  std::vector<PluginEntry> result;
+  for (const PluginEntry& entry : plugins().entries())
+    for (const char* kind : {"cost_term", "constraint", "vehicle_model", "trajectory_solver"})
+      if (entry.kind == kind) result.push_back(entry);
+  return result;
+}
+
+class EveryPlugin : public testing::TestWithParam<PluginEntry> {};
+
+TEST_P(EveryPlugin, Conforms) {
+  CheckOptions options;
+  options.allocations = allocation_counter();
+  const std::vector<CheckResult> results = check_plugin(plugins(), GetParam(), options);
+  EXPECT_GE(results.size(), 5u);
+  for (const CheckResult& result : results) {
+    EXPECT_FALSE(result.outcome == Outcome::failed) << result.name << ": " << result.message;
+    if (result.outcome != Outcome::skipped) continue;
+    EXPECT_EQ(options.allocations, nullptr) << result.name << ": " << result.message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered, EveryPlugin, testing::ValuesIn(checked_entries()),
+                         [](const auto& entry) {
+                           return entry.param.kind + "_" + entry.param.name;
+                         });
+
+TEST(EveryPlugin, IsThere) {
+  // An empty registry would pass everything above.
+  for (const auto& [kind, name] : {std::pair{"cost_term", "derivative"},
+                                   {"cost_term", "target_derivative"},
+                                   {"cost_term", "keyframe"},
+                                   {"cost_term", "input_effort"},
+                                   {"constraint", "input_limits"},
+                                   {"constraint", "state_limits"},
+                                   {"constraint", "boundary_state"},
+                                   {"constraint", "hard_keyframe"},
+                                   {"vehicle_model", "quadrotor"},
+                                   {"trajectory_solver", "iqp"}})
+    EXPECT_NO_THROW(plugins().find(kind, name)) << kind << " " << name;
+}
+
+}  // namespace
+}  // namespace lapwing
