@@ -1,0 +1,14 @@
+# Tests of plugins create them through the registry.
+get_property(all_plugins GLOBAL PROPERTY LAPWING_PLUGINS)
+add_dependencies(test_cost_terms ${all_plugins})
+add_dependencies(test_constraints ${all_plugins})
+
+# A cost term copied into a new folder is picked up with one CMake line and no kernel edit.
+add_executable(check_plugin_folder ${CMAKE_CURRENT_LIST_DIR}/copied_term/check_plugin_folder.cpp)
+target_link_libraries(check_plugin_folder PRIVATE lapwing)
+add_test(NAME copied_term COMMAND ${CMAKE_COMMAND}
+  -DLAPWING_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DLAPWING_BUILD_DIR=${CMAKE_BINARY_DIR}
+  -DBUILD_TYPE=${CMAKE_BUILD_TYPE} -DSANITIZE=${LAPWING_SANITIZE} -DGENERATOR=${CMAKE_GENERATOR}
+  -DCOMPILER=${CMAKE_CXX_COMPILER} -DCHECK=$<TARGET_FILE:check_plugin_folder>
+  -P ${CMAKE_CURRENT_LIST_DIR}/copied_term/copied_term.cmake)
+set_tests_properties(copied_term PROPERTIES TIMEOUT 240)
