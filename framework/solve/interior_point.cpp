@@ -21,6 +21,8 @@ using Eigen::VectorXd;
 constexpr double kToBoundary = 0.995;    // share of the step to the boundary that is taken
 constexpr double kLeastTarget = 1e-14;   // complementarity is not driven below
 constexpr double kSmallestStep = 1e-10;  // shorter steps are a stall
+constexpr double kProgress = 0.9;        // factor on the residual that counts as progress
+constexpr int kPatience = 15;            // iterations without progress before a proof is sought
 constexpr int kStalls = 3;               // stalls in a row that end a solve
 constexpr double kWarmFloor = 1e-3;      // least slack and multiplier of a warm start (scaled)
 
@@ -72,11 +74,12 @@ struct InteriorPoint::Impl {
   void move(double step);
   QuadraticResult unscaled(const QuadraticProgram& problem, QuadraticResiduals& r) const;
   void solve(const QuadraticProgram& problem, const InteriorPointOptions& options,
-             const std::optional<QuadraticWarmStart>& warm_start, QuadraticResult& result);
+             const std::optional<QuadraticWarmStart>& warm_start, int patience,
+             QuadraticResult& result);
   static bool contradicts(const QuadraticProgram& problem, const InteriorPointOptions& options,
                           QuadraticResult& proof);
   QuadraticStatus iterate(const QuadraticProgram& problem, const InteriorPointOptions& options,
-                          QuadraticResult& best);
+                          int patience, QuadraticResult& best);
 };
 
 InteriorPoint::InteriorPoint() : impl_(std::make_unique<Impl>()) {}
@@ -290,9 +293,9 @@ QuadraticResult InteriorPoint::Impl::unscaled(const QuadraticProgram& problem,
 }
 
 QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
-                                             const InteriorPointOptions& options,
+                                             const InteriorPointOptions& options, int patience,
                                              QuadraticResult& best) {
-  int stalls = 0;
+  int stalls = 0, best_iteration = 0;
   double best_merit = std::numeric_limits<double>::infinity();
   for (int iteration = 0;; ++iteration) {
     QuadraticResiduals r;
@@ -301,6 +304,7 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     const double merit = std::max({now.primal_residual, now.dual_residual, now.gap});
     if (!std::isfinite(merit)) return QuadraticStatus::numerical_error;
     if (merit < best_merit) {
+      if (merit < kProgress * best_merit) best_iteration = iteration;
       best_merit = merit;
       best = now;
     }
@@ -319,7 +323,8 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     }
     if (options.cancellation && options.cancellation->cancelled())
       return QuadraticStatus::cancelled;
-    if (iteration >= options.iteration_limit) return QuadraticStatus::iteration_limit;
+    if (iteration >= options.iteration_limit || iteration - best_iteration > patience)
+      return QuadraticStatus::iteration_limit;
     if (!factorise()) return QuadraticStatus::numerical_error;
     compute_residuals();
     const double mu = complementarity();
@@ -362,7 +367,7 @@ QuadraticResult InteriorPoint::solve(const QuadraticProgram& problem,
     result.bound_multipliers = VectorXd::Zero(n);
     return result;
   }
-  impl_->solve(problem, options, warm_start, result);
+  impl_->solve(problem, options, warm_start, kPatience, result);
   const bool undecided = result.status == QuadraticStatus::iteration_limit ||
                          result.status == QuadraticStatus::numerical_error;
   if (undecided && m > 0) {
@@ -371,20 +376,23 @@ QuadraticResult InteriorPoint::solve(const QuadraticProgram& problem,
       proof.iterations += result.iterations;
       return proof;
     }
+    const int spent = result.iterations;
+    impl_->solve(problem, options, {}, options.iteration_limit, result);
+    result.iterations += spent;
   }
   return result;
 }
 
 void InteriorPoint::Impl::solve(const QuadraticProgram& problem,
                                 const InteriorPointOptions& options,
-                                const std::optional<QuadraticWarmStart>& warm_start,
+                                const std::optional<QuadraticWarmStart>& warm_start, int patience,
                                 QuadraticResult& result) {
   set_up(problem);
   if (warm_start && warm_start->x.size() == n())
     start_warm(problem, *warm_start);
   else
     start_cold();
-  result.status = iterate(problem, options, result);
+  result.status = iterate(problem, options, patience, result);
 }
 
 // The least sum of violations of the rows within the bounds: where it is not zero, its multipliers
@@ -399,12 +407,12 @@ bool InteriorPoint::Impl::contradicts(const QuadraticProgram& problem,
   again.iteration_limit = std::max(options.iteration_limit, 100);
   Impl phase_one;
   QuadraticResult result;
-  phase_one.solve(elastic.program, again, {}, result);
+  phase_one.solve(elastic.program, again, {}, kPatience, result);
   proof = result;
   proof.status = QuadraticStatus::infeasible;
   proof.x = result.x.head(problem.variables());
   proof.bound_multipliers = result.bound_multipliers.head(problem.variables());
-  return result.status == QuadraticStatus::optimal && is_infeasibility_certificate(problem, proof);
+  return is_infeasibility_certificate(problem, proof);
 }
 
 }  // namespace lapwing

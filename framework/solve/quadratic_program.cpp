@@ -23,14 +23,14 @@ double violation(const Eigen::VectorXd& v, const Eigen::VectorXd& lower,
 }
 
 // Sum of the bounds that positive and negative multipliers push against; pushing against none is
-// charged to the dual residual through `leak`.
+// charged to the dual residual through `leak`; `size` grows by the terms' magnitudes.
 double support(const Eigen::VectorXd& multipliers, const Eigen::VectorXd& lower,
-               const Eigen::VectorXd& upper, double& leak) {
+               const Eigen::VectorXd& upper, double& leak, double& size) {
   double sum = 0;
   for (int i = 0; i < multipliers.size(); ++i) {
     const double z = multipliers(i), bound = z > 0 ? lower(i) : upper(i);
     if (std::isfinite(bound))
-      sum += z * bound;
+      sum += z * bound, size += std::abs(z * bound);
     else
       leak = std::max(leak, std::abs(z));
   }
@@ -70,11 +70,12 @@ QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::Vecto
   const double rows = violation(ax, problem.row_lower, problem.row_upper, scale);
   const double bounds = violation(x, problem.x_lower, problem.x_upper, scale);
   result.primal = std::max(rows, bounds) / (1.0 + scale);
-  const double quadratic = x.dot(px), terms = x.cwiseAbs().dot(magnitude);
-  const double primal = 0.5 * quadratic + problem.gradient.dot(x);
+  const double quadratic = x.dot(px), linear = problem.gradient.dot(x);
+  double terms = x.cwiseAbs().dot(magnitude) + problem.gradient.cwiseAbs().dot(x.cwiseAbs());
+  const double primal = 0.5 * quadratic + linear;
   const double dual = -0.5 * quadratic +
-                      support(row_multipliers, problem.row_lower, problem.row_upper, leak) +
-                      support(bound_multipliers, problem.x_lower, problem.x_upper, leak);
+                      support(row_multipliers, problem.row_lower, problem.row_upper, leak, terms) +
+                      support(bound_multipliers, problem.x_lower, problem.x_upper, leak, terms);
   const double dual_scale = 1.0 + std::max({largest(px), largest(aty), largest(problem.gradient),
                                             largest(bound_multipliers)});
   result.dual =
