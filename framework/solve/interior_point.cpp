@@ -295,7 +295,8 @@ QuadraticResult InteriorPoint::Impl::unscaled(const QuadraticProgram& problem,
 QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
                                              const InteriorPointOptions& options, int patience,
                                              QuadraticResult& best) {
-  int stalls = 0, best_iteration = 0;
+  int stalls = 0, progress_at = 0;
+  double progress = std::numeric_limits<double>::infinity();
   double best_merit = std::numeric_limits<double>::infinity();
   for (int iteration = 0;; ++iteration) {
     QuadraticResiduals r;
@@ -304,11 +305,11 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     const double merit = std::max({now.primal_residual, now.dual_residual, now.gap});
     if (!std::isfinite(merit)) return QuadraticStatus::numerical_error;
     if (merit < best_merit) {
-      if (merit < kProgress * best_merit) best_iteration = iteration;
       best_merit = merit;
       best = now;
     }
     best.iterations = iteration;
+    if (merit < kProgress * progress) progress = merit, progress_at = iteration;
     if (r.within(options.tolerance)) {
       best = now;
       return QuadraticStatus::optimal;
@@ -323,7 +324,7 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     }
     if (options.cancellation && options.cancellation->cancelled())
       return QuadraticStatus::cancelled;
-    if (iteration >= options.iteration_limit || iteration - best_iteration > patience)
+    if (iteration >= options.iteration_limit || iteration - progress_at > patience)
       return QuadraticStatus::iteration_limit;
     if (!factorise()) return QuadraticStatus::numerical_error;
     compute_residuals();
