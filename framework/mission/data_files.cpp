@@ -1,0 +1,77 @@
+#include "framework/mission/data_files.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+
+namespace lapwing {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLargestFile = 64u << 20;  // bytes
+
+bool lies_in(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
+         folder.end();
+}
+
+}  // namespace
+
+DataFiles::DataFiles(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
+
+void DataFiles::allow(const fs::path& file) {
+  std::error_code error;
+  const fs::path canonical = fs::canonical(file, error);
+  if (!error) allowed_.push_back(canonical);
+}
+
+fs::path DataFiles::find(const std::string& name, const std::string& inside) const {
+  if (name.empty() || name.find('\0') != std::string::npos) {
+    throw InputError("a text that is empty or holds a NUL is no file name");
+  }
+  const fs::path wanted(name);
+  std::error_code error;
+  const fs::path as_named = fs::canonical(wanted, error);
+  if (!error && std::find(allowed_.begin(), allowed_.end(), as_named) != allowed_.end()) {
+    return as_named;
+  }
+  for (const fs::path& part : wanted) {
+    if (part == "..") {
+      throw InputError("'" + name +
+                       "': '..' is not allowed in the name of a data file; name its "
+                       "folder with --data");
+    }
+  }
+  std::string looked;
+  for (const fs::path& folder : folders_) {
+    const fs::path root = fs::canonical(folder, error);
+    if (error) continue;
+    std::vector<fs::path> candidates = {root / wanted};  // an absolute name replaces the root
+    if (!inside.empty() && wanted.is_relative()) candidates.push_back(root / inside / wanted);
+    for (const fs::path& candidate : candidates) {
+      const fs::path file = fs::canonical(candidate, error);
+      if (error) continue;
+      if (lies_in(file, root)) {
+        if (fs::is_regular_file(file, error)) return file;
+        throw InputError("'" + name + "' is no regular file");
+      }
+      if (wanted.is_relative()) {
+        throw InputError("'" + name + "' leads out of " + folder.string());
+      }
+    }
+    looked += (looked.empty() ? "" : ", ") + folder.string();
+  }
+  throw InputError("data file '" + name + "' not found in " +
+                   (looked.empty() ? "any folder" : looked) + "; name its folder with --data DIR");
+}
+
+Value DataFiles::read_json(const std::string& name, const std::string& inside) const {
+  const fs::path file = find(name, inside);
+  return from_json(read_file(file, kLargestFile), name);
+}
+
+}  // namespace lapwing

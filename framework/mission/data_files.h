@@ -1,0 +1,37 @@
+// The files that a script may read: those below the folders it is confined to.
+//
+// Names are relative to one of the folders, which are asked in order. Links are followed before the
+// check, so that none leads out; "..", absolute names outside, folders and devices are refused.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/core/value.h"
+
+namespace lapwing {
+
+class DataFiles {
+ public:
+  explicit DataFiles(std::vector<std::filesystem::path> folders);
+
+  // A file that the user named on the command line or in a configuration: allowed as it stands,
+  // relative to the current folder.
+  void allow(const std::filesystem::path& file);
+
+  // `inside`: a sub-folder of the folders that is asked as well ("shots"). InputError says what was
+  // looked for and where.
+  std::filesystem::path find(const std::string& name, const std::string& inside = "") const;
+
+  const std::vector<std::filesystem::path>& folders() const { return folders_; }
+
+  // InputError with line and column for malformed or truncated text.
+  Value read_json(const std::string& name, const std::string& inside = "") const;
+
+ private:
+  std::vector<std::filesystem::path> folders_;
+  std::vector<std::filesystem::path> allowed_;  // canonical
+};
+
+}  // namespace lapwing

@@ -1,0 +1,97 @@
+// The table `lapwing`: what a script needs before there is a run.
+#include <lua.hpp>
+
+#include "framework/geometry/geodetic.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/options.h"
+#include "framework/mission/run.h"
+
+namespace lapwing {
+
+namespace {
+
+// lapwing.read_json(name [, folder]): a table from a JSON file below the script's folder, the data
+// folders or the shipped ones; `folder` is a sub-folder of these that is asked as well.
+int read_json(lua_State* state) {
+  const std::string name = text_argument(state, 1, "lapwing.read_json");
+  const std::string folder =
+      lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, "lapwing.read_json");
+  push_value(state, run_of(state).files.read_json(name, folder));
+  return 1;
+}
+
+GeodeticPoint geodetic_argument(lua_State* state, int index, const char* what) {
+  ParameterTable table;
+  table.required_number("lat", "", "degrees north", between(-90, 90))
+      .required_number("lon", "", "degrees east", between(-180, 180))
+      .required_number("alt", "m", "metres above the ellipsoid");
+  const Parameters point = table_argument(state, index, table, what);
+  return {point.number("lat"), point.number("lon"), point.number("alt")};
+}
+
+// lapwing.local_from_geodetic(origin, point), both {lat=, lon=, alt=}: {x, y, z}, east, north, up.
+int local_from_geodetic(lua_State* state) {
+  const GeodeticPoint origin = geodetic_argument(state, 1, "origin");
+  const GeodeticPoint point = geodetic_argument(state, 2, "point");
+  const Eigen::Vector3d local = to_local(origin, point);
+  push_value(state, Value(Value::List{local.x(), local.y(), local.z()}));
+  return 1;
+}
+
+// lapwing.options(declarations, given): the options of a mission.
+int options(lua_State* state) {
+  const Origin origin = Sandbox::of(state).script_position(state);
+  MissionOptions made;
+  made.declarations =
+      OptionDeclarations::from_value(value_from_lua(state, 1, origin, "declarations"));
+  made.given = value_from_lua(state, 2, origin);
+  if (made.given.is_list() && made.given.as_list().empty()) made.given = Value::map();
+  if (!made.given.is_map()) {
+    throw InputError(
+        origin, "lapwing.options: expected a table of options, got " + made.given.describe_type());
+  }
+  made.given.with_origin(origin);
+  new_object(state, kOptionsType, std::move(made));
+  return 1;
+}
+
+// lapwing.fail(message): an error at the script's own line, whatever module found it.
+int fail(lua_State* state) {
+  throw InputError(Sandbox::of(state).script_position(state),
+                   text_argument(state, 1, "lapwing.fail"));
+}
+
+}  // namespace
+
+MissionRun& run_of(lua_State* state) {
+  lua_getfield(state, LUA_REGISTRYINDEX, "lapwing.run");
+  MissionRun* run = static_cast<MissionRun*>(lua_touserdata(state, -1));
+  lua_pop(state, 1);
+  return *run;
+}
+
+Parameters table_argument(lua_State* state, int index, const ParameterTable& table,
+                          const std::string& what, std::span<const std::string_view> without) {
+  const Origin origin = Sandbox::of(state).script_position(state);
+  if (!lua_istable(state, index)) {
+    throw InputError(origin, what + ": expected a table, got " + luaL_typename(state, index));
+  }
+  return check(table, value_from_lua(state, index, origin, what, without), what);
+}
+
+void open_lapwing_library(lua_State* state, MissionRun& run) {
+  lua_pushlightuserdata(state, &run);
+  lua_setfield(state, LUA_REGISTRYINDEX, "lapwing.run");
+  define_type<MissionOptions>(state, kOptionsType, nullptr, nullptr);
+  const luaL_Reg functions[] = {{"read_json", &guarded<read_json>},
+                                {"local_from_geodetic", &guarded<local_from_geodetic>},
+                                {"options", &guarded<options>},
+                                {"fail", &guarded<fail>},
+                                {nullptr, nullptr}};
+  lua_newtable(state);
+  luaL_setfuncs(state, functions, 0);
+  lua_setglobal(state, "lapwing");
+}
+
+}  // namespace lapwing

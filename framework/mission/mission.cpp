@@ -1,0 +1,173 @@
+#include "framework/mission/mission.h"
+
+#include <lua.hpp>
+
+#include "framework/config/overrides.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/options.h"
+
+namespace lapwing {
+
+namespace {
+
+constexpr const char* kSandboxKey = "sandbox";
+constexpr const char* kPlanFunction = "lapwing.plan_function";
+
+bool concerns_sandbox(const std::string& override_text) {
+  return override_text.rfind("sandbox.", 0) == 0 || override_text.rfind("sandbox=", 0) == 0;
+}
+
+std::vector<std::filesystem::path> data_folders(const std::filesystem::path& script,
+                                                const MissionSettings& settings) {
+  std::vector<std::filesystem::path> folders;
+  folders.push_back(script.parent_path().empty() ? "." : script.parent_path());
+  folders.insert(folders.end(), settings.data.begin(), settings.data.end());
+  folders.push_back(settings.configs);
+  return folders;
+}
+
+}  // namespace
+
+struct Mission::Impl {
+  Impl(const std::filesystem::path& script_file, MissionSettings given)
+      : script(script_file),
+        run{given, DataFiles(data_folders(script_file, given)), "", "", Value::map(), 0},
+        sandbox(given.limits, given.seed, {given.scripts}, given.print) {}
+
+  void load();
+  void read_mission(lua_State* state);
+
+  std::filesystem::path script;
+  MissionRun run;
+  MissionOptions options;
+  Sandbox sandbox;  // last: its state holds references to the run
+};
+
+void Mission::Impl::load() {
+  sandbox.protect([this](lua_State* state) {
+    open_lapwing_library(state, run);
+    open_problem_library(state);
+    open_plan_library(state);
+    sandbox.run_script(state, script);
+    read_mission(state);
+  });
+}
+
+// The script's result, on the stack.
+void Mission::Impl::read_mission(lua_State* state) {
+  const Origin origin = sandbox.script_position(state);
+  constexpr const char* kShape =
+      "a mission script returns {kind =, name =, options =, plan = function(run) ... end}";
+  if (!lua_istable(state, -1)) {
+    throw InputError(origin,
+                     std::string(kShape) + "; this one returns " + luaL_typename(state, -1));
+  }
+  const int mission = lua_gettop(state);
+  static constexpr std::string_view kParts[] = {"options", "plan"};
+  ParameterTable table;
+  table.required_text("kind", "of mission: film, race, ...")
+      .required_text("name", "of the mission");
+  const Parameters parts =
+      check(table, value_from_lua(state, mission, origin, "mission", kParts), "mission");
+  run.kind = parts.text("kind");
+  run.name = parts.text("name");
+  if (run.name.empty()) throw InputError(origin, "name: expected a text that is not empty");
+  if (lua_getfield(state, mission, "plan") != LUA_TFUNCTION) {
+    throw InputError(origin, std::string(kShape) + "; plan is a " + luaL_typename(state, -1));
+  }
+  lua_setfield(state, LUA_REGISTRYINDEX, kPlanFunction);
+  lua_getfield(state, mission, "options");
+  if (const MissionOptions* declared = test_object<MissionOptions>(state, -1, kOptionsType)) {
+    options = *declared;
+    return;
+  }
+  options.given = value_from_lua(state, -1, origin, "options");
+  if (options.given.is_null() || options.given == Value::list()) options.given = Value::map();
+  if (!options.given.is_map()) {
+    throw InputError(origin, "options: expected a table, got " + options.given.describe_type());
+  }
+  options.given.with_origin(origin);
+  options.declarations = OptionDeclarations::from_options(options.given);
+}
+
+Mission::Mission(const std::filesystem::path& script, MissionSettings settings)
+    : impl_(std::make_unique<Impl>(script, std::move(settings))) {
+  impl_->load();
+}
+
+Mission::~Mission() = default;
+
+const std::string& Mission::name() const {
+  return impl_->run.name;
+}
+const std::string& Mission::kind() const {
+  return impl_->run.kind;
+}
+const Value& Mission::configuration() const {
+  return impl_->run.configuration;
+}
+
+void Mission::configure(std::span<const Value> layers, std::span<const std::string> overrides) {
+  std::vector<Value> own_layers;
+  for (const Value& layer : layers) {
+    Value own = Value::map();
+    own.with_origin(layer.origin());
+    for (const auto& [key, value] : layer.as_map()) {
+      if (key != kSandboxKey) own.set(key, value);
+    }
+    own_layers.push_back(std::move(own));
+  }
+  std::vector<std::string> own_overrides;
+  for (const std::string& text : overrides) {
+    if (!concerns_sandbox(text)) own_overrides.push_back(text);
+  }
+  const Value given = layered(impl_->options.given, own_layers, own_overrides);
+  impl_->run.configuration =
+      impl_->options.declarations.check(given, *impl_->run.settings.registry);
+  const Value* input = impl_->run.configuration.find("input");
+  const bool from_script = input && input->origin().source == impl_->sandbox.script();
+  if (input && input->is_text() && !from_script) impl_->run.files.allow(input->as_text());
+}
+
+MissionResult Mission::plan() {
+  MissionResult result;
+  Impl& impl = *impl_;
+  impl.sandbox.protect([&](lua_State* state) {
+    lua_getfield(state, LUA_REGISTRYINDEX, kPlanFunction);
+    push_run(state);
+    lua_call(state, 1, 1);
+    PlanObject* planned = test_object<PlanObject>(state, -1, kPlanType);
+    if (!planned) {
+      throw InputError(impl.sandbox.script_position(state),
+                       std::string("plan: expected the function to return run:plan{...}, got ") +
+                           luaL_typename(state, -1));
+    }
+    result.plan = planned->plan;
+    result.report = planned->report;
+    result.solver = planned->solver;
+    result.notes = planned->notes;
+    result.block = planned->block;
+  });
+  result.solve_seconds = impl.run.solve_seconds;
+  return result;
+}
+
+SandboxLimits sandbox_limits(std::span<const Value> layers,
+                             std::span<const std::string> overrides) {
+  Value base = Value::map();
+  for (const Value& layer : layers) {
+    if (const Value* found = layer.find(kSandboxKey)) {
+      Value own = Value::map();
+      own.set(kSandboxKey, *found);
+      merge(base, own);
+    }
+  }
+  for (const std::string& text : overrides) {
+    if (concerns_sandbox(text)) apply_override(base, text);
+  }
+  const Value* found = base.find(kSandboxKey);
+  return sandbox_limits(check(sandbox_table(), found ? *found : Value::map(), kSandboxKey));
+}
+
+}  // namespace lapwing

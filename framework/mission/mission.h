@@ -1,0 +1,60 @@
+// A mission: a Lua script that states what is to be planned, and the plan that comes of it.
+//
+//   Mission mission("shot.lua", settings);        // runs the script's text; nothing is solved
+//   mission.configure(layers, overrides);          // effective options, checked
+//   MissionResult result = mission.plan();         // calls the script's plan function
+//
+// A script returns {kind, name, options, plan = function(run) ... end}; see README.md for what it
+// may call. Not thread-safe; one mission per thread.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "framework/mission/run.h"
+
+namespace lapwing {
+
+struct MissionResult {
+  Plan plan;  // without certificate
+  SolveReport report;
+  std::string solver;
+  double solve_seconds = 0;        // wall clock, all solves together
+  std::vector<std::string> notes;  // sentences for the user
+  Value block;                     // the kind's own figures, null or a map
+};
+
+class Mission {
+ public:
+  // InputError, with the script's file and line, when the file cannot be read, does not compile,
+  // breaks a limit or returns no mission.
+  Mission(const std::filesystem::path& script, MissionSettings settings);
+  ~Mission();
+
+  const std::string& name() const;
+  const std::string& kind() const;
+
+  // Lays configurations and `key=value` overrides on the script's options and checks them against
+  // what the mission declares. InputError with all errors. A file named by an override of `input`
+  // is one that the script may read. Keys `sandbox.*` are taken for limits and must be given to
+  // `sandbox_limits` before.
+  void configure(std::span<const Value> layers, std::span<const std::string> overrides);
+  // Effective options; every value with its origin.
+  const Value& configuration() const;
+
+  // Calls the script's plan function. InputError for errors of the script; everything that a solver
+  // has to say is in the result.
+  MissionResult plan();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// The limits that configurations and overrides ask for. InputError when malformed.
+SandboxLimits sandbox_limits(std::span<const Value> layers, std::span<const std::string> overrides);
+
+}  // namespace lapwing

@@ -1,0 +1,181 @@
+#include "framework/mission/options.h"
+
+#include <algorithm>
+
+#include "framework/vehicle/vehicle.h"
+
+namespace lapwing {
+
+namespace {
+
+const std::vector<std::string>& known_declaration_keys() {
+  static const std::vector<std::string> keys = {
+      "name",  "type",    "summary", "unit", "default", "required", "minimum",
+      "above", "maximum", "choices", "size", "table",   "kind",     "words"};
+  return keys;
+}
+
+void check_declaration_keys(const Value& declaration) {
+  for (const auto& [key, value] : declaration.as_map()) {
+    const auto& known = known_declaration_keys();
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const std::string nearest = nearest_name(key, known);
+    throw InputError(value.origin(),
+                     "an option is declared with the unknown key '" + key + "'" +
+                         (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+  }
+}
+
+Value without(const Value& map, std::initializer_list<std::string_view> keys) {
+  Value rest = Value::map();
+  rest.with_origin(map.origin());
+  for (const auto& [key, value] : map.as_map()) {
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) rest.set(key, value);
+  }
+  return rest;
+}
+
+Value inferred(const std::string& name, const Value& value) {
+  Value declaration = Value::map();
+  declaration.set("name", name);
+  declaration.set("summary", "");
+  Value fallback = value;
+  switch (value.type()) {
+    case Value::Type::boolean:
+      declaration.set("type", "boolean");
+      break;
+    case Value::Type::integer:
+    case Value::Type::number:
+      declaration.set("type", "number");
+      break;
+    case Value::Type::text:
+      declaration.set("type", "text");
+      break;
+    case Value::Type::list: {
+      const auto& list = value.as_list();
+      const bool numbers =
+          std::all_of(list.begin(), list.end(), [](const Value& v) { return v.is_number(); });
+      if (!numbers) {
+        throw InputError(value.origin(), name +
+                                             ": only numbers can be listed here; declare the "
+                                             "option with lapwing.options");
+      }
+      declaration.set("type", "numbers");
+      break;
+    }
+    case Value::Type::map: {
+      Value inner = Value::list();
+      for (const auto& [key, entry] : value.as_map()) inner.push_back(inferred(key, entry));
+      declaration.set("type", "table");
+      declaration.set("table", inner);
+      return declaration;
+    }
+    case Value::Type::null:
+      break;
+  }
+  declaration.set("default", fallback);
+  return declaration;
+}
+
+}  // namespace
+
+OptionDeclarations OptionDeclarations::from_value(const Value& list) {
+  OptionDeclarations declarations;
+  Value plain = Value::list();
+  for (Value declaration : list.as_list()) {
+    check_declaration_keys(declaration);
+    Option option;
+    option.name = declaration.at("name").as_text();
+    const std::string type = declaration.at("type").as_text();
+    if (type == "plugin") option.plugin_kind = declaration.at("kind").as_text();
+    option.vehicle = type == "vehicle";
+    if (type == "plugin" || type == "vehicle") declaration.set("type", "text");
+    if (const Value* words = declaration.find("words")) {
+      for (const Value& word : words->as_list()) option.words.push_back(word.as_text());
+    }
+    if (!declaration.find("summary")) declaration.set("summary", "");
+    option.declaration = without(declaration, {"kind", "words"});
+    plain.push_back(option.declaration);
+    declarations.options_.push_back(std::move(option));
+  }
+  ParameterTable::from_value(plain);  // refuses what is malformed or declared twice
+  return declarations;
+}
+
+OptionDeclarations OptionDeclarations::from_options(const Value& options) {
+  Value list = Value::list();
+  if (options.is_map()) {
+    for (const auto& [key, value] : options.as_map()) list.push_back(inferred(key, value));
+  }
+  return from_value(list);
+}
+
+Value OptionDeclarations::plugin_entry(const Option& option, Value& given,
+                                       const Registry& registry) {
+  const Value* value = given.find(option.name);
+  const Value* chosen = value && value->is_map() ? value->find("type") : value;
+  if (!chosen) chosen = option.declaration.find("default");
+  if (!chosen || !chosen->is_text()) {
+    throw InputError(chosen ? chosen->origin() : given.origin(),
+                     option.name + ": expected the name of a plugin (" + option.plugin_kind + ")");
+  }
+  Value type = *chosen;
+  if (!value) type.with_origin({"default", 0});
+  const PluginEntry& plugin = registry.find(option.plugin_kind, type.as_text(), type.origin());
+  Value expanded = value && value->is_map() ? *value : Value::map();
+  expanded.with_origin(value ? value->origin() : type.origin());
+  expanded.set("type", type);
+  given.set(option.name, std::move(expanded));
+
+  Value table = ParameterTable{}.text("type", type.as_text(), "which plugin").to_value();
+  const Value own = plugin.parameters.to_value();
+  for (const Value& parameter : own.as_list()) table.push_back(parameter);
+  Value entry = without(option.declaration, {"default"});
+  entry.set("type", "table");
+  entry.set("table", std::move(table));
+  return entry;
+}
+
+Value OptionDeclarations::plain_entry(const Option& option, const Value* value) {
+  const Value* fallback = option.declaration.find("default");
+  if (option.vehicle && value && value->is_map()) {
+    Value entry = without(option.declaration, {"default"});
+    entry.set("type", "table");
+    entry.set("table", vehicle_table().to_value());
+    return entry;
+  }
+  const Value* effective = value ? value : fallback;
+  const auto is_word = [&](const Value& v) {
+    return v.is_text() &&
+           std::find(option.words.begin(), option.words.end(), v.as_text()) != option.words.end();
+  };
+  if (effective && is_word(*effective)) {
+    Value entry = without(option.declaration, {"unit", "minimum", "above", "maximum", "default"});
+    entry.set("type", "choice");
+    Value& choices = entry.set("choices", Value::list());
+    for (const std::string& word : option.words) choices.push_back(word);
+    if (!value) entry.set("default", *fallback);
+    return entry;
+  }
+  if (fallback && is_word(*fallback)) return without(option.declaration, {"default"});
+  return option.declaration;
+}
+
+// The table depends on the values: on the plugins chosen, and on the forms used.
+ParameterTable OptionDeclarations::table_for(Value& given, const Registry& registry) const {
+  Value list = Value::list();
+  for (const Option& option : options_) {
+    list.push_back(option.plugin_kind.empty() ? plain_entry(option, given.find(option.name))
+                                              : plugin_entry(option, given, registry));
+  }
+  return ParameterTable::from_value(list);
+}
+
+Value OptionDeclarations::check(const Value& given, const Registry& registry) const {
+  Value values = given.is_map() ? given : Value::map();
+  values.with_origin(given.origin());
+  const ParameterTable table = table_for(values, registry);
+  return lapwing::check(table, values).value();
+}
+
+}  // namespace lapwing

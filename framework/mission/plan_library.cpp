@@ -1,0 +1,342 @@
+// Solving and planning: the methods of `run`, solutions and plans.
+#include <lua.hpp>
+
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/run.h"
+#include "framework/verify/verify.h"
+
+namespace lapwing {
+
+namespace {
+
+// -- run:solve
+// -------------------------------------------------------------------------------------
+
+// "iqp" or {type = "iqp", ...}
+struct SolverArgument {
+  std::string type;
+  Value parameters = Value::map();
+};
+
+SolverArgument solver_argument(lua_State* state, int index) {
+  const Value given =
+      value_from_lua(state, index, Sandbox::of(state).script_position(state), "solver");
+  SolverArgument argument;
+  const Value* type = given.is_map() ? given.find("type") : &given;
+  if (!type || !type->is_text()) {
+    throw InputError(given.origin(), "solver: expected a solver's name or a table with its `type`");
+  }
+  argument.type = type->as_text();
+  argument.parameters.with_origin(given.origin());
+  if (given.is_map()) {
+    for (const auto& [key, value] : given.as_map()) {
+      if (key != "type") argument.parameters.set(key, value);
+    }
+  }
+  return argument;
+}
+
+// {warm_start = solution}
+std::optional<WarmStart> warm_start_argument(lua_State* state, int index,
+                                             const TrajectoryProblem& problem) {
+  if (lua_isnoneornil(state, index)) return std::nullopt;
+  static constexpr std::string_view kWarmStart[] = {"warm_start"};
+  table_argument(state, index, {}, "solve", kWarmStart);
+  if (lua_getfield(state, index, "warm_start") == LUA_TNIL) return std::nullopt;
+  const WarmStart& point = object_argument<SolutionObject>(state, -1, kSolutionType).result.point;
+  if (point.stages.rows() != problem.layout().size() ||
+      point.stages.cols() != problem.horizon().stages) {
+    throw InputError("solve: the warm start belongs to a problem of another size");
+  }
+  WarmStart start = point;
+  if (start.row_multipliers.size() != problem.rows()) start.row_multipliers.resize(0);
+  if (start.bound_multipliers.size() != problem.columns()) start.bound_multipliers.resize(0);
+  return start;
+}
+
+// run:solve(problem, solver [, {warm_start = solution}]): a solution, whatever came out.
+int solve(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const ProblemObject& object = object_argument<ProblemObject>(state, 2, kProblemType);
+  if (!object.finished)
+    throw InputError("solve: the problem is not finished; call problem:finish()");
+  const SolverArgument argument = solver_argument(state, 3);
+  SolveRequest request;
+  request.warm_start = warm_start_argument(state, 4, *object.problem);
+  request.cancellation = run.settings.cancellation;
+  request.progress = run.settings.progress;
+  const auto solver =
+      run.settings.registry->create<TrajectorySolver>(argument.type, argument.parameters, "solver");
+  SolutionObject solution;
+  solution.problem = object.problem;
+  solution.solver = argument.type;
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    solution.result = solver->solve(*object.problem, request);
+  }
+  run.solve_seconds += solution.result.report.seconds;
+  new_object(state, kSolutionType, std::move(solution));
+  return 1;
+}
+
+[[noreturn]] void refuse_field(const std::string& what, const std::string& field,
+                               const Value& fields) {
+  std::vector<std::string> known;
+  for (const auto& [key, value] : fields.as_map()) known.push_back(key);
+  const std::string nearest = nearest_name(field, known);
+  throw InputError(what + " has no field '" + field + "'" +
+                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
+// Fields of a solution: status, message, solver, cost, iterations, violations.
+int solution_field(lua_State* state) {
+  const SolutionObject& solution = object_argument<SolutionObject>(state, 1, kSolutionType);
+  const SolveReport& report = solution.result.report;
+  const std::string field = text_argument(state, 2, "solution");
+  Value violations = Value::list();
+  for (const Violation& violation : report.violations) {
+    Value entry = Value::map();
+    entry.set("name", violation.name);
+    entry.set("row", violation.row);
+    entry.set("amount", violation.amount);
+    entry.set("time", violation.time);
+    violations.push_back(std::move(entry));
+  }
+  Value fields = Value::map();
+  fields.set("status", to_string(report.status));
+  fields.set("message", report.message);
+  fields.set("solver", solution.solver);
+  fields.set("cost", report.cost);
+  fields.set("iterations", report.iterations);
+  fields.set("violations", std::move(violations));
+  const Value* found = fields.find(field);
+  if (!found) refuse_field("a solution", field, fields);
+  push_value(state, *found);
+  return 1;
+}
+
+// Fields of a vehicle: its name and the limits that a mission may plan with, SI and radians.
+int vehicle_field(lua_State* state) {
+  const Vehicle& vehicle = object_argument<Vehicle>(state, 1, kVehicleType);
+  const std::string field = text_argument(state, 2, "vehicle");
+  Value fields = Value::map();
+  fields.set("name", vehicle.name);
+  fields.set("mass", vehicle.mass);
+  fields.set("speed_across", vehicle.speed_across_max);
+  fields.set("climb_speed", vehicle.climb_speed_max);
+  fields.set("descent_speed", vehicle.descent_speed_max);
+  fields.set("acceleration_across", vehicle.acceleration_across_max);
+  fields.set("yaw_rate", vehicle.yaw_rate_max);
+  fields.set("flight_time", vehicle.flight_time);
+  const Value* found = fields.find(field);
+  if (!found) refuse_field("a vehicle", field, fields);
+  push_value(state, *found);
+  return 1;
+}
+
+// -- run:plan
+// --------------------------------------------------------------------------------------
+
+Eigen::Vector3d vector_of(std::span<const double> numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+ParameterTable task_table() {
+  const KeyframeTask standard;
+  ParameterTable keyframe;
+  keyframe.required_number("time", "s", "when", at_least(0))
+      .required_numbers("position", 3, "m", "where, world")
+      .optional_number("yaw", "rad", "heading")
+      .number("tolerance", standard.tolerance, "m", "largest miss", above(0))
+      .number("time_tolerance", standard.time_tolerance, "s", "how far off in time", at_least(0))
+      .number("yaw_tolerance", standard.yaw_tolerance, "rad", "largest miss of yaw", above(0));
+  ParameterTable table;
+  table.tables("keyframes", keyframe, "to fly through");
+  return table;
+}
+
+Task task_of(const Parameters& given) {
+  Task task;
+  for (const Parameters& entry : given.tables("keyframes")) {
+    KeyframeTask keyframe;
+    keyframe.time = entry.number("time");
+    keyframe.position = vector_of(entry.numbers("position"));
+    if (entry.has("yaw")) keyframe.yaw = entry.number("yaw");
+    keyframe.tolerance = entry.number("tolerance");
+    keyframe.time_tolerance = entry.number("time_tolerance");
+    keyframe.yaw_tolerance = entry.number("yaw_tolerance");
+    task.keyframes.push_back(keyframe);
+  }
+  return task;
+}
+
+ParameterTable plan_table() {
+  ParameterTable origin;
+  origin.optional_number("lat", "", "degrees north", between(-90, 90))
+      .optional_number("lon", "", "degrees east", between(-180, 180))
+      .optional_number("alt", "m", "above the ellipsoid");
+  ParameterTable table;
+  table.table("task", task_table(), "what the flight is to do")
+      .optional_number("budget", "s", "of flight", above(0))
+      .table("geodetic_origin", origin, "where the world frame lies");
+  return table;
+}
+
+std::vector<std::string> notes_argument(lua_State* state, int index, const Origin& origin) {
+  std::vector<std::string> notes;
+  lua_getfield(state, index, "notes");
+  const Value given = value_from_lua(state, -1, origin, "plan.notes");
+  lua_pop(state, 1);
+  if (given.is_null()) return notes;
+  for (const Value& note : given.as_list()) notes.push_back(note.as_text());
+  return notes;
+}
+
+// run:plan{problem =, solution =, task = {keyframes = ...}, budget =, geodetic_origin =,
+//          notes = {"sentence", ...}, figures = {...}}
+int plan(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  static constexpr std::string_view kObjects[] = {"solution", "notes", "figures"};
+  const Parameters given = table_argument(state, 2, plan_table(), "plan", kObjects);
+  lua_getfield(state, 2, "solution");
+  const SolutionObject& solution = object_argument<SolutionObject>(state, -1, kSolutionType);
+  PlanObject made;
+  made.report = solution.result.report;
+  made.solver = solution.solver;
+  made.notes = notes_argument(state, 2, origin);
+  lua_getfield(state, 2, "figures");
+  made.block = value_from_lua(state, -1, origin, "plan.figures");
+
+  Plan& document = made.plan;
+  document.mission = run.name;
+  document.kind = run.kind;
+  document.vehicle = to_value(solution.problem->vehicle());
+  document.trajectory = solution.problem->trajectory(solution.result.point.stages);
+  document.environment = solution.problem->environment();
+  document.task = task_of(given.table("task"));
+  if (given.has("budget")) document.budget = given.number("budget");
+  const Parameters& place = given.table("geodetic_origin");
+  if (place.has("lat") && place.has("lon")) {
+    document.geodetic_origin = GeodeticPoint{place.number("lat"), place.number("lon"),
+                                             place.has("alt") ? place.number("alt") : 0.0};
+  }
+  document.configuration = run.configuration;
+  document.solver = to_value(solution.result.report, solution.solver);
+  new_object(state, kPlanType, std::move(made));
+  return 1;
+}
+
+// run:certify(plan): {feasible =, failures = {"sentence", ...}, checks = {...}}
+int certify(lua_State* state) {
+  const PlanObject& object = object_argument<PlanObject>(state, 2, kPlanType);
+  Certificate certificate;
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    certificate = verify(object.plan);
+  }
+  Value result = certificate.to_value();
+  Value failures = Value::list();
+  for (const Check& check : certificate.failures()) failures.push_back(to_line(check));
+  result.set("failures", std::move(failures));
+  push_value(state, result);
+  return 1;
+}
+
+// -- the rest of run
+// -------------------------------------------------------------------------------
+
+int cancelled(lua_State* state) {
+  const CancellationToken* token = run_of(state).settings.cancellation;
+  lua_pushboolean(state, token && token->cancelled());
+  return 1;
+}
+
+// run:progress(fraction, "words")
+int progress(lua_State* state) {
+  Progress* progress = run_of(state).settings.progress;
+  const double fraction = luaL_checknumber(state, 2);
+  const std::string what = text_argument(state, 3, "progress");
+  if (progress) progress->report(fraction, what);
+  return 0;
+}
+
+const Value* at_path(const Value& root, std::string_view path) {
+  const Value* at = &root;
+  while (!path.empty() && at) {
+    const std::size_t end = path.find_first_of(".[]");
+    const std::string_view part = path.substr(0, end);
+    const bool number = !part.empty() && part.find_first_not_of("0123456789") == part.npos;
+    if (number && at->is_list()) {
+      const std::size_t place = std::stoul(std::string(part));
+      at = place >= 1 && place <= at->as_list().size() ? &at->as_list()[place - 1] : nullptr;
+    } else if (!part.empty()) {
+      at = at->find(part);
+    }
+    path = end == path.npos ? std::string_view() : path.substr(end + 1);
+  }
+  return at;
+}
+
+// run:fail("keyframes[2].time", "message"): an error where that option was written.
+int fail(lua_State* state) {
+  const std::string path = text_argument(state, 2, "fail");
+  const std::string message = text_argument(state, 3, "fail");
+  const Value& options = run_of(state).configuration;
+  std::string_view known = path;
+  const Value* value = at_path(options, known);
+  while (!value && known.find_last_of(".[") != known.npos) {
+    known = known.substr(0, known.find_last_of(".["));
+    value = at_path(options, known);
+  }
+  Origin origin = value ? value->origin() : options.origin();
+  if (origin.source.empty() || origin.source == "default") {
+    origin = Sandbox::of(state).script_position(state);
+  }
+  throw InputError(origin, path + ": " + message);
+}
+
+int run_field(lua_State* state) {
+  const std::string field = text_argument(state, 2, "run");
+  if (field == "options") {
+    push_value(state, run_of(state).configuration);
+    return 1;
+  }
+  static const luaL_Reg methods[] = {{"vehicle", &guarded<vehicle_of_run>},
+                                     {"problem", &guarded<problem_of_run>},
+                                     {"solve", &guarded<solve>},
+                                     {"plan", &guarded<plan>},
+                                     {"certify", &guarded<certify>},
+                                     {"cancelled", &guarded<cancelled>},
+                                     {"progress", &guarded<progress>},
+                                     {"fail", &guarded<fail>}};
+  std::vector<std::string> known = {"options"};
+  for (const luaL_Reg& method : methods) {
+    if (field == method.name) {
+      lua_pushcfunction(state, method.func);
+      return 1;
+    }
+    known.emplace_back(method.name);
+  }
+  const std::string nearest = nearest_name(field, known);
+  throw InputError("run has no '" + field + "'" +
+                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
+struct RunHandle {};
+
+}  // namespace
+
+void open_plan_library(lua_State* state) {
+  define_type<RunHandle>(state, kRunType, nullptr, &guarded<run_field>);
+  define_type<Vehicle>(state, kVehicleType, nullptr, &guarded<vehicle_field>);
+  define_type<SolutionObject>(state, kSolutionType, nullptr, &guarded<solution_field>);
+  define_type<PlanObject>(state, kPlanType, nullptr);
+}
+
+void push_run(lua_State* state) {
+  new_object(state, kRunType, RunHandle{});
+}
+
+}  // namespace lapwing

@@ -1,0 +1,220 @@
+// Stating a problem: run:vehicle, run:problem, and the methods of a problem.
+#include <lua.hpp>
+
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/run.h"
+#include "framework/mission/vehicle_source.h"
+#include "framework/problem/constraint.h"
+#include "framework/problem/cost_term.h"
+#include "framework/problem/vehicle_model.h"
+
+namespace lapwing {
+
+namespace {
+
+TrajectoryProblem& open_problem(lua_State* state) {
+  ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  if (object.finished) throw InputError("the problem is finished; nothing can be added to it");
+  return *object.problem;
+}
+
+// {type = plugin, name = ..., weight = ..., and the plugin's own parameters}
+struct PluginArgument {
+  std::string type, name;
+  double weight = 1;
+  Value parameters = Value::map();
+};
+
+PluginArgument plugin_argument(lua_State* state, const char* what, bool weighted) {
+  const Origin origin = Sandbox::of(state).script_position(state);
+  if (!lua_istable(state, 2)) {
+    throw InputError(origin,
+                     std::string(what) + ": expected a table, got " + luaL_typename(state, 2));
+  }
+  const Value given = value_from_lua(state, 2, origin, what);
+  ParameterTable frame;
+  frame.required_text("type", "which plugin").optional_text("name", "its name in this problem");
+  if (weighted) frame.number("weight", 1.0, "", "weight of the term", at_least(0));
+  Value own = Value::map();
+  own.with_origin(origin);
+  PluginArgument argument;
+  argument.parameters.with_origin(origin);
+  if (given.is_map()) {
+    for (const auto& [key, value] : given.as_map()) {
+      (frame.find(key) ? own : argument.parameters).set(key, value);
+    }
+  }
+  const Parameters checked = check(frame, own, what);
+  argument.type = checked.text("type");
+  argument.name = checked.has("name") ? checked.text("name") : argument.type;
+  if (weighted) argument.weight = checked.number("weight");
+  return argument;
+}
+
+template <class Interface>
+std::unique_ptr<Interface> create(lua_State* state, const PluginArgument& argument) {
+  const Registry& registry = *run_of(state).settings.registry;
+  registry.find(Interface::kKind, argument.type, argument.parameters.origin());
+  return registry.create<Interface>(argument.type, argument.parameters, argument.name);
+}
+
+int add_model(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const PluginArgument argument = plugin_argument(state, "add_model", false);
+  problem.add_model(argument.name, create<VehicleModel>(state, argument));
+  return 0;
+}
+
+int add_block(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  ParameterTable table;
+  table.required_text("name", "of the block")
+      .integer("size", 1, "numbers in it", between(1, 64))
+      .text("unit", "", "of each number");
+  const Parameters given = table_argument(state, 2, table, "add_block");
+  BlockSpec block;
+  block.name = given.text("name");
+  block.size = static_cast<int>(given.integer("size"));
+  block.unit = given.text("unit");
+  block.role = BlockRole::free;
+  problem.add_block(std::move(block));
+  return 0;
+}
+
+int add_cost(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const PluginArgument argument = plugin_argument(state, "add_cost", true);
+  problem.add_cost(argument.name, argument.weight, create<CostTerm>(state, argument));
+  return 0;
+}
+
+int add_constraint(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const PluginArgument argument = plugin_argument(state, "add_constraint", false);
+  problem.add_constraint(argument.name, create<Constraint>(state, argument));
+  return 0;
+}
+
+// problem:guess_path{times = {...}, positions = {{x, y, z}, ...}, yaws = {...}}
+int guess_path(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  static constexpr std::string_view kPositions[] = {"positions"};
+  ParameterTable table;
+  table.required_numbers("times", 0, "s", "of the points")
+      .numbers("yaws", {}, "rad", "at the points; none: 0");
+  const Parameters given = table_argument(state, 2, table, "guess_path", kPositions);
+  std::vector<Eigen::Vector3d> positions;
+  lua_getfield(state, 2, "positions");
+  const Value points = value_from_lua(state, -1, origin, "guess_path.positions");
+  for (const Value& point : points.as_list()) {
+    if (!point.is_list() || point.as_list().size() != 3) {
+      throw InputError(origin, "guess_path.positions: expected a list of 3 numbers each");
+    }
+    const auto& p = point.as_list();
+    positions.emplace_back(p[0].as_number(), p[1].as_number(), p[2].as_number());
+  }
+  const auto times = given.numbers("times");
+  const auto yaws = given.numbers("yaws");
+  std::vector<double> angles(yaws.begin(), yaws.end());
+  if (angles.empty()) angles.assign(times.size(), 0.0);
+  if (positions.size() != times.size() || angles.size() != times.size() || positions.empty()) {
+    throw InputError(origin,
+                     "guess_path: expected as many positions and yaws as times, at least one");
+  }
+  problem.set_path_guess({times.begin(), times.end()}, std::move(positions), std::move(angles));
+  return 0;
+}
+
+int finish(lua_State* state) {
+  open_problem(state).finish();
+  object_argument<ProblemObject>(state, 1, kProblemType).finished = true;
+  return 0;
+}
+
+Eigen::Vector3d vector_of(std::span<const double> numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+ParameterTable environment_table() {
+  ParameterTable sphere;
+  sphere.text("name", "", "for messages")
+      .required_numbers("center", 3, "m", "world")
+      .required_number("radius", "m", "", above(0));
+  ParameterTable box;
+  box.text("name", "", "for messages")
+      .required_numbers("lower", 3, "m", "lowest corner, world")
+      .required_numbers("upper", 3, "m", "highest corner, world");
+  ParameterTable table;
+  table.tables("spheres", sphere, "to keep out of")
+      .tables("boxes", box, "to keep out of, parallel to the axes")
+      .number("margin", 0, "m", "kept from every surface", at_least(0));
+  return table;
+}
+
+Environment environment_of(const Parameters& given) {
+  Environment environment;
+  for (const Parameters& sphere : given.tables("spheres")) {
+    environment.spheres.push_back(
+        {sphere.text("name"), vector_of(sphere.numbers("center")), sphere.number("radius")});
+  }
+  for (const Parameters& box : given.tables("boxes")) {
+    environment.boxes.push_back(
+        {box.text("name"), vector_of(box.numbers("lower")), vector_of(box.numbers("upper"))});
+  }
+  environment.margin = given.number("margin");
+  return environment;
+}
+
+}  // namespace
+
+// run:problem{vehicle = v, duration = 20, step = 0.1, environment = {...}, step_mode = "fixed"}:
+// as many stages as keep the step at or below `step`, evenly over the duration.
+int problem_of_run(lua_State* state) {
+  static constexpr std::string_view kVehicle[] = {"vehicle"};
+  ParameterTable table;
+  table.required_number("duration", "s", "of the flight", above(0))
+      .number("step", 0.1, "s", "longest time between two stages", above(0))
+      .choice("step_mode", "fixed", {"fixed", "free"}, "free: the step is a variable")
+      .table("environment", environment_table(), "what surrounds the flight");
+  const Parameters given = table_argument(state, 2, table, "problem", kVehicle);
+  lua_getfield(state, 2, "vehicle");
+  const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
+  constexpr double kMostIntervals = 100'000;
+  constexpr double kRounding = 1e-9;  // of an interval
+  const double intervals = given.number("duration") / given.number("step");
+  if (intervals > kMostIntervals) {
+    throw InputError(given.origin(), "problem: more than 100000 stages; raise the step");
+  }
+  Horizon horizon;
+  horizon.stages = std::max(1, static_cast<int>(std::ceil(intervals - kRounding))) + 1;
+  horizon.step = given.number("duration") / (horizon.stages - 1);
+  horizon.step_free = given.text("step_mode") == "free";
+  ProblemObject object;
+  object.problem = std::make_shared<TrajectoryProblem>(vehicle, horizon,
+                                                       environment_of(given.table("environment")));
+  new_object(state, kProblemType, std::move(object));
+  return 1;
+}
+
+// run:vehicle("vehicles/solo") or run:vehicle{...} with the keys of a vehicle file.
+int vehicle_of_run(lua_State* state) {
+  const Origin origin = Sandbox::of(state).script_position(state);
+  const Value source = value_from_lua(state, 2, origin, "vehicle");
+  new_object(state, kVehicleType, load_vehicle(source, run_of(state).files.folders()));
+  return 1;
+}
+
+void open_problem_library(lua_State* state) {
+  const luaL_Reg methods[] = {{"add_model", &guarded<add_model>},
+                              {"add_block", &guarded<add_block>},
+                              {"add_cost", &guarded<add_cost>},
+                              {"add_constraint", &guarded<add_constraint>},
+                              {"guess_path", &guarded<guess_path>},
+                              {"finish", &guarded<finish>},
+                              {nullptr, nullptr}};
+  define_type<ProblemObject>(state, kProblemType, methods);
+}
+
+}  // namespace lapwing

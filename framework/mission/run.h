@@ -1,0 +1,92 @@
+// What the bindings of one mission share: settings, files, effective options, and what was planned.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/core/progress.h"
+#include "framework/mission/data_files.h"
+#include "framework/mission/sandbox.h"
+#include "framework/plugin/registry.h"
+#include "framework/problem/trajectory_problem.h"
+#include "framework/solve/trajectory_solver.h"
+#include "framework/trajectory/plan.h"
+
+struct lua_State;
+
+namespace lapwing {
+
+struct MissionSettings {
+  SandboxLimits limits;
+  std::uint64_t seed = 1;
+  std::filesystem::path scripts;            // shipped; holds mission/film.lua
+  std::filesystem::path configs;            // shipped; holds vehicles/solo.yaml
+  std::vector<std::filesystem::path> data;  // --data and LAPWING_DATA
+  const Registry* registry = nullptr;       // outlives the mission
+  const CancellationToken* cancellation = nullptr;
+  Progress* progress = nullptr;
+  std::function<void(const std::string&)> print = [](const std::string&) {};
+};
+
+// A problem being stated, then solved; Lua holds one or more references to it.
+struct ProblemObject {
+  std::shared_ptr<TrajectoryProblem> problem;
+  bool finished = false;
+};
+
+struct SolutionObject {
+  std::shared_ptr<TrajectoryProblem> problem;
+  std::string solver;
+  SolveResult result;
+};
+
+// What `plan` returns, beside what the plan document holds.
+struct PlanObject {
+  Plan plan;
+  SolveReport report;
+  std::string solver;
+  std::vector<std::string> notes;  // sentences for the user
+  Value block;                     // the kind's own figures; null or a map
+};
+
+struct MissionRun {
+  MissionSettings settings;
+  DataFiles files;
+  std::string name, kind;
+  Value configuration = Value::map();
+  double solve_seconds = 0;
+};
+
+// The run that a state belongs to.
+MissionRun& run_of(lua_State* state);
+
+// Type names as error messages show them.
+inline constexpr const char* kRunType = "run";
+inline constexpr const char* kVehicleType = "vehicle";
+inline constexpr const char* kProblemType = "problem";
+inline constexpr const char* kSolutionType = "solution";
+inline constexpr const char* kPlanType = "plan";
+inline constexpr const char* kOptionsType = "lapwing.options";
+
+// Each adds its part: the table `lapwing`, and the types above.
+void open_lapwing_library(lua_State* state, MissionRun& run);
+void open_problem_library(lua_State* state);
+void open_plan_library(lua_State* state);
+// Pushes the object `run` that the plan function receives.
+void push_run(lua_State* state);
+// The methods of `run`, for the type's table.
+int problem_of_run(lua_State* state);
+int vehicle_of_run(lua_State* state);
+
+// The table argument at `index`, checked; keys in `without` are the caller's. The script's position
+// is the origin of every value.
+Parameters table_argument(lua_State* state, int index, const ParameterTable& table,
+                          const std::string& what, std::span<const std::string_view> without = {});
+
+}  // namespace lapwing

@@ -1,0 +1,390 @@
+#include "framework/mission/sandbox_library.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "framework/mission/guard.h"
+
+namespace lapwing {
+
+namespace {
+
+constexpr lua_Integer kLongestRange = 10'000'000;  // entries that one table function may go through
+constexpr lua_Integer kLargestSort = 2'000'000;    // entries
+
+// Calls the function that a wrapper stands for, with the wrapper's own arguments.
+int call_original(lua_State* state) {
+  const int arguments = lua_gettop(state);
+  lua_pushvalue(state, lua_upvalueindex(1));
+  lua_insert(state, 1);
+  lua_call(state, arguments, LUA_MULTRET);
+  Sandbox::of(state).check_clock(state);
+  return lua_gettop(state);
+}
+
+// -- strings
+// ---------------------------------------------------------------------------------------
+
+void check_pattern(lua_State* state, const char* function, bool caret_anchors) {
+  if (lua_type(state, 2) != LUA_TSTRING || !lua_isstring(state, 1)) return;  // Lua's own message
+  std::size_t length = 0, pattern_length = 0;
+  lua_tolstring(state, 1, &length);
+  const char* pattern = lua_tolstring(state, 2, &pattern_length);
+  const double steps = worst_pattern_steps(pattern, pattern_length, length, caret_anchors);
+  if (steps <= Sandbox::of(state).limits().pattern_work) return;
+  throw InputError(std::string("string.") + function +
+                   ": a pattern with this many repetitions on " + std::to_string(length) +
+                   " characters could run too long; anchor it with ^, shorten the text, or raise "
+                   "sandbox.pattern_work");
+}
+
+int find(lua_State* state) {
+  if (!lua_toboolean(state, 4)) check_pattern(state, "find", true);
+  return call_original(state);
+}
+
+int match(lua_State* state) {
+  check_pattern(state, "match", true);
+  return call_original(state);
+}
+
+int gsub(lua_State* state) {
+  check_pattern(state, "gsub", true);
+  return call_original(state);
+}
+
+int gmatch(lua_State* state) {
+  check_pattern(state, "gmatch", false);
+  call_original(state);
+  lua_settop(state, 1);
+  lua_pushcclosure(state, &guarded<call_original>, 1);
+  return 1;
+}
+
+int rep(lua_State* state) {
+  std::size_t length = 0, separator = 0;
+  if (lua_isstring(state, 1)) lua_tolstring(state, 1, &length);
+  if (lua_isstring(state, 3)) lua_tolstring(state, 3, &separator);
+  const lua_Integer count = lua_isinteger(state, 2) ? lua_tointeger(state, 2) : 0;
+  if (count > kLongestRange && length + separator == 0) {
+    throw InputError("string.rep: more than " + std::to_string(kLongestRange) + " repetitions");
+  }
+  return call_original(state);
+}
+
+// -- tables
+// ----------------------------------------------------------------------------------------
+
+// insert, remove, sort and the defaults of the others ask for the length, which a metamethod may
+// make up.
+void check_plain_length(lua_State* state, const char* function, lua_Integer limit) {
+  if (lua_istable(state, 1) && luaL_getmetafield(state, 1, "__len") != LUA_TNIL) {
+    throw InputError(std::string("table.") + function + ": the table has a __len of its own");
+  }
+  if (lua_istable(state, 1) && static_cast<lua_Integer>(lua_rawlen(state, 1)) > limit) {
+    throw InputError(std::string("table.") + function + ": more than " + std::to_string(limit) +
+                     " entries");
+  }
+}
+
+void check_range(lua_State* state, const char* function, int first, int last) {
+  if (!lua_isinteger(state, last)) return;
+  const lua_Integer from = lua_isinteger(state, first) ? lua_tointeger(state, first) : 1;
+  const double count = static_cast<double>(lua_tointeger(state, last)) - static_cast<double>(from);
+  if (count > static_cast<double>(kLongestRange)) {
+    throw InputError(std::string("table.") + function + ": more than " +
+                     std::to_string(kLongestRange) + " entries");
+  }
+}
+
+int insert(lua_State* state) {
+  check_plain_length(state, "insert", kLongestRange);
+  return call_original(state);
+}
+
+int remove(lua_State* state) {
+  check_plain_length(state, "remove", kLongestRange);
+  return call_original(state);
+}
+
+int sort(lua_State* state) {
+  check_plain_length(state, "sort", kLargestSort);
+  return call_original(state);
+}
+
+int concat(lua_State* state) {
+  check_plain_length(state, "concat", kLongestRange);
+  check_range(state, "concat", 3, 4);
+  return call_original(state);
+}
+
+int unpack(lua_State* state) {
+  check_plain_length(state, "unpack", kLongestRange);
+  check_range(state, "unpack", 2, 3);
+  return call_original(state);
+}
+
+int move(lua_State* state) {
+  check_range(state, "move", 2, 3);
+  return call_original(state);
+}
+
+// -- base
+// ------------------------------------------------------------------------------------------
+
+int print(lua_State* state) {
+  std::string line;
+  const int count = lua_gettop(state);
+  for (int i = 1; i <= count; ++i) {
+    std::size_t length = 0;
+    const char* text = luaL_tolstring(state, i, &length);
+    if (i > 1) line += '\t';
+    line.append(text, length);
+    lua_pop(state, 1);
+  }
+  Sandbox::of(state).print(line);
+  return 0;
+}
+
+// A finaliser would run with the limits off.
+int set_metatable(lua_State* state) {
+  if (lua_istable(state, 2)) {
+    lua_pushliteral(state, "__gc");
+    if (lua_rawget(state, 2) != LUA_TNIL) {
+      throw InputError("setmetatable: finalisers (__gc) are not allowed here");
+    }
+    lua_pop(state, 1);
+  }
+  return call_original(state);
+}
+
+int require(lua_State* state) {
+  Sandbox::of(state).require(state, text_argument(state, 1, "require"));
+  return 1;
+}
+
+struct Key {
+  int rank = 0;  // numbers, then texts, then the rest as they come
+  double number = 0;
+  std::string text;
+  int place = 0;  // in the list of keys as they came
+};
+
+bool before(const Key& a, const Key& b) {
+  if (a.rank != b.rank) return a.rank < b.rank;
+  if (a.rank == 0) return a.number < b.number;
+  if (a.rank == 1) return a.text < b.text;
+  return a.place < b.place;
+}
+
+// upvalues: keys as they came, order, how many have been visited
+int next_in_order(lua_State* state) {
+  for (;;) {
+    const lua_Integer visited = lua_tointeger(state, lua_upvalueindex(3)) + 1;
+    lua_pushinteger(state, visited);
+    lua_copy(state, -1, lua_upvalueindex(3));
+    lua_pop(state, 1);
+    if (lua_rawgeti(state, lua_upvalueindex(2), visited) == LUA_TNIL) return 1;
+    lua_rawgeti(state, lua_upvalueindex(1), lua_tointeger(state, -1));
+    lua_pushvalue(state, -1);
+    if (lua_rawget(state, 1) != LUA_TNIL) return 2;
+    lua_settop(state, 1);  // removed meanwhile
+  }
+}
+
+int ordered_pairs(lua_State* state) {
+  if (luaL_getmetafield(state, 1, "__pairs") != LUA_TNIL) {
+    lua_pushvalue(state, 1);
+    lua_call(state, 1, 3);
+    return 3;
+  }
+  luaL_checktype(state, 1, LUA_TTABLE);
+  lua_settop(state, 1);
+  lua_newtable(state);
+  std::vector<Key> keys;
+  lua_pushnil(state);
+  while (lua_next(state, 1)) {
+    lua_pop(state, 1);
+    Key key;
+    key.place = static_cast<int>(keys.size()) + 1;
+    key.rank = 2;
+    if (lua_type(state, -1) == LUA_TNUMBER) {
+      key.rank = 0;
+      key.number = lua_tonumber(state, -1);
+    } else if (lua_type(state, -1) == LUA_TSTRING) {
+      key.rank = 1;
+      key.text = lua_tostring(state, -1);
+    }
+    keys.push_back(std::move(key));
+    lua_pushvalue(state, -1);
+    lua_rawseti(state, 2, keys.back().place);
+  }
+  std::sort(keys.begin(), keys.end(), before);
+  lua_createtable(state, static_cast<int>(keys.size()), 0);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    lua_pushinteger(state, keys[i].place);
+    lua_rawseti(state, 3, static_cast<lua_Integer>(i) + 1);
+  }
+  Sandbox::of(state).check_clock(state);
+  lua_pushinteger(state, 0);
+  lua_pushcclosure(state, &next_in_order, 3);
+  lua_pushvalue(state, 1);
+  lua_pushnil(state);
+  return 3;
+}
+
+// -- math
+// ------------------------------------------------------------------------------------------
+
+int random(lua_State* state) {
+  Random& random = Sandbox::of(state).random();
+  const int arguments = lua_gettop(state);
+  if (arguments == 0) {
+    lua_pushnumber(state, random.uniform());
+    return 1;
+  }
+  const lua_Integer low = arguments == 1 ? 1 : luaL_checkinteger(state, 1);
+  const lua_Integer high = luaL_checkinteger(state, arguments == 1 ? 1 : 2);
+  luaL_argcheck(state, low <= high, arguments == 1 ? 1 : 2, "interval is empty");
+  lua_pushinteger(state, random.integer(low, high));
+  return 1;
+}
+
+int refuse_seed(lua_State*) {
+  throw InputError("math.randomseed: random numbers are seeded by the run; use --seed");
+}
+
+// An error that the limits raise comes out of a hook, and until it is caught hooks stay off: a
+// message handler, or a to-be-closed variable of a coroutine that died of it, would run without
+// limits. So xpcall calls its handler after unwinding, and coroutine.wrap leaves dead coroutines as
+// they are.
+constexpr const char* kPrelude = R"(
+local pcall, error, create, resume = pcall, error, coroutine.create, coroutine.resume
+function xpcall(f, handler, ...)
+  local function finish(done, ...)
+    if done then return true, ... end
+    return false, handler(...)
+  end
+  return finish(pcall(f, ...))
+end
+function coroutine.wrap(f)
+  local thread = create(f)
+  local function finish(done, ...)
+    if done then return ... end
+    error((...), 0)
+  end
+  return function(...) return finish(resume(thread, ...)) end
+end
+)";
+
+// Replaces field `name` of the table on top by `wrapper` with the original as upvalue.
+void wrap(lua_State* state, const char* name, lua_CFunction wrapper) {
+  lua_getfield(state, -1, name);
+  lua_pushcclosure(state, wrapper, 1);
+  lua_setfield(state, -2, name);
+}
+
+void remove_fields(lua_State* state, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    lua_pushnil(state);
+    lua_setfield(state, -2, name);
+  }
+}
+
+void open_base(lua_State* state) {
+  luaL_requiref(state, LUA_GNAME, luaopen_base, 1);
+  remove_fields(state, {"collectgarbage", "dofile", "load", "loadfile", "warn"});
+  wrap(state, "setmetatable", &guarded<set_metatable>);
+  const luaL_Reg functions[] = {{"print", &guarded<print>},
+                                {"require", &guarded<require>},
+                                {"pairs", &guarded<ordered_pairs>},
+                                {nullptr, nullptr}};
+  luaL_setfuncs(state, functions, 0);
+  lua_pop(state, 1);
+}
+
+void open_strings(lua_State* state) {
+  luaL_requiref(state, LUA_STRLIBNAME, luaopen_string, 1);
+  remove_fields(state, {"dump"});
+  wrap(state, "find", &guarded<find>);
+  wrap(state, "match", &guarded<match>);
+  wrap(state, "gsub", &guarded<gsub>);
+  wrap(state, "gmatch", &guarded<gmatch>);
+  wrap(state, "rep", &guarded<rep>);
+  lua_pop(state, 1);
+  lua_pushliteral(state, "");
+  lua_getmetatable(state, -1);
+  lua_pushliteral(state, "protected");
+  lua_setfield(state, -2, "__metatable");
+  lua_pop(state, 2);
+}
+
+void open_tables(lua_State* state) {
+  luaL_requiref(state, LUA_TABLIBNAME, luaopen_table, 1);
+  wrap(state, "insert", &guarded<insert>);
+  wrap(state, "remove", &guarded<remove>);
+  wrap(state, "sort", &guarded<sort>);
+  wrap(state, "concat", &guarded<concat>);
+  wrap(state, "unpack", &guarded<unpack>);
+  wrap(state, "move", &guarded<move>);
+  lua_pop(state, 1);
+}
+
+}  // namespace
+
+void open_allowed_libraries(lua_State* state) {
+  open_base(state);
+  open_strings(state);
+  open_tables(state);
+  luaL_requiref(state, LUA_MATHLIBNAME, luaopen_math, 1);
+  const luaL_Reg numbers[] = {
+      {"random", &guarded<random>}, {"randomseed", &guarded<refuse_seed>}, {nullptr, nullptr}};
+  luaL_setfuncs(state, numbers, 0);
+  luaL_requiref(state, LUA_UTF8LIBNAME, luaopen_utf8, 1);
+  luaL_requiref(state, LUA_COLIBNAME, luaopen_coroutine, 1);
+  remove_fields(state, {"close"});
+  const std::string_view prelude = kPrelude;
+  if (luaL_loadbufferx(state, prelude.data(), prelude.size(), "=sandbox", "t") != LUA_OK) {
+    throw Error(lua_tostring(state, -1));
+  }
+  lua_call(state, 0, 0);
+  lua_settop(state, 0);
+}
+
+double worst_pattern_steps(const char* pattern, std::size_t pattern_length, std::size_t length,
+                           bool caret_anchors) {
+  const char* at = pattern;
+  const char* end = pattern + pattern_length;
+  const bool anchored = caret_anchors && at < end && *at == '^';
+  if (anchored) ++at;
+  int loops = anchored ? 0 : 1;  // places where the matcher chooses among up to `length`
+  double factor = 1;
+  while (at < end) {
+    if (*at == '%' && at + 1 < end) {
+      const char kind = at[1];
+      at += kind == 'b' ? std::min<std::ptrdiff_t>(4, end - at) : 2;
+      if (kind == 'b' || (kind >= '0' && kind <= '9')) ++loops;
+      if (kind == 'f') continue;  // the set follows
+    } else if (*at == '[') {
+      const char* begin = at++;
+      if (at < end && *at == '^') ++at;
+      do {
+        at += at < end && *at == '%' ? 2 : 1;
+      } while (at < end && *at != ']');
+      at = std::min(at + 1, end);
+      factor = std::max(factor, static_cast<double>(at - begin) / 4);
+    } else {
+      ++at;
+    }
+    if (at < end && (*at == '*' || *at == '+' || *at == '-'))
+      ++loops, ++at;
+    else if (at < end && *at == '?')
+      factor *= 2, ++at;
+  }
+  // Ways to cut `length` characters at `loops` places: (length + loops) over loops.
+  for (int k = 1; k <= loops; ++k) factor *= (static_cast<double>(length) + k) / k;
+  return factor;
+}
+
+}  // namespace lapwing
