@@ -1,0 +1,87 @@
+-- When keyframes are flown through, and with which turn of yaw.
+local times = {}
+
+local SHORTEST_LEG = 1  -- s, between keyframes without times
+
+-- Seconds for a leg at half the vehicle's speed, and for speeding up and slowing down.
+local function leg_time(from, to, vehicle)
+  local across = math.sqrt((to[1] - from[1]) ^ 2 + (to[2] - from[2]) ^ 2)
+  local up = to[3] - from[3]
+  local vertical = up > 0 and up / vehicle.climb_speed or -up / vehicle.descent_speed
+  return math.max(SHORTEST_LEG, 2 * across / vehicle.speed_across, 2 * vertical,
+                  math.sqrt(8 * across / vehicle.acceleration_across))
+end
+
+-- Keyframes without a time stand evenly between those that have one. Where nothing says how fast,
+-- every leg takes as long as the longest one needs.
+function times.fill(shot, vehicle)
+  local list, pace, known = shot.keyframes, SHORTEST_LEG, 1
+  local count = #list
+  for i = 2, count do
+    pace = math.max(pace, leg_time(list[i - 1].position, list[i].position, vehicle))
+  end
+  list[1].time = list[1].time or 0
+  if count > 1 then list[count].time = list[count].time or shot.duration end
+  for i = 2, count do
+    if list[i].time then
+      local each = (list[i].time - list[known].time) / (i - known)
+      for j = known + 1, i - 1 do list[j].time = list[known].time + each * (j - known) end
+      known = i
+    end
+  end
+  for j = known + 1, count do list[j].time = list[known].time + pace * (j - known) end
+end
+
+function times.check(run, shot)
+  for i, k in ipairs(shot.keyframes) do
+    local before = shot.keyframes[i - 1]
+    local problem
+    if before and k.time == before.time then
+      problem = string.format("%g s is keyframe %d's time as well; times must rise", k.time, i - 1)
+    elseif before and k.time < before.time then
+      problem = string.format("%g s comes before keyframe %d at %g s; times must rise", k.time,
+                              i - 1, before.time)
+    elseif shot.duration and k.time > shot.duration then
+      problem = string.format("%g s is outside the duration of %g s", k.time, shot.duration)
+    end
+    if problem then run:fail("keyframes[" .. i .. "].time", problem) end
+  end
+end
+
+-- Yaw in radians, each on the turn nearest to the one before.
+function times.unwrap_yaw(keyframes)
+  local before
+  for _, k in ipairs(keyframes) do
+    if k.yaw_deg then
+      k.yaw = math.rad(k.yaw_deg)
+      local turns = before and math.floor((k.yaw - before) / (2 * math.pi) + 0.5) or 0
+      k.yaw = k.yaw - 2 * math.pi * turns
+      before = k.yaw
+    end
+  end
+end
+
+-- The least factor on all times at which no leg asks for more than the vehicle's speeds, when each
+-- end may be missed by `miss` metres and `late` seconds; and a sentence where a leg asks for more.
+function times.fastest_leg(keyframes, vehicle, miss, late)
+  local least, sentence = 0, nil
+  for i = 2, #keyframes do
+    local a, b = keyframes[i - 1], keyframes[i]
+    local up = b.position[3] - a.position[3]
+    local across = math.sqrt((b.position[1] - a.position[1]) ^ 2
+                             + (b.position[2] - a.position[2]) ^ 2)
+    for name, distance in pairs { speed_across = across, climb_speed = up, descent_speed = -up } do
+      local limit, span = vehicle[name], b.time - a.time
+      local factor = ((distance - 2 * miss) / limit - 2 * late) / span
+      if factor > least then
+        least = factor
+        sentence = distance / span > limit and string.format(
+          "%s of %.3g m/s from keyframe %d to %d exceeds %g m/s at %.4g s", name, distance / span,
+          i - 1, i, limit, a.time) or nil
+      end
+    end
+  end
+  return least, sentence
+end
+
+return times
