@@ -1,0 +1,175 @@
+#include "framework/app/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iostream>
+
+#include "framework/core/json.h"
+#include "framework/core/log.h"
+
+#ifndef LAPWING_VERSION
+#define LAPWING_VERSION "0.1.0"
+#endif
+
+namespace lapwing {
+
+namespace {
+
+constexpr int kMostThreads = 1024;
+
+using Command = std::function<ExitStatus()>;
+
+void add_json(CLI::App& command, Invocation& invocation) {
+  command.add_flag("--json", invocation.json, "one JSON object on standard output");
+}
+
+// Repeatable; every use takes one value, which may hold brackets and commas.
+template <class T>
+CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<T>& values,
+                          const std::string& help) {
+  return command.add_option(name, values, help)->expected(1)->allow_extra_args(false)->take_all();
+}
+
+void add_configuration(CLI::App& command, Invocation& invocation) {
+  add_repeated(command, "--config", invocation.configs,
+               "a configuration file or its name in configs/; later ones win")
+      ->type_name("FILE");
+  add_repeated(command, "--set", invocation.overrides, "set one option")->type_name("KEY=VALUE");
+  add_repeated(command, "--data", invocation.data, "a folder that the script may read")
+      ->type_name("DIR");
+  command.add_option("--seed", invocation.seed, "of all random numbers")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+}
+
+void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& script,
+             Command& command) {
+  CLI::App* run = app.add_subcommand("run", "plan a mission, certify and write it");
+  run->add_option("mission", script, "mission script")->required()->type_name("MISSION.lua");
+  add_configuration(*run, invocation);
+  run->add_option("--out", invocation.out, "folder of the results; else out/<mission>")
+      ->type_name("DIR");
+  run->add_option("--threads", invocation.threads, "threads to use; else one per core")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostThreads));
+  run->add_flag("--quiet", invocation.quiet, "no progress, no summary");
+  add_json(*run, invocation);
+  run->callback([&] { command = [&] { return run_mission(script, invocation); }; });
+
+  CLI::App* config = app.add_subcommand("config", "effective options and where each came from");
+  config->add_option("mission", script, "mission script")->required()->type_name("MISSION.lua");
+  add_configuration(*config, invocation);
+  add_json(*config, invocation);
+  config->callback([&] { command = [&] { return show_configuration(script, invocation); }; });
+}
+
+void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
+                       std::string& format, std::filesystem::path& target, Command& command) {
+  CLI::App* verify = app.add_subcommand("verify", "judge a plan from its numbers alone");
+  verify->add_option("plan", plan, "plan document")->required()->type_name("PLAN.json");
+  add_json(*verify, invocation);
+  verify->callback([&] { command = [&] { return verify_plan(plan, invocation); }; });
+
+  CLI::App* exported = app.add_subcommand("export", "write a plan in another format");
+  exported->add_option("plan", plan, "plan document")->required()->type_name("PLAN.json");
+  exported->add_option("--format", format, "an exporter's name")->required()->type_name("NAME");
+  exported->add_option("-o,--output", target, "the file to write")->required()->type_name("PATH");
+  exported->callback(
+      [&] { command = [&] { return export_plan(plan, format, target, invocation); }; });
+}
+
+void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
+                         Command& command) {
+  CLI::App* plugins = app.add_subcommand("plugins", "what plugins there are");
+  plugins->require_subcommand(1);
+  CLI::App* list = plugins->add_subcommand("list", "every plugin, by kind");
+  add_json(*list, invocation);
+  list->callback([&] { command = [&] { return list_plugins(invocation); }; });
+  CLI::App* show = plugins->add_subcommand("show", "a plugin's parameters");
+  show->add_option("name", name, "its name")->required()->type_name("[KIND/]NAME");
+  add_json(*show, invocation);
+  show->callback([&] { command = [&] { return show_plugin(name, invocation); }; });
+  CLI::App* path = plugins->add_subcommand("path", "the folders that are searched");
+  add_json(*path, invocation);
+  path->callback([&] { command = [&] { return show_plugin_path(invocation); }; });
+}
+
+// What to say of a first word that is no command; empty where there is none.
+std::string unknown_command(const CLI::App& app) {
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
+  const std::vector<std::string> rest = app.remaining(true);
+  if (rest.empty() || rest.front().starts_with("-")) return "";
+  std::vector<std::string> known;
+  for (const CLI::App* command : at->get_subcommands([](const CLI::App*) { return true; })) {
+    known.push_back(command->get_name());
+  }
+  if (known.empty()) return "";
+  const std::string nearest = nearest_name(rest.front(), known);
+  return "unknown command '" + rest.front() + "'" +
+         (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
+}
+
+ExitStatus report_error(const Invocation& invocation, ExitStatus status,
+                        const std::string& message) {
+  std::cerr << "lapwing: " << message << "\n";
+  if (invocation.json) {
+    Value object = Value::map();
+    object.set("status", "failed");
+    object.set("error", message);
+    print_json(object);
+  }
+  return status;
+}
+
+ExitStatus guarded_command(const Command& command, const Invocation& invocation) {
+  try {
+    return command();
+  } catch (const InputError& error) {
+    return report_error(invocation, ExitStatus::bad_input, error.what());
+  } catch (const Cancelled&) {
+    return report_error(invocation, ExitStatus::interrupted, "cancelled");
+  } catch (const std::exception& error) {
+    return report_error(invocation, ExitStatus::defect,
+                        std::string("internal error: ") + error.what());
+  } catch (...) {
+    return report_error(invocation, ExitStatus::defect, "internal error of unknown kind");
+  }
+}
+
+}  // namespace
+
+void print_json(const Value& value) {
+  std::cout << to_json(value) << std::endl;
+}
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app("Planning for camera-carrying micro aerial vehicles.", "lapwing");
+  app.set_version_flag("--version", "lapwing " LAPWING_VERSION);
+  app.require_subcommand(1);
+  Invocation invocation;
+  std::filesystem::path script, plan, target;
+  std::string format, name;
+  Command command;
+  add_repeated(app, "--plugin-path", invocation.plugin_path, "a folder of plugins, searched first")
+      ->type_name("DIR");
+  app.fallthrough();
+  add_run(app, invocation, script, command);
+  add_plan_commands(app, invocation, plan, format, target, command);
+  add_plugin_commands(app, invocation, name, command);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {  // --help, --version
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    if (const std::string message = unknown_command(app); !message.empty()) {
+      std::cerr << "lapwing: " << message << "\nRun with --help for more information.\n";
+    } else {
+      app.exit(error, std::cerr, std::cerr);
+    }
+    return static_cast<int>(ExitStatus::bad_input);
+  }
+  return static_cast<int>(guarded_command(command, invocation));
+}
+
+}  // namespace lapwing

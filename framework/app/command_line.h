@@ -1,0 +1,55 @@
+// The `lapwing` command line: what may be asked, and how every command ends.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/core/value.h"
+#include "framework/plugin/registry.h"
+
+namespace lapwing {
+
+enum class ExitStatus {
+  done = 0,           // and certified, where there is something to certify
+  not_certified = 1,  // finished, but infeasible or not certified
+  bad_input = 2,
+  defect = 3,
+  interrupted = 130,
+};
+
+// What several commands understand.
+struct Invocation {
+  std::vector<std::filesystem::path> plugin_path;
+  std::vector<std::string> configs;    // names or paths, lowest first
+  std::vector<std::string> overrides;  // "key.path=value", in order
+  std::vector<std::filesystem::path> data;
+  std::filesystem::path out;  // empty: out/<mission>
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: as many as there are cores
+  bool json = false;
+  bool quiet = false;
+
+  Registry registry() const { return Registry(plugin_search_path(plugin_path)); }
+};
+
+// Parses, runs one command, reports errors on standard error (and with --json as the one object on
+// standard output), and returns an ExitStatus.
+int run_command_line(int argc, const char* const* argv);
+
+// The commands. Each throws InputError for bad input and writes its result to standard output.
+ExitStatus run_mission(const std::filesystem::path& script, const Invocation& invocation);
+ExitStatus show_configuration(const std::filesystem::path& script, const Invocation& invocation);
+ExitStatus verify_plan(const std::filesystem::path& plan, const Invocation& invocation);
+ExitStatus export_plan(const std::filesystem::path& plan, const std::string& format,
+                       const std::filesystem::path& target, const Invocation& invocation);
+ExitStatus list_plugins(const Invocation& invocation);
+ExitStatus show_plugin(const std::string& name, const Invocation& invocation);
+ExitStatus show_plugin_path(const Invocation& invocation);
+
+// Writes one object and a line end to standard output.
+void print_json(const Value& value);
+
+}  // namespace lapwing

@@ -1,0 +1,20 @@
+// Ctrl-C: the first asks the work to end with the best so far, the second ends the program.
+#pragma once
+
+#include "framework/core/progress.h"
+
+namespace lapwing {
+
+// While alive, SIGINT and SIGTERM cancel the token; a second one ends the process at once with exit
+// status 130. One at a time.
+class Interruption {
+ public:
+  Interruption();
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  const CancellationToken& token() const;
+};
+
+}  // namespace lapwing

@@ -1,0 +1,70 @@
+#include "framework/app/mission_loading.h"
+
+#include <cstdlib>
+#include <iostream>
+
+#include "framework/config/lookup.h"
+#include "framework/config/shipped.h"
+#include "framework/core/log.h"
+
+namespace lapwing {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> data_folders(const Invocation& invocation) {
+  std::vector<fs::path> folders;
+  for (const fs::path& folder : invocation.data) {
+    if (!fs::is_directory(folder)) {
+      throw InputError("--data " + folder.string() + ": no such folder");
+    }
+    folders.push_back(folder);
+  }
+  const char* variable = std::getenv("LAPWING_DATA");
+  std::string rest = variable ? variable : "";
+  while (!rest.empty()) {
+    const std::size_t end = rest.find(':');
+    const std::string folder = rest.substr(0, end);
+    rest = end == std::string::npos ? "" : rest.substr(end + 1);
+    if (folder.empty()) continue;
+    if (fs::is_directory(folder)) {
+      folders.emplace_back(folder);
+    } else {
+      log::warning("LAPWING_DATA names " + folder + ", which is no folder");
+    }
+  }
+  return folders;
+}
+
+}  // namespace
+
+std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& invocation,
+                                      const Registry& registry,
+                                      const CancellationToken* cancellation, Progress* progress,
+                                      std::function<void()> before_print) {
+  MissionSettings settings;
+  settings.scripts = shipped_folder("scripts");
+  settings.configs = shipped_folder("configs");
+  ConfigSearch search;
+  search.folders = {settings.configs};
+  std::vector<Value> layers;
+  for (const std::string& name : invocation.configs) layers.push_back(read_config(name, search));
+  settings.limits = sandbox_limits(layers, invocation.overrides);
+  settings.seed = invocation.seed;
+  settings.data = data_folders(invocation);
+  settings.registry = &registry;
+  settings.cancellation = cancellation;
+  settings.progress = progress;
+  settings.print = [quiet = invocation.quiet, before_print](const std::string& line) {
+    log::info(line);
+    if (quiet) return;
+    if (before_print) before_print();
+    std::cerr << line << "\n";
+  };
+  auto mission = std::make_unique<Mission>(script, std::move(settings));
+  mission->configure(layers, invocation.overrides);
+  return mission;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,67 @@
+// lapwing verify, export and config.
+#include <cstdio>
+#include <iostream>
+
+#include "framework/app/command_line.h"
+#include "framework/app/mission_loading.h"
+#include "framework/config/annotated.h"
+#include "framework/core/files.h"
+#include "framework/export/exporter.h"
+#include "framework/verify/verify.h"
+
+namespace lapwing {
+
+namespace {
+
+void print_check(const Check& check) {
+  const char* verdict = !check.skipped.empty() ? "skipped" : check.pass ? "pass" : "FAIL";
+  std::string words;
+  if (!check.skipped.empty()) {
+    words = check.skipped;
+  } else {
+    words = to_line(check);
+  }
+  std::printf("  %-7s  %-22s %s%s\n", verdict, check.name.c_str(), words.c_str(),
+              check.required || !check.skipped.empty() ? "" : " (reported only)");
+}
+
+}  // namespace
+
+ExitStatus verify_plan(const std::filesystem::path& file, const Invocation& invocation) {
+  const Plan plan = read_plan(file);
+  const Certificate certificate = verify(plan);
+  if (invocation.json) {
+    Value object = Value::map();
+    object.set("plan", file.string());
+    object.set("mission", plan.mission);
+    object.set("certificate", certificate.to_value());
+    print_json(object);
+  } else {
+    std::printf("%s: %s\n", plan.mission.c_str(),
+                certificate.feasible() ? "certified" : "not certified");
+    for (const Check& check : certificate.checks) print_check(check);
+  }
+  return certificate.feasible() ? ExitStatus::done : ExitStatus::not_certified;
+}
+
+ExitStatus export_plan(const std::filesystem::path& file, const std::string& format,
+                       const std::filesystem::path& target, const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  const Plan plan = read_plan(file);
+  write_file_atomically(target, registry.create<Exporter>(format)->write(plan));
+  return ExitStatus::done;
+}
+
+ExitStatus show_configuration(const std::filesystem::path& script, const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  const auto mission = load_mission(script, invocation, registry);
+  if (invocation.json) {
+    print_json(mission->configuration());
+  } else {
+    std::cout << "# " << mission->kind() << ": " << mission->name() << "\n"
+              << annotated_yaml(mission->configuration());
+  }
+  return ExitStatus::done;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,175 @@
+// lapwing run: load, check, plan, certify, write, report.
+#include <chrono>
+#include <cmath>
+#include <iostream>
+
+#include "framework/app/command_line.h"
+#include "framework/app/interruption.h"
+#include "framework/app/mission_loading.h"
+#include "framework/app/progress_line.h"
+#include "framework/core/json.h"
+#include "framework/core/log.h"
+#include "framework/export/exporter.h"
+#include "framework/export/flight_report.h"
+#include "framework/export/run_folder.h"
+#include "framework/verify/verify.h"
+
+namespace lapwing {
+
+namespace {
+
+struct Outcome {
+  MissionResult result;
+  Certificate certificate;
+  std::string status;  // ok, not_certified, infeasible, failed, cancelled
+  std::filesystem::path folder;
+  double seconds = 0;  // wall clock, all of it
+};
+
+std::string status_of(const MissionResult& result, const Certificate& certificate, bool cancelled) {
+  if (cancelled || result.report.status == SolveStatus::cancelled) return "cancelled";
+  if (certificate.feasible()) return "ok";
+  switch (result.report.status) {
+    case SolveStatus::infeasible:
+      return "infeasible";
+    case SolveStatus::unsupported:
+    case SolveStatus::numerical_error:
+      return "failed";
+    default:
+      return "not_certified";
+  }
+}
+
+ExitStatus exit_status_of(const std::string& status) {
+  if (status == "ok") return ExitStatus::done;
+  return status == "cancelled" ? ExitStatus::interrupted : ExitStatus::not_certified;
+}
+
+Value finite(double number) {
+  return std::isfinite(number) ? Value(number) : Value();
+}
+
+Value json_of(const Outcome& outcome, const Invocation& invocation) {
+  const MissionResult& result = outcome.result;
+  Value object = Value::map();
+  object.set("mission", result.plan.mission);
+  object.set("kind", result.plan.kind);
+  object.set("status", outcome.status);
+  object.set("plan", (outcome.folder / "plan.json").string());
+  object.set("seed", static_cast<std::int64_t>(invocation.seed));
+  Value& seconds = object.set("seconds", Value::map());
+  seconds.set("total", outcome.seconds);
+  seconds.set("solve", result.solve_seconds);
+  object.set("reproducible",
+             outcome.status != "cancelled" && result.report.status != SolveStatus::time_limit);
+  Value& solver = object.set("solver", Value::map());
+  solver.set("name", result.solver);
+  solver.set("status", to_string(result.report.status));
+  solver.set("iterations", result.report.iterations);
+  solver.set("cost", finite(result.report.cost));
+  Value& terms = solver.set("terms", Value::map());
+  for (const TermCost& term : result.report.terms) terms.set(term.name, finite(term.cost));
+  object.set("certificate", outcome.certificate.to_value());
+  if (!result.notes.empty()) {
+    Value& notes = object.set("notes", Value::list());
+    for (const std::string& note : result.notes) notes.push_back(note);
+  }
+  if (result.block.is_map()) object.set(result.plan.kind, result.block);
+  return object;
+}
+
+std::string in_words(const Outcome& outcome) {
+  const std::string& status = outcome.status;
+  if (status == "ok") return "certified";
+  std::string words = status == "not_certified" ? "not certified" : status;
+  const std::vector<Check> failures = outcome.certificate.failures();
+  if (status == "cancelled") {
+    return words + "; the best so far is " + (failures.empty() ? "certified" : "not certified");
+  }
+  for (const Check& check : failures) words += "\n  " + to_line(check);
+  return words;
+}
+
+void print_summary(const Outcome& outcome) {
+  const MissionResult& result = outcome.result;
+  char line[160];
+  std::snprintf(line, sizeof line, "  %.4g s of flight, solved by %s (%s) in %.3g s",
+                result.plan.trajectory.duration(), result.solver.c_str(),
+                to_string(result.report.status), result.solve_seconds);
+  std::cout << result.plan.mission << ": " << in_words(outcome) << "\n" << line << "\n";
+  if (outcome.status != "ok" && !result.report.message.empty()) {
+    std::cout << "  " << result.report.message << "\n";
+  }
+  for (const std::string& note : result.notes) std::cout << "  " << note << "\n";
+  std::cout << "  report: " << (outcome.folder / "report.html").string() << std::endl;
+}
+
+std::string report_page(const Outcome& outcome) {
+  Report report = flight_report(outcome.result.plan);
+  if (outcome.status == "cancelled") {
+    report.status = "cancelled";
+    report.status_mark = Mark::fail;
+  }
+  if (!outcome.result.notes.empty()) {
+    std::string text;
+    for (const std::string& note : outcome.result.notes) text += note + "\n\n";
+    TextBlock findings;
+    findings.text = text;
+    report.sections.insert(report.sections.begin(), Section{"Findings", {findings}});
+  }
+  return render_html(report);
+}
+
+void write_files(const Outcome& outcome, const Registry& registry, const log::Capture& capture) {
+  const Plan& plan = outcome.result.plan;
+  RunFiles files;
+  files.plan = to_json(to_value(plan)) + "\n";
+  files.trajectory = registry.create<Exporter>("csv")->write(plan);
+  files.report = report_page(outcome);
+  log::info("status " + outcome.status);
+  files.log = capture.text();
+  write_run_folder(outcome.folder, files);
+}
+
+void complete_plan(Outcome& outcome) {
+  Plan& plan = outcome.result.plan;
+  plan.certificate = outcome.certificate.to_value();
+  if (!outcome.result.notes.empty()) {
+    Value notes = Value::list();
+    for (const std::string& note : outcome.result.notes) notes.push_back(note);
+    plan.solver.set("notes", std::move(notes));
+  }
+  if (outcome.status == "cancelled") plan.solver.set("cancelled", true);
+}
+
+}  // namespace
+
+ExitStatus run_mission(const std::filesystem::path& script, const Invocation& invocation) {
+  const double begin = steady_seconds();
+  const log::Capture capture;
+  const Interruption interruption;
+  const Registry registry = invocation.registry();
+  ProgressLine progress("plan", std::cerr, progress_style_of_stderr(invocation.quiet),
+                        columns_of_stderr(), &steady_seconds);
+  const auto mission = load_mission(script, invocation, registry, &interruption.token(), &progress,
+                                    [&progress] { progress.clear(); });
+  registry.find("exporter", "csv");
+  Outcome outcome;
+  outcome.folder = invocation.out.empty() ? run_folder(mission->name()) : invocation.out;
+  log::info("mission " + mission->name() + ", seed " + std::to_string(invocation.seed));
+  outcome.result = mission->plan();
+  progress.clear();
+  outcome.certificate = verify(outcome.result.plan);
+  outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
+  complete_plan(outcome);
+  write_files(outcome, registry, capture);
+  outcome.seconds = steady_seconds() - begin;
+  if (invocation.json) {
+    print_json(json_of(outcome, invocation));
+  } else if (!invocation.quiet) {
+    print_summary(outcome);
+  }
+  return exit_status_of(outcome.status);
+}
+
+}  // namespace lapwing

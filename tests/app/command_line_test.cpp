@@ -1,0 +1,370 @@
+// The command line as a user meets it: the program run as a process of its own.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Finished {
+  int status = -1;
+  std::string out, err;
+};
+
+class CommandLine : public ::testing::Test {
+ protected:
+  CommandLine() {
+    static int count = 0;
+    folder_ = fs::temp_directory_path() /
+              ("lapwing_app_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    fs::create_directories(folder_);
+    ::unsetenv("LAPWING_DATA");
+  }
+  ~CommandLine() override { fs::remove_all(folder_); }
+
+  // Starts the program in the test's folder.
+  pid_t start(const std::vector<std::string>& arguments) {
+    const std::string program = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing";
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    std::vector<char*> pointers = {const_cast<char*>(program.c_str())};
+    for (const std::string& a : arguments) pointers.push_back(const_cast<char*>(a.c_str()));
+    pointers.push_back(nullptr);
+    if (::chdir(folder_.c_str()) != 0 || !std::freopen("stdout.txt", "w", stdout) ||
+        !std::freopen("stderr.txt", "w", stderr)) {
+      ::_exit(99);
+    }
+    ::execv(program.c_str(), pointers.data());
+    ::_exit(98);
+  }
+
+  Finished finish(pid_t child) {
+    Finished finished;
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    finished.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    finished.out = read_file(folder_ / "stdout.txt");
+    finished.err = read_file(folder_ / "stderr.txt");
+    fs::remove(folder_ / "stdout.txt");
+    fs::remove(folder_ / "stderr.txt");
+    return finished;
+  }
+
+  Finished run(const std::vector<std::string>& arguments) { return finish(start(arguments)); }
+
+  void write(const std::string& name, const std::string& text) {
+    write_file_atomically(folder_ / name, text);
+  }
+
+  // Bad input: exit 2, the fragments on standard error, nothing written.
+  void refused(const std::vector<std::string>& arguments,
+               const std::vector<std::string>& fragments) {
+    std::vector<fs::path> before, after;
+    for (const auto& entry : fs::directory_iterator(folder_)) before.push_back(entry.path());
+    const Finished finished = run(arguments);
+    for (const auto& entry : fs::directory_iterator(folder_)) after.push_back(entry.path());
+    EXPECT_EQ(finished.status, 2) << finished.err;
+    EXPECT_EQ(finished.out, "");
+    for (const std::string& fragment : fragments) {
+      EXPECT_NE(finished.err.find(fragment), std::string::npos)
+          << "expected: " << fragment << "\ngot: " << finished.err;
+    }
+    EXPECT_EQ(before.size(), after.size()) << "something was written";
+  }
+
+  void refused_script(const std::string& text, const std::vector<std::string>& fragments) {
+    write("shot.lua", text);
+    refused({"run", "shot.lua"}, fragments);
+  }
+
+  static std::string film(const std::string& more) {
+    return "local film = require 'mission.film'\n"
+           "return film.shot {\n  keyframes = {\n    { position = {0, 0, 2} },\n"
+           "    { position = {5, 0, 3} },\n  },\n  " +
+           more + "\n}\n";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(CommandLine, AFilmIsPlannedAndWritten) {
+  write("Hop Süd.lua", film("name = 'Hop Süd-1.x',"));
+  const Finished finished = run({"run", "Hop Süd.lua"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.out.find("Hop Süd-1.x: certified"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("report: out/hop_s_d-1_x/report.html"), std::string::npos)
+      << finished.out;
+  for (const char* name : {"plan.json", "report.html", "trajectory.csv", "run.log"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "out/hop_s_d-1_x" / name)) << name;
+  }
+}
+
+TEST_F(CommandLine, JsonIsOneObjectOfTheStatedShape) {
+  write("shot.lua", film("name = 'hop',"));
+  const Finished finished = run({"run", "shot.lua", "--json", "--seed", "7", "--threads", "2"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  const Value object = from_json(finished.out, "stdout");
+  EXPECT_EQ(object.at("mission").as_text(), "hop");
+  EXPECT_EQ(object.at("kind").as_text(), "film");
+  EXPECT_EQ(object.at("status").as_text(), "ok");
+  EXPECT_EQ(object.at("plan").as_text(), "out/hop/plan.json");
+  EXPECT_EQ(object.at("seed").as_integer(), 7);
+  EXPECT_GE(object.at("seconds").at("total").as_number(),
+            object.at("seconds").at("solve").as_number());
+  EXPECT_TRUE(object.at("reproducible").as_boolean());
+  EXPECT_EQ(object.at("solver").at("name").as_text(), "iqp");
+  EXPECT_EQ(object.at("solver").at("status").as_text(), "optimal");
+  EXPECT_GE(object.at("solver").at("iterations").as_integer(), 1);
+  EXPECT_GE(object.at("solver").at("terms").at("smoothness").as_number(), 0);
+  EXPECT_TRUE(object.at("certificate").at("feasible").as_boolean());
+  EXPECT_FALSE(object.at("certificate").at("checks").as_list().empty());
+}
+
+TEST_F(CommandLine, QuietSaysNothing) {
+  write("shot.lua", "print('hello')\n" + film("name = 'hop',"));
+  Finished finished = run({"run", "shot.lua", "--quiet", "--out", "there"});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_EQ(finished.out + finished.err, "");
+  EXPECT_TRUE(fs::exists(folder_ / "there/plan.json"));
+  EXPECT_NE(read_file(folder_ / "there/run.log").find("hello"), std::string::npos);
+  finished = run({"run", "shot.lua"});
+  EXPECT_NE(finished.err.find("hello\n"), std::string::npos);
+}
+
+TEST_F(CommandLine, TwoRunsGiveTheSameBytes) {
+  write("shot.lua", film("name = 'hop', stretch = 1 + math.random(),"));
+  run({"run", "shot.lua", "--out", "a", "--seed", "3"});
+  run({"run", "shot.lua", "--out", "b", "--seed", "3", "--threads", "1"});
+  run({"run", "shot.lua", "--out", "c", "--seed", "4"});
+  const std::string plan = read_file(folder_ / "a/plan.json");
+  EXPECT_EQ(plan, read_file(folder_ / "b/plan.json"));
+  EXPECT_NE(plan, read_file(folder_ / "c/plan.json"));
+  EXPECT_EQ(read_file(folder_ / "a/report.html"), read_file(folder_ / "b/report.html"));
+}
+
+TEST_F(CommandLine, AnOverConstrainedFilmNamesLimitAndTime) {
+  write("shot.lua",
+        "return require('mission.film').shot { name = 'dash', hard = 0.5, keyframes = {\n"
+        "  { time = 0, position = {0, 0, 2} }, { time = 4, position = {60, 0, 2} } } }");
+  Finished finished = run({"run", "shot.lua"});
+  EXPECT_EQ(finished.status, 1) << finished.err;
+  EXPECT_NE(finished.out.find("speed_across of 15 m/s from keyframe 1 to 2 exceeds 10 m/s at 0 s"),
+            std::string::npos)
+      << finished.out;
+  EXPECT_NE(finished.out.find("certified from a stretch of"), std::string::npos);
+  EXPECT_NE(read_file(folder_ / "out/dash/report.html").find("certified from a stretch of"),
+            std::string::npos);
+  finished = run({"run", "shot.lua", "--json"});
+  EXPECT_EQ(finished.status, 1);
+  const std::string status = from_json(finished.out, "stdout").at("status").as_text();
+  EXPECT_TRUE(status == "infeasible" || status == "not_certified") << status;
+  EXPECT_EQ(run({"verify", "out/dash/plan.json"}).status, 1);
+  EXPECT_EQ(run({"run", "shot.lua", "--set", "stretch=auto"}).status, 0);
+}
+
+TEST_F(CommandLine, VerifyAndExport) {
+  write("shot.lua", film("name = 'hop',"));
+  ASSERT_EQ(run({"run", "shot.lua"}).status, 0);
+  Finished finished = run({"verify", "out/hop/plan.json"});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_EQ(finished.out.rfind("hop: certified\n", 0), 0u) << finished.out;
+  finished = run({"verify", "out/hop/plan.json", "--json"});
+  EXPECT_TRUE(from_json(finished.out, "stdout").at("certificate").at("feasible").as_boolean());
+  finished = run({"export", "out/hop/plan.json", "--format", "csv", "-o", "hop.csv"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(read_file(folder_ / "hop.csv"), read_file(folder_ / "out/hop/trajectory.csv"));
+  refused({"export", "out/hop/plan.json", "--format", "cvs", "-o", "x.csv"}, {"'cvs'", "'csv'"});
+  refused({"verify", "out/hop/plan.jsn"}, {"out/hop/plan.jsn"});
+  const std::string plan = read_file(folder_ / "out/hop/plan.json");
+  write("cut.json", plan.substr(0, plan.size() / 2));
+  refused({"verify", "cut.json"}, {"cut.json:"});
+}
+
+TEST_F(CommandLine, ConfigShowsValuesAndOrigins) {
+  write("shot.lua", film("name = 'hop',"));
+  write("mine.yaml", "weights:\n  yaw: 3\n");
+  Finished finished = run({"config", "shot.lua", "--config", "mine.yaml", "--set", "order=3"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  for (const char* fragment : {"# film: hop", "mine.yaml:2", "# --set", "# default", "type: iqp",
+                               "iterations: ", "shot.lua:2"}) {
+    EXPECT_NE(finished.out.find(fragment), std::string::npos) << fragment << "\n" << finished.out;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  finished = run({"config", "shot.lua", "--json"});
+  EXPECT_EQ(from_json(finished.out, "stdout").at("order").as_integer(), 4);
+}
+
+TEST_F(CommandLine, PluginsAreListedAndShown) {
+  Finished finished = run({"plugins", "list"});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_NE(finished.out.find("trajectory_solver\n  iqp "), std::string::npos) << finished.out;
+  finished = run({"plugins", "list", "--json"});
+  EXPECT_GT(from_json(finished.out, "stdout").at("plugins").as_list().size(), 8u);
+  finished = run({"plugins", "show", "keyframe"});
+  EXPECT_NE(finished.out.find("thesis 3.5.2"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("time"), std::string::npos);
+  finished = run({"plugins", "show", "cost_term/keyframe", "--json"});
+  EXPECT_EQ(from_json(finished.out, "stdout").at("plugins").as_list().size(), 1u);
+  refused({"plugins", "show", "keyfrme"}, {"did you mean 'keyframe'?"});
+  fs::create_directories(folder_ / "mine");
+  finished = run({"plugins", "path", "--plugin-path", "mine"});
+  EXPECT_EQ(finished.out.substr(0, finished.out.find('\n')).find("/lib/"), std::string::npos);
+  EXPECT_NE(finished.out.find("mine\n"), std::string::npos) << finished.out << finished.err;
+  EXPECT_NE(finished.out.find("/lib/plugins\n"), std::string::npos) << finished.out;
+  refused({"--plugin-path", "/nowhere", "plugins", "path"}, {"/nowhere"});
+}
+
+TEST_F(CommandLine, UsageErrors) {
+  refused({}, {"subcommand"});
+  refused({"rnu", "shot.lua"}, {"unknown command 'rnu'; did you mean 'run'?"});
+  refused({"plugins", "lst"}, {"unknown command 'lst'; did you mean 'list'?"});
+  refused({"run"}, {"mission is required"});
+  refused({"run", "shot.lua", "--sett", "a=b"}, {"--sett"});
+  refused({"run", "shot.lua", "--seed", "x"}, {"--seed"});
+  refused({"run", "shot.lua", "--threads", "0"}, {"--threads"});
+  refused({"run", "missing.lua"}, {"missing.lua"});
+  write("shot.lua", film(""));
+  refused({"run", "shot.lua", "--data", "nowhere"}, {"--data nowhere", "no such folder"});
+  refused({"run", "shot.lua", "--config", "nothing"}, {"nothing"});
+  refused({"run", "shot.lua", "--set", "weights"}, {"weights"});
+  const Finished help = run({"--help"});
+  EXPECT_EQ(help.status, 0);
+  for (const char* later : {"simulate", "race", "evaluate", "train", "scene", "annotations"}) {
+    EXPECT_EQ(help.out.find(later), std::string::npos) << later;
+  }
+  EXPECT_EQ(run({"--version"}).out.rfind("lapwing ", 0), 0u);
+}
+
+TEST_F(CommandLine, BadInputWithJsonIsStillOneObject) {
+  write("shot.lua", film("wieghts = {},"));
+  const Finished finished = run({"run", "shot.lua", "--json"});
+  EXPECT_EQ(finished.status, 2);
+  const Value object = from_json(finished.out, "stdout");
+  EXPECT_EQ(object.at("status").as_text(), "failed");
+  EXPECT_NE(object.at("error").as_text().find("shot.lua:2: wieghts: unknown key"),
+            std::string::npos);
+}
+
+// Everything that can be wrong with a mission: one clear message, exit 2, nothing written.
+TEST_F(CommandLine, BadMissionsAreRefused) {
+  refused_script(film("wieghts = {},"), {"shot.lua:2: wieghts: unknown key", "'weights'"});
+  refused_script(film("solver = 'ipq',"), {"shot.lua:2", "'ipq'", "'iqp'"});
+  refused_script(film("duration = '3 kg',"), {"shot.lua:2: duration: '3 kg' is no quantity in s"});
+  refused_script(film("hard = -0.5,"), {"shot.lua:2: hard: expected above 0 m, got -0.5"});
+  refused_script(film("hard = 0/0,"), {"shot.lua:2: hard: expected a finite number, got NaN"});
+  refused_script(
+      "\nreturn require('mission.film').shot { keyframes = {"
+      "{time=5, position={0,0,2}}, {time=3, position={1,0,2}} } }",
+      {"shot.lua:2: keyframes[2].time: 3 s comes before keyframe 1 at 5 s"});
+  refused_script(
+      "\nreturn require('mission.film').shot { duration = 4, keyframes = {"
+      "{time=0, position={0,0,2}}, {time=5, position={1,0,2}} } }",
+      {"shot.lua:2: keyframes[2].time: 5 s is outside the duration of 4 s"});
+  refused_script("return require('mission.film').from_file { file = 'none.json' }",
+                 {"shot.lua:1", "'none.json' not found"});
+  write("cut.json", "{\"keyFrameList\": [");
+  refused_script("return require('mission.film').from_file { file = 'cut.json' }", {"cut.json:1"});
+  fs::remove(folder_ / "cut.json");
+  refused_script("local film = require 'mission.flim'", {"shot.lua:1: module 'mission.flim' not"});
+  refused_script("return {\n  kind = 'film'\n  name = 'x' }", {"shot.lua:3: '}' expected"});
+  refused_script("local a\n\na.b = 3", {"shot.lua:3: attempt to index a nil value"});
+  refused_script("while true do end", {"shot.lua:1: ", "raise sandbox."});
+  refused_script("while true do pcall(function() while true do end end) end",
+                 {"shot.lua:1: ", "raise sandbox."});
+  refused_script("local t = {}\nwhile true do t[#t + 1] = ('x'):rep(100000) .. #t end",
+                 {"shot.lua:2: ", "raise sandbox.memory"});
+  refused_script("\x1bLua\x54", {"shot.lua:1: this is precompiled Lua"});
+  refused_script("\nos.execute('touch pwned')", {"shot.lua:2: attempt to index a nil value"});
+  refused_script("\nio.open('pwned', 'w')", {"shot.lua:2: attempt to index a nil value"});
+  refused_script("lapwing.read_json('/etc/passwd')", {"shot.lua:1: ", "'/etc/passwd' not found"});
+  refused_script("return 3", {"shot.lua:1: a mission script returns"});
+  refused_script("", {"a mission script returns"});
+  write("bad.yaml", "weights:\n  yaw: [\n");
+  write("shot.lua", film(""));
+  refused({"run", "shot.lua", "--config", "bad.yaml"}, {"bad.yaml:"});
+  write("bad.yaml", "weights:\n  yaww: 1\nstep: 3 m\n");
+  refused({"run", "shot.lua", "--config", "bad.yaml"},
+          {"bad.yaml:2: weights.yaww: unknown key; did you mean 'yaw'?",
+           "bad.yaml:3: step: '3 m' is no quantity in s"});
+  refused({"run", "shot.lua", "--set", "solver.iteration=3"},
+          {"--set: solver.iteration: unknown key; did you mean 'iterations'?"});
+  refused({"run", "shot.lua", "--set", "sandbox.memroy=3"}, {"did you mean 'memory'?"});
+}
+
+TEST_F(CommandLine, LimitsCanBeRaised) {
+  write("shot.lua", "local n = 0 for i = 1, 100000 do n = n + 1 end\n" + film("name = 'hop',"));
+  const Finished finished = run({"run", "shot.lua", "--set", "sandbox.instructions=1000"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("raise sandbox.instructions"), std::string::npos);
+  write("limits.yaml", "sandbox: {instructions: 10000000}\n");
+  EXPECT_EQ(run({"run", "shot.lua", "--config", "limits.yaml"}).status, 0);
+}
+
+TEST_F(CommandLine, APluginOfAnotherAbiIsRefused) {
+  const fs::path original = fs::path(LAPWING_BUILD_DIR) / "lib/plugins/trajectory_solvers/iqp.json";
+  std::string sidecar = read_file(original);
+  for (std::size_t at = 0; (at = sidecar.find("\"iqp\"", at)) != std::string::npos;) {
+    sidecar.replace(at, 5, "\"alien\"");
+  }
+  const std::size_t tag = sidecar.find("lapwing ");
+  ASSERT_NE(tag, std::string::npos);
+  sidecar.replace(tag, 8, "lapwing 9");
+  write("plugins/alien.json", sidecar);
+  fs::copy(original.parent_path() / "iqp.so", folder_ / "plugins/alien.so");
+  write("shot.lua", film("solver = 'alien',"));
+  const Finished finished = run({"--plugin-path", "plugins", "run", "shot.lua"});
+  EXPECT_EQ(finished.status, 2) << finished.out << finished.err;
+  EXPECT_NE(finished.err.find("alien"), std::string::npos) << finished.err;
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(CommandLine, CtrlCKeepsTheBestSoFar) {
+  // A film that is never certified searches long for a stretch.
+  write("shot.lua", R"(
+local film = require "mission.film"
+local mission = film.shot { name = "long", hard = 0.01, keyframes = {
+  { time = 0, position = {0, 0, 2} }, { time = 20, position = {90, 0, 2} } } }
+local plan = mission.plan
+mission.plan = function(run)
+  local result
+  while not run:cancelled() do result = plan(run) end
+  return result
+end
+return mission)");
+  const pid_t child = start({"run", "shot.lua", "--json"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  ::kill(child, SIGINT);
+  const Finished finished = finish(child);
+  EXPECT_EQ(finished.status, 130) << finished.err;
+  const Value object = from_json(finished.out, "stdout");
+  EXPECT_EQ(object.at("status").as_text(), "cancelled");
+  EXPECT_FALSE(object.at("reproducible").as_boolean());
+  EXPECT_TRUE(fs::exists(folder_ / "out/long/plan.json"));
+  EXPECT_NE(read_file(folder_ / "out/long/report.html").find("cancelled"), std::string::npos);
+}
+
+TEST_F(CommandLine, TheSecondCtrlCEndsAtOnce) {
+  write("shot.lua", "while true do end");
+  const pid_t child = start(
+      {"run", "shot.lua", "--set", "sandbox.instructions=1e14", "--set", "sandbox.seconds=100"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  ::kill(child, SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  ::kill(child, SIGINT);
+  EXPECT_EQ(finish(child).status, 130);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace lapwing
