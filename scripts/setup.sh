@@ -40,7 +40,13 @@ mapfile -t missing < <(lapwing_missing "${packages[@]}")
 [ ${#missing[@]} -gt 0 ] || exit 0
 
 as_root=()
-[ "$(id -u)" = 0 ] || as_root=(sudo)
+if [ "$(id -u)" != 0 ]; then
+  as_root=(sudo)
+  if ! command -v sudo >/dev/null; then
+    echo "setup.sh: there is no sudo; as root: apt-get install ${missing[*]}" >&2
+    exit 2
+  fi
+fi
 echo "To install with apt-get: ${missing[*]}" >&2
 if ! $yes && [ -t 0 ] && [ -t 2 ]; then
   read -r -p "Install them now? [Y/n] " answer
@@ -48,7 +54,7 @@ if ! $yes && [ -t 0 ] && [ -t 2 ]; then
 fi
 log=$(mktemp)
 if ! { "${as_root[@]}" apt-get update -q &&
-       DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -q \
+       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q \
          --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
   tail -n 20 "$log" >&2
   echo "setup.sh: apt-get failed; its whole output is in $log" >&2

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "framework/core/json.h"
 #include "framework/mission/guard.h"
 
 namespace lapwing {
@@ -28,7 +29,7 @@ class Reader {
       case LUA_TSTRING: {
         std::size_t length = 0;
         const char* text = lua_tolstring(state_, index, &length);
-        return located(Value(std::string(text, length)));
+        return located(read_text(std::string(text, length), path));
       }
       case LUA_TTABLE:
         return read_table(index, path, without);
@@ -45,6 +46,16 @@ class Reader {
 
   [[noreturn]] void refuse(const std::string& path, const std::string& message) const {
     throw InputError(origin_, path.empty() ? message : path + ": " + message);
+  }
+
+  // Texts end up in JSON, which is UTF-8.
+  Value read_text(std::string text, const std::string& path) const {
+    try {
+      to_json(Value(text));
+    } catch (const Error&) {
+      refuse(path, "expected text in UTF-8");
+    }
+    return Value(std::move(text));
   }
 
   Value read_number(int index, const std::string& path) const {

@@ -33,7 +33,9 @@ struct Mission::Impl {
   Impl(const std::filesystem::path& script_file, MissionSettings given)
       : script(script_file),
         run{given, DataFiles(data_folders(script_file, given)), "", "", Value::map(), 0},
-        sandbox(given.limits, given.seed, {given.scripts}, given.print) {}
+        sandbox(given.limits, given.seed, {given.scripts}, given.print) {
+    sandbox.watch(given.cancellation);
+  }
 
   void load();
   void read_mission(lua_State* state);
@@ -73,6 +75,9 @@ void Mission::Impl::read_mission(lua_State* state) {
   run.kind = parts.text("kind");
   run.name = parts.text("name");
   if (run.name.empty()) throw InputError(origin, "name: expected a text that is not empty");
+  for (const char c : run.name)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      throw InputError(origin, "name: a line break or another control character cannot be shown");
   if (lua_getfield(state, mission, "plan") != LUA_TFUNCTION) {
     throw InputError(origin, std::string(kShape) + "; plan is a " + luaL_typename(state, -1));
   }

@@ -13,7 +13,8 @@ namespace lapwing {
 
 namespace {
 
-constexpr int kHookInterval = 100;                // instructions
+constexpr int kHookInterval = 100;                      // instructions
+constexpr std::int64_t kGraceInstructions = 5'000'000;  // to finish after an interruption
 constexpr std::size_t kLargeBlock = 64u << 10;    // bytes; allocations above look at the clock
 constexpr std::size_t kLargestScript = 4u << 20;  // bytes
 constexpr double kMegabyte = 1024.0 * 1024.0;
@@ -181,6 +182,10 @@ void Sandbox::count(lua_State* state, lua_Debug* record) {
                   " instructions; raise sandbox.instructions if it needs to");
   }
   if (!overrun_ && out_of_time()) begin_overrun("");
+  if (!overrun_ && cancellation_ && cancellation_->cancelled()) {
+    if (interrupted_at_ < 0) interrupted_at_ = executed_;
+    if (executed_ - interrupted_at_ > kGraceInstructions) begin_overrun("interrupted");
+  }
   if (!overrun_) return;
   arm(state);
   lua_getinfo(state, "Sl", record);
@@ -238,6 +243,8 @@ void Sandbox::protect(const std::function<void(lua_State*)>& body) {
     if (const char* text = lua_tostring(state, -1)) message = text;
   }
   lua_settop(state, top);
+  const bool interrupted = overrun_ && interrupted_at_ >= 0;
+  if (status != LUA_OK && interrupted) throw Cancelled();
   if (status != LUA_OK) fail(status, message);
 }
 

@@ -25,6 +25,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/parameters.h"
+#include "framework/core/progress.h"
 #include "framework/core/random.h"
 
 struct lua_State;
@@ -69,6 +70,10 @@ class Sandbox {
   const SandboxLimits& limits() const { return limits_; }
   Random& random() { return random_; }
   void print(const std::string& line) const { print_(line); }
+
+  // An interruption ends the script, after a grace in which it may finish with what it has:
+  // `protect` then throws Cancelled. Null: never.
+  void watch(const CancellationToken* cancellation) { cancellation_ = cancellation; }
 
   static Sandbox& of(lua_State* state);
 
@@ -115,6 +120,8 @@ class Sandbox {
   std::int64_t executed_ = 0;
   bool watching_lines_ = false;
   bool overrun_ = false;
+  const CancellationToken* cancellation_ = nullptr;
+  std::int64_t interrupted_at_ = -1;  // instructions run when the interruption was seen
   std::string overrun_message_;
   double started_ = 0, paused_ = 0;   // s
   std::vector<std::string> loading_;  // modules being loaded, to see circles

@@ -66,7 +66,7 @@ int rep(lua_State* state) {
   std::size_t length = 0, separator = 0;
   if (lua_isstring(state, 1)) lua_tolstring(state, 1, &length);
   if (lua_isstring(state, 3)) lua_tolstring(state, 3, &separator);
-  const lua_Integer count = lua_isinteger(state, 2) ? lua_tointeger(state, 2) : 0;
+  const lua_Integer count = lua_tointegerx(state, 2, nullptr);  // 2^31 and "9" count too
   if (count > kLongestRange && length + separator == 0) {
     throw InputError("string.rep: more than " + std::to_string(kLongestRange) + " repetitions");
   }
@@ -89,9 +89,12 @@ void check_plain_length(lua_State* state, const char* function, lua_Integer limi
 }
 
 void check_range(lua_State* state, const char* function, int first, int last) {
-  if (!lua_isinteger(state, last)) return;
-  const lua_Integer from = lua_isinteger(state, first) ? lua_tointeger(state, first) : 1;
-  const double count = static_cast<double>(lua_tointeger(state, last)) - static_cast<double>(from);
+  // As Lua itself reads them: 2^31 and "9" are counts too.
+  int is_count = 0, has_start = 0;
+  const lua_Integer to = lua_tointegerx(state, last, &is_count);
+  if (!is_count) return;
+  const lua_Integer start = lua_tointegerx(state, first, &has_start);
+  const double count = static_cast<double>(to) - static_cast<double>(has_start ? start : 1);
   if (count > static_cast<double>(kLongestRange)) {
     throw InputError(std::string("table.") + function + ": more than " +
                      std::to_string(kLongestRange) + " entries");

@@ -249,6 +249,11 @@ bool TrajectoryProblem::quadratic() const {
   return impl_->quadratic;
 }
 
+std::pair<double, double> TrajectoryProblem::bounds(int column) const {
+  const ColumnBound& bound = impl_->bounds.at(column);
+  return {bound.lower, bound.upper};
+}
+
 double TrajectoryProblem::time(const Stages& at, int stage) const {
   return at(impl_->columns.layout.offset(impl_->columns.time_block), stage);
 }

@@ -21,6 +21,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -96,6 +97,8 @@ class TrajectoryProblem {
   std::string row_name(int row) const;        // "camera_angle at 5.7 s"
   // "input_limits: force.x at 3.2 s", the bound on a column with who set it.
   std::string bound_name(int column, bool lower) const;
+  // The bounds on a column, infinite where there is none.
+  std::pair<double, double> bounds(int column) const;
   double time(const Stages& at, int stage) const;
 
   // -- points

@@ -48,6 +48,11 @@ bool is_unbounded_ray(const QuadraticProgram& problem, const Eigen::VectorXd& x)
   if (!(fall > 0)) return false;
   const VectorXd px = problem.hessian.selfadjointView<Eigen::Lower>() * x;
   const VectorXd ax = problem.jacobian * x;
+  // Curvature counts against what each row of P could make of a point of this size: a long point
+  // along a slight curvature is no ray.
+  const VectorXd reach = problem.hessian.cwiseAbs().selfadjointView<Eigen::Lower>() *
+                         VectorXd::Constant(x.size(), largest(x));
+  if ((px.cwiseAbs().array() > kCertificate * reach.array()).any()) return false;
   double residual = largest(px);
   const auto add = [&](double v, double low, double high) {
     if (std::isfinite(low)) residual = std::max(residual, -v);

@@ -303,13 +303,13 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     QuadraticResult now = unscaled(problem, r);
     now.iterations = iteration;
     const double merit = std::max({now.primal_residual, now.dual_residual, now.gap});
-    if (!std::isfinite(merit)) return QuadraticStatus::numerical_error;
-    if (merit < best_merit) {
+    if (iteration == 0 || merit < best_merit) {
       best_merit = merit;
       best = now;
     }
     best.iterations = iteration;
     if (merit < kProgress * progress) progress = merit, progress_at = iteration;
+    if (!std::isfinite(merit)) return QuadraticStatus::numerical_error;
     if (r.within(options.tolerance)) {
       best = now;
       return QuadraticStatus::optimal;

@@ -39,11 +39,13 @@ class Medians final : public benchmark::ConsoleReporter {
   bool failed_ = false;
 };
 
+bool filtered = false;  // by --benchmark_filter: what is missing was not asked for
+
 // "A is N times as fast as B", with the bound that is claimed. False when it is not met.
 bool ratio(const Medians& medians, const char* ours, const char* opponent, double at_least) {
   const Medians::Entry* a = medians.find(ours);
   const Medians::Entry* b = medians.find(opponent);
-  if (!a || !b) return true;  // filtered out
+  if (!a || !b) return filtered;
   const double times = b->milliseconds / a->milliseconds;
   const double cost = a->counters.at("cost"), other = b->counters.at("cost");
   const double difference = std::abs(cost - other) / std::max(1.0, std::abs(other));
@@ -57,7 +59,7 @@ bool ratio(const Medians& medians, const char* ours, const char* opponent, doubl
 bool growth(const Medians& medians, const char* small, const char* large, double at_most) {
   const Medians::Entry* a = medians.find(small);
   const Medians::Entry* b = medians.find(large);
-  if (!a || !b) return true;
+  if (!a || !b) return filtered;
   const double times = b->milliseconds / a->milliseconds;
   std::printf("%s: %.1f times the time of %s (claimed: at most %.0f)\n", large, times, small,
               at_most);
@@ -71,6 +73,8 @@ int main(int argc, char** argv) {
   std::string aggregates = "--benchmark_report_aggregates_only=true";
   std::vector<char*> arguments{argv[0], repetitions.data(), aggregates.data()};
   arguments.insert(arguments.end(), argv + 1, argv + argc);
+  for (int k = 1; k < argc; ++k)
+    filtered |= std::string(argv[k]).rfind("--benchmark_filter", 0) == 0;
   int count = static_cast<int>(arguments.size());
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;

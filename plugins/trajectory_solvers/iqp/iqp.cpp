@@ -32,7 +32,6 @@ constexpr double kArmijo = 1e-4;         // share of the promised decrease that 
 constexpr double kShortestStep = 1e-6;   // shorter line-search steps end the solve
 constexpr double kMeritMargin = 1.5;     // merit weight over the largest multiplier
 constexpr double kElasticPenalty = 1e3;  // times 1 + |g|
-constexpr double kBinding = 1e-3;  // of the largest multiplier: a limit that stands in the way
 
 class Iqp final : public TrajectorySolver {
  public:
@@ -82,6 +81,7 @@ class Solve {
     bool elastic = false;
   };
 
+  void move_inside_bounds();
   SolveStatus iterate();
   Step quadratic_step();
   Step elastic_step();
@@ -117,6 +117,7 @@ SolveResult Solve::run() {
     rows_ = warm.row_multipliers;
     bounds_ = warm.bound_multipliers;
   }
+  if (!problem_.quadratic()) move_inside_bounds();
   record(0.0);
   report_.status = iterate();
   report_.terms = problem_.term_costs(at_);
@@ -125,6 +126,13 @@ SolveResult Solve::run() {
   report_.violations = problem_.violations(at_);
   report_.seconds = seconds();
   return {std::move(report_), {at_, rows_, bounds_}};
+}
+
+// Steps of a program stay within the bounds only from a point that is within them.
+void Solve::move_inside_bounds() {
+  problem_.linearise(at_, model_);
+  const VectorXd zero = VectorXd::Zero(problem_.columns());
+  at_ = problem_.retract(at_, zero.cwiseMax(model_.step_lower).cwiseMin(model_.step_upper));
 }
 
 // Cancelled or out of time between iterations.
@@ -262,28 +270,37 @@ void Solve::record(double step) {
   report_.history.push_back(std::move(entry));
 }
 
-// "hard_keyframe.x at 5 s misses by 2.3; in the way: state_limits: velocity.x at 4.1 s"
+// "hard_keyframe.position.x at 5 s is missed by 2.3; in the way: state_limits.speed_across.0 at 4
+// s". A limit stands in the way when it is active and not an equation: what fixes the ends of a
+// flight binds always and explains nothing. Of these the one whose loosening by a share of itself
+// would help most is named: multiplier times limit, comparable across units.
 std::string Solve::explain(const Step& step) const {
   const std::vector<Violation> violations = problem_.violations(at_);
   if (violations.empty()) return "the constraints contradict each other";
   char amount[32];
   std::snprintf(amount, sizeof amount, "%.3g", violations.front().amount);
   std::string text = violations.front().row + " is missed by " + amount;
-  Eigen::Index column = -1;
-  const double largest = step.bounds.size() ? step.bounds.cwiseAbs().maxCoeff(&column) : 0.0;
-  double rows = 0;
-  Eigen::Index row = -1;
-  const Eigen::Index first = problem_.dynamics_rows();
-  for (Eigen::Index r = first; r < step.rows.size(); ++r)
-    if (std::abs(step.rows(r)) > rows &&
-        problem_.row_name(static_cast<int>(r)) != violations.front().row)
-      rows = std::abs(step.rows(r)), row = r;
-  if (largest > kBinding * rows && column >= 0)
-    text +=
-        "; in the way: " + problem_.bound_name(static_cast<int>(column), step.bounds(column) > 0);
-  else if (row >= 0)
-    text += "; in the way: " + problem_.row_name(static_cast<int>(row));
-  return text;
+  double most = 0;
+  std::string name;
+  const auto consider = [&](double multiplier, double lower, double upper, auto name_of) {
+    const double limit = multiplier > 0 ? lower : upper;
+    if (lower == upper || !std::isfinite(limit)) return;
+    const double gain = std::abs(multiplier * limit);
+    if (!(gain > most)) return;
+    const std::string candidate = name_of();
+    if (candidate.rfind(violations.front().name, 0) == 0) return;  // what is asked for, not a limit
+    most = gain;
+    name = candidate;
+  };
+  for (int c = 0; c < step.bounds.size(); ++c) {
+    const auto [lower, upper] = problem_.bounds(c);
+    consider(step.bounds(c), lower, upper,
+             [&] { return problem_.bound_name(c, step.bounds(c) > 0); });
+  }
+  for (int r = problem_.dynamics_rows(); r < step.rows.size(); ++r)
+    consider(step.rows(r), model_.row_lower(r), model_.row_upper(r),
+             [&] { return problem_.row_name(r); });
+  return name.empty() ? text : text + "; in the way: " + name;
 }
 
 SolveResult Iqp::solve(const TrajectoryProblem& problem, const SolveRequest& request) const {
