@@ -16,6 +16,7 @@ namespace lapwing {
 namespace {
 
 constexpr int kMostThreads = 1024;
+constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;  // JSON readers hold no more
 
 using Command = std::function<ExitStatus()>;
 
@@ -39,7 +40,7 @@ void add_configuration(CLI::App& command, Invocation& invocation) {
       ->type_name("DIR");
   command.add_option("--seed", invocation.seed, "of all random numbers")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(std::uint64_t{0}, kLargestSeed));
 }
 
 void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& script,

@@ -127,6 +127,8 @@ void write_files(const Outcome& outcome, const Registry& registry, const log::Ca
   files.trajectory = registry.create<Exporter>("csv")->write(plan);
   files.report = report_page(outcome);
   log::info("status " + outcome.status);
+  for (const std::string& note : outcome.result.notes) log::info(note);
+  for (const Check& check : outcome.certificate.failures()) log::info("fails: " + to_line(check));
   files.log = capture.text();
   write_run_folder(outcome.folder, files);
 }

@@ -1,6 +1,7 @@
 // Solving and planning: the methods of `run`, solutions and plans.
 #include <lua.hpp>
 
+#include "framework/core/log.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
@@ -75,7 +76,11 @@ int solve(lua_State* state) {
     const Sandbox::ClockPause pause(Sandbox::of(state));
     solution.result = solver->solve(*object.problem, request);
   }
-  run.solve_seconds += solution.result.report.seconds;
+  const SolveReport& report = solution.result.report;
+  run.solve_seconds += report.seconds;
+  log::info(argument.type + ": " + to_string(report.status) + " after " +
+            std::to_string(report.iterations) + " iterations" +
+            (report.message.empty() ? "" : "; " + report.message));
   new_object(state, kSolutionType, std::move(solution));
   return 1;
 }

@@ -17,6 +17,7 @@ constexpr int kHookInterval = 100;                      // instructions
 constexpr std::int64_t kGraceInstructions = 5'000'000;  // to finish after an interruption
 constexpr std::size_t kLargeBlock = 64u << 10;    // bytes; allocations above look at the clock
 constexpr std::size_t kLargestScript = 4u << 20;  // bytes
+constexpr std::size_t kMostPrinted = 1u << 20;         // bytes
 constexpr double kMegabyte = 1024.0 * 1024.0;
 
 double now() {
@@ -202,6 +203,12 @@ void Sandbox::check_clock(lua_State* state) {
   arm(state);
   push_text(state, script_position(state).to_string() + ": " + overrun_message_);
   lua_error(state);
+}
+
+void Sandbox::print(const std::string& line) {
+  printed_ += line.size() + 1;
+  if (printed_ > kMostPrinted) throw InputError("print: more than a megabyte in one run");
+  print_(line);
 }
 
 Origin Sandbox::script_position(lua_State* state) const {

@@ -71,6 +71,11 @@ TEST_F(SandboxTest, RunsPlainLua) {
   EXPECT_EQ(printed_, "a\t1\tnil\n");
 }
 
+TEST_F(SandboxTest, PrintingHasAnEnd) {
+  expect("while true do print(('x'):rep(1000)) end", "shot.lua:1: print: more than a megabyte");
+  EXPECT_LT(printed_.size(), (1u << 20) + 2000);
+}
+
 TEST_F(SandboxTest, ReplacedFunctionsBehaveAsLuasOwn) {
   EXPECT_EQ(run("return select('#', xpcall(function(...) return ... end, print, 1, nil, nil))"),
             "4");

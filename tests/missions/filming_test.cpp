@@ -1,0 +1,80 @@
+// The shipped films end to end.
+#include "tests/missions/flown_film.h"
+
+namespace lapwing {
+namespace {
+
+TEST_F(Filming, HelloIsShort) {
+  const std::string text = read_file(kExamples / "hello.lua");
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 15);
+}
+
+TEST_F(Filming, HelloIsCertified) {
+  expect_certified(fly("hello.lua"));
+}
+
+TEST_F(Filming, CastleFlyoverPassesItsKeyframes) {
+  const Flown flown = fly("castle_flyover.lua");
+  expect_certified(flown);
+  const Plan plan = read_plan(flown.folder / "plan.json");
+  EXPECT_EQ(plan.trajectory.duration(), 20);
+  const Eigen::Vector3d top(0, -2, 14);
+  double nearest = 1e9;
+  for (const Sample& s : plan.trajectory.samples) {
+    if (std::abs(s.time - 10) < 0.11) nearest = std::min(nearest, (s.position - top).norm());
+  }
+  EXPECT_LT(nearest, 0.2);
+}
+
+TEST_F(Filming, TwoRunsWriteTheSamePlan) {
+  const Flown a = fly("castle_flyover.lua", "", "a");
+  const Flown b = fly("castle_flyover.lua", "--threads 1", "b");
+  for (const char* file : {"plan.json", "trajectory.csv", "report.html"}) {
+    EXPECT_EQ(read_file(a.folder / file), read_file(b.folder / file)) << file;
+  }
+}
+
+TEST_F(Filming, SofterAndSmootherByConfiguration) {
+  // Ten thousand times the weight on snap: the same film, less snap, larger misses.
+  const auto smoothness = [](const Flown& flown, double weight) {
+    return flown.result.at("solver").at("terms").at("smoothness").as_number() / weight;
+  };
+  const Flown stiff = fly("castle_flyover.lua");
+  const Flown soft = fly("castle_flyover.lua", "--set weights.smoothness=1", "soft");
+  EXPECT_LT(smoothness(soft, 1), smoothness(stiff, 1e-4));
+  EXPECT_GT(soft.result.at("solver").at("terms").at("keyframe").as_number(),
+            stiff.result.at("solver").at("terms").at("keyframe").as_number());
+}
+
+TEST_F(DesignersShots, AreCertifiedWhereTheVehicleCanFollow) {
+  for (const int number :
+       {2, 5, 7, 12, 29, 30}) {  // a pause, geodetic, one keyframe, near the limit
+    SCOPED_TRACE(number);
+    const Flown flown = fly_shot(number);
+    expect_certified(flown);
+    EXPECT_EQ(flown.result.at("film").at("stretch").as_number(), 1);
+  }
+}
+
+TEST_F(DesignersShots, TooFastOnesAreStretchedOrExplained) {
+  const Flown stretched = fly_shot(22);
+  expect_certified(stretched);
+  const double stretch = stretched.result.at("film").at("stretch").as_number();
+  EXPECT_GT(stretch, 2.0);  // 20.7 m/s were asked for, 10 m/s are allowed
+  EXPECT_LT(stretch, 2.5);
+  const Flown fixed = fly_shot(22, "--set stretch=1");
+  EXPECT_EQ(fixed.status, 1);
+  const std::string note = fixed.result.at("notes").as_list().at(0).as_text();
+  EXPECT_NE(note.find("speed_across of 20.7 m/s from keyframe 1 to 2 exceeds 10 m/s"),
+            std::string::npos)
+      << note;
+  EXPECT_NE(note.find("certified from a stretch of 2."), std::string::npos) << note;
+}
+
+TEST_F(DesignersShots, EndAtTheirLastKeyframe) {
+  const Flown flown = fly_shot(5);  // totalTimeMs says 60 s
+  EXPECT_NEAR(read_plan(flown.folder / "plan.json").trajectory.duration(), 20.0785, 1e-3);
+}
+
+}  // namespace
+}  // namespace lapwing
