@@ -97,7 +97,7 @@ void print_summary(const Outcome& outcome) {
                 result.plan.trajectory.duration(), result.solver.c_str(),
                 to_string(result.report.status), result.solve_seconds);
   std::cout << result.plan.mission << ": " << in_words(outcome) << "\n" << line << "\n";
-  if (outcome.status != "ok" && !result.report.message.empty()) {
+  if (outcome.status != "ok" && outcome.status != "cancelled" && !result.report.message.empty()) {
     std::cout << "  " << result.report.message << "\n";
   }
   for (const std::string& note : result.notes) std::cout << "  " << note << "\n";

@@ -91,8 +91,9 @@ local function smoothness(options, vehicle)
   return cost
 end
 
--- The film with all times multiplied by `stretch`: problem and task.
-local function state_problem(run, shot, stretch)
+-- The film with all times multiplied by `stretch`: problem and task. `unlimited`: as if the vehicle
+-- could do anything.
+local function state_problem(run, shot, stretch, unlimited)
   local o = run.options
   local places, yaws, task = {}, {}, {}
   local guess = { times = {}, positions = {}, yaws = {} }
@@ -115,8 +116,10 @@ local function state_problem(run, shot, stretch)
   p:add_cost(smoothness(o, shot.vehicle))
   p:add_cost { type = "yaw_derivative", name = "yaw", weight = o.weights.yaw }
   p:add_cost { type = "input_effort", name = "effort", weight = o.weights.effort }
-  p:add_constraint { type = "input_limits", across = "extent" }
-  p:add_constraint { type = "state_limits" }
+  if not unlimited then
+    p:add_constraint { type = "input_limits", across = "extent" }
+    p:add_constraint { type = "state_limits" }
+  end
   p:add_constraint(boundary(o, stretch, #yaws == 0 and 0 or nil))
   if #yaws > 0 then
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
@@ -136,12 +139,21 @@ end
 
 -- ---- solving ------------------------------------------------------------------------------------
 
-local function attempt(run, shot, stretch)
-  local problem, task = state_problem(run, shot, stretch)
+local function attempt(run, shot, stretch, unlimited)
+  local problem, task = state_problem(run, shot, stretch, unlimited)
   local result = { stretch = stretch, problem = problem, task = task }
   result.solution = run:solve(problem, run.options.solver)
   result.verdict = run:certify(run:plan { solution = result.solution, task = task })
   return result
+end
+
+-- Which limit a film breaks, where and when: a leg that is too fast for it, or else what the film
+-- would ask for if nothing held it.
+local function broken_limit(run, shot, failing, leg)
+  if leg then return leg end
+  local free = attempt(run, shot, failing.stretch, true)
+  local limit = free.solution.status == "optimal" and free.verdict.failures[1]
+  return limit or failing.verdict.failures[1] or failing.solution.message
 end
 
 -- The smallest stretch above a failing attempt at which the film is certified, to 1 %; or nil.
@@ -175,13 +187,13 @@ local function fly(run, shot)
   local last = shot.keyframes[#shot.keyframes].time
   shot.duration = shot.duration or (last > 0 and last or HOVER)
   local first = attempt(run, shot, o.stretch == "auto" and 1 or o.stretch)
+  local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or MISS, LATE)
   local status = first.solution.status
-  local broken = status == "numerical_error" or status == "unsupported"
+  local broken = not why and (status == "numerical_error" or status == "unsupported")
   if first.verdict.feasible or broken or run:cancelled() then
     return finished(run, shot, first, {}, first.verdict.feasible and first.stretch or nil)
   end
-  local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or MISS, LATE)
-  why = why or status == "infeasible" and first.solution.message or first.verdict.failures[1]
+  why = broken_limit(run, shot, first, why)
   local good = smallest_stretch(run, shot, first, least)
   local note = good and string.format("%s; certified from a stretch of %.2f", why, good.stretch)
     or string.format("%s; no stretch up to %g is certified", why, LARGEST_STRETCH)

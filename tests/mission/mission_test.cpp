@@ -235,6 +235,19 @@ TEST_F(MissionTest, AnImpossibleFilmNamesLimitAndStretch) {
   EXPECT_FALSE(verify(mission->plan().plan).feasible());
 }
 
+TEST_F(MissionTest, AFilmThatTurnsTooHardNamesTheLimitItWouldBreak) {
+  // Every leg is slow enough, but there and back within two seconds is not for this vehicle.
+  auto mission = load(
+      "return require('mission.film').shot { hard = 0.2, keyframes = {"
+      "{time=0, position={0,0,2}}, {time=1, position={4,0,2}}, {time=2, position={0,0,2}} } }");
+  mission->configure({}, {});
+  const MissionResult result = mission->plan();
+  EXPECT_FALSE(verify(result.plan).feasible());
+  ASSERT_EQ(result.notes.size(), 1u);
+  EXPECT_NE(result.notes[0].find("N exceeds 28.8 N at "), std::string::npos) << result.notes[0];
+  EXPECT_NE(result.notes[0].find("certified from a stretch of "), std::string::npos);
+}
+
 TEST_F(MissionTest, ScriptsMustReturnMissions) {
   expect("return 3", "a mission script returns {kind =");
   expect("local x = 1", "this one returns nil");
