@@ -15,20 +15,20 @@ local STEP = 0.1                -- s, unless `step` says otherwise
 local MOST_STAGES = 3000
 local FEWEST_INTERVALS = 12
 local MISS = 0.5                -- m, allowed where `hard` says nothing
-local LATE = 0.1                -- s, by which the certificate allows a keyframe to be early or late
+local LATE = 0.1                -- s, by which a keyframe may be early or late; `hard` allows none
 local HARD_YAW = math.rad(8)    -- with `hard`: largest miss of yaw; the certificate allows 10 deg
 local LARGEST_STRETCH = 64
 local STRETCH_ACCURACY = 1.01   -- the smallest certified stretch is found to 1 %
 
 local ends = { "rest", "moving", "free" }
 local weights = {
-  { name = "keyframe", type = "number", default = 100, minimum = 0,
+  { name = "keyframe", type = "number", default = 100, minimum = 0, maximum = 1e9,
     summary = "miss of a keyframe, per m^2 and rad^2" },
-  { name = "smoothness", type = "number", default = 1e-4, minimum = 0,
+  { name = "smoothness", type = "number", default = 1e-4, minimum = 0, maximum = 1e9,
     summary = "derivative of position" },
-  { name = "yaw", type = "number", default = 0.1, minimum = 0,
+  { name = "yaw", type = "number", default = 0.1, minimum = 0, maximum = 1e9,
     summary = "second derivative of yaw" },
-  { name = "effort", type = "number", default = 0.01, minimum = 0,
+  { name = "effort", type = "number", default = 0.01, minimum = 0, maximum = 1e9,
     summary = "forces beyond hovering" },
 }
 local common = {
@@ -44,8 +44,8 @@ local common = {
   { name = "finish_velocity", type = "numbers", size = 3, unit = "m/s", summary = "if moving" },
   { name = "hard", type = "number", unit = "m", above = 0,
     summary = "keyframes must be met within this; absent: they pull" },
-  { name = "stretch", type = "number", default = 1, above = 0, words = { "auto" },
-    summary = "factor on all times; auto: the smallest that is certified" },
+  { name = "stretch", type = "number", default = 1, minimum = 1e-3, maximum = 1e3,
+    words = { "auto" }, summary = "factor on all times; auto: the smallest that is certified" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
     summary = "trajectory solver" },
 }
@@ -53,11 +53,11 @@ local keyframe = {
   { name = "time", type = "number", unit = "s", minimum = 0,
     summary = "absent: evenly between the others" },
   { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-    summary = "world: east, north, up" },
+    minimum = -1e6, maximum = 1e6, summary = "world: east, north, up" },
   { name = "yaw_deg", type = "number", unit = "deg", summary = "0 east, counter-clockwise" },
 }
 local of_shot = {
-  { name = "duration", type = "number", unit = "s", above = 0,
+  { name = "duration", type = "number", unit = "s", above = 0, maximum = 1e5,
     summary = "of the flight; absent: up to the last keyframe" },
   { name = "keyframes", type = "tables", required = true, table = keyframe,
     summary = "where to be, and when" },
@@ -105,7 +105,8 @@ local function state_problem(run, shot, stretch, unlimited)
     places[i] = { time = time, value = k.position }
     if k.yaw then yaws[#yaws + 1] = { time = time, value = { k.yaw } } end
     guess.times[i], guess.positions[i], guess.yaws[i] = time, k.position, heading
-    task[i] = { time = time, position = k.position, yaw = k.yaw, tolerance = o.hard or MISS }
+    task[i] = { time = time, position = k.position, yaw = k.yaw, tolerance = o.hard or MISS,
+                time_tolerance = o.hard and 0 or LATE }
   end
   local duration = shot.duration * stretch
   local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
@@ -187,13 +188,15 @@ local function fly(run, shot)
   local last = shot.keyframes[#shot.keyframes].time
   shot.duration = shot.duration or (last > 0 and last or HOVER)
   local first = attempt(run, shot, o.stretch == "auto" and 1 or o.stretch)
-  local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or MISS, LATE)
+  local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or MISS,
+                                      o.hard and 0 or LATE)
   local status = first.solution.status
   local broken = not why and (status == "numerical_error" or status == "unsupported")
   if first.verdict.feasible or broken or run:cancelled() then
     return finished(run, shot, first, {}, first.verdict.feasible and first.stretch or nil)
   end
   why = broken_limit(run, shot, first, why)
+  if not o.hard and o.stretch ~= "auto" then return finished(run, shot, first, { why }) end
   local good = smallest_stretch(run, shot, first, least)
   local note = good and string.format("%s; certified from a stretch of %.2f", why, good.stretch)
     or string.format("%s; no stretch up to %g is certified", why, LARGEST_STRETCH)

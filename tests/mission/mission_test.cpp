@@ -110,7 +110,7 @@ TEST_F(MissionTest, WrongOptionsAreNamed) {
   expect(film("wieghts = {},"), "shot.lua:2: wieghts: unknown key; did you mean 'weights'?");
   expect(film("weights = { snap = 1 },"), "weights.snap: unknown key");
   expect(film("duration = '20 m',"), "duration: '20 m' is no quantity in s");
-  expect(film("duration = -1,"), "duration: expected above 0 s, got -1");
+  expect(film("duration = -1,"), "duration: expected above 0 and at most 100000 s, got -1");
   expect(film("duration = 0 / 0,"), "shot.lua:2: duration: expected a finite number, got NaN");
   expect(film("order = 5,"), "order: expected between 1 and 4");
   expect(film("start = 'rset',"), "start: expected one of rest, moving, free, got 'rset'; did you");

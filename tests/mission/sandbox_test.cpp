@@ -33,6 +33,7 @@ class SandboxTest : public ::testing::Test {
     write_file_atomically(script_, text);
     Sandbox sandbox(limits_, 7, {folder_ / "scripts"},
                     [this](const std::string& line) { printed_ += line + "\n"; });
+    sandbox.watch(&cancellation_);
     std::string result;
     try {
       sandbox.protect([&](lua_State* state) {
@@ -56,6 +57,7 @@ class SandboxTest : public ::testing::Test {
 
   fs::path folder_;
   SandboxLimits limits_;
+  CancellationToken cancellation_;
   std::string script_, printed_;
 };
 
@@ -189,6 +191,9 @@ TEST_F(SandboxTest, WorkInsideCFunctionsIsRefusedBeforehand) {
   expect("for w in (('a'):rep(30000)):gmatch('^(.-)(.-)(.-)(.-)b') do end", "sandbox.pattern_work");
   expect("return string.rep('', 1 << 60)", "string.rep");
   expect("return table.move({}, 1, 1 << 60, 2)", "table.move");
+  expect("return string.rep('', 1e18)", "string.rep");  // a float that is a count
+  expect("return table.move({1, 2}, 1, 2^31, 2)", "table.move");
+  expect("return table.move({1, 2}, 1, '1000000000000', 2)", "table.move");
   expect("return table.move({}, -(1 << 62), 1 << 62, 2)", "table.move");
   expect("return table.concat(setmetatable({}, {__index = rawlen}), '', 1, 1 << 50)",
          "table.concat");
@@ -297,6 +302,14 @@ TEST_F(SandboxTest, DefectsOfBindingsKeepTheirType) {
                std::logic_error);
   EXPECT_THROW(sandbox.protect([](lua_State*) { throw InputError("wrong"); }), InputError);
   sandbox.protect([](lua_State*) {});
+}
+
+// An interruption leaves a script time to finish with what it has, and ends one that does not.
+TEST_F(SandboxTest, AnInterruptionEndsALoopAfterAGrace) {
+  cancellation_.cancel();
+  limits_.instructions = 1'000'000'000;
+  EXPECT_EQ(run("local s = 0 for i = 1, 100000 do s = s + 1 end return s"), "100000");
+  EXPECT_THROW(run("while true do pcall(function() while true do end end) end"), Cancelled);
 }
 
 }  // namespace

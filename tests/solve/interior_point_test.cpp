@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
+#include <Eigen/Dense>
 
 #include "framework/core/error.h"
 #include "framework/core/random.h"
@@ -111,7 +111,7 @@ RandomProblem feasible(Random& random) {
   MatrixXd a = matrix(m, n, 0.4);
   if (m > 2) a.row(m - 1) = a.row(0);  // dependent rows
   VectorXd x(n), row_lower(m), row_upper(m), x_lower(n), x_upper(n), y = VectorXd::Zero(m),
-      z = VectorXd::Zero(n);
+                                                                     z = VectorXd::Zero(n);
   for (int i = 0; i < n; ++i) x(i) = random.normal() * std::pow(10.0, random.uniform(-1, 2));
   const VectorXd ax = a * x;
   const auto place = [&](double value, double& low, double& high, double& multiplier) {
@@ -173,9 +173,32 @@ TEST(InteriorPoint, AnswersRandomInfeasibleProblems) {
 TEST(InteriorPoint, SaysWhenTheCostFallsForEver) {
   const VectorXd open = VectorXd::Constant(2, kInfinity);
   const MatrixXd p = vector({1, 0}).asDiagonal();
-  const QuadraticProgram problem = dense(p, vector({0, -1}), MatrixXd::Zero(0, 2), VectorXd(0),
-                                         VectorXd(0), -open, open);
+  const QuadraticProgram problem =
+      dense(p, vector({0, -1}), MatrixXd::Zero(0, 2), VectorXd(0), VectorXd(0), -open, open);
   EXPECT_EQ(InteriorPoint().solve(problem).status, QuadraticStatus::unbounded);
+}
+
+// A long way along a slight curvature is no ray: the optimum of -x + 1e-9 x^2 / 2 is at 1e9.
+TEST(InteriorPoint, SlightCurvatureIsNotUnbounded) {
+  const QuadraticProgram problem =
+      dense(MatrixXd::Constant(1, 1, 1e-9), vector({-1}), MatrixXd::Zero(0, 1), VectorXd(0),
+            VectorXd(0), vector({0}), vector({kInfinity}));
+  const QuadraticResult result = InteriorPoint().solve(problem);
+  ASSERT_EQ(result.status, QuadraticStatus::optimal);
+  EXPECT_NEAR(result.x(0), 1e9, 1e3);
+}
+
+// Numbers whose products overflow end in a status, with a point of the right size.
+TEST(InteriorPoint, HugeNumbersEndInAStatus) {
+  MatrixXd a(2, 2);
+  a << 1, 1e300, 1e-300, 1;
+  const VectorXd open = VectorXd::Constant(2, kInfinity);
+  const QuadraticProgram problem =
+      dense(MatrixXd::Identity(2, 2) * 1e300, vector({1e308, -1e308}), a, vector({1e308, -1e308}),
+            vector({1e308, 1e308}), -open, open);
+  const QuadraticResult result = InteriorPoint().solve(problem);
+  EXPECT_NE(result.status, QuadraticStatus::optimal);
+  EXPECT_EQ(result.x.size(), 2);
 }
 
 TEST(InteriorPoint, RefusesCrossedBoundsAndBadNumbers) {

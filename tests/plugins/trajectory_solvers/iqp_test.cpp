@@ -110,7 +110,9 @@ TEST(Iqp, StopsWhenCancelledOutOfIterationsOrOutOfTime) {
   none.iteration_limit = 0;
   const SolveResult guess = iqp()->solve(problem, none);
   EXPECT_EQ(guess.report.status, SolveStatus::iteration_limit);
-  EXPECT_EQ(guess.point.stages, problem.initial_guess());
+  // The guess, but for the ends, which are moved to rest.
+  const Eigen::Index inner = guess.point.stages.cols() - 2;
+  EXPECT_EQ(guess.point.stages.middleCols(1, inner), problem.initial_guess().middleCols(1, inner));
   SolveRequest late;
   late.wall_clock_guard = 0.0;
   EXPECT_EQ(iqp()->solve(problem, late).report.status, SolveStatus::time_limit);
