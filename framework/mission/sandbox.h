@@ -71,6 +71,8 @@ class Sandbox {
   Random& random() { return random_; }
   // InputError once a script has printed more than a megabyte.
   void print(const std::string& line);
+  // InputError once a script has printed more than a megabyte.
+  void print(const std::string& line);
 
   // An interruption ends the script, after a grace in which it may finish with what it has:
   // `protect` then throws Cancelled. Null: never.
