@@ -17,7 +17,7 @@ constexpr int kHookInterval = 100;                      // instructions
 constexpr std::int64_t kGraceInstructions = 5'000'000;  // to finish after an interruption
 constexpr std::size_t kLargeBlock = 64u << 10;    // bytes; allocations above look at the clock
 constexpr std::size_t kLargestScript = 4u << 20;  // bytes
-constexpr std::size_t kMostPrinted = 1u << 20;         // bytes
+constexpr std::size_t kMostPrinted = 1u << 20;    // bytes
 constexpr double kMegabyte = 1024.0 * 1024.0;
 
 double now() {

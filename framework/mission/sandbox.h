@@ -71,8 +71,6 @@ class Sandbox {
   Random& random() { return random_; }
   // InputError once a script has printed more than a megabyte.
   void print(const std::string& line);
-  // InputError once a script has printed more than a megabyte.
-  void print(const std::string& line);
 
   // An interruption ends the script, after a grace in which it may finish with what it has:
   // `protect` then throws Cancelled. Null: never.
@@ -126,7 +124,7 @@ class Sandbox {
   const CancellationToken* cancellation_ = nullptr;
   std::int64_t interrupted_at_ = -1;  // instructions run when the interruption was seen
   std::string overrun_message_;
-  std::size_t printed_ = 0;          // bytes
+  std::size_t printed_ = 0;           // bytes
   double started_ = 0, paused_ = 0;   // s
   std::vector<std::string> loading_;  // modules being loaded, to see circles
   std::exception_ptr defect_;

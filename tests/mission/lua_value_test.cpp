@@ -48,6 +48,7 @@ TEST(LuaValue, RefusesWhatNoTreeHolds) {
   };
   expect("{x = {0 / 0}}", "shot.lua:4: given.x[1]: expected a finite number, got NaN");
   expect("{x = {y = 1 / 0}}", "given.x.y: expected a finite number, got an infinity");
+  expect("{s = '\\xff'}", "given.s: expected text in UTF-8");
   expect("{f = print}", "given.f: a function cannot stand here");
   expect("{1, 2, x = 3}", "given: a table with both numbered and named entries ('x')");
   expect("{[1] = 1, [3] = 3}", "given: a list with gaps");

@@ -255,6 +255,7 @@ TEST_F(MissionTest, ScriptsMustReturnMissions) {
   expect("return {kind = 'film', name = 'x', plan = print, option = {}}",
          "mission.option: unknown key");
   expect("return {kind = 'film', name = '', plan = print}", "name: expected");
+  expect("return {kind = 'film', name = 'a\\nb', plan = print}", "name: a line break");
   expect("return {kind = 3, name = 'x', plan = print}", "mission.kind: expected a text");
   expect("return {kind = 'film', name = 'x', plan = function() end}",
          "plan: expected the function to return run:plan{...}, got nil");

@@ -8,6 +8,7 @@
 #include <lua.hpp>
 
 #include "framework/core/files.h"
+#include "framework/core/progress.h"
 #include "framework/mission/sandbox_library.h"
 
 namespace lapwing {
@@ -200,6 +201,9 @@ TEST_F(SandboxTest, WorkInsideCFunctionsIsRefusedBeforehand) {
   expect("table.insert(setmetatable({}, {__len = function() return 1 << 60 end}), 1, 0)", "__len");
   expect("table.remove(setmetatable({}, {__len = function() return 1 << 60 end}), 1)", "__len");
   expect("return table.unpack({}, 1, 1 << 40)", "table.unpack");
+  expect("return string.rep('', 2.0 ^ 60)", "string.rep");
+  expect("return string.rep('', '9999999999999')", "string.rep");
+  expect("return table.move({}, '1', 2.0 ^ 50, 2)", "table.move");
 }
 
 TEST(PatternSteps, GrowWithTheRepetitions) {
@@ -294,6 +298,19 @@ TEST_F(SandboxTest, RequireReadsOnlyModuleFolders) {
   expect("\nlocal x = require('bad')", "bad.lua:2: attempt to perform arithmetic");
   expect("\nlocal x = require('bad')", "(called from shot.lua:2)");
   expect("return require(3)", "expected a text");
+}
+
+TEST_F(SandboxTest, AnInterruptionEndsTheScript) {
+  CancellationToken token;
+  Sandbox sandbox({}, 1, {}, [](const std::string&) {});
+  sandbox.watch(&token);
+  write_file_atomically(folder_ / "user/loop.lua", "for i = 1, 100000 do end");
+  token.cancel();  // what is short may still finish
+  sandbox.protect([&](lua_State* state) { sandbox.run_script(state, folder_ / "user/loop.lua"); });
+  write_file_atomically(folder_ / "user/loop.lua", "while true do pcall(error) end");
+  EXPECT_THROW(sandbox.protect(
+                   [&](lua_State* state) { sandbox.run_script(state, folder_ / "user/loop.lua"); }),
+               Cancelled);
 }
 
 TEST_F(SandboxTest, DefectsOfBindingsKeepTheirType) {
