@@ -157,17 +157,22 @@ local function broken_limit(run, shot, failing, leg)
   return limit or failing.verdict.failures[1] or failing.solution.message
 end
 
+-- Certified, and not only because the least violation hides in the verifier's tolerance.
+local function holds(tried)
+  return tried.verdict.feasible and tried.solution.status ~= "infeasible"
+end
+
 -- The smallest stretch above a failing attempt at which the film is certified, to 1 %; or nil.
 -- Below `least` no film is possible.
 local function smallest_stretch(run, shot, failing, least)
   local low, good, more = math.max(failing.stretch, least), nil, 0.05
   while not good and low * (1 + more) < failing.stretch * LARGEST_STRETCH and not run:cancelled() do
     local tried = attempt(run, shot, low * (1 + more))
-    if tried.verdict.feasible then good = tried else low, more = tried.stretch, 2 * more end
+    if holds(tried) then good = tried else low, more = tried.stretch, 2 * more end
   end
   while good and good.stretch / low > STRETCH_ACCURACY and not run:cancelled() do
     local tried = attempt(run, shot, math.sqrt(low * good.stretch))
-    if tried.verdict.feasible then good = tried else low = tried.stretch end
+    if holds(tried) then good = tried else low = tried.stretch end
   end
   return good
 end
