@@ -27,9 +27,21 @@ void print_check(const Check& check) {
 
 }  // namespace
 
+// A plan carries the verdict of its run; a plan changed since may no longer deserve it.
+void warn_of_another_verdict(const Plan& plan, const Certificate& now) {
+  const Value* stored = plan.certificate.find("feasible");
+  if (!stored || stored->type() != Value::Type::boolean) return;
+  if (stored->as_boolean() != now.feasible())
+    std::fprintf(stderr,
+                 "lapwing: the plan says of itself that it is %scertified; its numbers say that "
+                 "it is %scertified: it was changed after it was planned\n",
+                 stored->as_boolean() ? "" : "not ", now.feasible() ? "" : "not ");
+}
+
 ExitStatus verify_plan(const std::filesystem::path& file, const Invocation& invocation) {
   const Plan plan = read_plan(file);
   const Certificate certificate = verify(plan);
+  warn_of_another_verdict(plan, certificate);
   if (invocation.json) {
     Value object = Value::map();
     object.set("plan", file.string());

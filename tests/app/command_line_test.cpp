@@ -187,6 +187,13 @@ TEST_F(CommandLine, VerifyAndExport) {
   refused({"export", "out/hop/plan.json", "--format", "cvs", "-o", "x.csv"}, {"'cvs'", "'csv'"});
   refused({"verify", "out/hop/plan.jsn"}, {"out/hop/plan.jsn"});
   const std::string plan = read_file(folder_ / "out/hop/plan.json");
+  std::string changed = plan;
+  const std::string verdict = "\"feasible\": true";
+  ASSERT_NE(changed.find(verdict), std::string::npos);
+  changed.replace(changed.find(verdict), verdict.size(), "\"feasible\": false");
+  write("changed.json", changed);
+  EXPECT_NE(run({"verify", "changed.json"}).err.find("changed after it was planned"),
+            std::string::npos);
   write("cut.json", plan.substr(0, plan.size() / 2));
   refused({"verify", "cut.json"}, {"cut.json:"});
 }
