@@ -24,12 +24,24 @@ if $cold && [ "$lapwing_build_seconds" -gt "$build_budget" ]; then
   echo "test.sh: the cold build took ${lapwing_build_seconds} s, its budget is ${build_budget} s" >&2
   exit 1
 fi
-# .ninja_log: start, end (ms), time stamp, output, command hash.
-slow=$(awk -v limit=$((source_budget * 1000)) \
-  '$4 ~ /\.o$/ && $2 - $1 > limit { print ($2 - $1) / 1000 " s  " $4 }' build/release/.ninja_log)
-if [ -n "$slow" ]; then
-  printf 'test.sh: sources that compile longer than %s s:\n%s\n' "$source_budget" "$slow" >&2
-  [ -z "${CI:-}" ] && exit 1
+# A source that took longer than its budget beside other work is compiled once more by itself, and
+# its processor time counts. .ninja_log: start, end (ms), time stamp, output, command hash.
+mapfile -t candidates < <(awk -v limit=$((source_budget * 1000)) \
+  '$4 ~ /\.cpp\.o$/ { took[$4] = $2 - $1 } END { for (o in took) if (took[o] > limit) print o }' \
+  build/release/.ninja_log)
+slow=()
+for object in "${candidates[@]}"; do
+  command=$(ninja -C build/release -t commands "$object" 2>/dev/null | tail -n 1)
+  [[ "$command" == *" -c "* ]] || continue  # a source that is gone
+  TIMEFORMAT=%U
+  seconds=$({ time (cd build/release && CCACHE_DISABLE=1 bash -c "$command" >/dev/null 2>&1); } 2>&1)
+  awk -v s="$seconds" -v limit="$source_budget" 'BEGIN { exit !(s > limit) }' &&
+    slow+=("$seconds s  $object")
+done
+if [ ${#slow[@]} -gt 0 ]; then
+  printf 'test.sh: sources that compile longer than %s s:\n' "$source_budget" >&2
+  printf '  %s\n' "${slow[@]}" >&2
+  exit 1
 fi
 
 began=$SECONDS
