@@ -34,7 +34,9 @@ for object in "${candidates[@]}"; do
   command=$(ninja -C build/release -t commands "$object" 2>/dev/null | tail -n 1)
   [[ "$command" == *" -c "* ]] || continue  # a source that is gone
   TIMEFORMAT=%U
-  seconds=$({ time (cd build/release && CCACHE_DISABLE=1 bash -c "$command" >/dev/null 2>&1); } 2>&1)
+  seconds=$(for _ in 1 2; do  # the better of two: a shared machine's speed goes up and down
+    { time (cd build/release && CCACHE_DISABLE=1 bash -c "$command" >/dev/null 2>&1); } 2>&1
+  done | sort -n | head -n 1)
   awk -v s="$seconds" -v limit="$source_budget" 'BEGIN { exit !(s > limit) }' &&
     slow+=("$seconds s  $object")
 done

@@ -1,6 +1,7 @@
 #include "framework/app/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <functional>
 #include <iostream>
 
@@ -15,7 +16,7 @@ namespace lapwing {
 
 namespace {
 
-constexpr int kMostThreads = 1024;
+constexpr std::uint64_t kMostThreads = 1024;
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;  // JSON readers hold no more
 
 using Command = std::function<ExitStatus()>;
@@ -24,57 +25,95 @@ void add_json(CLI::App& command, Invocation& invocation) {
   command.add_flag("--json", invocation.json, "one JSON object on standard output");
 }
 
+// Options go through CLI11's callbacks on text: its typed ones instantiate a conversion of every
+// kind for each type, which took most of this source's compile time.
+CLI::Option* add_text(CLI::App& command, const std::string& name, const std::string& value_name,
+                      const std::string& help, std::function<void(const std::string&)> take) {
+  const auto callback = [take = std::move(take)](const CLI::results_t& values) {
+    for (const std::string& value : values) take(value);
+    return true;
+  };
+  return command.add_option(name, callback, help)->type_name(value_name)->expected(1);
+}
+
 // Repeatable; every use takes one value, which may hold brackets and commas.
 template <class T>
-CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<T>& values,
-                          const std::string& help) {
-  return command.add_option(name, values, help)->expected(1)->allow_extra_args(false)->take_all();
+void add_repeated(CLI::App& command, const std::string& name, const std::string& value_name,
+                  std::vector<T>& values, const std::string& help) {
+  add_text(command, name, value_name, help,
+           [&values](const std::string& value) { values.emplace_back(value); })
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+void add_count(CLI::App& command, const std::string& name, std::uint64_t least, std::uint64_t most,
+               const std::string& help, std::function<void(std::uint64_t)> take) {
+  add_text(command, name, "N", help, [=](const std::string& text) {
+    std::uint64_t count = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (error != std::errc{} || end != text.data() + text.size() || count < least || count > most)
+      throw CLI::ValidationError(name, "must be a whole number from " + std::to_string(least) +
+                                           " to " + std::to_string(most) + ", not '" + text + "'");
+    take(count);
+  });
 }
 
 void add_configuration(CLI::App& command, Invocation& invocation) {
-  add_repeated(command, "--config", invocation.configs,
-               "a configuration file or its name in configs/; later ones win")
-      ->type_name("FILE");
-  add_repeated(command, "--set", invocation.overrides, "set one option")->type_name("KEY=VALUE");
-  add_repeated(command, "--data", invocation.data, "a folder that the script may read")
-      ->type_name("DIR");
-  command.add_option("--seed", invocation.seed, "of all random numbers")
-      ->type_name("N")
-      ->check(CLI::Range(std::uint64_t{0}, kLargestSeed));
+  add_repeated(command, "--config", "FILE", invocation.configs,
+               "a configuration file or its name in configs/; later ones win");
+  add_repeated(command, "--set", "KEY=VALUE", invocation.overrides, "set one option");
+  add_repeated(command, "--data", "DIR", invocation.data, "a folder that the script may read");
+  add_count(command, "--seed", 0, kLargestSeed, "of all random numbers",
+            [&](std::uint64_t seed) { invocation.seed = seed; });
+}
+
+void add_mission(CLI::App& command, std::filesystem::path& script) {
+  add_text(command, "mission", "MISSION.lua", "mission script", [&](const std::string& path) {
+    script = path;
+  })->required();
 }
 
 void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& script,
              Command& command) {
   CLI::App* run = app.add_subcommand("run", "plan a mission, certify and write it");
-  run->add_option("mission", script, "mission script")->required()->type_name("MISSION.lua");
+  add_mission(*run, script);
   add_configuration(*run, invocation);
-  run->add_option("--out", invocation.out, "folder of the results; else out/<mission>")
-      ->type_name("DIR");
-  run->add_option("--threads", invocation.threads, "threads to use; else one per core")
-      ->type_name("N")
-      ->check(CLI::Range(1, kMostThreads));
+  add_text(*run, "--out", "DIR", "folder of the results; else out/<mission>",
+           [&](const std::string& path) { invocation.out = path; });
+  add_count(*run, "--threads", 1, kMostThreads, "threads to use; else one per core",
+            [&](std::uint64_t threads) { invocation.threads = static_cast<int>(threads); });
   run->add_flag("--quiet", invocation.quiet, "no progress, no summary");
   add_json(*run, invocation);
   run->callback([&] { command = [&] { return run_mission(script, invocation); }; });
 
   CLI::App* config = app.add_subcommand("config", "effective options and where each came from");
-  config->add_option("mission", script, "mission script")->required()->type_name("MISSION.lua");
+  add_mission(*config, script);
   add_configuration(*config, invocation);
   add_json(*config, invocation);
   config->callback([&] { command = [&] { return show_configuration(script, invocation); }; });
 }
 
+void add_plan(CLI::App& command, std::filesystem::path& plan) {
+  add_text(command, "plan", "PLAN.json", "plan document", [&](const std::string& path) {
+    plan = path;
+  })->required();
+}
+
 void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
                        std::string& format, std::filesystem::path& target, Command& command) {
   CLI::App* verify = app.add_subcommand("verify", "judge a plan from its numbers alone");
-  verify->add_option("plan", plan, "plan document")->required()->type_name("PLAN.json");
+  add_plan(*verify, plan);
   add_json(*verify, invocation);
   verify->callback([&] { command = [&] { return verify_plan(plan, invocation); }; });
 
   CLI::App* exported = app.add_subcommand("export", "write a plan in another format");
-  exported->add_option("plan", plan, "plan document")->required()->type_name("PLAN.json");
-  exported->add_option("--format", format, "an exporter's name")->required()->type_name("NAME");
-  exported->add_option("-o,--output", target, "the file to write")->required()->type_name("PATH");
+  add_plan(*exported, plan);
+  add_text(*exported, "--format", "NAME", "an exporter's name", [&](const std::string& name) {
+    format = name;
+  })->required();
+  add_text(*exported, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
+    target = path;
+  })->required();
   exported->callback(
       [&] { command = [&] { return export_plan(plan, format, target, invocation); }; });
 }
@@ -87,7 +126,9 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
   add_json(*list, invocation);
   list->callback([&] { command = [&] { return list_plugins(invocation); }; });
   CLI::App* show = plugins->add_subcommand("show", "a plugin's parameters");
-  show->add_option("name", name, "its name")->required()->type_name("[KIND/]NAME");
+  add_text(*show, "name", "[KIND/]NAME", "its name", [&](const std::string& given) {
+    name = given;
+  })->required();
   add_json(*show, invocation);
   show->callback([&] { command = [&] { return show_plugin(name, invocation); }; });
   CLI::App* path = plugins->add_subcommand("path", "the folders that are searched");
@@ -152,8 +193,8 @@ int run_command_line(int argc, const char* const* argv) {
   std::filesystem::path script, plan, target;
   std::string format, name;
   Command command;
-  add_repeated(app, "--plugin-path", invocation.plugin_path, "a folder of plugins, searched first")
-      ->type_name("DIR");
+  add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
+               "a folder of plugins, searched first");
   app.fallthrough();
   add_run(app, invocation, script, command);
   add_plan_commands(app, invocation, plan, format, target, command);

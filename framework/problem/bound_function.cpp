@@ -258,7 +258,7 @@ const double* BoundFunction::evaluate(const StageColumns& columns, const Stages&
           target.leftCols(inputs_) = source;
         } else {
           gather(columns, at, first + k, x + k * inputs_, &chain);
-          target.noalias() = source * chain;
+          target = source.lazyProduct(chain);
         }
         if (step_column_) target.rightCols(1).setZero();
       }
@@ -298,7 +298,8 @@ void BoundFunction::curvature(const StageColumns& columns, const Stages& at,
     if (!shape_.affine) function_->curvature({k, 1}, x.data(), scaled.data(), h.data(), workspace);
     Eigen::Map<RowMajor> result(hessian.data() + static_cast<std::size_t>(k) * width_ * width_,
                                 width_, width_);
-    result.noalias() = chain.transpose() * Eigen::Map<RowMajor>(h.data(), n, n) * chain;
+    const RowMajor bent = Eigen::Map<RowMajor>(h.data(), n, n).lazyProduct(chain);
+    result = chain.transpose().lazyProduct(bent);
     if (direct_ && !step_column_) continue;
     function_->evaluate({k, 1}, x.data(), v.data(), j.data(), workspace);
     const Eigen::Map<const Eigen::VectorXd> lambda(multipliers + k * m, m);
@@ -361,7 +362,8 @@ void BoundFunction::add_flow_curvature(const StageColumns& columns, const Stages
               0.25 * Eigen::Map<const Eigen::Vector4d>(value).dot(pull.segment<4>(argument));
         argument += block.size;
       }
-    result.noalias() += chain.transpose() * bend * chain;
+    const RowMajor bent = bend.lazyProduct(chain);
+    result += chain.transpose().lazyProduct(bent);
   }
 }
 

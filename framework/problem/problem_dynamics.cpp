@@ -6,6 +6,14 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// Coefficient by coefficient: these matrices are too small for Eigen's blocked product, which is
+// also the slowest thing to compile.
+RowMajor product(
+    const Eigen::Ref<const RowMajor, 0, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>& a,
+    const Eigen::Ref<const RowMajor, 0, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>& b) {
+  return a.lazyProduct(b);
+}
+
 // d (rotation step of q) / d q, the left inverse of the retraction's Jacobian: tangent x size.
 Eigen::MatrixXd tangent_projection(const BlockSpec& block, const double* at) {
   const Eigen::MatrixXd jacobian = retraction_jacobian(block, at);
@@ -54,8 +62,9 @@ void add_retraction_curvature(const StageColumns& columns, const BoundModel& mod
 void add_difference_curvature(const Eigen::MatrixXd& curvature, const RowMajor& flow,
                               Eigen::Index next, RowMajor& hessian) {
   const Eigen::Index width = flow.cols();
-  hessian.topLeftCorner(width, width) += flow.transpose() * curvature.topLeftCorner<3, 3>() * flow;
-  hessian.block(next, 0, 3, width) += curvature.bottomLeftCorner<3, 3>() * flow;
+  hessian.topLeftCorner(width, width) +=
+      product(flow.transpose(), product(curvature.topLeftCorner(3, 3), flow));
+  hessian.block(next, 0, 3, width) += product(curvature.bottomLeftCorner(3, 3), flow);
   hessian.block<3, 3>(next, next) += curvature.bottomRightCorner<3, 3>();
 }
 
@@ -82,7 +91,7 @@ void evaluate_model_step(const StageColumns& columns, const BoundModel& model, c
   result.values.resize(model.state_tangents);
   RowMajor flow;
   if (derivatives) {
-    flow = jacobian * argument_chain(columns, model, at, stage);
+    flow = jacobian.lazyProduct(argument_chain(columns, model, at, stage));
     result.jacobian.setZero(model.state_tangents, flow.cols() + model.state_tangents);
   }
   int row = 0, state = 0;
@@ -94,8 +103,8 @@ void evaluate_model_step(const StageColumns& columns, const BoundModel& model, c
     if (derivatives) {
       const DifferenceJacobians d = difference_jacobians(block, next.data() + state, there);
       result.jacobian.block(row, 0, t, flow.cols()) =
-          d.from * tangent_projection(block, next.data() + state) *
-          flow.middleRows(state, block.size);
+          product(product(d.from, tangent_projection(block, next.data() + state)),
+                  flow.middleRows(state, block.size));
       result.jacobian.block(row, flow.cols() + row, t, t) = d.to;
     }
     row += t;
@@ -180,18 +189,21 @@ void TrajectoryProblem::Impl::dynamics_curvature(const Stages& at, const double*
         const Eigen::MatrixXd projection = tangent_projection(block, next.data() + state);
         const Eigen::Map<const Eigen::VectorXd> lambda(
             multipliers + model.first_row + i * model.state_tangents + row, block.tangent_size());
-        ambient.segment(state, block.size) = (d.from * projection).transpose() * lambda;
+        ambient.segment(state, block.size) =
+            product(d.from, projection).transpose().lazyProduct(lambda);
         if (block.topology == Topology::quaternion)
           add_difference_curvature(
               difference_curvature(block, next.data() + state, there, lambda.data()),
-              projection * jacobian.middleRows(state, block.size) * chain, width + row, tangent);
+              product(product(projection, jacobian.middleRows(state, block.size)), chain),
+              width + row, tangent);
         row += block.tangent_size();
         state += block.size;
       }
       bend.setZero();
       model.model->curvature({0, 1}, x.data(), ambient.data(), bend.data(), workspace);
-      tangent.topLeftCorner(width, width) += chain.transpose() * bend * chain;
-      add_retraction_curvature(columns, model, at, i, jacobian.transpose() * ambient, tangent);
+      tangent.topLeftCorner(width, width) += product(chain.transpose(), product(bend, chain));
+      add_retraction_curvature(columns, model, at, i, jacobian.transpose().lazyProduct(ambient),
+                               tangent);
       for (int a = 0; a < tangent.rows(); ++a)
         for (int b = 0; b <= a; ++b, ++slot)
           if (*slot >= 0) hessian[*slot] += tangent(a, b);

@@ -1,7 +1,7 @@
 #include "framework/solve/kkt_system.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 namespace lapwing {
 namespace {
@@ -13,7 +13,7 @@ constexpr double kOfVariables = 1e-10;
 constexpr double kOfRows = 1e-6;
 constexpr double kStronger = 100.0;  // factor of each further try
 constexpr int kTries = 4;
-constexpr int kRefinements = 8;
+constexpr int kRefinements = 20;
 constexpr double kRefined = 1e-9;  // relative residual that is good enough
 
 using Eigen::VectorXd;
@@ -151,8 +151,8 @@ void KktSystem::backsolve(const VectorXd& right, VectorXd& x) const {
   }
 }
 
-// result -= K x with the symmetric matrix, regularisation included.
-void KktSystem::subtract_product(const VectorXd& x, VectorXd& result) const {
+// result += K x with the symmetric matrix, regularisation included.
+void KktSystem::add_product(const VectorXd& x, VectorXd& result) const {
   const int* const outer = matrix_.outerIndexPtr();
   const int* const inner = matrix_.innerIndexPtr();
   const double* const value = matrix_.valuePtr();
@@ -161,34 +161,45 @@ void KktSystem::subtract_product(const VectorXd& x, VectorXd& result) const {
     double sum = 0;
     for (int k = outer[j]; k < outer[j + 1]; ++k) {
       const int i = inner[k];
-      if (i != j) result(i) -= value[k] * factor;
+      if (i != j) result(i) += value[k] * factor;
       sum += value[k] * x(i);
     }
-    result(j) -= sum;
+    result(j) += sum;
   }
 }
 
+// Generalised conjugate residuals, the factors being the preconditioner (Eisenstat, Elman, Schultz
+// 1983). Plain refinement gains a factor delta / (delta + sigma) a step, which is nothing for rows
+// whose Schur complement sigma is below the regularisation delta, as it is where bounds hold many
+// of a row's variables; the few such directions cost a Krylov method a few steps.
 VectorXd KktSystem::solve(const VectorXd& right) const {
   const int size = n_ + m_;
-  VectorXd ordered(size), x, best, residual, correction;
-  for (int i = 0; i < size; ++i) ordered(place_[i]) = right(i);
-  backsolve(ordered, x);
-  const double scale = size ? ordered.cwiseProduct(weight_).cwiseAbs().maxCoeff() : 0.0;
-  double last = std::numeric_limits<double>::infinity();
-  best = x;
-  for (int k = 0; k < kRefinements; ++k) {
-    residual = ordered + regularisation_.cwiseProduct(x);
-    subtract_product(x, residual);
-    const double error = size ? residual.cwiseProduct(weight_).cwiseAbs().maxCoeff() : 0.0;
-    if (!(error < last)) break;
-    best = x;
-    last = error;
-    if (error <= kRefined * scale) break;
-    backsolve(residual, correction);
-    x += correction;
+  VectorXd residual(size), correction, x = VectorXd::Zero(size);
+  for (int i = 0; i < size; ++i) residual(place_[i]) = weight_(place_[i]) * right(i);
+  const double scale = residual.norm();
+  std::vector<VectorXd> directions, images;
+  for (int k = 0; k < kRefinements && residual.norm() > kRefined * scale; ++k) {
+    backsolve(residual.cwiseQuotient(weight_), correction);
+    VectorXd image = -regularisation_.cwiseProduct(correction);
+    add_product(correction, image);
+    image = weight_.cwiseProduct(image);
+    for (std::size_t b = 0; b < images.size(); ++b) {
+      const double share = images[b].dot(image);
+      image -= share * images[b];
+      correction -= share * directions[b];
+    }
+    const double length = image.norm();
+    if (!(length > 0) || !std::isfinite(length)) break;
+    image /= length;
+    correction /= length;
+    const double step = image.dot(residual);
+    x += step * correction;
+    residual -= step * image;
+    directions.push_back(correction);
+    images.push_back(image);
   }
   VectorXd result(size);
-  for (int i = 0; i < size; ++i) result(i) = best(place_[i]);
+  for (int i = 0; i < size; ++i) result(i) = x(place_[i]);
   return result;
 }
 

@@ -18,7 +18,7 @@ class KktSystem {
               const std::vector<RowKind>& rows);
   // `diagonal`: D_x (added to P) and D_s (inverted below). False when no regularisation helps.
   bool factorise(const Eigen::VectorXd& diagonal);
-  // Solves without the regularisation, by refinement.
+  // Solves without the regularisation, by refinement with a Krylov method.
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
 
  private:
@@ -27,7 +27,7 @@ class KktSystem {
   bool same_pattern(const QuadraticProgram& problem) const;
   void analyse(const QuadraticProgram& problem);
   void backsolve(const Eigen::VectorXd& right, Eigen::VectorXd& x) const;
-  void subtract_product(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
+  void add_product(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
 
   int n_ = 0, m_ = 0;
   std::vector<int> hessian_outer_, hessian_inner_, jacobian_outer_, jacobian_inner_;
