@@ -46,6 +46,20 @@ TEST_F(Filming, SofterAndSmootherByConfiguration) {
             stiff.result.at("solver").at("terms").at("keyframe").as_number());
 }
 
+TEST_F(Filming, SoftKeyframesBeyondTheVehicleAreExplained) {
+  write_file_atomically(folder_ / "there_and_back.lua", R"(return require "mission.film".shot {
+    name = "there and back", duration = 2, vehicle = "vehicles/solo",
+    keyframes = { { time = 0, position = {0, 0, 2} }, { time = 1, position = {4, 0, 2} },
+                  { time = 2, position = {0, 0, 2} } } })");
+  const Flown flown = fly((folder_ / "there_and_back.lua").string());
+  EXPECT_EQ(flown.status, 1);
+  EXPECT_EQ(flown.result.at("status").as_text(), "not_certified");
+  EXPECT_EQ(flown.result.at("solver").at("status").as_text(), "optimal");
+  const std::string note = flown.result.at("notes").as_list().at(0).as_text();
+  EXPECT_NE(note.find("thrust_max"), std::string::npos) << note;
+  EXPECT_NE(note.find(" at 0.9 s"), std::string::npos) << note;
+}
+
 TEST_F(DesignersShots, AreCertifiedWhereTheVehicleCanFollow) {
   for (const int number :
        {2, 5, 7, 12, 29, 30}) {  // a pause, geodetic, one keyframe, near the limit

@@ -87,6 +87,22 @@ TEST(Iqp, NamesWhatAnImpossibleFilmMissesAndWhatStandsInTheWay) {
   EXPECT_EQ(failures(certificate), "keyframe_miss ");
 }
 
+// Soft keyframes beyond the vehicle: bounds hold nearly everywhere, and the answer comes near.
+TEST(Iqp, FlownToTheLimitsEverywhere) {
+  for (const double reach : {2.0, 4.0, 40.0, 400.0})
+    for (const double step : {0.05, 0.1}) {
+      const Film film{
+          .keyframes = {keyframe(0, {0, 0, 2}), keyframe(1, {reach, 0, 2}), keyframe(2, {0, 0, 2})},
+          .duration = 2,
+          .step = step};
+      const TrajectoryProblem problem = problem_of(film);
+      const SolveResult result = iqp()->solve(problem, {});
+      EXPECT_EQ(result.report.status, SolveStatus::optimal)
+          << reach << " m, step " << step << ": " << result.report.message;
+      EXPECT_EQ(failures(certify(film, problem, result)), "keyframe_miss ") << reach;
+    }
+}
+
 TEST(Iqp, WarmStartFromTheAnswerKeepsIt) {
   const TrajectoryProblem problem = problem_of(crossing());
   const SolveResult first = iqp()->solve(problem, {});
