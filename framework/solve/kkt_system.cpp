@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lapwing {
 namespace {
 
 // Static regularisation in scaled numbers: little on the variables, whose curvature may be tiny
 // (snap leaves whole cubics free), more on the rows, which keeps pivots far from zero. Refinement
-// takes both back.
+// takes both back. Where it cannot, because the rows' Schur complement is smaller still, less is
+// added to the rows, as long as that helps: the factors themselves grow inexact with it.
 constexpr double kOfVariables = 1e-10;
 constexpr double kOfRows = 1e-6;
+constexpr double kLeastOfRows = 1e-9;
+constexpr double kWeaker = 0.1;
 constexpr double kStronger = 100.0;  // factor of each further try
 constexpr int kTries = 4;
-constexpr int kRefinements = 20;
+constexpr int kRefinements = 15;
 constexpr double kRefined = 1e-9;  // relative residual that is good enough
 
 using Eigen::VectorXd;
@@ -87,6 +91,9 @@ void KktSystem::set_up(const QuadraticProgram& problem, const std::vector<char>&
   if (!same_pattern(problem)) analyse(problem);
   fixed_ = fixed;
   rows_ = rows;
+  of_rows_ = kOfRows;
+  error_ = kRefined;
+  last_error_ = std::numeric_limits<double>::infinity();
   base_diagonal_.setZero(n_ + m_);
   double* values = matrix_.valuePtr();
   std::size_t h = 0, a = 0;
@@ -105,6 +112,12 @@ void KktSystem::set_up(const QuadraticProgram& problem, const std::vector<char>&
 }
 
 bool KktSystem::factorise(const VectorXd& diagonal) {
+  if (error_ > kRefined) {
+    of_rows_ = error_ < last_error_ ? std::max(kWeaker * of_rows_, kLeastOfRows)
+                                    : std::min(of_rows_ / kWeaker, kOfRows);
+    last_error_ = error_;
+  }
+  error_ = 0.0;
   double strength = 1.0;
   regularisation_.resize(n_ + m_);
   weight_.setOnes(n_ + m_);
@@ -120,8 +133,8 @@ bool KktSystem::factorise(const VectorXd& diagonal) {
       const double exact = rows_[r] == RowKind::equation    ? 0.0
                            : rows_[r] == RowKind::unbounded ? -1.0
                                                             : -1.0 / diagonal(i);
-      regularisation_(place_[i]) = -strength * kOfRows;
-      values[diagonal_slots_[i]] = exact - strength * kOfRows;
+      regularisation_(place_[i]) = -strength * of_rows_;
+      values[diagonal_slots_[i]] = exact - strength * of_rows_;
       weight_(place_[i]) = exact < -1.0 ? -1.0 / exact : 1.0;
     }
     factors_.factorize(matrix_);
@@ -151,11 +164,12 @@ void KktSystem::backsolve(const VectorXd& right, VectorXd& x) const {
   }
 }
 
-// result += K x with the symmetric matrix, regularisation included.
-void KktSystem::add_product(const VectorXd& x, VectorXd& result) const {
+// K x with the symmetric matrix, without the regularisation.
+VectorXd KktSystem::product(const VectorXd& x) const {
   const int* const outer = matrix_.outerIndexPtr();
   const int* const inner = matrix_.innerIndexPtr();
   const double* const value = matrix_.valuePtr();
+  VectorXd result = -regularisation_.cwiseProduct(x);
   for (int j = 0; j < n_ + m_; ++j) {
     const double factor = x(j);
     double sum = 0;
@@ -166,23 +180,25 @@ void KktSystem::add_product(const VectorXd& x, VectorXd& result) const {
     }
     result(j) += sum;
   }
+  return result;
 }
 
 // Generalised conjugate residuals, the factors being the preconditioner (Eisenstat, Elman, Schultz
 // 1983). Plain refinement gains a factor delta / (delta + sigma) a step, which is nothing for rows
 // whose Schur complement sigma is below the regularisation delta, as it is where bounds hold many
 // of a row's variables; the few such directions cost a Krylov method a few steps.
-VectorXd KktSystem::solve(const VectorXd& right) const {
+VectorXd KktSystem::solve(const VectorXd& right) {
   const int size = n_ + m_;
-  VectorXd residual(size), correction, x = VectorXd::Zero(size);
-  for (int i = 0; i < size; ++i) residual(place_[i]) = weight_(place_[i]) * right(i);
-  const double scale = residual.norm();
+  VectorXd ordered(size), x, correction;
+  for (int i = 0; i < size; ++i) ordered(place_[i]) = right(i);
+  // The first step is taken whole: where the matrix is singular it is long, which shows a ray.
+  backsolve(ordered, x);
+  VectorXd residual = weight_.cwiseProduct(ordered - product(x));
+  const double scale = weight_.cwiseProduct(ordered).norm();
   std::vector<VectorXd> directions, images;
   for (int k = 0; k < kRefinements && residual.norm() > kRefined * scale; ++k) {
     backsolve(residual.cwiseQuotient(weight_), correction);
-    VectorXd image = -regularisation_.cwiseProduct(correction);
-    add_product(correction, image);
-    image = weight_.cwiseProduct(image);
+    VectorXd image = weight_.cwiseProduct(product(correction));
     for (std::size_t b = 0; b < images.size(); ++b) {
       const double share = images[b].dot(image);
       image -= share * images[b];
@@ -198,6 +214,7 @@ VectorXd KktSystem::solve(const VectorXd& right) const {
     directions.push_back(correction);
     images.push_back(image);
   }
+  if (scale > 0) error_ = std::max(error_, residual.norm() / scale);
   VectorXd result(size);
   for (int i = 0; i < size; ++i) result(i) = x(place_[i]);
   return result;

@@ -19,7 +19,7 @@ class KktSystem {
   // `diagonal`: D_x (added to P) and D_s (inverted below). False when no regularisation helps.
   bool factorise(const Eigen::VectorXd& diagonal);
   // Solves without the regularisation, by refinement with a Krylov method.
-  Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+  Eigen::VectorXd solve(const Eigen::VectorXd& right);
 
  private:
   using Factors =
@@ -27,12 +27,15 @@ class KktSystem {
   bool same_pattern(const QuadraticProgram& problem) const;
   void analyse(const QuadraticProgram& problem);
   void backsolve(const Eigen::VectorXd& right, Eigen::VectorXd& x) const;
-  void add_product(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
+  Eigen::VectorXd product(const Eigen::VectorXd& x) const;
 
   int n_ = 0, m_ = 0;
   std::vector<int> hessian_outer_, hessian_inner_, jacobian_outer_, jacobian_inner_;
   std::vector<int> hessian_slots_, jacobian_slots_, diagonal_slots_;
-  std::vector<int> place_;  // of each number in the elimination order
+  std::vector<int> place_;                 // of each number in the elimination order
+  double of_rows_ = 0.0;                   // regularisation of the rows
+  double error_ = 0.0, last_error_ = 0.0;  // relative residual after refinement: the worst since
+                                           // the last factors, and when it last was not good enough
   std::vector<char> fixed_;
   std::vector<RowKind> rows_;
   Eigen::VectorXd base_diagonal_;   // P's

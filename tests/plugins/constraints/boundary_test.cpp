@@ -1,4 +1,5 @@
 // boundary_state and hard_keyframe: bounds by hand, and flights that keep them.
+#include "framework/core/random.h"
 #include "framework/solve/trajectory_solver.h"
 #include "tests/plugins/plugin_setting.h"
 
@@ -72,15 +73,38 @@ TEST(BoundaryState, RefusesContradictions) {
       {"start_velocity", "down"});
 }
 
-TEST(HardKeyframe, TheBoxLiesInsideTheTolerance) {
+TEST(HardKeyframe, ThePolytopeLiesInsideTheTolerance) {
   const BoundConstraint ball(
       "hard_keyframe",
       map_of({{"tolerance", 0.5}, {"keyframes", moments({{0.25, {1, 2, 3}}, {0.1, {0, 0, 0}}})}}),
       camera_drone());
   EXPECT_EQ(ball.shape.times, (std::vector<double>{0.25, 0.1}));
-  const Eigen::Map<const Eigen::Vector3d> lower(ball.lower.data()), upper(ball.upper.data());
-  EXPECT_NEAR(((upper - lower) / 2).norm(), 0.5, 1e-12) << "the corner is as far as allowed";
-  EXPECT_NEAR(((upper + lower) / 2 - Eigen::Vector3d(1, 2, 3)).norm(), 0.0, 1e-12);
+  ASSERT_EQ(ball.shape.rows, 13);
+  // How far one can go from the keyframe in any direction.
+  const Eigen::Vector3d middle(1, 2, 3);
+  const auto reach = [&](const Eigen::Vector3d& direction) {
+    std::vector<double> at(13), ahead(13);
+    Workspace workspace;
+    const Eigen::Vector3d moved = middle + direction.normalized();
+    ball.constraint->evaluate({0, 1}, middle.data(), at.data(), nullptr, workspace);
+    ball.constraint->evaluate({0, 1}, moved.data(), ahead.data(), nullptr, workspace);
+    double least = kInfinity;
+    for (int r = 0; r < 13; ++r) {
+      const double slope = ahead[r] - at[r];
+      if (std::abs(slope) < 1e-12) continue;
+      least = std::min(least, ((slope > 0 ? ball.upper[r] : ball.lower[r]) - at[r]) / slope);
+    }
+    return least;
+  };
+  const double r2 = std::sqrt(2.0), r3 = std::sqrt(3.0);
+  EXPECT_NEAR(reach({1, r2 - 1, r3 - r2}), 0.5, 1e-12) << "a corner is as far as allowed";
+  EXPECT_NEAR(reach({r2 - 1, r2 - r3, -1}), 0.5, 1e-12);
+  Random random(1);
+  for (int k = 0; k < 2000; ++k) {
+    const double distance = reach({random.normal(), random.normal(), random.normal()});
+    EXPECT_LE(distance, 0.5 + 1e-12);
+    EXPECT_GE(distance, 0.886 * 0.5);
+  }
   const BoundConstraint yaw(
       "hard_keyframe",
       map_of({{"block", "yaw"}, {"tolerance", 0.1}, {"keyframes", moments({{0.2, {2}}})}}),
