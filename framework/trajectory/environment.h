@@ -2,6 +2,7 @@
 // the verifier checks all of it. World frame, metres.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,32 @@ struct Box {
   Eigen::Vector3d upper = Eigen::Vector3d::Zero();
 };
 
+// A no-fly zone: all points above a polygon on the ground between two heights.
+struct Zone {
+  std::string name;
+  std::vector<Eigen::Vector2d> corners;  // at least 3, in either turn; edges do not cross
+  double floor = -std::numeric_limits<double>::infinity();
+  double ceiling = std::numeric_limits<double>::infinity();
+};
+
+// What is filmed: an upright cylinder around a middle that may move. Straight and even motion
+// between the times of its track, at rest before and after.
+struct Subject {
+  std::string name;
+  std::vector<double> times;               // s, strictly increasing, one at least
+  std::vector<Eigen::Vector3d> positions;  // of its middle, one per time
+  double height = 0;                       // m, from foot to top; 0 is a point
+  double width = 0;                        // m, diameter
+
+  Eigen::Vector3d position(double time) const;
+};
+
 struct Environment {
   std::vector<Sphere> spheres;
   std::vector<Box> boxes;
-  double margin = 0;  // m kept from every surface, vehicle radius included
+  std::vector<Zone> zones;
+  std::vector<Subject> subjects;  // filmed; a distance is kept only where a problem asks for it
+  double margin = 0;              // m kept from every surface, vehicle radius included
 };
 
 }  // namespace lapwing

@@ -25,8 +25,22 @@ struct KeyframeTask {
   double yaw_tolerance = 0.1745;                       // rad
 };
 
+// Between two times, ends included.
+struct TimeSpan {
+  double start = 0, finish = 0;  // s
+};
+
+// Which subject the camera is on, and when. Times outside all of these ask for nothing.
+struct FramingTask {
+  std::string subject;  // a name of the environment's subjects
+  TimeSpan span;
+};
+
 struct Task {
   std::vector<KeyframeTask> keyframes;
+  std::vector<FramingTask> framing;
+  double framing_share = 0.95;  // of the time asked for, cuts excepted, that the middle of the
+                                // subject is inside the image
 };
 
 struct Plan {
@@ -37,6 +51,7 @@ struct Plan {
   Value vehicle;                                 // as vehicle/vehicle.h writes it, camera included
   Trajectory trajectory;
   Environment environment;
+  std::vector<TimeSpan> cuts;    // footage thrown away; in order, apart from each other
   std::optional<double> budget;  // s of flight
   Task task;
   Value configuration;  // effective, with overrides
