@@ -30,14 +30,14 @@ void check_bounds(const BoundSubject& subject, Findings& findings) {
 template <class Kind>
 std::vector<CheckResult> check_registered(const Registry& registry, const PluginEntry& entry,
                                           const CheckOptions& options,
-                                          std::vector<CheckResult> (*check)(const Subject<Kind>&,
+                                          std::vector<CheckResult> (*check)(const Specimen<Kind>&,
                                                                             const CheckOptions&)) {
   return check(subject_of<Kind>(registry, entry), options);
 }
 
 }  // namespace
 
-std::vector<CheckResult> check_cost_term(const Subject<CostTerm>& subject,
+std::vector<CheckResult> check_cost_term(const Specimen<CostTerm>& subject,
                                          const CheckOptions& options) {
   Findings findings;
   check_stage_function(subject.parameters, subject.create, options, findings,
@@ -45,7 +45,7 @@ std::vector<CheckResult> check_cost_term(const Subject<CostTerm>& subject,
   return std::move(findings).results();
 }
 
-std::vector<CheckResult> check_constraint(const Subject<Constraint>& subject,
+std::vector<CheckResult> check_constraint(const Specimen<Constraint>& subject,
                                           const CheckOptions& options) {
   Findings findings;
   check_stage_function(subject.parameters, subject.create, options, findings,

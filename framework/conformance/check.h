@@ -29,7 +29,7 @@ struct CheckResult {
 };
 
 template <class Kind>
-struct Subject {
+struct Specimen {
   std::string name;
   ParameterTable parameters;
   // From parameters that lack defaults; throws InputError for bad ones.
@@ -43,17 +43,17 @@ struct CheckOptions {
   std::function<std::int64_t()> allocations;
 };
 
-std::vector<CheckResult> check_cost_term(const Subject<CostTerm>& subject,
+std::vector<CheckResult> check_cost_term(const Specimen<CostTerm>& subject,
                                          const CheckOptions& options = {});
-std::vector<CheckResult> check_constraint(const Subject<Constraint>& subject,
+std::vector<CheckResult> check_constraint(const Specimen<Constraint>& subject,
                                           const CheckOptions& options = {});
-std::vector<CheckResult> check_vehicle_model(const Subject<VehicleModel>& subject,
+std::vector<CheckResult> check_vehicle_model(const Specimen<VehicleModel>& subject,
                                              const CheckOptions& options = {});
-std::vector<CheckResult> check_trajectory_solver(const Subject<TrajectorySolver>& subject,
+std::vector<CheckResult> check_trajectory_solver(const Specimen<TrajectorySolver>& subject,
                                                  const CheckOptions& options = {});
 
 template <class Kind>
-Subject<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {
+Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {
   return {entry.name, entry.parameters, [&registry, name = entry.name](const Value& given) {
             return registry.create<Kind>(name, given);
           }};

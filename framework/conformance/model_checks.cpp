@@ -305,7 +305,7 @@ class ModelCheck {
 
 }  // namespace
 
-std::vector<CheckResult> check_vehicle_model(const Subject<VehicleModel>& subject,
+std::vector<CheckResult> check_vehicle_model(const Specimen<VehicleModel>& subject,
                                              const CheckOptions& options) {
   Findings findings;
   const StandardSetting standard(false);

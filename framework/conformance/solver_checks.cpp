@@ -145,7 +145,7 @@ class SolverCheck {
 
 }  // namespace
 
-std::vector<CheckResult> check_trajectory_solver(const Subject<TrajectorySolver>& subject,
+std::vector<CheckResult> check_trajectory_solver(const Specimen<TrajectorySolver>& subject,
                                                  const CheckOptions&) {
   Findings findings;
   const StandardSetting standard(false);

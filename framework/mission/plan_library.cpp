@@ -1,4 +1,7 @@
 // Solving and planning: the methods of `run`, solutions and plans.
+#include <algorithm>
+#include <cmath>
+
 #include <lua.hpp>
 
 #include "framework/core/log.h"
@@ -121,6 +124,28 @@ int solution_field(lua_State* state) {
   return 1;
 }
 
+// Angles and rates, or false without a gimbal.
+Value gimbal_value(const Vehicle& vehicle) {
+  if (!vehicle.gimbal) return Value(false);
+  Value gimbal = Value::map();
+  gimbal.set("yaw_min", vehicle.gimbal->yaw_min);
+  gimbal.set("yaw_max", vehicle.gimbal->yaw_max);
+  gimbal.set("pitch_min", vehicle.gimbal->pitch_min);
+  gimbal.set("pitch_max", vehicle.gimbal->pitch_max);
+  gimbal.set("yaw_rate", vehicle.gimbal->yaw_rate_max);
+  gimbal.set("pitch_rate", vehicle.gimbal->pitch_rate_max);
+  return gimbal;
+}
+
+// Half the angle that the camera sees, across and up, of the narrower side.
+Value half_view_value(const Camera& camera) {
+  const double left = camera.principal_x + 0.5, top = camera.principal_y + 0.5;
+  Value view = Value::map();
+  view.set("across", std::atan(std::min(left, camera.width - left) / camera.focal_x));
+  view.set("up", std::atan(std::min(top, camera.height - top) / camera.focal_y));
+  return view;
+}
+
 // Fields of a vehicle: its name and the limits that a mission may plan with, SI and radians.
 int vehicle_field(lua_State* state) {
   const Vehicle& vehicle = object_argument<Vehicle>(state, 1, kVehicleType);
@@ -134,6 +159,8 @@ int vehicle_field(lua_State* state) {
   fields.set("acceleration_across", vehicle.acceleration_across_max);
   fields.set("yaw_rate", vehicle.yaw_rate_max);
   fields.set("flight_time", vehicle.flight_time);
+  fields.set("gimbal", gimbal_value(vehicle));
+  fields.set("half_view", half_view_value(vehicle.camera));
   const Value* found = fields.find(field);
   if (!found) refuse_field("a vehicle", field, fields);
   push_value(state, *found);
@@ -147,6 +174,13 @@ Eigen::Vector3d vector_of(std::span<const double> numbers) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+ParameterTable span_table() {
+  ParameterTable table;
+  table.required_number("start", "s", "from the start of the flight", at_least(0))
+      .required_number("finish", "s", "from the start of the flight", at_least(0));
+  return table;
+}
+
 ParameterTable task_table() {
   const KeyframeTask standard;
   ParameterTable keyframe;
@@ -156,8 +190,12 @@ ParameterTable task_table() {
       .number("tolerance", standard.tolerance, "m", "largest miss", above(0))
       .number("time_tolerance", standard.time_tolerance, "s", "how far off in time", at_least(0))
       .number("yaw_tolerance", standard.yaw_tolerance, "rad", "largest miss of yaw", above(0));
+  ParameterTable framing = span_table();
+  framing.required_text("subject", "which is in the image");
   ParameterTable table;
-  table.tables("keyframes", keyframe, "to fly through");
+  table.tables("keyframes", keyframe, "to fly through")
+      .tables("framing", framing, "which subject is in the image, and when")
+      .number("framing_share", Task{}.framing_share, "", "of that time", {0, 1, true});
   return table;
 }
 
@@ -173,6 +211,10 @@ Task task_of(const Parameters& given) {
     keyframe.yaw_tolerance = entry.number("yaw_tolerance");
     task.keyframes.push_back(keyframe);
   }
+  for (const Parameters& entry : given.tables("framing"))
+    task.framing.push_back(
+        {entry.text("subject"), {entry.number("start"), entry.number("finish")}});
+  task.framing_share = given.number("framing_share");
   return task;
 }
 
@@ -183,6 +225,7 @@ ParameterTable plan_table() {
       .optional_number("alt", "m", "above the ellipsoid");
   ParameterTable table;
   table.table("task", task_table(), "what the flight is to do")
+      .tables("cuts", span_table(), "footage that is thrown away")
       .optional_number("budget", "s", "of flight", above(0))
       .table("geodetic_origin", origin, "where the world frame lies");
   return table;
@@ -221,6 +264,8 @@ int plan(lua_State* state) {
   document.trajectory = solution.problem->trajectory(solution.result.point.stages);
   document.environment = solution.problem->environment();
   document.task = task_of(given.table("task"));
+  for (const Parameters& cut : given.tables("cuts"))
+    document.cuts.push_back({cut.number("start"), cut.number("finish")});
   if (given.has("budget")) document.budget = given.number("budget");
   const Parameters& place = given.table("geodetic_origin");
   if (place.has("lat") && place.has("lon")) {

@@ -1,6 +1,7 @@
 // Stating a problem: run:vehicle, run:problem, and the methods of a problem.
 #include <lua.hpp>
 
+#include "framework/mission/environment_source.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
@@ -133,38 +134,42 @@ int finish(lua_State* state) {
   return 0;
 }
 
-Eigen::Vector3d vector_of(std::span<const double> numbers) {
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
-ParameterTable environment_table() {
-  ParameterTable sphere;
-  sphere.text("name", "", "for messages")
-      .required_numbers("center", 3, "m", "world")
-      .required_number("radius", "m", "", above(0));
-  ParameterTable box;
-  box.text("name", "", "for messages")
-      .required_numbers("lower", 3, "m", "lowest corner, world")
-      .required_numbers("upper", 3, "m", "highest corner, world");
+// problem:guess_block{block = "target", times = {...}, values = {{...}, ...}}
+int guess_block(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  static constexpr std::string_view kValues[] = {"values"};
   ParameterTable table;
-  table.tables("spheres", sphere, "to keep out of")
-      .tables("boxes", box, "to keep out of, parallel to the axes")
-      .number("margin", 0, "m", "kept from every surface", at_least(0));
-  return table;
+  table.required_text("block", "which block").required_numbers("times", 0, "s", "of the values");
+  const Parameters given = table_argument(state, 2, table, "guess_block", kValues);
+  lua_getfield(state, 2, "values");
+  const Value list = value_from_lua(state, -1, origin, "guess_block.values");
+  std::vector<Eigen::VectorXd> values;
+  for (const Value& entry : list.is_list() ? list.as_list() : Value::List{}) {
+    if (!entry.is_list()) throw InputError(origin, "guess_block.values: expected lists of numbers");
+    Eigen::VectorXd& value = values.emplace_back(entry.as_list().size());
+    for (Eigen::Index i = 0; i < value.size(); ++i) value(i) = entry.as_list()[i].as_number();
+  }
+  const auto times = given.numbers("times");
+  if (values.size() != times.size() || values.empty())
+    throw InputError(origin, "guess_block: expected as many values as times, at least one");
+  problem.set_block_guess(given.text("block"), {times.begin(), times.end()}, std::move(values));
+  return 0;
 }
 
-Environment environment_of(const Parameters& given) {
-  Environment environment;
-  for (const Parameters& sphere : given.tables("spheres")) {
-    environment.spheres.push_back(
-        {sphere.text("name"), vector_of(sphere.numbers("center")), sphere.number("radius")});
-  }
-  for (const Parameters& box : given.tables("boxes")) {
-    environment.boxes.push_back(
-        {box.text("name"), vector_of(box.numbers("lower")), vector_of(box.numbers("upper"))});
-  }
-  environment.margin = given.number("margin");
-  return environment;
+// problem:nearest_obstacle{x, y, z}: distance (negative inside, infinite without any) and name
+int nearest(lua_State* state) {
+  const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  const Value given = value_from_lua(state, 2, origin, "nearest_obstacle");
+  if (!given.is_list() || given.as_list().size() != 3)
+    throw InputError(origin, "nearest_obstacle: expected a position of 3 numbers");
+  const auto& p = given.as_list();
+  const NearestObstacle nearest = nearest_obstacle(
+      object.problem->environment(), {p[0].as_number(), p[1].as_number(), p[2].as_number()});
+  lua_pushnumber(state, nearest.distance);
+  lua_pushlstring(state, nearest.name.data(), nearest.name.size());
+  return 2;
 }
 
 }  // namespace
@@ -212,6 +217,8 @@ void open_problem_library(lua_State* state) {
                               {"add_cost", &guarded<add_cost>},
                               {"add_constraint", &guarded<add_constraint>},
                               {"guess_path", &guarded<guess_path>},
+                              {"guess_block", &guarded<guess_block>},
+                              {"nearest_obstacle", &guarded<nearest>},
                               {"finish", &guarded<finish>},
                               {nullptr, nullptr}};
   define_type<ProblemObject>(state, kProblemType, methods);

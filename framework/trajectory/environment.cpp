@@ -3,6 +3,38 @@
 #include <algorithm>
 
 namespace lapwing {
+namespace {
+
+// Distance from the edges of a polygon, negative inside by the even-odd rule.
+double polygon_distance(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  bool inside = false;
+  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
+    const Eigen::Vector2d &a = corners[j], &b = corners[i];
+    const Eigen::Vector2d edge = b - a;
+    const double length = edge.squaredNorm();
+    const double share = length > 0 ? std::clamp((p - a).dot(edge) / length, 0.0, 1.0) : 0.0;
+    nearest = std::min(nearest, (p - a - share * edge).norm());
+    if ((a.y() > p.y()) != (b.y() > p.y()) &&
+        p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return inside ? -nearest : nearest;
+}
+
+template <class Obstacle>
+void see(const std::vector<Obstacle>& obstacles, const char* kind, const Eigen::Vector3d& p,
+         NearestObstacle& nearest) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const double distance = signed_distance(obstacles[i], p);
+    if (!(distance < nearest.distance)) continue;
+    nearest.distance = distance;
+    nearest.name = obstacles[i].name.empty() ? std::string(kind) + " " + std::to_string(i + 1)
+                                             : obstacles[i].name;
+  }
+}
+
+}  // namespace
 
 Eigen::Vector3d Subject::position(double time) const {
   const auto next = std::upper_bound(times.begin(), times.end(), time);
@@ -11,6 +43,31 @@ Eigen::Vector3d Subject::position(double time) const {
   const auto i = static_cast<std::size_t>(next - times.begin());
   const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
   return positions[i - 1] + share * (positions[i] - positions[i - 1]);
+}
+
+double signed_distance(const Sphere& sphere, const Eigen::Vector3d& p) {
+  return (p - sphere.center).norm() - sphere.radius;
+}
+
+double signed_distance(const Box& box, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d beyond = (box.lower - p).cwiseMax(p - box.upper);
+  const double deepest = beyond.maxCoeff();
+  return deepest <= 0 ? deepest : beyond.cwiseMax(0.0).norm();
+}
+
+double signed_distance(const Zone& zone, const Eigen::Vector3d& p) {
+  const double across = polygon_distance(zone.corners, p.head<2>());
+  const double up = std::max(zone.floor - p.z(), p.z() - zone.ceiling);
+  if (across <= 0 && up <= 0) return std::max(across, up);
+  return std::hypot(std::max(across, 0.0), std::max(up, 0.0));
+}
+
+NearestObstacle nearest_obstacle(const Environment& environment, const Eigen::Vector3d& p) {
+  NearestObstacle nearest;
+  see(environment.spheres, "sphere", p, nearest);
+  see(environment.boxes, "box", p, nearest);
+  see(environment.zones, "zone", p, nearest);
+  return nearest;
 }
 
 }  // namespace lapwing

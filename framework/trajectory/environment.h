@@ -51,4 +51,17 @@ struct Environment {
   double margin = 0;              // m kept from every surface, vehicle radius included
 };
 
+// Signed distances from a surface, negative inside; to a zone's prism with its floor and ceiling.
+double signed_distance(const Sphere& sphere, const Eigen::Vector3d& p);
+double signed_distance(const Box& box, const Eigen::Vector3d& p);
+double signed_distance(const Zone& zone, const Eigen::Vector3d& p);
+
+// The nearest of all spheres, boxes and zones: its distance (infinite where there is none) and its
+// name, or its kind and number where it has none ("sphere 2").
+struct NearestObstacle {
+  double distance = std::numeric_limits<double>::infinity();
+  std::string name;
+};
+NearestObstacle nearest_obstacle(const Environment& environment, const Eigen::Vector3d& p);
+
 }  // namespace lapwing

@@ -92,7 +92,7 @@ void see_all(const Environment& environment, const Chord& chord, double time, do
 
 }  // namespace
 
-void check_clearance(const Subject& subject, Certificate& certificate) {
+void check_clearance(const Judged& subject, Certificate& certificate) {
   const Environment& environment = subject.plan.environment;
   if (environment.spheres.empty() && environment.boxes.empty()) {
     certificate.checks.push_back(skipped_check("clearance", "the environment has no obstacle"));

@@ -46,7 +46,7 @@ class Drift {
   Worst worst_{"drift", 1.0, 0.0};
 };
 
-void check_stated_acceleration(const Subject& subject, Certificate& certificate) {
+void check_stated_acceleration(const Judged& subject, Certificate& certificate) {
   Worst worst("stated_acceleration", tol::kAcceleration, 0);
   const auto& samples = subject.plan.trajectory.samples;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -59,7 +59,7 @@ void check_stated_acceleration(const Subject& subject, Certificate& certificate)
 
 }  // namespace
 
-void check_dynamics(const Subject& subject, Certificate& certificate) {
+void check_dynamics(const Judged& subject, Certificate& certificate) {
   Motion& motion = subject.motion;
   const bool has_gimbal = subject.plan.trajectory.has_gimbal;
   std::vector<Worst> worst;

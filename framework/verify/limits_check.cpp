@@ -111,7 +111,7 @@ class Gimbal {
 
 // Every integrated point and every stated sample.
 template <class See, class SeeBetween>
-void walk(const Subject& subject, See see, SeeBetween see_between) {
+void walk(const Judged& subject, See see, SeeBetween see_between) {
   Motion& motion = subject.motion;
   for (std::size_t i = 0; i <= motion.intervals(); ++i) see(motion.stated(i));
   for (std::size_t i = 0; i < motion.intervals(); ++i) {
@@ -123,7 +123,7 @@ void walk(const Subject& subject, See see, SeeBetween see_between) {
 
 }  // namespace
 
-void check_limits(const Subject& subject, Certificate& certificate) {
+void check_limits(const Judged& subject, Certificate& certificate) {
   Limits limits(subject.vehicle);
   walk(
       subject, [&](const MotionPoint& p) { limits.see(p); },
@@ -143,7 +143,7 @@ void check_limits(const Subject& subject, Certificate& certificate) {
   gimbal.append_to(certificate);
 }
 
-void check_time(const Subject& subject, Certificate& certificate) {
+void check_time(const Judged& subject, Certificate& certificate) {
   const double duration = subject.plan.trajectory.duration();
   const auto check = [&](const char* name, double limit) {
     certificate.checks.push_back(

@@ -58,7 +58,7 @@ void see(const KeyframeTask& keyframe, const MotionPoint& a, const MotionPoint& 
   if (angle < meeting.angle) meeting.angle = angle, meeting.angle_at = time;
 }
 
-std::vector<Meeting> meetings_of(const Subject& subject) {
+std::vector<Meeting> meetings_of(const Judged& subject) {
   const auto& keyframes = subject.plan.task.keyframes;
   Motion& motion = subject.motion;
   std::vector<Meeting> meetings;
@@ -103,7 +103,7 @@ class WorstKeyframe {
 
 }  // namespace
 
-void check_task(const Subject& subject, Certificate& certificate) {
+void check_task(const Judged& subject, Certificate& certificate) {
   const auto& keyframes = subject.plan.task.keyframes;
   const std::vector<Meeting> meetings = meetings_of(subject);
   WorstKeyframe time("keyframe_time"), miss("keyframe_miss"), yaw("keyframe_yaw");

@@ -16,7 +16,7 @@ Certificate verify(const Plan& plan) {
     return certificate;
   }
   Motion motion(plan.trajectory, document.vehicle);
-  const Subject subject{plan, document.vehicle, motion};
+  const Judged subject{plan, document.vehicle, motion};
   check_dynamics(subject, certificate);
   check_limits(subject, certificate);
   check_clearance(subject, certificate);

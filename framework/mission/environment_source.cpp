@@ -1,0 +1,106 @@
+#include "framework/mission/environment_source.h"
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+namespace {
+
+Eigen::Vector3d vector_of(std::span<const double> numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+Box box_of(const Parameters& given) {
+  const Box box{given.text("name"), vector_of(given.numbers("lower")),
+                vector_of(given.numbers("upper"))};
+  if (!(box.lower.array() < box.upper.array()).all())
+    throw InputError(given.origin("lower"),
+                     "box '" + box.name + "': lower must be below upper in x, y and z");
+  return box;
+}
+
+Zone zone_of(const Parameters& given) {
+  Zone zone{.name = given.text("name"), .corners = {}};
+  const auto numbers = given.numbers("corners");
+  if (numbers.size() < 6 || numbers.size() % 2 != 0)
+    throw InputError(given.origin("corners"),
+                     "zone '" + zone.name + "': corners: expected at least three pairs x, y");
+  for (std::size_t i = 0; i < numbers.size(); i += 2)
+    zone.corners.emplace_back(numbers[i], numbers[i + 1]);
+  if (given.has("floor")) zone.floor = given.number("floor");
+  if (given.has("ceiling")) zone.ceiling = given.number("ceiling");
+  if (!(zone.floor < zone.ceiling))
+    throw InputError(given.origin("ceiling"),
+                     "zone '" + zone.name + "': its ceiling must be above its floor");
+  return zone;
+}
+
+Subject subject_of(const Parameters& given) {
+  Subject subject;
+  subject.name = given.text("name");
+  subject.height = given.number("height");
+  subject.width = given.number("width");
+  for (const Parameters& point : given.tables("track")) {
+    const double time = point.number("time");
+    if (!subject.times.empty() && !(time > subject.times.back()))
+      throw InputError(point.origin("time"),
+                       "track of subject '" + subject.name + "': times must rise");
+    subject.times.push_back(time);
+    subject.positions.push_back(vector_of(point.numbers("position")));
+  }
+  if (subject.times.empty())
+    throw InputError(given.origin(), "subject '" + subject.name + "': its track is empty");
+  return subject;
+}
+
+}  // namespace
+
+ParameterTable environment_table() {
+  const Range far = between(-1e6, 1e6);
+  ParameterTable sphere;
+  sphere.text("name", "", "for messages")
+      .required_numbers("center", 3, "m", "world", far)
+      .required_number("radius", "m", "", {0, 1e6, true});
+  ParameterTable box;
+  box.text("name", "", "for messages")
+      .required_numbers("lower", 3, "m", "lowest corner, world", far)
+      .required_numbers("upper", 3, "m", "highest corner, world", far);
+  ParameterTable zone;
+  zone.text("name", "", "for messages")
+      .required_numbers("corners", 0, "m", "x and y of each corner in turn, world", far)
+      .optional_number("floor", "m", "lowest height that is closed; absent: the ground and below")
+      .optional_number("ceiling", "m", "highest height that is closed; absent: all above");
+  ParameterTable point;
+  point.required_number("time", "s", "from the start of the flight")
+      .required_numbers("position", 3, "m", "of its middle, world", far);
+  ParameterTable subject;
+  subject.required_text("name", "by which it is asked for")
+      .number("height", 0, "m", "from foot to top", between(0, 1e5))
+      .number("width", 0, "m", "diameter", between(0, 1e5))
+      .tables("track", point, "where it is, straight in between", true);
+  ParameterTable table;
+  table.tables("spheres", sphere, "to keep out of")
+      .tables("boxes", box, "to keep out of, parallel to the axes")
+      .tables("zones", zone, "not to be flown over")
+      .tables("subjects", subject, "what is filmed")
+      .number("margin", 0, "m", "kept from every surface", at_least(0));
+  return table;
+}
+
+Environment environment_of(const Parameters& given) {
+  Environment environment;
+  for (const Parameters& sphere : given.tables("spheres"))
+    environment.spheres.push_back(
+        {sphere.text("name"), vector_of(sphere.numbers("center")), sphere.number("radius")});
+  for (const Parameters& box : given.tables("boxes")) environment.boxes.push_back(box_of(box));
+  for (const Parameters& zone : given.tables("zones")) environment.zones.push_back(zone_of(zone));
+  for (const Parameters& entry : given.tables("subjects")) {
+    for (const Subject& other : environment.subjects)
+      if (other.name == entry.text("name"))
+        throw InputError(entry.origin("name"), "two subjects are named '" + other.name + "'");
+    environment.subjects.push_back(subject_of(entry));
+  }
+  environment.margin = given.number("margin");
+  return environment;
+}
+
+}  // namespace lapwing
