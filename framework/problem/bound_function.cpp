@@ -24,7 +24,8 @@ BoundFunction::BoundFunction(std::string name, StageFunction& function, const St
   } catch (const InputError& error) {
     throw InputError(name_ + ": " + error.what());
   }
-  if (shape_.rows < 1 || shape_.window < 1 || shape_.window > columns.horizon.stages)
+  if (shape_.rows == 0) return;
+  if (shape_.rows < 0 || shape_.window < 1 || shape_.window > columns.horizon.stages)
     throw InputError(name_ + ": needs " + std::to_string(shape_.window) +
                      " neighbouring stages, the problem has " +
                      std::to_string(columns.horizon.stages));

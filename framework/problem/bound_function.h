@@ -27,7 +27,7 @@ class BoundFunction {
   int width() const { return width_; }  // columns of one instance
   bool constant_jacobian() const { return !constant_.empty(); }
   // Whether it bends in the solver's columns.
-  bool curved() const { return !constant_jacobian(); }
+  bool curved() const { return instances() > 0 && !constant_jacobian(); }
   // Global columns of an instance, -1 for constants.
   const int* columns(int instance) const { return columns_.data() + instance * width_; }
   int stage(int instance) const { return stage_[instance]; }

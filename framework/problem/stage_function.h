@@ -42,7 +42,7 @@ struct ProblemSetting {
 struct FunctionShape {
   std::vector<int> blocks = {};  // layout indices of the blocks read, in the order gathered
   int window = 1;                // neighbouring stages read by one instance
-  int rows = 0;                  // results of one instance
+  int rows = 0;                  // results of one instance; 0: it has nothing to say here at all
   // Which instances there are. Both empty: one for every window inside the horizon. `stages`: the
   // first stage of each. `times` (window 1 only): one at each time, in s; between two stages the
   // kernel reads states off the vehicle model's flow, inputs as held, free blocks linearly.

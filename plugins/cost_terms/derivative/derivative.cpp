@@ -1,4 +1,4 @@
-// Smoothness (thesis 3.6): the finite difference of any block over q + 1 neighbouring stages.
+// Smoothness (thesis 3.6): the finite difference of any blocks over q + 1 neighbouring stages.
 //
 //   E^d = sum_i h || D^q [x_i ... x_{i+q}] / h^q ||^2
 //
@@ -6,8 +6,11 @@
 // (reading 3.3).
 //
 //   p:add_cost { type = "derivative", block = "position", order = 4, weight = 1e-3 }
+#include <sstream>
+
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/time_spans.h"
 
 namespace lapwing {
 namespace {
@@ -18,8 +21,10 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
       "derivative", "1.0.0", "penalises a derivative of a block over time", "thesis 3.5.2, (3.6)"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .text("block", "position", "block whose derivative is penalised")
-        .integer("order", 4, "order of the derivative: 3 is jerk, 4 is snap", between(1, 4));
+        .text("block", "position",
+              "block whose derivative is penalised; several with blanks between them")
+        .integer("order", 4, "order of the derivative: 3 is jerk, 4 is snap", between(1, 4))
+        .tables("except", time_span_table(), "spans of time in which it is not asked: cuts");
   }
   static std::vector<Preset> presets() {
     const auto of = [](const char* block, int order) {
@@ -31,39 +36,57 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
     return {
         {"yaw_derivative", "penalises a derivative of yaw over time", of("yaw", 2)},
         {"gimbal_derivative", "penalises a derivative of the gimbal's angles, E^g",
-         of("gimbal", 2)},
+         of("gimbal_yaw gimbal_pitch", 2)},
         {"target_derivative", "penalises a derivative of the target, E^{t,d}", of("target", 3)}};
   }
 
   explicit Derivative(const Parameters& parameters)
-      : block_(parameters.text("block")), order_(static_cast<int>(parameters.integer("order"))) {}
+      : order_(static_cast<int>(parameters.integer("order"))),
+        except_(time_spans(parameters, "except")) {
+    std::istringstream names(parameters.text("block"));
+    for (std::string name; names >> name;) {
+      if (std::find(names_.begin(), names_.end(), name) != names_.end())
+        throw InputError(parameters.origin("block"), "block: '" + name + "' is given twice");
+      names_.push_back(name);
+    }
+    if (names_.empty())
+      throw InputError(parameters.origin("block"), "block: expected the name of a block");
+  }
 
   FunctionShape declare(const ProblemSetting& setting) {
-    size_ = setting.layout.block(setting.layout.index(block_)).size;
-    return {.blocks = setting.layout.indices({block_, "step"}),
-            .window = order_ + 1,
-            .rows = size_,
-            .integral = true,
-            .affine = !setting.horizon.step_free};
+    FunctionShape shape{
+        .blocks = {}, .window = order_ + 1, .integral = true, .affine = !setting.horizon.step_free};
+    sizes_.clear();
+    for (const std::string& name : names_) {
+      shape.blocks.push_back(setting.layout.index(name));
+      sizes_.push_back(setting.layout.block(shape.blocks.back()).size);
+      shape.rows += sizes_.back();
+    }
+    shape.blocks.push_back(setting.layout.index("step"));
+    ask_within(shape, setting.horizon, {}, except_);
+    return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
     static constexpr double kBinomial[5][5] = {
         {}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}, {1, -4, 6, -4, 1}};
+    const int blocks = static_cast<int>(sizes_.size());
     T scale = 1.0;
-    for (int q = 0; q < order_; ++q) scale = scale / stage.scalar(1);
-    for (int i = 0; i < size_; ++i) {
-      T sum = 0.0;
-      for (int q = 0; q <= order_; ++q) sum += kBinomial[order_][q] * stage[q].data(0)[i];
-      rows[i] = scale * sum;
-    }
+    for (int q = 0; q < order_; ++q) scale = scale / stage.scalar(blocks);
+    for (int b = 0, row = 0; b < blocks; ++b)
+      for (int i = 0; i < sizes_[b]; ++i, ++row) {
+        T sum = 0.0;
+        for (int q = 0; q <= order_; ++q) sum += kBinomial[order_][q] * stage[q].data(b)[i];
+        rows[row] = scale * sum;
+      }
   }
 
  private:
-  std::string block_;
+  std::vector<std::string> names_;
+  std::vector<int> sizes_;  // of the blocks
   int order_;
-  int size_ = 0;
+  std::vector<TimeSpan> except_;
 };
 
 }  // namespace

@@ -29,6 +29,12 @@ class Keyframe final : public DifferentiableCost<Keyframe> {
                 "what to pass, and when; at least one", true);
   }
 
+  static std::vector<Preset> presets() {
+    Value defaults = Value::map();
+    defaults.set("block", "target");
+    return {{"target_keyframe", "pulls the target to points at given times, E^t", defaults}};
+  }
+
   explicit Keyframe(const Parameters& parameters) : block_(parameters.text("block")) {
     for (const Parameters& given : parameters.tables("keyframes")) {
       const auto value = given.numbers("value");

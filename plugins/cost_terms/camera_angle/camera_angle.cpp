@@ -1,0 +1,55 @@
+// The camera looks at its target (thesis 3.5.3, (3.7), (3.8); reading 3.4).
+//
+//   E^c = sum_i h alpha_i^2,   alpha: the angle between the camera's direction and the target's
+//
+// As two residuals, the error to the right and downwards in the image, both in rad: their squares
+// sum to alpha^2 and they are smooth where it is zero.
+//
+//   p:add_cost { type = "camera_angle", weight = 10, except = { { start = 4, finish = 5 } } }
+#include "framework/geometry/camera_axes.h"
+#include "framework/plugin/plugin.h"
+#include "framework/problem/camera_view.h"
+#include "framework/problem/differentiable.h"
+#include "framework/problem/time_spans.h"
+
+namespace lapwing {
+namespace {
+
+class CameraAngle final : public DifferentiableCost<CameraAngle, 9> {
+ public:
+  static constexpr PluginText kText{"camera_angle", "1.0.0", "the camera looks at its target",
+                                    "thesis 3.5.3, (3.7), (3.8)"};
+  static ParameterTable parameters() {
+    return ParameterTable{}.tables("except", time_span_table(),
+                                   "spans of time in which it may look anywhere: cuts");
+  }
+  explicit CameraAngle(const Parameters& parameters) : except_(time_spans(parameters, "except")) {}
+
+  FunctionShape declare(const ProblemSetting& setting) {
+    FunctionShape shape{.blocks = setting.layout.indices(
+                            {"position", "yaw", "gimbal_yaw", "gimbal_pitch", "target"}),
+                        .rows = 2,
+                        .integral = true,
+                        .row_names = {"right", "down"}};
+    ask_within(shape, setting.horizon, {}, except_);
+    return shape;
+  }
+
+  template <class T>
+  void residual(const Stage<T>& stage, Rows<T>& rows) const {
+    const CameraAxes<T> axes = camera_axes<T>(stage.scalar(1) + stage.scalar(2), stage.scalar(3));
+    const Eigen::Matrix<T, 3, 1> to_target =
+        stage.template vector<3>(4) - stage.template vector<3>(0);
+    const auto angles = angle_residual<T>(axes.in_camera(to_target));
+    rows[0] = angles[0];
+    rows[1] = angles[1];
+  }
+
+ private:
+  std::vector<TimeSpan> except_;
+};
+
+}  // namespace
+}  // namespace lapwing
+
+LAPWING_PLUGINS(lapwing::CameraAngle)
