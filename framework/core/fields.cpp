@@ -10,6 +10,17 @@ const Value& empty_map() {
   return value;
 }
 
+// Fills `numbers` from a list of just as many finite numbers; false for anything else.
+bool read_numbers(const Value& value, std::vector<double>& numbers) {
+  if (!value.is_list() || value.as_list().size() != numbers.size()) return false;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const Value& entry = value.as_list()[i];
+    if (!entry.is_number() || !std::isfinite(entry.as_number())) return false;
+    numbers[i] = entry.as_number();
+  }
+  return true;
+}
+
 }  // namespace
 
 Fields::Fields(const Value& value, std::string key_path, Diagnostics& errors)
@@ -62,22 +73,36 @@ std::optional<double> Fields::optional_number(std::string_view name) {
 std::vector<double> Fields::numbers(std::string_view name, int size) {
   std::vector<double> numbers(static_cast<std::size_t>(size), 0.0);
   const Value* field = read(name, true);
-  if (!field) return numbers;
-  const std::string expected = "expected a list of " + std::to_string(size) + " finite numbers";
-  if (!field->is_list() || field->as_list().size() != numbers.size()) {
-    add_error(name, expected);
-    return numbers;
-  }
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const Value& entry = field->as_list()[i];
-    if (entry.is_number() && std::isfinite(entry.as_number())) {
-      numbers[i] = entry.as_number();
-    } else {
-      add_error(name, expected);
-      break;
-    }
+  if (field && !read_numbers(*field, numbers)) {
+    add_error(name, "expected a list of " + std::to_string(size) + " finite numbers");
   }
   return numbers;
+}
+
+std::vector<double> Fields::numbers(std::string_view name) {
+  std::vector<double> numbers;
+  const Value* field = read(name, true);
+  if (!field) return numbers;
+  if (field->is_list()) numbers.resize(field->as_list().size());
+  if (!read_numbers(*field, numbers)) add_error(name, "expected a list of finite numbers");
+  return numbers;
+}
+
+std::vector<std::vector<double>> Fields::rows(std::string_view name, int size) {
+  std::vector<std::vector<double>> rows;
+  const Value* field = read(name, true);
+  if (!field) return rows;
+  if (field->is_list()) {
+    rows.resize(field->as_list().size(), std::vector<double>(static_cast<std::size_t>(size)));
+  }
+  bool sound = field->is_list();
+  for (std::size_t i = 0; i < rows.size() && sound; ++i) {
+    sound = read_numbers(field->as_list()[i], rows[i]);
+  }
+  if (!sound) {
+    add_error(name, "expected a list of lists of " + std::to_string(size) + " finite numbers");
+  }
+  return rows;
 }
 
 Eigen::Vector3d Fields::vector3(std::string_view name) {
@@ -149,6 +174,12 @@ std::vector<Fields> Fields::tables(std::string_view name) {
     tables.emplace_back(list[i], path_of(name) + "[" + std::to_string(i + 1) + "]", *errors_);
   }
   return tables;
+}
+
+std::vector<Fields> Fields::optional_tables(std::string_view name) {
+  if (has(name)) return tables(name);
+  known_.emplace_back(name);
+  return {};
 }
 
 Value Fields::opaque(std::string_view name) {

@@ -34,6 +34,10 @@ class Fields {
   double number(std::string_view name);
   std::optional<double> optional_number(std::string_view name);
   std::vector<double> numbers(std::string_view name, int size);
+  // As many as there are.
+  std::vector<double> numbers(std::string_view name);
+  // Lists of `size` numbers, as many as there are.
+  std::vector<std::vector<double>> rows(std::string_view name, int size);
   Eigen::Vector3d vector3(std::string_view name);
   std::int64_t integer(std::string_view name);
   bool boolean(std::string_view name);
@@ -45,6 +49,8 @@ class Fields {
   // A map within the map. Where it is missing, that alone is reported and its own reads are silent.
   Fields table(std::string_view name);
   std::vector<Fields> tables(std::string_view name);
+  // None when absent.
+  std::vector<Fields> optional_tables(std::string_view name);
   // Anything at all, null when absent.
   Value opaque(std::string_view name);
 

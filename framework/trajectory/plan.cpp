@@ -3,6 +3,7 @@
 #include "framework/core/fields.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/trajectory/plan_sections.h"
 
 namespace lapwing {
 namespace {
@@ -130,78 +131,6 @@ std::optional<GeodeticPoint> frame_from(Fields fields) {
   return origin;
 }
 
-Value environment_to_value(const Environment& environment) {
-  Value spheres = Value::list(), boxes = Value::list(), value = Value::map();
-  for (const Sphere& sphere : environment.spheres) {
-    Value entry = Value::map();
-    entry.set("name", sphere.name);
-    entry.set("center", list_of(sphere.center));
-    entry.set("radius", sphere.radius);
-    spheres.push_back(std::move(entry));
-  }
-  for (const Box& box : environment.boxes) {
-    Value entry = Value::map();
-    entry.set("name", box.name);
-    entry.set("lower", list_of(box.lower));
-    entry.set("upper", list_of(box.upper));
-    boxes.push_back(std::move(entry));
-  }
-  value.set("margin", environment.margin);
-  value.set("spheres", std::move(spheres));
-  value.set("boxes", std::move(boxes));
-  return value;
-}
-
-Environment environment_from(Fields fields) {
-  Environment environment;
-  environment.margin = fields.number("margin");
-  for (Fields& entry : fields.tables("spheres")) {
-    environment.spheres.push_back(
-        {entry.text("name"), entry.vector3("center"), entry.number("radius")});
-    entry.finish();
-  }
-  for (Fields& entry : fields.tables("boxes")) {
-    environment.boxes.push_back(
-        {entry.text("name"), entry.vector3("lower"), entry.vector3("upper")});
-    entry.finish();
-  }
-  fields.finish();
-  return environment;
-}
-
-Value task_to_value(const Task& task) {
-  Value keyframes = Value::list(), value = Value::map();
-  for (const KeyframeTask& keyframe : task.keyframes) {
-    Value entry = Value::map();
-    entry.set("time", keyframe.time);
-    entry.set("position", list_of(keyframe.position));
-    if (keyframe.yaw) entry.set("yaw", *keyframe.yaw);
-    entry.set("tolerance", keyframe.tolerance);
-    entry.set("time_tolerance", keyframe.time_tolerance);
-    entry.set("yaw_tolerance", keyframe.yaw_tolerance);
-    keyframes.push_back(std::move(entry));
-  }
-  value.set("keyframes", std::move(keyframes));
-  return value;
-}
-
-Task task_from(Fields fields) {
-  Task task;
-  for (Fields& entry : fields.tables("keyframes")) {
-    KeyframeTask keyframe;
-    keyframe.time = entry.number("time");
-    keyframe.position = entry.vector3("position");
-    keyframe.yaw = entry.optional_number("yaw");
-    keyframe.tolerance = entry.number("tolerance");
-    keyframe.time_tolerance = entry.number("time_tolerance");
-    keyframe.yaw_tolerance = entry.number("yaw_tolerance");
-    entry.finish();
-    task.keyframes.push_back(keyframe);
-  }
-  fields.finish();
-  return task;
-}
-
 void read_format(Fields& fields) {
   const std::int64_t format = fields.integer("format");
   if (fields.has("format") && format != Plan::kFormat) {
@@ -224,6 +153,7 @@ Value to_value(const Plan& plan) {
   value.set("motion", motion_to_value(plan.trajectory));
   value.set("samples", std::move(samples));
   value.set("environment", environment_to_value(plan.environment));
+  if (!plan.cuts.empty()) value.set("cuts", cuts_to_value(plan.cuts));
   if (plan.budget) value.set("budget", *plan.budget);
   value.set("task", task_to_value(plan.task));
   if (!plan.configuration.is_null()) value.set("configuration", plan.configuration);
@@ -250,6 +180,7 @@ Plan plan_from_value(const Value& value) {
     fields.add_error("samples", "expected at least one sample");
   }
   plan.environment = environment_from(fields.table("environment"));
+  plan.cuts = cuts_from(fields.optional_tables("cuts"));
   plan.budget = fields.optional_number("budget");
   plan.task = task_from(fields.table("task"));
   plan.configuration = fields.opaque("configuration");

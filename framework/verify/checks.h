@@ -90,7 +90,7 @@ class Worst {
 };
 
 // Everything that a check may read.
-struct Judged {
+struct Flight {
   const Plan& plan;
   const Vehicle& vehicle;
   Motion& motion;
@@ -102,10 +102,10 @@ struct Document {
   Vehicle vehicle;
 };
 Document check_document(const Plan& plan);
-void check_dynamics(const Judged& subject, Certificate& certificate);
-void check_limits(const Judged& subject, Certificate& certificate);
-void check_clearance(const Judged& subject, Certificate& certificate);
-void check_time(const Judged& subject, Certificate& certificate);
-void check_task(const Judged& subject, Certificate& certificate);
+void check_dynamics(const Flight& flight, Certificate& certificate);
+void check_limits(const Flight& flight, Certificate& certificate);
+void check_clearance(const Flight& flight, Certificate& certificate);
+void check_time(const Flight& flight, Certificate& certificate);
+void check_task(const Flight& flight, Certificate& certificate);
 
 }  // namespace lapwing

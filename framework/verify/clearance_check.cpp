@@ -92,13 +92,13 @@ void see_all(const Environment& environment, const Chord& chord, double time, do
 
 }  // namespace
 
-void check_clearance(const Judged& subject, Certificate& certificate) {
-  const Environment& environment = subject.plan.environment;
+void check_clearance(const Flight& flight, Certificate& certificate) {
+  const Environment& environment = flight.plan.environment;
   if (environment.spheres.empty() && environment.boxes.empty()) {
     certificate.checks.push_back(skipped_check("clearance", "the environment has no obstacle"));
     return;
   }
-  Motion& motion = subject.motion;
+  Motion& motion = flight.motion;
   Clearance clearance(environment.margin);
   for (std::size_t i = 0; i <= motion.intervals(); ++i) {
     const MotionPoint p = motion.stated(i);

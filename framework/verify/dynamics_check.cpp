@@ -46,12 +46,12 @@ class Drift {
   Worst worst_{"drift", 1.0, 0.0};
 };
 
-void check_stated_acceleration(const Judged& subject, Certificate& certificate) {
+void check_stated_acceleration(const Flight& flight, Certificate& certificate) {
   Worst worst("stated_acceleration", tol::kAcceleration, 0);
-  const auto& samples = subject.plan.trajectory.samples;
+  const auto& samples = flight.plan.trajectory.samples;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Eigen::Vector3d difference =
-        samples[i].acceleration - subject.motion.stated(i).acceleration;
+        samples[i].acceleration - flight.motion.stated(i).acceleration;
     worst.see(difference.norm(), samples[i].time);
   }
   certificate.checks.push_back(worst.check());
@@ -59,9 +59,9 @@ void check_stated_acceleration(const Judged& subject, Certificate& certificate) 
 
 }  // namespace
 
-void check_dynamics(const Judged& subject, Certificate& certificate) {
-  Motion& motion = subject.motion;
-  const bool has_gimbal = subject.plan.trajectory.has_gimbal;
+void check_dynamics(const Flight& flight, Certificate& certificate) {
+  Motion& motion = flight.motion;
+  const bool has_gimbal = flight.plan.trajectory.has_gimbal;
   std::vector<Worst> worst;
   for (int k = 0; k < kDefects; ++k) worst.emplace_back(kNames[k], kLimits[k], 0.0);
   Drift drift;
@@ -82,7 +82,7 @@ void check_dynamics(const Judged& subject, Certificate& certificate) {
   certificate.checks.push_back(motion.intervals() > 0
                                    ? drift.check()
                                    : skipped_check("drift", "a single sample has no interval"));
-  check_stated_acceleration(subject, certificate);
+  check_stated_acceleration(flight, certificate);
 }
 
 }  // namespace lapwing

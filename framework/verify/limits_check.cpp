@@ -111,8 +111,8 @@ class Gimbal {
 
 // Every integrated point and every stated sample.
 template <class See, class SeeBetween>
-void walk(const Judged& subject, See see, SeeBetween see_between) {
-  Motion& motion = subject.motion;
+void walk(const Flight& flight, See see, SeeBetween see_between) {
+  Motion& motion = flight.motion;
   for (std::size_t i = 0; i <= motion.intervals(); ++i) see(motion.stated(i));
   for (std::size_t i = 0; i < motion.intervals(); ++i) {
     const auto points = motion.integrate(i);
@@ -123,35 +123,35 @@ void walk(const Judged& subject, See see, SeeBetween see_between) {
 
 }  // namespace
 
-void check_limits(const Judged& subject, Certificate& certificate) {
-  Limits limits(subject.vehicle);
+void check_limits(const Flight& flight, Certificate& certificate) {
+  Limits limits(flight.vehicle);
   walk(
-      subject, [&](const MotionPoint& p) { limits.see(p); },
+      flight, [&](const MotionPoint& p) { limits.see(p); },
       [&](const MotionPoint& a, const MotionPoint& b) { limits.see_between(a, b); });
   limits.append_to(certificate);
-  if (!subject.plan.trajectory.has_gimbal) {
+  if (!flight.plan.trajectory.has_gimbal) {
     for (const char* name :
          {"gimbal_yaw", "gimbal_pitch", "gimbal_yaw_rate", "gimbal_pitch_rate"}) {
       certificate.checks.push_back(skipped_check(name, "the plan moves no gimbal"));
     }
     return;
   }
-  Gimbal gimbal(*subject.vehicle.gimbal);
+  Gimbal gimbal(*flight.vehicle.gimbal);
   walk(
-      subject, [&](const MotionPoint& p) { gimbal.see(p); },
+      flight, [&](const MotionPoint& p) { gimbal.see(p); },
       [](const MotionPoint&, const MotionPoint&) {});
   gimbal.append_to(certificate);
 }
 
-void check_time(const Judged& subject, Certificate& certificate) {
-  const double duration = subject.plan.trajectory.duration();
+void check_time(const Flight& flight, Certificate& certificate) {
+  const double duration = flight.plan.trajectory.duration();
   const auto check = [&](const char* name, double limit) {
     certificate.checks.push_back(
         judged(make_check(name), duration, limit, tolerance_of(limit), duration));
   };
-  check("flight_time", subject.vehicle.flight_time);
-  if (subject.plan.budget) {
-    check("budget", *subject.plan.budget);
+  check("flight_time", flight.vehicle.flight_time);
+  if (flight.plan.budget) {
+    check("budget", *flight.plan.budget);
   } else {
     certificate.checks.push_back(skipped_check("budget", "the plan states no budget"));
   }

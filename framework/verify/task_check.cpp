@@ -58,12 +58,12 @@ void see(const KeyframeTask& keyframe, const MotionPoint& a, const MotionPoint& 
   if (angle < meeting.angle) meeting.angle = angle, meeting.angle_at = time;
 }
 
-std::vector<Meeting> meetings_of(const Judged& subject) {
-  const auto& keyframes = subject.plan.task.keyframes;
-  Motion& motion = subject.motion;
+std::vector<Meeting> meetings_of(const Flight& flight) {
+  const auto& keyframes = flight.plan.task.keyframes;
+  Motion& motion = flight.motion;
   std::vector<Meeting> meetings;
   for (const KeyframeTask& k : keyframes) {
-    meetings.push_back(window_of(k, subject.plan.trajectory));
+    meetings.push_back(window_of(k, flight.plan.trajectory));
   }
   const auto see_all = [&](const MotionPoint& a, const MotionPoint& b) {
     for (std::size_t k = 0; k < keyframes.size(); ++k) see(keyframes[k], a, b, meetings[k]);
@@ -103,9 +103,9 @@ class WorstKeyframe {
 
 }  // namespace
 
-void check_task(const Judged& subject, Certificate& certificate) {
-  const auto& keyframes = subject.plan.task.keyframes;
-  const std::vector<Meeting> meetings = meetings_of(subject);
+void check_task(const Flight& flight, Certificate& certificate) {
+  const auto& keyframes = flight.plan.task.keyframes;
+  const std::vector<Meeting> meetings = meetings_of(flight);
   WorstKeyframe time("keyframe_time"), miss("keyframe_miss"), yaw("keyframe_yaw");
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     const Meeting& m = meetings[k];

@@ -16,14 +16,14 @@ Certificate verify(const Plan& plan) {
     return certificate;
   }
   Motion motion(plan.trajectory, document.vehicle);
-  const Judged subject{plan, document.vehicle, motion};
-  check_dynamics(subject, certificate);
-  check_limits(subject, certificate);
-  check_clearance(subject, certificate);
-  check_time(subject, certificate);
+  const Flight flight{plan, document.vehicle, motion};
+  check_dynamics(flight, certificate);
+  check_limits(flight, certificate);
+  check_clearance(flight, certificate);
+  check_time(flight, certificate);
   certificate.checks.push_back(skipped_check(
       "closed_loop", "this version has no simulator of the full vehicle under control"));
-  check_task(subject, certificate);
+  check_task(flight, certificate);
   return certificate;
 }
 

@@ -76,6 +76,96 @@ TEST(Plan, RoundTripIsByteStableForEveryModel) {
   }
 }
 
+// small_plan() as a film: zones, subjects, cuts and framing.
+Plan film_plan() {
+  Plan plan = small_plan();
+  plan.environment.zones = {{.name = "square", .corners = {{0, 0}, {1.0 / 3, 0}, {0, 2}}},
+                            {"tower", {{5, 5}, {6, 5}, {6, 6}, {5, 6}}, -1, 40}};
+  plan.environment.subjects = {{"walker", {0, 0.1, 2}, {{0, 0, 1}, {1, 0, 1}, {1, 3, 1}}, 1.8, 0.5},
+                               {"castle", {0}, {{9, 9, 2}}}};
+  plan.cuts = {{0.05, 0.1}, {0.15, 0.2}};
+  plan.task.framing = {{"walker", {0, 0.1}}, {"castle", {0.1, 0.2}}};
+  plan.task.framing_share = 0.99;
+  return plan;
+}
+
+TEST(Plan, FilmsSurvive) {
+  const Plan plan = reread(film_plan());
+  EXPECT_EQ(plan_text(plan), plan_text(film_plan()));
+  const Environment& environment = plan.environment;
+  ASSERT_EQ(environment.zones.size(), 2u);
+  EXPECT_EQ(environment.zones[0].corners[1], Eigen::Vector2d(1.0 / 3, 0));
+  EXPECT_EQ(environment.zones[0].floor, -INFINITY);
+  EXPECT_EQ(environment.zones[0].ceiling, INFINITY);
+  EXPECT_EQ(environment.zones[1].floor, -1);
+  EXPECT_EQ(environment.zones[1].ceiling, 40);
+  ASSERT_EQ(environment.subjects.size(), 2u);
+  EXPECT_EQ(environment.subjects[0].times[1], 0.1);
+  EXPECT_EQ(environment.subjects[0].positions[2], Eigen::Vector3d(1, 3, 1));
+  EXPECT_EQ(environment.subjects[0].width, 0.5);
+  EXPECT_EQ(environment.subjects[1].name, "castle");
+  ASSERT_EQ(plan.cuts.size(), 2u);
+  EXPECT_EQ(plan.cuts[1].start, 0.15);
+  EXPECT_EQ(plan.task.framing[0].subject, "walker");
+  EXPECT_EQ(plan.task.framing[1].span.finish, 0.2);
+  EXPECT_EQ(plan.task.framing_share, 0.99);
+}
+
+TEST(Plan, WithoutFilmThereAreNoKeysOfIt) {
+  const Value value = to_value(small_plan());
+  EXPECT_EQ(value.find("cuts"), nullptr);
+  EXPECT_EQ(value.at("task").find("framing"), nullptr);
+  EXPECT_EQ(value.at("task").find("framing_share"), nullptr);
+  EXPECT_EQ(value.at("environment").find("zones"), nullptr);
+  EXPECT_EQ(value.at("environment").find("subjects"), nullptr);
+  EXPECT_EQ(to_value(film_plan()).at("environment").at("zones").as_list()[0].find("floor"),
+            nullptr);
+}
+
+TEST(Plan, EveryErrorOfAFilmIsListed) {
+  Value value = to_value(film_plan());
+  auto& zones = value.find("environment")->find("zones")->as_list();
+  auto& subjects = value.find("environment")->find("subjects")->as_list();
+  auto& framing = value.find("task")->find("framing")->as_list();
+  zones[0].find("corners")->as_list()[2] = Value(Value::List{1.0, 2.0, 3.0});
+  zones[0].set("roof", 3.0);
+  zones[1].set("floor", -INFINITY);
+  zones[1].set("ceiling", "sky");
+  subjects[0].find("times")->as_list()[1] = "noon";
+  subjects[0].find("positions")->as_list()[1] = Value(3);
+  erase(subjects[1], "height");
+  subjects[1].set("times", 0);
+  subjects[1].set("positions", Value(Value::List{Value(Value::List{0.0, 0.0, std::nan("")})}));
+  value.find("cuts")->as_list()[1].set("end", 0.2);
+  erase(framing[0], "subject");
+  framing[1].set("start", false);
+  const std::string message = error_of(value);
+  EXPECT_THAT(message, HasSubstr("environment.zones[1].corners: expected a list of lists of 2"));
+  EXPECT_THAT(message, HasSubstr("environment.zones[1].roof: unknown"));
+  EXPECT_THAT(message, HasSubstr("environment.zones[2].floor: expected a finite number"));
+  EXPECT_THAT(message, HasSubstr("environment.zones[2].ceiling: expected a number, got a text"));
+  EXPECT_THAT(message,
+              HasSubstr("environment.subjects[1].times: expected a list of finite numbers"));
+  EXPECT_THAT(message,
+              HasSubstr("environment.subjects[1].positions: expected a list of lists of 3"));
+  EXPECT_THAT(message, HasSubstr("environment.subjects[2].height: missing"));
+  EXPECT_THAT(message,
+              HasSubstr("environment.subjects[2].times: expected a list of finite numbers"));
+  EXPECT_THAT(message, HasSubstr("environment.subjects[2].positions: expected a list of lists"));
+  EXPECT_THAT(message, HasSubstr("cuts[2].end: unknown"));
+  EXPECT_THAT(message, HasSubstr("task.framing[1].subject: missing"));
+  EXPECT_THAT(message, HasSubstr("task.framing[2].start: expected a number"));
+}
+
+TEST(Plan, AShareOfNoFramingIsRefused) {
+  Value value = to_value(small_plan());
+  value.find("task")->set("framing_share", 0.9);
+  EXPECT_THAT(error_of(value), HasSubstr("task.framing: missing"));
+  value = to_value(film_plan());
+  erase(*value.find("task"), "framing_share");
+  EXPECT_THAT(error_of(value), HasSubstr("task.framing_share: missing"));
+}
+
 TEST(Plan, ValuesSurvive) {
   const Plan plan = reread(small_plan());
   EXPECT_EQ(plan.mission, "castle \"flyover\" \xc3\xa9");
@@ -171,6 +261,14 @@ TEST(Plan, NotANumberCannotBeWritten) {
   std::filesystem::remove(path);
   EXPECT_THROW(write_plan(plan, path), Error);
   EXPECT_FALSE(std::filesystem::exists(path));
+  for (const double bad : {std::nan(""), double(INFINITY)}) {
+    plan = film_plan();
+    plan.environment.zones[0].floor = bad;
+    EXPECT_THROW(plan_text(plan), Error);
+    plan = film_plan();
+    plan.cuts[0].finish = bad;
+    EXPECT_THROW(plan_text(plan), Error);
+  }
 }
 
 TEST(Plan, TruncatedFileIsOneClearError) {

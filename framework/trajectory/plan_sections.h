@@ -1,0 +1,20 @@
+// The larger sections of plan.json. Internal to this room; callers include plan.h.
+#pragma once
+
+#include "framework/core/fields.h"
+#include "framework/trajectory/plan.h"
+
+namespace lapwing {
+
+// Infinite bounds of a zone have no key; nor have lists of zones and subjects that are empty.
+Value environment_to_value(const Environment& environment);
+Environment environment_from(Fields fields);
+
+Value cuts_to_value(const std::vector<TimeSpan>& cuts);
+std::vector<TimeSpan> cuts_from(std::vector<Fields> entries);
+
+// A task that asks for no framing has neither of its keys.
+Value task_to_value(const Task& task);
+Task task_from(Fields fields);
+
+}  // namespace lapwing
