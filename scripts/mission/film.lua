@@ -1,36 +1,43 @@
--- Films: fly through keyframes, smoothly, within what the vehicle can do (thesis 3.5.1, 3.5.2).
+-- Films: fly through keyframes with the camera on a subject, smoothly, within what the vehicle can
+-- do and clear of obstacles (thesis 3.5, 3.6).
 --
 --   local film = require "mission.film"
---   return film.shot { keyframes = { { position = {0, 0, 2} } , { position = {8, 0, 5} } } }
+--   return film.shot { subject = { position = {4, 6, 1} },
+--                      keyframes = { { position = {0, 0, 2} } , { position = {8, 0, 5} } } }
 --
--- Minimised: the miss of keyframes, the fourth derivative of position (snap), the second of yaw,
--- effort. Held: the vehicle's limits, how the flight begins and ends, with `hard` the keyframes.
+-- Minimised: the miss of keyframes and of what is looked at, the fourth derivative of position
+-- (snap), derivatives of yaw, target and gimbal, the angle between camera and target, effort. Held:
+-- the limits of vehicle and gimbal, obstacles, how the flight begins and ends, with `hard` the
+-- keyframes.
+local input = require "mission.film_input"
+local problem = require "mission.film_problem"
 local shot_file = require "mission.shot_file"
 local times = require "mission.keyframe_times"
 
-local film = {}
+local film = { shots = require "mission.shot_types" }
 
 local HOVER = 10                -- s, of a single keyframe without a time
-local STEP = 0.1                -- s, unless `step` says otherwise
-local MOST_STAGES = 3000
-local FEWEST_INTERVALS = 12
-local MISS = 0.5                -- m, allowed where `hard` says nothing
-local LATE = 0.1                -- s, by which a keyframe may be early or late; `hard` allows none
-local HARD_YAW = math.rad(8)    -- with `hard`: largest miss of yaw; the certificate allows 10 deg
 local LARGEST_STRETCH = 64
 local STRETCH_ACCURACY = 1.01   -- the smallest certified stretch is found to 1 %
 
-local ends = { "rest", "moving", "free" }
+local function weight(name, default, summary)
+  return { name = name, type = "number", default = default, minimum = 0, maximum = 1e9,
+           summary = summary }
+end
 local weights = {
-  { name = "keyframe", type = "number", default = 100, minimum = 0, maximum = 1e9,
-    summary = "miss of a keyframe, per m^2 and rad^2" },
-  { name = "smoothness", type = "number", default = 1e-4, minimum = 0, maximum = 1e9,
-    summary = "derivative of position" },
-  { name = "yaw", type = "number", default = 0.1, minimum = 0, maximum = 1e9,
-    summary = "second derivative of yaw" },
-  { name = "effort", type = "number", default = 0.01, minimum = 0, maximum = 1e9,
-    summary = "forces beyond hovering" },
+  weight("keyframe", 100, "miss of a keyframe, per m^2 and rad^2"),
+  weight("smoothness", 1e-4, "derivative of position"),
+  weight("yaw", 0.1, "second derivative of yaw"),
+  weight("effort", 0.01, "forces beyond hovering"),
+  weight("target", 10, "target away from what is looked at, per m^2 s"),
+  weight("target_smoothness", 0.01, "third derivative of the target"),
+  weight("gimbal", 0.1, "second derivative of the gimbal's angles"),
+  weight("camera", 100, "camera away from the target, per rad^2 s"),
+  weight("skewness", 0, "seeing a subject from far above or below"),
+  weight("framing", 100, "a subject away from its place and size in the image"),
+  weight("occlusion", 10, "obstacles between camera and target"),
 }
+local ends = { "rest", "moving", "free" }
 local common = {
   { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "file or table" },
   { name = "step", type = "number", unit = "s", above = 0,
@@ -46,105 +53,32 @@ local common = {
     summary = "keyframes must be met within this; absent: they pull" },
   { name = "stretch", type = "number", default = 1, minimum = 1e-3, maximum = 1e3,
     words = { "auto" }, summary = "factor on all times; auto: the smallest that is certified" },
+  { name = "obstacles", type = "tables", table = input.obstacle, summary = "to keep out of" },
+  { name = "margin", type = "number", unit = "m", default = 0.5, minimum = 0, maximum = 1e3,
+    summary = "kept from every obstacle, the vehicle's own radius included" },
+  { name = "cuts", type = "tables", table = input.cut, summary = "footage that is thrown away" },
+  { name = "framing", type = "number", default = 0.95, above = 0, maximum = 1,
+    summary = "share of the time that a subject must be in the image" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
     summary = "trajectory solver" },
-}
-local keyframe = {
-  { name = "time", type = "number", unit = "s", minimum = 0,
-    summary = "absent: evenly between the others" },
-  { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-    minimum = -1e6, maximum = 1e6, summary = "world: east, north, up" },
-  { name = "yaw_deg", type = "number", unit = "deg", summary = "0 east, counter-clockwise" },
 }
 local of_shot = {
   { name = "duration", type = "number", unit = "s", above = 0, maximum = 1e5,
     summary = "of the flight; absent: up to the last keyframe" },
-  { name = "keyframes", type = "tables", required = true, table = keyframe,
+  { name = "keyframes", type = "tables", required = true, table = input.keyframe,
     summary = "where to be, and when" },
+  { name = "subjects", type = "tables", table = input.subject,
+    summary = "what is filmed; one alone may be given as `subject`" },
 }
 local of_file = { { name = "input", type = "text", summary = "a designer's shot, JSON" } }
-
--- ---- the problem --------------------------------------------------------------------------------
-
-local function boundary(options, stretch, yaw)
-  local state = { type = "boundary_state", start_yaw = yaw }
-  for _, name in ipairs { "start", "finish" } do
-    state[name] = options[name]
-    local velocity = options[name .. "_velocity"]
-    if velocity then
-      state[name .. "_velocity"] = {}
-      for i = 1, 3 do state[name .. "_velocity"][i] = velocity[i] / stretch end
-    end
-  end
-  return state
-end
-
--- Jerk and snap are derivatives of the force over the mass: the same as of the position, but a
--- fourth difference of positions has rounding errors 1 / step^2 larger.
-local function smoothness(options, vehicle)
-  local cost = { type = "derivative", name = "smoothness", order = options.order,
-                 weight = options.weights.smoothness }
-  if options.order > 2 then
-    cost.block, cost.order = "force", options.order - 2
-    cost.weight = cost.weight / vehicle.mass ^ 2
-  end
-  return cost
-end
-
--- The film with all times multiplied by `stretch`: problem and task. `unlimited`: as if the vehicle
--- could do anything.
-local function state_problem(run, shot, stretch, unlimited)
-  local o = run.options
-  local places, yaws, task = {}, {}, {}
-  local guess = { times = {}, positions = {}, yaws = {} }
-  local heading = 0
-  for _, k in ipairs(shot.keyframes) do heading = k.yaw or heading if k.yaw then break end end
-  for i, k in ipairs(shot.keyframes) do
-    local time = k.time * stretch
-    heading = k.yaw or heading
-    places[i] = { time = time, value = k.position }
-    if k.yaw then yaws[#yaws + 1] = { time = time, value = { k.yaw } } end
-    guess.times[i], guess.positions[i], guess.yaws[i] = time, k.position, heading
-    task[i] = { time = time, position = k.position, yaw = k.yaw, tolerance = o.hard or MISS,
-                time_tolerance = o.hard and 0 or LATE }
-  end
-  local duration = shot.duration * stretch
-  local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
-                                  duration / FEWEST_INTERVALS)
-  local p = run:problem { vehicle = shot.vehicle, duration = duration, step = step }
-  p:add_model { type = "quadrotor" }
-  p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = places }
-  p:add_cost(smoothness(o, shot.vehicle))
-  p:add_cost { type = "yaw_derivative", name = "yaw", weight = o.weights.yaw }
-  p:add_cost { type = "input_effort", name = "effort", weight = o.weights.effort }
-  if not unlimited then
-    p:add_constraint { type = "input_limits", across = "extent" }
-    p:add_constraint { type = "state_limits" }
-  end
-  p:add_constraint(boundary(o, stretch, #yaws == 0 and 0 or nil))
-  if #yaws > 0 then
-    p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
-                 weight = o.weights.keyframe, keyframes = yaws }
-  end
-  if o.hard then
-    p:add_constraint { type = "hard_keyframe", tolerance = o.hard, keyframes = places }
-    if #yaws > 0 then
-      p:add_constraint { type = "hard_keyframe", name = "hard_yaw", block = "yaw",
-                         tolerance = HARD_YAW, keyframes = yaws }
-    end
-  end
-  p:guess_path(guess)
-  p:finish()
-  return p, { keyframes = task }
-end
 
 -- ---- solving ------------------------------------------------------------------------------------
 
 local function attempt(run, shot, stretch, unlimited)
-  local problem, task = state_problem(run, shot, stretch, unlimited)
-  local result = { stretch = stretch, problem = problem, task = task }
-  result.solution = run:solve(problem, run.options.solver)
-  result.verdict = run:certify(run:plan { solution = result.solution, task = task })
+  local stated, task, cuts = problem.state(run, shot, stretch, unlimited)
+  local result = { stretch = stretch, problem = stated, task = task, cuts = cuts }
+  result.solution = run:solve(stated, run.options.solver)
+  result.verdict = run:certify(run:plan { solution = result.solution, task = task, cuts = cuts })
   return result
 end
 
@@ -178,14 +112,15 @@ local function smallest_stretch(run, shot, failing, least)
 end
 
 local function finished(run, shot, chosen, notes, certified)
-  return run:plan { solution = chosen.solution, task = chosen.task, notes = notes,
-                    geodetic_origin = shot.origin,
+  return run:plan { solution = chosen.solution, task = chosen.task, cuts = chosen.cuts,
+                    notes = notes, geodetic_origin = shot.origin,
                     figures = { stretch = chosen.stretch, certified_stretch = certified } }
 end
 
 local function fly(run, shot)
   local o = run.options
   shot.vehicle = run:vehicle(o.vehicle)
+  shot.cuts, shot.subjects = o.cuts, shot.subjects or {}
   if #shot.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
   times.fill(shot, shot.vehicle)
   times.check(run, shot)
@@ -193,8 +128,8 @@ local function fly(run, shot)
   local last = shot.keyframes[#shot.keyframes].time
   shot.duration = shot.duration or (last > 0 and last or HOVER)
   local first = attempt(run, shot, o.stretch == "auto" and 1 or o.stretch)
-  local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or MISS,
-                                      o.hard and 0 or LATE)
+  local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or problem.MISS,
+                                      o.hard and 0 or problem.LATE)
   local status = first.solution.status
   local broken = not why and (status == "numerical_error" or status == "unsupported")
   if first.verdict.feasible or broken or run:cancelled() then
@@ -214,13 +149,7 @@ end
 
 local function mission(what, given, declared, shot_of)
   if type(given) ~= "table" then lapwing.fail(what .. ": expected a table, got " .. type(given)) end
-  local options = {}
-  for key, value in pairs(given) do options[key] = value end
-  for _, key in ipairs { "subject", "look_at", "look-at", "obstacles" } do
-    if options[key] ~= nil then
-      lapwing.fail(key .. ": not supported by this version, which films keyframes alone")
-    end
-  end
+  local options = input.written_out(given)
   local name = options.name or "film"
   options.name = nil
   local all = table.move(common, 1, #common, #declared + 1, { table.unpack(declared) })
@@ -228,10 +157,12 @@ local function mission(what, given, declared, shot_of)
            plan = function(run) return fly(run, shot_of(run)) end }
 end
 
--- film.shot { name =, duration =, keyframes = { { time =, position =, yaw_deg = }, ... }, ... }
+-- film.shot { name =, duration =, subject = { position =, height = }, keyframes = { { time =,
+--             position =, look_at = }, ... }, obstacles = {...}, cuts = {...}, ... }
 function film.shot(given)
   return mission("film.shot", given, of_shot, function(run)
-    return { keyframes = run.options.keyframes, duration = run.options.duration }
+    local o = run.options
+    return { keyframes = o.keyframes, duration = o.duration, subjects = o.subjects }
   end)
 end
 

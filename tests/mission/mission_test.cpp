@@ -1,72 +1,7 @@
-#include "framework/mission/mission.h"
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include "framework/core/files.h"
-#include "framework/core/json.h"
-#include "framework/verify/verify.h"
+#include "tests/mission/mission_fixture.h"
 
 namespace lapwing {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kFilm = R"(local film = require "mission.film"
-return film.shot {
-  name = "test",
-  keyframes = {
-    { position = {0, 0, 2} },
-    { position = {6, 0, 4}, yaw_deg = 90 },
-  },
-)";
-
-class MissionTest : public ::testing::Test {
- protected:
-  MissionTest() : registry_({fs::path(LAPWING_BUILD_DIR) / "lib/plugins"}) {
-    folder_ = fs::temp_directory_path() / ("lapwing_mission_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  ~MissionTest() override { fs::remove_all(folder_); }
-
-  std::unique_ptr<Mission> load(const std::string& text) {
-    write_file_atomically(folder_ / "shot.lua", text);
-    MissionSettings settings;
-    settings.scripts = fs::path(LAPWING_SOURCE_DIR) / "scripts";
-    settings.configs = fs::path(LAPWING_SOURCE_DIR) / "configs";
-    settings.registry = &registry_;
-    return std::make_unique<Mission>(folder_ / "shot.lua", std::move(settings));
-  }
-
-  // The message of loading, configuring and planning, without the folder.
-  std::string error(const std::string& text, std::vector<std::string> overrides = {},
-                    std::vector<Value> layers = {}) {
-    std::string message = "no error";
-    try {
-      const auto mission = load(text);
-      mission->configure(layers, overrides);
-      mission->plan();
-    } catch (const InputError& e) {
-      message = e.what();
-    }
-    const std::string prefix = folder_.string() + "/";
-    for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) {
-      message.erase(at, prefix.size());
-    }
-    return message;
-  }
-
-  void expect(const std::string& text, const std::string& fragment,
-              std::vector<std::string> overrides = {}) {
-    const std::string message = error(text, std::move(overrides));
-    EXPECT_NE(message.find(fragment), std::string::npos) << text << "\ngave: " << message;
-  }
-
-  static std::string film(const std::string& more) { return kFilm + more + "\n}"; }
-
-  Registry registry_;
-  fs::path folder_;
-};
 
 TEST_F(MissionTest, AShotIsPlanned) {
   const auto mission = load(film(""));
@@ -121,10 +56,6 @@ TEST_F(MissionTest, WrongOptionsAreNamed) {
   expect(film("solver = { type = 3 },"), "solver: expected the name of a plugin");
   expect(film("vehicle = 'vehicles/sool',"), "vehicles/solo");
   expect(film("vehicle = { mass = 1 },"), "missing");
-  expect(film("subject = { position = {0, 0, 1} },"),
-         "shot.lua:2: subject: not supported by this version");
-  expect(film("obstacles = {},"), "obstacles: not supported by this version");
-  expect(film("look_at = {},"), "look_at: not supported by this version");
   expect(film("name = 3,"), "mission.name: expected a text");
   expect(film(""), "--set: wieghts: unknown key", {"wieghts.snap=2"});
   expect(film(""), "did you mean 'weights'?", {"wieghts.snap=2"});

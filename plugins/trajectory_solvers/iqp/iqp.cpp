@@ -28,9 +28,12 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kArmijo = 1e-4;         // share of the promised decrease that must come true
-constexpr double kShortestStep = 1e-6;   // shorter line-search steps end the solve
-constexpr double kMeritMargin = 1.5;     // merit weight over the largest multiplier
+constexpr double kArmijo = 1e-4;        // share of the promised decrease that must come true
+constexpr double kShortestStep = 1e-6;  // shorter line-search steps end the solve
+constexpr double kMeritMargin = 1.5;    // merit weight over the largest multiplier
+// Programs are solved to this share of what the one before promised, within these limits: early
+// ones only show the way.
+constexpr double kProgramShare = 1e-2, kProgramFinest = 1e-9, kProgramCoarsest = 1e-5;
 constexpr double kElasticPenalty = 1e3;  // times 1 + |g|
 
 class Iqp final : public TrajectorySolver {
@@ -105,6 +108,7 @@ class Solve {
   LocalModel model_;
   QuadraticProgram program_;
   InteriorPoint interior_point_;
+  double program_tolerance_ = kProgramFinest;
   double merit_weight_ = 0;
   SolveReport report_;
 };
@@ -117,7 +121,10 @@ SolveResult Solve::run() {
     rows_ = warm.row_multipliers;
     bounds_ = warm.bound_multipliers;
   }
-  if (!problem_.quadratic()) move_inside_bounds();
+  if (!problem_.quadratic()) {
+    move_inside_bounds();
+    program_tolerance_ = kProgramCoarsest;
+  }
   record(0.0);
   report_.status = iterate();
   report_.terms = problem_.term_costs(at_);
@@ -172,6 +179,9 @@ SolveStatus Solve::iterate() {
     const double promised =
         -(model_.gradient.dot(step.d) +
           0.5 * step.d.dot(model_.hessian.selfadjointView<Eigen::Lower>() * step.d));
+    program_tolerance_ =
+        std::clamp(kProgramShare * std::abs(promised) / (1.0 + std::abs(model_.cost)),
+                   kProgramFinest, kProgramCoarsest);
     const bool still = std::abs(promised) <= tolerance_ * (1.0 + std::abs(model_.cost));
     if (still && worst_violation() <= feasibility_) return SolveStatus::optimal;
     if (!line_search(step, violation)) {
@@ -193,6 +203,7 @@ Solve::Step Solve::quadratic_step() {
   program_.x_upper = model_.step_upper;
   InteriorPointOptions options;
   options.cancellation = request_.cancellation;
+  options.tolerance = program_tolerance_;
   std::optional<QuadraticWarmStart> warm;
   if (rows_.size() == problem_.rows() && bounds_.size() == problem_.columns())
     warm = QuadraticWarmStart{VectorXd::Zero(problem_.columns()), rows_, bounds_};

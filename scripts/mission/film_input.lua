@@ -1,0 +1,166 @@
+-- What a film's script may give: the short forms written out, and the options declared.
+local input = {}
+
+local GRID = 0.25  -- s, between the samples of a track that is a function
+local MOST_SAMPLES = 4000
+
+-- A track as a function of time becomes a list, so that options are plain data.
+local function sampled(track, duration, what)
+  if not duration then
+    lapwing.fail(what .. ": a track that is a function needs the film's duration")
+  end
+  local count = math.min(MOST_SAMPLES, math.ceil(duration / GRID))
+  local list = {}
+  for i = 0, count do
+    local time = duration * i / count
+    local position = track(time)
+    if type(position) ~= "table" or #position ~= 3 then
+      lapwing.fail(string.format("%s: expected {x, y, z} at %g s, got %s", what, time,
+                                 type(position)))
+    end
+    list[i + 1] = { time = time, position = position }
+  end
+  return list
+end
+
+-- {{x, y}, ...} as {x, y, ...}
+local function with_flat_corners(entry)
+  if type(entry) ~= "table" or type(entry.corners) ~= "table" then return entry end
+  local copy, flat = {}, {}
+  for key, value in pairs(entry) do copy[key] = value end
+  for _, corner in ipairs(entry.corners) do
+    for _, number in ipairs(type(corner) == "table" and corner or { corner }) do
+      flat[#flat + 1] = number
+    end
+  end
+  copy.corners = flat
+  return copy
+end
+
+-- The options of a shot with its short forms written out: one `subject`, tracks that are functions,
+-- looks by name.
+function input.written_out(given)
+  local out = {}
+  for key, value in pairs(given) do out[key] = value end
+  if out.subject ~= nil then
+    if out.subjects ~= nil then lapwing.fail("give subject or subjects, not both") end
+    if type(out.subject) ~= "table" then lapwing.fail("subject: expected a table") end
+    out.subjects, out.subject = { out.subject }, nil
+  end
+  if type(out.subjects) == "table" then
+    local list = {}
+    for i, entry in ipairs(out.subjects) do
+      local what = string.format("subjects[%d].track", i)
+      if type(entry) == "table" then
+        local copy = {}
+        for key, value in pairs(entry) do copy[key] = value end
+        if type(copy.track) == "function" then
+          copy.track = sampled(copy.track, out.duration, what)
+        end
+        entry = copy
+      end
+      list[i] = entry
+    end
+    out.subjects = list
+  end
+  if type(out.keyframes) == "table" then
+    local list = {}
+    for i, entry in ipairs(out.keyframes) do
+      if type(entry) == "table" and type(entry.look_at) == "string" then
+        local copy = {}
+        for key, value in pairs(entry) do copy[key] = value end
+        copy.subject, copy.look_at = copy.look_at, nil
+        entry = copy
+      end
+      list[i] = entry
+    end
+    out.keyframes = list
+  end
+  if type(out.obstacles) == "table" then
+    local list = {}
+    for i, entry in ipairs(out.obstacles) do list[i] = with_flat_corners(entry) end
+    out.obstacles = list
+  end
+  return out
+end
+
+input.subject = {
+  { name = "name", type = "text", summary = "by which keyframes ask for it" },
+  { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
+    summary = "of its middle, where it stands still" },
+  { name = "track", type = "tables", summary = "where it is, and when, straight in between",
+    table = {
+      { name = "time", type = "number", unit = "s", required = true, summary = "of the film" },
+      { name = "position", type = "numbers", size = 3, unit = "m", required = true,
+        minimum = -1e6, maximum = 1e6, summary = "of its middle" } } },
+  { name = "height", type = "number", unit = "m", default = 0, minimum = 0, maximum = 1e5,
+    summary = "from foot to top" },
+  { name = "width", type = "number", unit = "m", default = 0, minimum = 0, maximum = 1e5,
+    summary = "diameter" },
+  { name = "distance", type = "number", unit = "m", minimum = 0,
+    summary = "the camera keeps this far from its middle; absent: as it likes" },
+  { name = "place", type = "numbers", size = 2, minimum = 0, maximum = 1,
+    summary = "in the image, from the upper left corner: {0.33, 0.5} is the left third" },
+  { name = "size", type = "number", above = 0, maximum = 10,
+    summary = "its height as a share of the image's; absent: any" },
+}
+
+input.keyframe = {
+  { name = "time", type = "number", unit = "s", minimum = 0,
+    summary = "absent: evenly between the others" },
+  { name = "position", type = "numbers", size = 3, unit = "m", required = true,
+    minimum = -1e6, maximum = 1e6, summary = "world: east, north, up" },
+  { name = "yaw_deg", type = "number", unit = "deg", summary = "0 east, counter-clockwise" },
+  { name = "look_at", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
+    summary = "a point, or a subject's name; absent: as the keyframe before" },
+  { name = "subject", type = "text", summary = "the subject looked at, by name" },
+}
+
+input.cut = {
+  { name = "start", type = "number", unit = "s", required = true, minimum = 0, summary = "" },
+  { name = "finish", type = "number", unit = "s", minimum = 0,
+    summary = "absent: as soon as the camera can be on what comes next" },
+}
+
+input.obstacle = {
+  { name = "type", type = "choice", required = true, choices = { "sphere", "box", "no_fly_zone" },
+    summary = "its form" },
+  { name = "name", type = "text", default = "", summary = "for messages" },
+  { name = "center", type = "numbers", size = 3, unit = "m", summary = "of a sphere" },
+  { name = "radius", type = "number", unit = "m", above = 0, summary = "of a sphere" },
+  { name = "lower", type = "numbers", size = 3, unit = "m", summary = "of a box" },
+  { name = "upper", type = "numbers", size = 3, unit = "m", summary = "of a box" },
+  { name = "corners", type = "numbers", unit = "m",
+    summary = "of a zone: x and y in turn, or {{x, y}, ...}" },
+  { name = "floor", type = "number", unit = "m", summary = "of a zone; absent: the ground" },
+  { name = "ceiling", type = "number", unit = "m", summary = "of a zone; absent: all above" },
+}
+
+local FORMS = { sphere = { center = true, radius = true }, box = { lower = true, upper = true },
+                no_fly_zone = { corners = true, floor = false, ceiling = false } }
+
+-- The environment of a problem from the option `obstacles`.
+function input.environment(run, obstacles, margin)
+  local environment = { spheres = {}, boxes = {}, zones = {}, margin = margin }
+  local lists = { sphere = environment.spheres, box = environment.boxes,
+                  no_fly_zone = environment.zones }
+  for i, given in ipairs(obstacles) do
+    local made = { name = given.name }
+    for form, keys in pairs(FORMS) do
+      for key, needed in pairs(keys) do
+        local what = string.format("obstacles[%d].%s", i, key)
+        if form ~= given.type and given[key] ~= nil and FORMS[given.type][key] == nil then
+          run:fail(what, "a " .. given.type .. " has none")
+        elseif form == given.type and needed and given[key] == nil then
+          run:fail(string.format("obstacles[%d]", i), "a " .. form .. " needs " .. key)
+        elseif form == given.type then
+          made[key] = given[key]
+        end
+      end
+    end
+    table.insert(lists[given.type], made)
+  end
+  return environment
+end
+
+return input

@@ -1,0 +1,194 @@
+-- A film as a trajectory problem: blocks, cost terms, constraints, a first guess, and the task that
+-- its plan is judged by (thesis 3.5).
+local input = require "mission.film_input"
+local subjects = require "mission.subjects"
+local tracks = require "mission.tracks"
+
+local problem = {}
+
+problem.MISS = 0.5              -- m, allowed where `hard` says nothing
+problem.LATE = 0.1              -- s, by which a keyframe may be early or late; `hard` allows none
+local STEP = 0.1                -- s, unless `step` says otherwise
+local MOST_STAGES = 3000
+local FEWEST_INTERVALS = 12
+local HARD_YAW = math.rad(8)    -- with `hard`: largest miss of yaw; the certificate allows 10 deg
+
+local function boundary(options, stretch, yaw)
+  local state = { type = "boundary_state", start_yaw = yaw }
+  for _, name in ipairs { "start", "finish" } do
+    state[name] = options[name]
+    local velocity = options[name .. "_velocity"]
+    if velocity then
+      state[name .. "_velocity"] = {}
+      for i = 1, 3 do state[name .. "_velocity"][i] = velocity[i] / stretch end
+    end
+  end
+  return state
+end
+
+-- Jerk and snap are derivatives of the force over the mass: the same as of the position, but a
+-- fourth difference of positions has rounding errors 1 / step^2 larger.
+local function smoothness(options, vehicle)
+  local cost = { type = "derivative", name = "smoothness", order = options.order,
+                 weight = options.weights.smoothness }
+  if options.order > 2 then
+    cost.block, cost.order = "force", options.order - 2
+    cost.weight = cost.weight / vehicle.mass ^ 2
+  end
+  return cost
+end
+
+-- Keyframes with all times multiplied: places, yaws, task, and a straight guess through them.
+local function keyframes_of(shot, stretch, options)
+  local made = { places = {}, yaws = {}, task = {}, times = {}, positions = {}, headings = {} }
+  local heading = 0
+  for _, k in ipairs(shot.keyframes) do heading = k.yaw or heading if k.yaw then break end end
+  for i, k in ipairs(shot.keyframes) do
+    local time = k.time * stretch
+    heading = k.yaw or heading
+    made.places[i] = { time = time, value = k.position }
+    if k.yaw then made.yaws[#made.yaws + 1] = { time = time, value = { k.yaw } } end
+    made.times[i], made.positions[i], made.headings[i] = time, k.position, heading
+    made.task[i] = { time = time, position = k.position, yaw = k.yaw,
+                     tolerance = options.hard or problem.MISS,
+                     time_tolerance = options.hard and 0 or problem.LATE }
+  end
+  return made
+end
+
+-- A keyframe so deep in an obstacle that it cannot be met.
+local function check_keyframes(run, p, shot, options)
+  for i, k in ipairs(shot.keyframes) do
+    local distance, name = p:nearest_obstacle(k.position)
+    local reach = options.hard or problem.MISS
+    if distance + reach < options.margin then
+      run:fail("keyframes[" .. i .. "].position", string.format(
+        "%s obstacle '%s': %.3g m from its surface, and %g m are to be kept",
+        distance < 0 and "inside" or "too near", name, distance, options.margin))
+    end
+  end
+end
+
+-- The environment that a film states, subjects included.
+local function environment_of(run, options, camera)
+  local environment = input.environment(run, options.obstacles, options.margin)
+  environment.subjects = {}
+  for i, subject in ipairs(camera and camera.list or {}) do
+    environment.subjects[i] = { name = subject.name, height = subject.height,
+                                width = subject.width, track = subject.track }
+  end
+  return environment
+end
+
+local function add_obstacles(p, environment, camera)
+  for form, plugin in pairs { spheres = "sphere_obstacle", boxes = "box_obstacle",
+                              zones = "no_fly_zone" } do
+    if #environment[form] > 0 then p:add_constraint { type = plugin } end
+  end
+  for _, subject in ipairs(camera and camera.list or {}) do
+    if subject.distance then
+      p:add_constraint { type = "subject_distance", name = "distance to " .. subject.name,
+                         subject = subject.name, distance = subject.distance }
+    end
+  end
+end
+
+-- The camera's part of thesis 3.5.3: a gimbal, a target that follows what is looked at, and the
+-- angle between the two.
+local function add_camera(p, weights, camera, environment)
+  p:add_model { type = "gimbal" }
+  p:add_block { name = "target", size = 3, unit = "m" }
+  p:add_cost { type = "target_keyframe", weight = weights.target, keyframes = camera.pulls }
+  p:add_cost { type = "target_derivative", weight = weights.target_smoothness,
+               except = camera.cuts }
+  p:add_cost { type = "gimbal_derivative", weight = weights.gimbal, except = camera.cuts }
+  p:add_cost { type = "camera_angle", weight = weights.camera, except = camera.cuts }
+  for _, span in ipairs(camera.spans) do
+    local subject = span.subject
+    local within = { { start = span.start, finish = span.finish } }
+    if subject.height > 0 and weights.skewness > 0 then
+      p:add_cost { type = "skewness", name = "skewness of " .. subject.name, height = subject.height,
+                   weight = weights.skewness, spans = within, except = camera.cuts }
+    end
+    if subject.place or subject.size then
+      p:add_cost { type = "framing", name = "framing of " .. subject.name, subject = subject.name,
+                   weight = weights.framing, horizontal = subject.place and subject.place[1],
+                   vertical = subject.place and subject.place[2], size = subject.size,
+                   spans = within, except = camera.cuts }
+    end
+  end
+  if weights.occlusion > 0 and #environment.spheres + #environment.boxes > 0 then
+    p:add_cost { type = "occlusion", weight = weights.occlusion, except = camera.cuts }
+  end
+  local values = { gimbal_pitch = {}, target = camera.guess.targets }
+  for i, pitch in ipairs(camera.guess.pitches) do values.gimbal_pitch[i] = { pitch } end
+  for block, list in pairs(values) do
+    p:guess_block { block = block, times = camera.guess.times, values = list }
+  end
+end
+
+-- The straight path through the keyframes, with the yaw that looks at the target.
+local function guess(shot, stretch, keyframes, camera)
+  if not camera or #keyframes.yaws > 0 then
+    return { times = keyframes.times, positions = keyframes.positions, yaws = keyframes.headings }
+  end
+  local path = {}
+  for i, time in ipairs(keyframes.times) do
+    path[i] = { time = time, position = keyframes.positions[i] }
+  end
+  local positions = {}
+  for i, time in ipairs(camera.guess.times) do positions[i] = tracks.at(path, time) end
+  return { times = camera.guess.times, positions = positions, yaws = camera.guess.yaws }
+end
+
+-- Problem and task of a film with all times multiplied by `stretch`. `unlimited`: as if the vehicle
+-- could do anything.
+function problem.state(run, shot, stretch, unlimited)
+  local o = run.options
+  local duration = shot.duration * stretch
+  local camera = shot.vehicle.gimbal and subjects.plan(run, shot, stretch, duration, shot.vehicle)
+  local keyframes = keyframes_of(shot, stretch, o)
+  local environment = environment_of(run, o, camera)
+  local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
+                                  duration / FEWEST_INTERVALS)
+  local p = run:problem { vehicle = shot.vehicle, duration = duration, step = step,
+                          environment = environment }
+  check_keyframes(run, p, shot, o)
+  p:add_model { type = "quadrotor" }
+  p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }
+  p:add_cost(smoothness(o, shot.vehicle))
+  p:add_cost { type = "yaw_derivative", name = "yaw", weight = o.weights.yaw }
+  p:add_cost { type = "input_effort", name = "effort", weight = o.weights.effort }
+  if not unlimited then
+    p:add_constraint { type = "input_limits", across = "extent" }
+    p:add_constraint { type = "state_limits" }
+    add_obstacles(p, environment, camera)
+  end
+  local yaws = keyframes.yaws
+  p:add_constraint(boundary(o, stretch, not camera and #yaws == 0 and 0 or nil))
+  if #yaws > 0 then
+    p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
+                 weight = o.weights.keyframe, keyframes = yaws }
+  end
+  if o.hard then
+    p:add_constraint { type = "hard_keyframe", tolerance = o.hard, keyframes = keyframes.places }
+    if #yaws > 0 then
+      p:add_constraint { type = "hard_keyframe", name = "hard_yaw", block = "yaw",
+                         tolerance = HARD_YAW, keyframes = yaws }
+    end
+  end
+  local task = { keyframes = keyframes.task }
+  if camera then
+    add_camera(p, o.weights, camera, environment)
+    task.framing = {}
+    for i, span in ipairs(camera.spans) do
+      task.framing[i] = { subject = span.subject.name, start = span.start, finish = span.finish }
+    end
+    task.framing_share = #task.framing > 0 and o.framing or nil
+  end
+  p:guess_path(guess(shot, stretch, keyframes, camera))
+  p:finish()
+  return p, task, camera and camera.cuts or {}
+end
+
+return problem

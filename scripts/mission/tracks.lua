@@ -1,0 +1,64 @@
+-- Subjects on their tracks, and the directions from which they are seen.
+local tracks = {}
+
+local STEEP = 0.05  -- share of the distance, below which a look has no heading
+
+-- Subjects with names and tracks; a subject without a track stands still.
+function tracks.checked(run, list, stretch)
+  local result, by_name = {}, {}
+  for i, given in ipairs(list) do
+    local what = "subjects[" .. i .. "]"
+    local name = given.name or (#list == 1 and "subject" or "subject " .. i)
+    local track = given.track
+    if not given.position == (not track or #track == 0) then
+      run:fail(what, "expected a position, or a track of times and positions")
+    end
+    if by_name[name] then run:fail(what .. ".name", "'" .. name .. "' is taken") end
+    local points = {}
+    for j, point in ipairs(given.position and { { time = 0, position = given.position } } or track)
+    do
+      local last = points[j - 1]
+      if last and point.time * stretch <= last.time then
+        run:fail(string.format("%s.track[%d].time", what, j), "times must rise")
+      end
+      points[j] = { time = point.time * stretch, position = point.position }
+    end
+    result[i] = { name = name, track = points, still = given.position ~= nil,
+                  height = given.height, width = given.width, distance = given.distance,
+                  place = given.place, size = given.size, option = what }
+    by_name[name] = result[i]
+  end
+  return result, by_name
+end
+
+local function between(a, b, share)
+  local p = {}
+  for i = 1, 3 do p[i] = a[i] + share * (b[i] - a[i]) end
+  return p
+end
+
+-- Position in a list of {time, position}: straight in between, at rest outside.
+function tracks.at(track, time)
+  if time <= track[1].time then return track[1].position end
+  for i = 2, #track do
+    local a, b = track[i - 1], track[i]
+    if time <= b.time then
+      return between(a.position, b.position, (time - a.time) / (b.time - a.time))
+    end
+  end
+  return track[#track].position
+end
+
+-- Yaw in the world, and pitch, of a look; the yaw next to `before`, which it keeps when the look is
+-- steep.
+function tracks.angles(from, to, before)
+  local d = { to[1] - from[1], to[2] - from[2], to[3] - from[3] }
+  local across = math.sqrt(d[1] ^ 2 + d[2] ^ 2)
+  local pitch = math.atan(d[3], math.max(across, 1e-9))
+  if across < STEEP * math.sqrt(across ^ 2 + d[3] ^ 2) then return before or 0, pitch end
+  local yaw = math.atan(d[2], d[1])
+  if before then yaw = yaw - 2 * math.pi * math.floor((yaw - before) / (2 * math.pi) + 0.5) end
+  return yaw, pitch
+end
+
+return tracks

@@ -1,0 +1,188 @@
+// Films with a camera: what scripts may say, and what is refused.
+#include "tests/mission/mission_fixture.h"
+
+namespace lapwing {
+namespace {
+
+class FilmTest : public MissionTest {
+ protected:
+  // A shot of 8 s past the origin, with more of its table.
+  static std::string shot(const std::string& more, const std::string& looks = "") {
+    return "return require('mission.film').shot { duration = 8, " + more +
+           " keyframes = { { time = 0, position = {-6, -6, 3} }, "
+           "{ time = 8, position = {6, -6, 4}" +
+           looks + " } } }";
+  }
+  Plan plan(const std::string& text, std::vector<std::string> overrides = {}) {
+    const auto mission = load(text);
+    mission->configure({}, overrides);
+    return mission->plan().plan;
+  }
+};
+
+TEST_F(FilmTest, TheCameraStaysOnItsSubject) {
+  const Plan film = plan(shot("subject = { position = {0, 0, 1}, height = 2 },"));
+  EXPECT_TRUE(film.trajectory.has_gimbal);
+  EXPECT_TRUE(film.trajectory.has_target);
+  ASSERT_EQ(film.environment.subjects.size(), 1u);
+  EXPECT_EQ(film.environment.subjects[0].name, "subject");
+  EXPECT_EQ(film.environment.subjects[0].height, 2);
+  ASSERT_EQ(film.task.framing.size(), 1u);
+  EXPECT_EQ(film.task.framing[0].span.start, 0);
+  EXPECT_EQ(film.task.framing[0].span.finish, 8);
+  for (const Sample& s : film.trajectory.samples) {
+    const Eigen::Vector3d d = Eigen::Vector3d(0, 0, 1) - s.position;
+    EXPECT_NEAR(s.gimbal_pitch, std::atan2(d.z(), d.head<2>().norm()), 0.05) << s.time;
+    EXPECT_NEAR(std::remainder(s.yaw + s.gimbal_yaw - std::atan2(d.y(), d.x()), 2 * M_PI), 0, 0.05)
+        << s.time;
+  }
+}
+
+TEST_F(FilmTest, FromOneSubjectToAnother) {
+  const Plan film = plan(
+      "return require('mission.film').shot { duration = 12, subjects = { "
+      "{ name = 'a', position = {-3, 0, 1} }, { name = 'b', position = {3, 0, 1} } }, "
+      "keyframes = { { time = 0, position = {-3, -8, 3}, look_at = 'a' }, "
+      "{ time = 4, position = {-2, -8, 3} }, { time = 8, position = {2, -8, 3}, look_at = 'b' }, "
+      "{ time = 12, position = {3, -8, 3} } } }");
+  ASSERT_EQ(film.task.framing.size(), 2u);
+  EXPECT_EQ(film.task.framing[0].subject, "a");
+  EXPECT_NEAR(film.task.framing[0].span.finish, 4.5, 1e-9) << "three seconds from one to the other";
+  EXPECT_NEAR(film.task.framing[1].span.start, 7.5, 1e-9);
+  const auto target = [&](double time) {
+    for (const Sample& s : film.trajectory.samples)
+      if (s.time > time - 1e-6) return s.target;
+    return Eigen::Vector3d(1e9, 0, 0);
+  };
+  EXPECT_LT((target(2) - Eigen::Vector3d(-3, 0, 1)).norm(), 0.2);
+  EXPECT_NEAR(target(6).x(), 0, 0.3) << "half-way at half-time";
+  EXPECT_LT((target(10) - Eigen::Vector3d(3, 0, 1)).norm(), 0.2);
+}
+
+TEST_F(FilmTest, TracksAreListsOrFunctions) {
+  const std::string list =
+      "subject = { track = { { time = 0, position = {0, 0, 1} }, { time = 8, position = {4, 0, 1} "
+      "} "
+      "} },";
+  const std::string function = "subject = { track = function(t) return {t / 2, 0, 1} end },";
+  const Plan a = plan(shot(list)), b = plan(shot(function));
+  EXPECT_EQ(b.environment.subjects[0].times.size(), 33u) << "every quarter of a second";
+  for (const double t : {0.0, 3.3, 8.0})
+    EXPECT_LT(
+        (a.environment.subjects[0].position(t) - b.environment.subjects[0].position(t)).norm(),
+        1e-9);
+}
+
+TEST_F(FilmTest, StretchedFilmsStretchTracksAndCuts) {
+  const Plan film =
+      plan(shot("stretch = 2, cuts = { { start = 3, finish = 4 } }, "
+                "subject = { track = { { time = 0, position = {0, 0, 1} }, "
+                "{ time = 8, position = {4, 0, 1} } } },"));
+  EXPECT_EQ(film.environment.subjects[0].times.back(), 16);
+  ASSERT_EQ(film.cuts.size(), 1u);
+  EXPECT_EQ(film.cuts[0].start, 6);
+  EXPECT_EQ(film.cuts[0].finish, 8);
+}
+
+TEST_F(FilmTest, ACutLastsAsLongAsTheCameraNeeds) {
+  const Plan film = plan(
+      "return require('mission.film').shot { duration = 12, subjects = { "
+      "{ name = 'a', position = {0, 9, 2} }, { name = 'b', position = {0, -9, 2} } }, "
+      "cuts = { { start = 6 } }, keyframes = { "
+      "{ time = 0, position = {-2, 0, 2}, look_at = 'a' }, "
+      "{ time = 12, position = {2, 0, 2}, look_at = 'b' } } }");
+  ASSERT_EQ(film.cuts.size(), 1u);
+  EXPECT_GE(film.cuts[0].finish, 6.2);
+  EXPECT_LT(film.cuts[0].finish, 9);
+}
+
+TEST_F(FilmTest, WrongSubjectsAreNamed) {
+  const auto subject = [&](const std::string& text) { return shot("subject = {" + text + "},"); };
+  expect(subject("height = 2"), "subjects[1]: expected a position, or a track");
+  expect(subject("position = {0, 0, 1}, track = { { time = 0, position = {0, 0, 1} } }"),
+         "subjects[1]: expected a position, or a track");
+  expect(subject("positon = {0, 0, 1}"), "did you mean 'position'?");
+  expect(subject("position = {0, 0, 1}, height = -1"), "height: expected between 0");
+  expect(
+      subject("track = { { time = 0, position = {0, 0, 1} }, { time = 5, position = {1, 0, 1} } }"),
+      "runs from 0 s to 5 s, but 'subject' is looked at from 0 s to 8 s");
+  expect(
+      subject("track = { { time = 3, position = {0, 0, 1} }, { time = 3, position = {1, 0, 1} } }"),
+      "subjects[1].track[2].time: times must rise");
+  expect(subject("track = { { time = 3 } }"), "subjects[1].track[1].position: missing");
+  expect(subject("track = function(t) return t end"),
+         "subjects[1].track: expected {x, y, z} at 0 s, got number");
+  expect(subject("track = function(t) return nil + t end"), "arithmetic");
+  expect(shot("subject = { position = {0, 0, 1} }, subjects = {},"), "subject or subjects");
+  const std::string two =
+      "subjects = { { name = 'a', position = {0, 0, 1} }, { name = 'b', position = {1, 0, 1} } },";
+  expect(shot(two), "with several, keyframes say which: look_at = \"a\"");
+  expect(shot(two, ", look_at = 'c'"), "keyframes[2].look_at: there is no subject named 'c'");
+  expect(shot("subjects = { { name = 'a', position = {0, 0, 1} }, "
+              "{ name = 'a', position = {1, 0, 1} } },"),
+         "subjects[2].name: 'a' is taken");
+}
+
+TEST_F(FilmTest, WrongCutsAreNamed) {
+  const auto cut = [&](const std::string& text) {
+    return shot("subject = { position = {0, 0, 1} }, cuts = {" + text + "},");
+  };
+  expect(cut("{ start = 5, finish = 5 }"), "cuts[1].finish: a cut ends after it starts");
+  expect(cut("{ start = 5, finish = 9 }"), "cuts[1]: ends at 9 s, after the film's 8 s");
+  expect(cut("{ start = 5, finish = 6 }, { start = 5.5, finish = 7 }"), "cuts[2].start");
+  expect(cut("{ finish = 6 }"), "cuts[1].start: missing");
+  expect(shot("cuts = { { start = 1, finish = 2 } },"), "cuts: there is nothing to cut between");
+}
+
+TEST_F(FilmTest, WrongObstaclesAreNamed) {
+  const auto obstacle = [&](const std::string& text) {
+    return shot("obstacles = { {" + text + "} },");
+  };
+  expect(obstacle("type = 'sphere', center = {0, 0, 1}"), "obstacles[1]: a sphere needs radius");
+  expect(obstacle("type = 'box', lower = {0, 0, 0}, upper = {1, 1, 1}, radius = 1"),
+         "obstacles[1].radius: a box has none");
+  expect(obstacle("type = 'box', lower = {0, 0, 0}, upper = {1, 0, 1}"),
+         "lower must be below upper");
+  expect(obstacle("type = 'cone'"), "obstacles[1].type");
+  expect(obstacle("type = 'no_fly_zone', corners = {{0, 0}, {1, 0}}"), "at least three pairs");
+  expect(
+      obstacle("type = 'no_fly_zone', corners = {{0, 0}, {1, 0}, {0, 1}}, floor = 3, ceiling = 2"),
+      "ceiling must be above");
+  expect(obstacle("type = 'sphere', name = 'oak', center = {-6, -6, 3}, radius = 2"),
+         "keyframes[1].position: inside obstacle 'oak': -2 m from its surface");
+  expect(obstacle("type = 'box', lower = {5, -7, 0}, upper = {7, -5, 8}"),
+         "keyframes[2].position: inside obstacle 'box 1'");
+}
+
+TEST_F(FilmTest, ShotTypesMakeKeyframes) {
+  const auto keyframes = [&](const std::string& shots) {
+    return plan(
+               "local film = require 'mission.film'\nlocal shots = film.shots\n"
+               "return film.shot { subject = { name = 's', position = {0, 0, 1} }, keyframes = " +
+               shots + " }")
+        .task.keyframes;
+  };
+  const auto orbit = keyframes(
+      "shots.orbit { center = {0, 0, 1}, radius = 10, height = 4, angle = -90, from = 180, "
+      "duration = 12 }");
+  ASSERT_EQ(orbit.size(), 7u);
+  EXPECT_LT((orbit.front().position - Eigen::Vector3d(-10, 0, 4)).norm(), 1e-9);
+  EXPECT_LT((orbit.back().position - Eigen::Vector3d(0, 10, 4)).norm(), 1e-9);
+  EXPECT_NEAR(orbit[3].time, 6, 1e-9);
+  const auto joined = keyframes(
+      "shots.sequence(shots.static { position = {5, 0, 2}, duration = 4 }, "
+      "shots.crane { position = {5, 0, 2}, by = 3, duration = 6 }, "
+      "shots.flyover { from_position = {5, 0, 5}, to_position = {-5, 0, 5}, height = 4, start = 2, "
+      "duration = 10 })");
+  EXPECT_NEAR(joined.back().time, 22, 1e-9);
+  EXPECT_LT((joined[joined.size() - 2].position - Eigen::Vector3d(0, 0, 9)).norm(), 1e-9);
+  expect("return require('mission.film').shots.orbit { radius = 3, duration = 4 }",
+         "shots.orbit: needs center");
+  expect("return require('mission.film').shots.crane { position = {0, 0, 1}, by = 1, duraton = 4 }",
+         "shots.crane: unknown key 'duraton'");
+  expect("return require('mission.film').shots.static { position = {0, 0, 1} }",
+         "shots.static.duration: expected seconds above 0");
+}
+
+}  // namespace
+}  // namespace lapwing
