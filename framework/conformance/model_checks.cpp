@@ -309,8 +309,7 @@ std::vector<CheckResult> check_vehicle_model(const Specimen<VehicleModel>& subje
                                              const CheckOptions& options) {
   Findings findings;
   const StandardSetting standard(false);
-  for (const ParameterCase& parameter_case :
-       parameter_cases(subject.parameters, standard.layout, standard.horizon.duration())) {
+  for (const ParameterCase& parameter_case : parameter_cases(subject.parameters, standard)) {
     findings.set_case(parameter_case.description);
     try {
       const std::unique_ptr<VehicleModel> model = subject.create(parameter_case.parameters);

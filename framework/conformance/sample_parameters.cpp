@@ -7,8 +7,10 @@ namespace {
 
 class Sampler {
  public:
-  Sampler(const ParameterTable& table, const StageLayout& layout, double duration)
-      : duration_(duration) {
+  Sampler(const ParameterTable& table, const StandardSetting& standard)
+      : duration_(standard.horizon.duration()),
+        subject_(standard.environment.subjects.front().name) {
+    const StageLayout& layout = standard.layout;
     const ParameterSpec* block = table.find("block");
     if (!block || !block->default_value.is_text()) return;
     const int index = layout.find(block->default_value.as_text());
@@ -27,6 +29,14 @@ class Sampler {
     const Value base = required(table, turn);
     std::vector<ParameterCase> result{{"defaults", base, true}};
     for (const ParameterSpec& spec : table.specs()) add_cases(spec, base, turn, result);
+    if (!table.find("subject")) return result;
+    const std::size_t count = result.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      ParameterCase with = result[k];
+      with.description += ", subject = " + subject_;
+      with.parameters.set("subject", subject_);
+      result.push_back(std::move(with));
+    }
     return result;
   }
 
@@ -58,7 +68,8 @@ class Sampler {
       case ParameterType::integer:
         return static_cast<std::int64_t>(std::ceil(inside(spec.range)));
       case ParameterType::number:
-        return time ? kMoments[turn % 3] * duration_ : inside(spec.range);
+        return time ? kMoments[std::min(turn % 3 + (spec.name == "finish"), 2)] * duration_
+                    : inside(spec.range);
       case ParameterType::numbers:
         return list_of(inside(spec.range), spec.size > 0 ? spec.size : numbers_);
       case ParameterType::choice:
@@ -112,7 +123,7 @@ class Sampler {
       case ParameterType::tables:
         for (const ParameterCase& inner : cases(*spec.table, 0))
           add("entries with " + inner.description, entries(inner.parameters, *spec.table),
-              inner.must_work);
+              inner.must_work && !spec.table->find("finish"));
         break;
       case ParameterType::text:
         break;
@@ -129,14 +140,15 @@ class Sampler {
   }
 
   double duration_;
+  std::string subject_;
   int numbers_ = 3;
 };
 
 }  // namespace
 
-std::vector<ParameterCase> parameter_cases(const ParameterTable& table, const StageLayout& layout,
-                                           double duration) {
-  return Sampler(table, layout, duration).cases(table, 0);
+std::vector<ParameterCase> parameter_cases(const ParameterTable& table,
+                                           const StandardSetting& standard) {
+  return Sampler(table, standard).cases(table, 0);
 }
 
 }  // namespace lapwing

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/conformance/standard_setting.h"
 #include "framework/core/parameters.h"
-#include "framework/problem/block.h"
 
 namespace lapwing {
 
@@ -18,9 +18,11 @@ struct ParameterCase {
 };
 
 // Defaults first (with made-up values for what is required), then every range's ends, every choice,
-// every flag, every optional value. Lists of tables get three entries at times inside `duration`;
-// numbers of any count get as many as the block that the table's `block` names by default.
-std::vector<ParameterCase> parameter_cases(const ParameterTable& table, const StageLayout& layout,
-                                           double duration);
+// every flag, every optional value. Lists of tables get three entries at times inside the horizon,
+// of which one number may contradict another; numbers of any count get as many as the block that
+// the table's `block` names by default. Where there is a parameter `subject` every case is tried
+// again with a subject of the setting.
+std::vector<ParameterCase> parameter_cases(const ParameterTable& table,
+                                           const StandardSetting& standard);
 
 }  // namespace lapwing

@@ -150,8 +150,7 @@ std::vector<CheckResult> check_trajectory_solver(const Specimen<TrajectorySolver
   Findings findings;
   const StandardSetting standard(false);
   bool first = true;
-  for (const ParameterCase& parameter_case :
-       parameter_cases(subject.parameters, standard.layout, standard.horizon.duration())) {
+  for (const ParameterCase& parameter_case : parameter_cases(subject.parameters, standard)) {
     findings.set_case(parameter_case.description);
     try {
       const std::unique_ptr<TrajectorySolver> solver = subject.create(parameter_case.parameters);

@@ -51,8 +51,23 @@ Vehicle standard_vehicle() {
   return vehicle;
 }
 
+Environment standard_environment() {
+  Environment environment;
+  environment.spheres = {{"", {0, 0, 0}, 4}, {"dome", {-9, 6, 2}, 7}};
+  environment.boxes = {{"", {-3, -3, -2}, {3, 5, 2}}, {"tower", {6, -12, 0}, {12, -4, 15}}};
+  environment.zones = {{"", {{0, 0}, {12, 1}, {13, 9}, {6, 4}, {2, 11}}},
+                       {"field", {{-15, -15}, {-15, -2}, {-4, -9}}, -5, 8}};
+  environment.subjects = {
+      {"walker", {0.15, 0.55, 1.25}, {{1, 2, 1}, {2, 2, 1}, {2, 4, 3}}, 1.8, 0.6},
+      {"point", {0.0}, {{-4, 5, 0}}}};
+  environment.margin = 0.5;
+  return environment;
+}
+
 StandardSetting::StandardSetting(bool step_free)
-    : horizon{.stages = 8, .step = 0.2, .step_free = step_free}, vehicle(standard_vehicle()) {
+    : horizon{.stages = 8, .step = 0.2, .step_free = step_free},
+      vehicle(standard_vehicle()),
+      environment(standard_environment()) {
   const auto add = [&](const char* name, int size, BlockRole role,
                        Topology topology = Topology::line) {
     layout.add({.name = name, .size = size, .role = role, .topology = topology});
@@ -73,7 +88,6 @@ StandardSetting::StandardSetting(bool step_free)
                                    {"gimbal_pitch_rate", 1}})
     add(name, size, BlockRole::input);
   add("target", 3, BlockRole::free);
-  add("gimbal", 2, BlockRole::free);
   add("time", 1, BlockRole::clock);
   add("step", 1, BlockRole::clock);
 }

@@ -9,8 +9,13 @@ namespace lapwing {
 // A 1.5 kg camera drone, as configs/vehicles/solo.yaml states it.
 Vehicle standard_vehicle();
 
+// Obstacles, zones and subjects around the origin, some with a name and some without: it is the
+// centre of a sphere, inside a box, and the corner of a zone that is not convex. No track turns on
+// a stage.
+Environment standard_environment();
+
 struct StandardSetting {
-  StageLayout layout;  // blocks of the shipped vehicle models, `target`, `gimbal`, `time`, `step`
+  StageLayout layout;  // blocks of the shipped vehicle models, `target`, `time`, `step`
   Horizon horizon;
   Vehicle vehicle;
   Environment environment;

@@ -23,6 +23,15 @@ T near_fade(const T& squared_distance) {
   return share * share * share * (10.0 + share * (-15.0 + 6.0 * share));
 }
 
+// The squared distance itself from kNearTarget on, and never less than a third of kNearTarget^2:
+// for logarithms. Twice differentiable.
+template <class T>
+T near_squared(const T& squared_distance) {
+  const T share = squared_distance / (kNearTarget * kNearTarget);
+  if (value_of(share) >= 1.0) return squared_distance;
+  return (kNearTarget * kNearTarget) * (1.0 / 3 + share * share * (1.0 - share / 3.0));
+}
+
 // The angle between `d` and the z axis as two numbers, along x and along y, whose squares sum to
 // the square of the angle (3.7, 3.8; reading 3.4):
 //

@@ -1,5 +1,5 @@
 // Known values of the shipped cost terms.
-#include "tests/plugins/plugin_setting.h"
+#include "tests/plugins/bound_term.h"
 
 namespace lapwing {
 namespace {
@@ -154,7 +154,52 @@ TEST(Derivative, IsExactOnPolynomials) {
   }
 }
 
+TEST(Derivative, ReadsSeveralBlocksAtOnce) {
+  const auto cost = [](const char* block) {
+    TrajectoryProblem problem = flight(21, 0.1);
+    const Value given = map_of({{"block", block}, {"order", 2}});
+    problem.add_cost("derivative", 1.0, plugins().create<CostTerm>("derivative", given));
+    problem.finish();
+    Stages at = problem.initial_guess();
+    for (int i = 0; i < 21; ++i) {
+      at.col(i).segment<3>(offset_of(problem, "position")) << std::sin(0.4 * i), 0, 0.02 * i * i;
+      at(offset_of(problem, "yaw"), i) = std::cos(0.3 * i);
+    }
+    return problem.cost(at);
+  };
+  EXPECT_GT(cost("yaw"), 1.0);
+  EXPECT_NEAR(cost("yaw  position"), cost("yaw") + cost("position"), 1e-9);
+}
+
+TEST(Derivative, TouchesNoCut) {
+  // A corner at 1 s: the second difference over stages 9, 10, 11 is all there is.
+  const auto cost = [](const Value& spans) {
+    TrajectoryProblem problem = flight(21, 0.1);
+    const Value given = map_of({{"order", 2}, {"except", spans}});
+    problem.add_cost("derivative", 1.0, plugins().create<CostTerm>("derivative", given));
+    problem.finish();
+    Stages at = problem.initial_guess();
+    for (int i = 0; i < 21; ++i) at(0, i) = 0.1 * std::abs(i - 10);
+    return problem.cost(at);
+  };
+  EXPECT_NEAR(cost(Value::list()), 0.1 * 20 * 20, 1e-9);
+  EXPECT_NEAR(cost(spans_of({{1.05, 1.06}})), 0.0, 1e-20);
+  EXPECT_NEAR(cost(spans_of({{1.1, 2}})), 0.0, 1e-20);
+  EXPECT_NEAR(cost(spans_of({{0, 0.85}, {1.15, 2}})), 40, 1e-9);
+}
+
 TEST(Derivative, RefusesWhatDoesNotFit) {
+  for (const char* block : {"", "  "})
+    expect_message(
+        [&] {
+          plugins().create<CostTerm>("derivative", map_of({{"block", block}}));
+        },
+        {"block", "expected the name of a block"});
+  expect_message(
+      [] {
+        plugins().create<CostTerm>("derivative", map_of({{"block", "yaw position yaw"}}));
+      },
+      {"block", "'yaw' is given twice"});
   expect_message(
       [] {
         plugins().create<CostTerm>("derivative", map_of({{"order", 5}}));
@@ -165,7 +210,7 @@ TEST(Derivative, RefusesWhatDoesNotFit) {
   expect_message([&] { problem.finish(); }, {"snap: ", "5 neighbouring stages", "has 3"});
   TrajectoryProblem other = flight(9, 0.1);
   other.add_cost("steady", 1.0, plugins().create<CostTerm>("gimbal_derivative"));
-  expect_message([&] { other.finish(); }, {"steady: no block 'gimbal'"});
+  expect_message([&] { other.finish(); }, {"steady: no block 'gimbal_yaw'"});
 }
 
 }  // namespace
