@@ -18,6 +18,7 @@ local film = { shots = require "mission.shot_types" }
 
 local HOVER = 10                -- s, of a single keyframe without a time
 local LARGEST_STRETCH = 64
+local CAMERA_STRETCH = 1.05     -- steps beyond what the flight alone needs
 local STRETCH_ACCURACY = 1.01   -- the smallest certified stretch is found to 1 %
 
 local function weight(name, default, summary)
@@ -74,8 +75,9 @@ local of_file = { { name = "input", type = "text", summary = "a designer's shot,
 
 -- ---- solving ------------------------------------------------------------------------------------
 
-local function attempt(run, shot, stretch, unlimited)
-  local stated, task, cuts = problem.state(run, shot, stretch, unlimited)
+-- `only`: "unlimited", as if the vehicle could do anything; "flight", without the camera.
+local function attempt(run, shot, stretch, only)
+  local stated, task, cuts = problem.state(run, shot, stretch, only)
   local result = { stretch = stretch, problem = stated, task = task, cuts = cuts }
   result.solution = run:solve(stated, run.options.solver)
   result.verdict = run:certify(run:plan { solution = result.solution, task = task, cuts = cuts })
@@ -86,7 +88,7 @@ end
 -- would ask for if nothing held it.
 local function broken_limit(run, shot, failing, leg)
   if leg then return leg end
-  local free = attempt(run, shot, failing.stretch, true)
+  local free = attempt(run, shot, failing.stretch, "unlimited")
   local limit = free.solution.status == "optimal" and free.verdict.failures[1]
   return limit or failing.verdict.failures[1] or failing.solution.message
 end
@@ -97,18 +99,25 @@ local function holds(tried)
 end
 
 -- The smallest stretch above a failing attempt at which the film is certified, to 1 %; or nil.
--- Below `least` no film is possible.
+-- Below `least` no film is possible. The flight alone is what takes time, so that is looked for
+-- first, and stretched further only where the camera needs more.
 local function smallest_stretch(run, shot, failing, least)
   local low, good, more = math.max(failing.stretch, least), nil, 0.05
-  while not good and low * (1 + more) < failing.stretch * LARGEST_STRETCH and not run:cancelled() do
-    local tried = attempt(run, shot, low * (1 + more))
+  local most = failing.stretch * LARGEST_STRETCH
+  while not good and low * (1 + more) < most and not run:cancelled() do
+    local tried = attempt(run, shot, low * (1 + more), "flight")
     if holds(tried) then good = tried else low, more = tried.stretch, 2 * more end
   end
   while good and good.stretch / low > STRETCH_ACCURACY and not run:cancelled() do
-    local tried = attempt(run, shot, math.sqrt(low * good.stretch))
+    local tried = attempt(run, shot, math.sqrt(low * good.stretch), "flight")
     if holds(tried) then good = tried else low = tried.stretch end
   end
-  return good
+  local stretch = good and good.stretch
+  while stretch and stretch < most and not run:cancelled() do
+    local tried = attempt(run, shot, stretch)
+    if holds(tried) then return tried end
+    stretch = stretch * CAMERA_STRETCH
+  end
 end
 
 local function finished(run, shot, chosen, notes, certified)
@@ -127,21 +136,22 @@ local function fly(run, shot)
   times.unwrap_yaw(shot.keyframes)
   local last = shot.keyframes[#shot.keyframes].time
   shot.duration = shot.duration or (last > 0 and last or HOVER)
-  local first = attempt(run, shot, o.stretch == "auto" and 1 or o.stretch)
   local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or problem.MISS,
                                       o.hard and 0 or problem.LATE)
+  local auto = o.stretch == "auto"
+  local first = attempt(run, shot, auto and 1 or o.stretch, auto and why and "flight" or nil)
   local status = first.solution.status
   local broken = not why and (status == "numerical_error" or status == "unsupported")
   if first.verdict.feasible or broken or run:cancelled() then
     return finished(run, shot, first, {}, first.verdict.feasible and first.stretch or nil)
   end
   why = broken_limit(run, shot, first, why)
-  if not o.hard and o.stretch ~= "auto" then return finished(run, shot, first, { why }) end
+  if not o.hard and not auto then return finished(run, shot, first, { why }) end
   local good = smallest_stretch(run, shot, first, least)
   local note = good and string.format("%s; certified from a stretch of %.2f", why, good.stretch)
     or string.format("%s; no stretch up to %g is certified", why, LARGEST_STRETCH)
   if run:cancelled() then note = why .. "; the search for a stretch was cancelled" end
-  local chosen = o.stretch == "auto" and good or first
+  local chosen = auto and good or first
   return finished(run, shot, chosen, { note }, good and good.stretch or nil)
 end
 

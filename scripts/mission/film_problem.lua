@@ -107,8 +107,9 @@ local function add_camera(p, weights, camera, environment)
     local subject = span.subject
     local within = { { start = span.start, finish = span.finish } }
     if subject.height > 0 and weights.skewness > 0 then
-      p:add_cost { type = "skewness", name = "skewness of " .. subject.name, height = subject.height,
-                   weight = weights.skewness, spans = within, except = camera.cuts }
+      p:add_cost { type = "skewness", name = "skewness of " .. subject.name,
+                   height = subject.height, weight = weights.skewness, spans = within,
+                   except = camera.cuts }
     end
     if subject.place or subject.size then
       p:add_cost { type = "framing", name = "framing of " .. subject.name, subject = subject.name,
@@ -141,12 +142,13 @@ local function guess(shot, stretch, keyframes, camera)
   return { times = camera.guess.times, positions = positions, yaws = camera.guess.yaws }
 end
 
--- Problem and task of a film with all times multiplied by `stretch`. `unlimited`: as if the vehicle
--- could do anything.
-function problem.state(run, shot, stretch, unlimited)
+-- Problem, task and cuts of a film with all times multiplied by `stretch`. `only`: "unlimited", as
+-- if the vehicle could do anything; "flight", without the camera.
+function problem.state(run, shot, stretch, only)
   local o = run.options
   local duration = shot.duration * stretch
-  local camera = shot.vehicle.gimbal and subjects.plan(run, shot, stretch, duration, shot.vehicle)
+  local camera = only ~= "flight" and shot.vehicle.gimbal
+    and subjects.plan(run, shot, stretch, duration, shot.vehicle)
   local keyframes = keyframes_of(shot, stretch, o)
   local environment = environment_of(run, o, camera)
   local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
@@ -159,7 +161,7 @@ function problem.state(run, shot, stretch, unlimited)
   p:add_cost(smoothness(o, shot.vehicle))
   p:add_cost { type = "yaw_derivative", name = "yaw", weight = o.weights.yaw }
   p:add_cost { type = "input_effort", name = "effort", weight = o.weights.effort }
-  if not unlimited then
+  if only ~= "unlimited" then
     p:add_constraint { type = "input_limits", across = "extent" }
     p:add_constraint { type = "state_limits" }
     add_obstacles(p, environment, camera)

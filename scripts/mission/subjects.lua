@@ -1,5 +1,5 @@
--- What a film looks at, and when: subjects and their tracks, looks, cuts, and a first guess of where
--- the camera points.
+-- What a film looks at, and when: subjects and their tracks, looks, cuts, and a first guess of
+-- where the camera points.
 local tracks = require "mission.tracks"
 
 local subjects = {}
@@ -31,7 +31,8 @@ local function looks_of(run, keyframes, list, by_name)
   if not any then
     if #list == 0 then return nil end
     if #list > 1 then
-      run:fail("subjects", "with several, keyframes say which: look_at = \"" .. list[1].name .. "\"")
+      run:fail("subjects", string.format("with several, keyframes say which: look_at = \"%s\"",
+                                         list[1].name))
     end
     for i, k in ipairs(keyframes) do looks[i] = { time = k.time, subject = list[1] } end
     return looks

@@ -24,7 +24,7 @@ function tracks.checked(run, list, stretch)
       points[j] = { time = point.time * stretch, position = point.position }
     end
     result[i] = { name = name, track = points, still = given.position ~= nil,
-                  height = given.height, width = given.width, distance = given.distance,
+                  height = given.height or 0, width = given.width or 0, distance = given.distance,
                   place = given.place, size = given.size, option = what }
     by_name[name] = result[i]
   end

@@ -79,7 +79,7 @@ class Solve {
 
  private:
   struct Step {
-    QuadraticStatus status;
+    QuadraticStatus status = QuadraticStatus::numerical_error;
     VectorXd d, rows, bounds;  // step and multipliers
     bool elastic = false;
   };
@@ -91,6 +91,7 @@ class Solve {
   std::optional<SolveStatus> stopped() const;
   bool line_search(const Step& step, double violation);
   double total_violation(const Stages& at) const;
+  double predicted_violation(const Step& step) const;
   double worst_violation() const;
   void record(double step);
   std::string explain(const Step& step) const;
@@ -107,7 +108,8 @@ class Solve {
   VectorXd rows_, bounds_;  // multipliers
   LocalModel model_;
   QuadraticProgram program_;
-  InteriorPoint interior_point_;
+  InteriorPoint interior_point_, elastic_point_;
+  bool contradictory_ = false;  // the last model's rows and bounds
   double program_tolerance_ = kProgramFinest;
   double merit_weight_ = 0;
   SolveReport report_;
@@ -156,8 +158,11 @@ SolveStatus Solve::iterate() {
     if (request_.progress)
       request_.progress->report(-1.0, "quadratic program " + std::to_string(k));
     problem_.linearise(at_, model_);
-    Step step = quadratic_step();
-    if (step.status == QuadraticStatus::infeasible) step = elastic_step();
+    // What contradicts itself once mostly does so again: no second proof until violations vanish.
+    Step step;
+    if (!contradictory_) step = quadratic_step();
+    contradictory_ = contradictory_ || step.status == QuadraticStatus::infeasible;
+    if (contradictory_) step = elastic_step();
     if (step.status == QuadraticStatus::cancelled) return SolveStatus::cancelled;
     if (step.status != QuadraticStatus::optimal) {
       report_.message = step.status == QuadraticStatus::unbounded
@@ -184,6 +189,7 @@ SolveStatus Solve::iterate() {
                    kProgramFinest, kProgramCoarsest);
     const bool still = std::abs(promised) <= tolerance_ * (1.0 + std::abs(model_.cost));
     if (still && worst_violation() <= feasibility_) return SolveStatus::optimal;
+    contradictory_ = step.elastic && predicted_violation(step) > feasibility_;
     if (!line_search(step, violation)) {
       if (worst_violation() <= feasibility_) return SolveStatus::feasible;
       if (step.elastic) report_.message = explain(step);
@@ -226,8 +232,7 @@ Solve::Step Solve::elastic_step() {
     const ElasticProgram elastic = make_elastic(hard, problem_.dynamics_rows(), bounds, penalty);
     InteriorPointOptions options;
     options.cancellation = request_.cancellation;
-    InteriorPoint solver;
-    const QuadraticResult result = solver.solve(elastic.program, options);
+    const QuadraticResult result = elastic_point_.solve(elastic.program, options);
     if (result.status == QuadraticStatus::infeasible && !bounds) continue;
     return {result.status, result.x.head(elastic.variables),
             result.row_multipliers.head(problem_.rows()),
@@ -247,12 +252,16 @@ double Solve::worst_violation() const {
   return (model_.row_lower - c).cwiseMax(c - model_.row_upper).cwiseMax(0.0).maxCoeff();
 }
 
+// What remains of the violations after the whole step, by the model's rows.
+double Solve::predicted_violation(const Step& step) const {
+  const VectorXd rows = model_.values + model_.jacobian * step.d;
+  return (model_.row_lower - rows).cwiseMax(rows - model_.row_upper).cwiseMax(0.0).sum();
+}
+
 bool Solve::line_search(const Step& step, double violation) {
   const double largest = step.rows.size() ? step.rows.cwiseAbs().maxCoeff() : 0.0;
   merit_weight_ = std::max(merit_weight_, kMeritMargin * largest);
-  const VectorXd predicted = model_.values + model_.jacobian * step.d;
-  const double left =
-      (model_.row_lower - predicted).cwiseMax(predicted - model_.row_upper).cwiseMax(0.0).sum();
+  const double left = predicted_violation(step);
   const double slope =
       std::min(0.0, model_.gradient.dot(step.d) - merit_weight_ * (violation - left));
   const double merit = model_.cost + merit_weight_ * violation;
