@@ -267,11 +267,20 @@ TEST_F(MissionTest, DesignersShotsAreRead) {
   const Plan plan = mission->plan().plan;
   ASSERT_EQ(plan.task.keyframes.size(), 2u);
   EXPECT_TRUE(plan.task.keyframes[1].position.isApprox(Eigen::Vector3d(12, 0, 8)));
-  EXPECT_NEAR(*plan.task.keyframes[0].yaw, M_PI / 2, 1e-12);
-  EXPECT_NEAR(*plan.task.keyframes[1].yaw, M_PI, 1e-12);
+  ASSERT_EQ(plan.environment.subjects.size(), 1u);
+  EXPECT_TRUE(plan.environment.subjects[0].position(0).isApprox(Eigen::Vector3d(0, 10, 0)));
+  EXPECT_LT(plan.environment.subjects[0].position(10).norm(), 1e-12);
   ASSERT_TRUE(plan.geodetic_origin);
   EXPECT_EQ(plan.geodetic_origin->altitude, 400);
   EXPECT_TRUE(verify(plan).feasible());
+
+  mission = load(script);  // without a gimbal the vehicle's yaw turns the camera
+  mission->configure({}, std::vector<std::string>{"vehicle=vehicles/racer"});
+  const Plan turned = mission->plan().plan;
+  EXPECT_TRUE(turned.environment.subjects.empty());
+  ASSERT_TRUE(turned.task.keyframes[0].yaw && turned.task.keyframes[1].yaw);
+  EXPECT_NEAR(*turned.task.keyframes[0].yaw, M_PI / 2, 1e-12);
+  EXPECT_NEAR(*turned.task.keyframes[1].yaw, M_PI, 1e-12);
 
   write_file_atomically(folder_ / "geodetic.json", R"({"keyframeTimes": [0, 10],
     "keyFrameList": [
@@ -280,12 +289,13 @@ TEST_F(MissionTest, DesignersShotsAreRead) {
       {"cameraPose": {"lat": 47.0001, "lng": 8.0, "altitude": 405},
        "lookAt": {"lat": 47.0001, "lng": 8.0, "altitude": 300}}]})");
   mission = load("return require('mission.film').from_file { file = 'geodetic.json' }");
-  mission->configure({}, {});
+  mission->configure({}, std::vector<std::string>{"vehicle=vehicles/racer"});
   const Plan geodetic = mission->plan().plan;
   const Eigen::Vector3d second = geodetic.task.keyframes[1].position;
   EXPECT_NEAR(second.x(), 0, 1e-3);
   EXPECT_NEAR(second.y(), 11.118, 0.01);  // a ten-thousandth of a degree north at 47 degrees
   EXPECT_NEAR(second.z(), 5, 1e-3);
+  ASSERT_TRUE(geodetic.task.keyframes[0].yaw);
   EXPECT_NEAR(*geodetic.task.keyframes[0].yaw, 0, 1e-3);
   EXPECT_FALSE(geodetic.task.keyframes[1].yaw);  // straight down has no heading
 
