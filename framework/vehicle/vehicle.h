@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "framework/core/parameters.h"
+#include "framework/geometry/camera_view.h"
 
 namespace lapwing {
 
@@ -33,6 +34,8 @@ struct Camera {
   int width = 0, height = 0;                // pixels
   double focal_x = 0, focal_y = 0;          // pixels
   double principal_x = 0, principal_y = 0;  // pixels, from the upper left corner's centre
+
+  Pinhole pinhole() const { return {width, height, focal_x, focal_y, principal_x, principal_y}; }
 };
 
 struct Vehicle {

@@ -115,7 +115,7 @@ Certificate Certificate::from_value(const Value& value) {
 
 std::string to_line(const Check& check) {
   if (!check.skipped.empty()) return check.name + " skipped: " + check.skipped;
-  const bool in_words = check.unit.empty() && !check.detail.empty();
+  const bool in_words = check.name == "document" && !check.detail.empty();
   if (!check.worst || in_words) return check.name + ": " + check.detail;
   std::string line = check.name + " " + quantity(*check.worst, check.unit);
   line += check.pass ? " within " : check.at_least ? " falls below " : " exceeds ";

@@ -55,6 +55,8 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"keyframe_miss", CheckGroup::task, true, "m"},
     CheckKind{"keyframe_yaw", CheckGroup::task, true, "rad"},
     CheckKind{"framing", CheckGroup::task, true, ""},
+    CheckKind{"whole_subject", CheckGroup::task, false, ""},
+    CheckKind{"line_of_sight", CheckGroup::task, false, ""},
     CheckKind{"gates", CheckGroup::task, true, ""},
     CheckKind{"drawing", CheckGroup::task, true, ""},
     CheckKind{"coverage", CheckGroup::task, true, ""},
@@ -107,5 +109,19 @@ void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);
 void check_time(const Flight& flight, Certificate& certificate);
 void check_task(const Flight& flight, Certificate& certificate);
+void check_framing(const Flight& flight, Certificate& certificate);
+
+// What of the environment, the cuts and the framing does not hold together, in words. The spans are
+// judged against a flight that ends at `finish`.
+void list_problems(const Environment& environment, std::vector<std::string>& problems);
+void list_problems(const Plan& film, double finish, std::vector<std::string>& problems);
+
+// Whether a figure is one that a plan may hold.
+inline bool sound(double number) {
+  return std::abs(number) <= tolerances::kLargestNumber;
+}
+inline bool sound(const Eigen::Vector3d& v) {
+  return sound(v.x()) && sound(v.y()) && sound(v.z());
+}
 
 }  // namespace lapwing

@@ -1,4 +1,4 @@
-// Distance of the continuous path from every obstacle, never overestimated.
+// Distance of the continuous path from every obstacle and zone, never overestimated.
 //
 // The path between two integrated points is replaced by their chord; it leaves the chord by at most
 // |a|max h^2 / 8 (kBulge), which is taken off the distance.
@@ -13,8 +13,8 @@ struct Chord {
   Eigen::Vector3d at(double s) const { return from + s * (to - from); }
 };
 
-// Signed distances of a point from a surface: negative inside. Both are convex functions of the
-// point.
+// Signed distances of a point from a surface: negative inside. Those of spheres and boxes are
+// convex functions of the point; all change by no more than the point moves.
 double distance(const Sphere& sphere, const Eigen::Vector3d& p) {
   return (p - sphere.center).norm() - sphere.radius;
 }
@@ -25,9 +25,39 @@ double distance(const Box& box, const Eigen::Vector3d& p) {
   return deepest <= 0 ? deepest : beyond.cwiseMax(0.0).norm();
 }
 
-// The nearest share of the chord, by golden sections: the distance along it is convex.
+// From the edges of a polygon that does not cross itself.
+double distance(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& p) {
+  double nearest2 = std::numeric_limits<double>::infinity();
+  bool inside = false;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d& a = corners[i];
+    const Eigen::Vector2d& b = corners[i + 1 < corners.size() ? i + 1 : 0];
+    const Eigen::Vector2d edge = b - a, to_p = p - a;
+    const double share = std::clamp(to_p.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+    nearest2 = std::min(nearest2, (to_p - share * edge).squaredNorm());
+    // Each edge that a ray from p towards +x crosses turns outside into inside.
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    const double side = edge.x() * to_p.y() - edge.y() * to_p.x();
+    if ((side > 0) == (edge.y() > 0)) inside = !inside;
+  }
+  return inside ? -std::sqrt(nearest2) : std::sqrt(nearest2);
+}
+
+double distance(const Zone& zone, const Eigen::Vector3d& p) {
+  const double across = distance(zone.corners, p.head<2>());
+  const double up = std::max(zone.floor - p.z(), p.z() - zone.ceiling);
+  if (across <= 0 && up <= 0) return std::max(across, up);
+  return std::hypot(std::max(across, 0.0), std::max(up, 0.0));
+}
+
+// The smallest distance on a chord and its share of it; never above the true one.
+struct Nearest {
+  double distance, share;
+};
+
+// By golden sections: the distance along the chord is convex.
 template <class Obstacle>
-double nearest_share(const Obstacle& obstacle, const Chord& chord) {
+Nearest nearest(const Obstacle& obstacle, const Chord& chord) {
   constexpr double kGolden = 0.6180339887498949;
   double low = 0, high = 1;
   double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
@@ -41,7 +71,36 @@ double nearest_share(const Obstacle& obstacle, const Chord& chord) {
       b = low + kGolden * (high - low), value_b = distance(obstacle, chord.at(b));
     }
   }
-  return (low + high) / 2;
+  Nearest best{distance(obstacle, chord.from), 0};
+  for (const double share : {(low + high) / 2, 1.0}) {
+    const double value = distance(obstacle, chord.at(share));
+    if (value < best.distance) best = {value, share};
+  }
+  return best;
+}
+
+// A zone need not be convex: halves of the chord that may hold less than the best so far are
+// halved again, down to a length that is taken off the distance.
+Nearest nearest(const Zone& zone, const Chord& chord) {
+  const double length = (chord.to - chord.from).norm();
+  const double resolution = std::max(tolerances::kBulge, length / 2048);
+  Nearest best{distance(zone, chord.from), 0};
+  std::vector<std::pair<double, double>> parts{{0.0, 1.0}};
+  while (!parts.empty()) {
+    const auto [from, to] = parts.back();
+    parts.pop_back();
+    const double middle = (from + to) / 2, half = (to - from) / 2 * length;
+    const double value = distance(zone, chord.at(middle));
+    if (value - half >= best.distance) continue;
+    if (half <= resolution) {
+      best = {value - half, middle};
+    } else {
+      if (value < best.distance) best = {value, middle};
+      parts.emplace_back(middle, to);
+      parts.emplace_back(from, middle);
+    }
+  }
+  return best;
 }
 
 class Clearance {
@@ -56,13 +115,8 @@ class Clearance {
     const double lowest = distance(obstacle, chord.at(0.5)) - length / 2 - chord.bulge;
     if (seen_ && lowest >= worst_.value()) return;
     seen_ = true;
-    double best = distance(obstacle, chord.from), share = 0;
-    const double inner = length > 0 ? nearest_share(obstacle, chord) : 0.0;
-    for (const double s : {inner, 1.0}) {
-      const double value = distance(obstacle, chord.at(s));
-      if (value < best) best = value, share = s;
-    }
-    if (worst_.see(best - chord.bulge, time + share * duration)) {
+    const Nearest best = nearest(obstacle, chord);
+    if (worst_.see(best.distance - chord.bulge, time + best.share * duration)) {
       nearest_ = obstacle.name.empty() ? std::string(kind) + " " + std::to_string(number + 1)
                                        : std::string(kind) + " '" + obstacle.name + "'";
     }
@@ -88,13 +142,16 @@ void see_all(const Environment& environment, const Chord& chord, double time, do
   for (std::size_t i = 0; i < environment.boxes.size(); ++i) {
     clearance.see(environment.boxes[i], "box", i, chord, time, duration);
   }
+  for (std::size_t i = 0; i < environment.zones.size(); ++i) {
+    clearance.see(environment.zones[i], "zone", i, chord, time, duration);
+  }
 }
 
 }  // namespace
 
 void check_clearance(const Flight& flight, Certificate& certificate) {
   const Environment& environment = flight.plan.environment;
-  if (environment.spheres.empty() && environment.boxes.empty()) {
+  if (environment.spheres.empty() && environment.boxes.empty() && environment.zones.empty()) {
     certificate.checks.push_back(skipped_check("clearance", "the environment has no obstacle"));
     return;
   }

@@ -16,8 +16,11 @@ class Reader {
     Document document;
     read_vehicle(document.vehicle);
     samples();
-    environment();
+    list_problems(plan_.environment, problems_);
     task();
+    if (problems_.empty()) {
+      list_problems(plan_, plan_.trajectory.samples.back().time, problems_);
+    }
     if (problems_.empty()) steps(document.vehicle);
     const auto count = static_cast<double>(problems_.size());
     document.check = judged(make_check("document"), count, 0, 0, at_);
@@ -51,11 +54,7 @@ class Reader {
     }
   }
 
-  static bool sound(double number) { return std::abs(number) <= tolerances::kLargestNumber; }
-  static bool sound(const Eigen::Vector3d& v) {
-    return sound(v.x()) && sound(v.y()) && sound(v.z());
-  }
-  static bool sound(const Sample& s) {
+  static bool all_sound(const Sample& s) {
     return sound(s.time) && sound(s.position) && sound(s.velocity) && sound(s.acceleration) &&
            sound(s.yaw) && sound(s.yaw_rate) && sound(s.force) && sound(s.yaw_torque) &&
            sound(s.gimbal_yaw) && sound(s.gimbal_pitch) && sound(s.gimbal_yaw_rate) &&
@@ -73,29 +72,11 @@ class Reader {
     }
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::string name = "sample " + std::to_string(i + 1);
-      if (!sound(samples[i])) {
+      if (!all_sound(samples[i])) {
         add(name + " holds a number that is not finite or beyond 1e7");
       } else if (i > 0 && !(samples[i].time > samples[i - 1].time)) {
         at_ = samples[i].time;
         add(name + " is not later than the one before it");
-      }
-    }
-  }
-
-  void environment() {
-    const Environment& environment = plan_.environment;
-    if (!(environment.margin >= 0) || !sound(environment.margin)) {
-      add("the margin must be at least 0");
-    }
-    for (const Sphere& sphere : environment.spheres) {
-      if (!sound(sphere.center) || !(sphere.radius > 0) || !sound(sphere.radius)) {
-        add("sphere '" + sphere.name + "' must have a centre and a radius above 0");
-      }
-    }
-    for (const Box& box : environment.boxes) {
-      if (!sound(box.lower) || !sound(box.upper) ||
-          !(box.lower.array() < box.upper.array()).all()) {
-        add("box '" + box.name + "' must have its lower corner below its upper one");
       }
     }
   }

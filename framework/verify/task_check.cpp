@@ -117,7 +117,7 @@ void check_task(const Flight& flight, Certificate& certificate) {
   checks.push_back(time.check("the task has no keyframe"));
   checks.push_back(miss.check("the task has no keyframe"));
   checks.push_back(yaw.check("no keyframe states a yaw"));
-  checks.push_back(skipped_check("framing", "the plan names no subject"));
+  check_framing(flight, certificate);
   checks.push_back(skipped_check("gates", "the task has no gate"));
   checks.push_back(skipped_check("drawing", "the task has no stroke"));
   checks.push_back(skipped_check("coverage", "the task has no region to cover"));

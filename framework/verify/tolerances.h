@@ -37,5 +37,7 @@ inline constexpr double kHiddenGimbal = 1e-6;   // rad
 inline constexpr double kLargestNumber = 1e7;  // any figure of a sample or of the task, SI
 inline constexpr double kLargestSteps = 5e6;   // steps of integration
 inline constexpr double kStartTime = 1e-9;     // s, the first sample is at time 0
+inline constexpr double kSpanTime = 1e-6;      // s, that a span may pass the ends of the flight
+inline constexpr int kMostCorners = 1000;      // of a zone
 
 }  // namespace lapwing::tolerances

@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "framework/core/units.h"
+#include "framework/geometry/camera_axes.h"
 #include "framework/trajectory/plan.h"
 #include "framework/vehicle/vehicle.h"
 
@@ -95,6 +96,25 @@ struct ReferenceOptions {
   double lift = 0.4;  // m/s^2, negative: the flight descends
 };
 
+// A walker who stays 10 m in front of the camera, without regard to the ground; the camera is on
+// him but for a cut in the middle.
+inline void add_film(Plan& plan) {
+  Subject walker{.name = "walker", .times = {}, .positions = {}, .height = 1.8, .width = 0.6};
+  const auto& samples = plan.trajectory.samples;
+  for (std::size_t i = 0; i < samples.size(); i += std::max<std::size_t>(1, samples.size() / 16)) {
+    const Sample& s = samples[i];
+    const auto axes = camera_axes(s.yaw + s.gimbal_yaw, s.gimbal_pitch);
+    walker.times.push_back(s.time);
+    walker.positions.push_back(s.position + 10 * axes.forward);
+  }
+  plan.environment.subjects = {walker, {"castle", {0}, {{0, 100, 5}}, 10, 8}};
+  plan.environment.zones = {
+      {.name = "yard", .corners = {{-30, 4}, {-20, 4}, {-20, 6}, {30, 6}, {30, 9}, {-30, 9}}},
+      {"roofs", {{-30, -3}, {30, -3}, {30, 3}, {-30, 3}}, -5, 3}};
+  plan.cuts = {{3.5, 4.25}};
+  plan.task.framing = {{"walker", {0, 5}}, {"walker", {5, 8}}};
+}
+
 // From rest to rest along +x and up (or down), turning, with the gimbal moving.
 inline Plan reference_plan(const ReferenceOptions& options = {}) {
   const double duration = 8;
@@ -124,6 +144,7 @@ inline Plan reference_plan(const ReferenceOptions& options = {}) {
   plan.environment.spheres = {{"tree", middle.position + Eigen::Vector3d(0, 3, 0), 1.0}};
   plan.environment.boxes = {{"house", {-20, -30, 0}, {20, -4, 30}}};
   plan.budget = 60;
+  add_film(plan);
   return plan;
 }
 

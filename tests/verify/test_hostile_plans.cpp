@@ -59,11 +59,15 @@ TEST(HostilePlans, NoSampleAndOneSample) {
   EXPECT_THAT(refusal_after([](Plan& p) { p.trajectory.samples.clear(); }), HasSubstr("no sample"));
   Plan plan = reference_plan();
   plan.trajectory.samples.resize(1);
+  plan.cuts.clear();
+  plan.task.framing.clear();
   const Certificate c = verify(plan);
   EXPECT_FALSE(c.find("keyframe_time")->pass);  // the others lie after its end
   EXPECT_FALSE(c.find("keyframe_miss")->pass);
   plan.task.keyframes.resize(1);
   EXPECT_TRUE(verify(plan).feasible());
+  plan.task.framing = {{"walker", {0, 0}}};
+  EXPECT_THAT(refusal(plan), HasSubstr("framing 1 must start before"));
 }
 
 TEST(HostilePlans, NegativeMarginAndEmptyObstacles) {
@@ -74,6 +78,75 @@ TEST(HostilePlans, NegativeMarginAndEmptyObstacles) {
                 std::swap(p.environment.boxes[0].lower, p.environment.boxes[0].upper);
               }),
               HasSubstr("box 'house'"));
+}
+
+TEST(HostilePlans, ZonesThatAreNoPolygons) {
+  const auto refusal_of = [](std::vector<Eigen::Vector2d> corners) {
+    return refusal_after([&](Plan& p) { p.environment.zones[0].corners = corners; });
+  };
+  EXPECT_THAT(refusal_of({}), HasSubstr("zone 'yard' must have at least three corners"));
+  EXPECT_THAT(refusal_of({{50, 0}, {51, 0}}), HasSubstr("at least three corners"));
+  EXPECT_THAT(refusal_of(std::vector<Eigen::Vector2d>(1001, {50, 0})), HasSubstr("at most 1000"));
+  EXPECT_THAT(refusal_of({{50, 0}, {51, std::nan("")}, {51, 1}}), HasSubstr("not finite"));
+  EXPECT_THAT(refusal_of({{50, 0}, {51, 1e8}, {51, 1}}), HasSubstr("beyond 1e7"));
+  for (const auto& crossed : std::vector<std::vector<Eigen::Vector2d>>{
+           {{50, 0}, {52, 2}, {52, 0}, {50, 2}},                   // a bow tie
+           {{50, 0}, {51, 0}, {52, 0}},                            // on one line
+           {{50, 0}, {50, 0}, {51, 0}, {51, 1}},                   // a corner twice
+           {{50, 0}, {54, 0}, {54, 4}, {52, 0}, {50, 4}},          // a corner on another edge
+           {{50, 0}, {54, 0}, {54, 4}, {53, 4}, {54, 4}, {50, 4}}  // an edge that turns back
+       }) {
+    EXPECT_THAT(refusal_of(crossed), HasSubstr("edges that cross or touch"));
+  }
+  for (const auto& [floor, ceiling] : std::vector<std::pair<double, double>>{
+           {3, 3}, {3, 2}, {INFINITY, INFINITY}, {-INFINITY, -INFINITY}, {std::nan(""), 3}}) {
+    EXPECT_THAT(refusal_after([floor = floor, ceiling = ceiling](Plan& p) {
+                  p.environment.zones[1].floor = floor;
+                  p.environment.zones[1].ceiling = ceiling;
+                }),
+                HasSubstr("zone 'roofs' must have its floor below its ceiling"));
+  }
+}
+
+TEST(HostilePlans, SubjectsWithoutASoundTrack) {
+  const auto refusal_of = [](auto change) {
+    return refusal_after([&](Plan& p) { change(p.environment.subjects[0]); });
+  };
+  EXPECT_THAT(refusal_of([](Subject& s) { s.times.clear(); }), HasSubstr("at least one time"));
+  EXPECT_THAT(refusal_of([](Subject& s) { s.times.pop_back(); }), HasSubstr("positions"));
+  EXPECT_THAT(refusal_of([](Subject& s) { s.times[2] = s.times[1]; }),
+              HasSubstr("subject 'walker' has times that do not increase"));
+  EXPECT_THAT(refusal_of([](Subject& s) { s.times[2] = std::nan(""); }), HasSubstr("not finite"));
+  EXPECT_THAT(refusal_of([](Subject& s) { s.positions[0].y() = INFINITY; }),
+              HasSubstr("not finite"));
+  EXPECT_THAT(refusal_of([](Subject& s) { s.height = -1; }), HasSubstr("height and a width"));
+  EXPECT_THAT(refusal_of([](Subject& s) { s.width = std::nan(""); }),
+              HasSubstr("height and a width"));
+  EXPECT_THAT(refusal_of([](Subject& s) { s.name = "castle"; }),
+              HasSubstr("two subjects are named 'castle'"));
+  EXPECT_THAT(refusal_of([](Subject& s) { s.name.clear(); }), HasSubstr("a subject has no name"));
+}
+
+TEST(HostilePlans, CutsAndFramingOutOfPlace) {
+  const auto with_cuts = [](std::vector<TimeSpan> cuts) {
+    return refusal_after([&](Plan& p) { p.cuts = cuts; });
+  };
+  EXPECT_THAT(with_cuts({{2, 1}}), HasSubstr("cut 1 must start before it finishes"));
+  EXPECT_THAT(with_cuts({{-1, 1}}), HasSubstr("lie within the flight"));
+  EXPECT_THAT(with_cuts({{7, 8.1}}), HasSubstr("lie within the flight"));
+  EXPECT_THAT(with_cuts({{1, std::nan("")}}), HasSubstr("cut 1"));
+  EXPECT_THAT(with_cuts({{3, 4}, {1, 2}}), HasSubstr("cut 2 must start after the one before"));
+  EXPECT_THAT(with_cuts({{1, 2}, {2, 3}}), HasSubstr("cut 2 must start after the one before"));
+  const auto with_framing = [](const FramingTask& framing) {
+    return refusal_after([&](Plan& p) { p.task.framing = {framing}; });
+  };
+  EXPECT_THAT(with_framing({"runner", {0, 1}}), HasSubstr("names the subject 'runner'"));
+  EXPECT_THAT(with_framing({"walker", {0, 9}}), HasSubstr("framing 1 must start before"));
+  EXPECT_THAT(with_framing({"walker", {0, std::nan("")}}), HasSubstr("framing 1 must start"));
+  for (const double share : {0.0, -1.0, 1.001, std::nan("")}) {
+    EXPECT_THAT(refusal_after([&](Plan& p) { p.task.framing_share = share; }),
+                HasSubstr("share of framing"));
+  }
 }
 
 TEST(HostilePlans, VehicleTamperedWith) {

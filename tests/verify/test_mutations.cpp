@@ -39,6 +39,15 @@ Sample& last(Plan& plan) {
   return plan.trajectory.samples.back();
 }
 
+// Moves the walker far away from `from` to `to`.
+void hide(Plan& plan, double from, double to) {
+  Subject& walker = plan.environment.subjects[0];
+  for (std::size_t i = 0; i < walker.times.size(); ++i) {
+    if (walker.times[i] < from || walker.times[i] > to) continue;
+    walker.positions[i] += Eigen::Vector3d(0, 0, 300);
+  }
+}
+
 // 0.5 mm a sample over a second of samples 20 ms apart: each is within its own tolerance.
 void creep(Plan& plan) {
   double offset = 0;
@@ -76,6 +85,25 @@ const std::vector<Mutation>& mutations() {
       {"clearance", [](Plan& p) { p.environment.spheres[0].radius = 2.51; }},
       {"clearance", [](Plan& p) { p.environment.boxes[0].upper.y() = -0.49; }},
       {"clearance", [](Plan& p) { p.environment.margin = 2.01; }},
+      {"clearance",
+       [](Plan& p) {
+         auto& corners = p.environment.zones[0].corners;
+         corners[2].y() = corners[3].y() = 0.49;
+       }},
+      {"clearance", [](Plan& p) { p.environment.zones[1].ceiling = 9.51; }},
+      {"defect_gimbal", [](Plan& p) { sample(p, 40).gimbal_yaw += 0.005; }},
+      {"defect_gimbal", [](Plan& p) { sample(p, 40).gimbal_yaw_rate += 0.05; }},
+      {"framing", [](Plan& p) { hide(p, 5, 5.6); }},
+      {"framing", [](Plan& p) { p.task.framing[1].subject = "castle"; }},
+      {"framing", vehicle([](Vehicle& v) {
+         v.camera.width = 2;
+         v.camera.height = 2;
+         v.camera.principal_x = v.camera.principal_y = 0.5;
+       })},
+      {"document", [](Plan& p) { p.cuts[0].start = p.cuts[0].finish; }},
+      {"document", [](Plan& p) { p.environment.zones[1].ceiling = -6; }},
+      {"document", [](Plan& p) { p.environment.subjects[0].positions.pop_back(); }},
+      {"document", [](Plan& p) { p.task.framing[0].subject = "runner"; }},
       {"flight_time", vehicle([](Vehicle& v) { v.flight_time = 7.9; })},
       {"budget", [](Plan& p) { p.budget = 7.9; }},
       {"keyframe_time", [](Plan& p) { p.task.keyframes[2].time = 8.2; }},
@@ -119,7 +147,9 @@ TEST(Mutations, ForceDownwardsAloneIsRefused) {
 }
 
 TEST(Mutations, CoverEveryCheckThatIsMade) {
-  std::set<std::string> covered{"force_up", "acceleration_up", "acceleration_down"};
+  // The last two are reported alone; test_framing.cpp judges them.
+  std::set<std::string> covered{"force_up", "acceleration_up", "acceleration_down", "whole_subject",
+                                "line_of_sight"};
   for (const Mutation& mutation : mutations()) covered.insert(mutation.check);
   const Certificate certificate = verify(reference_plan());
   for (const Check& check : certificate.checks) {
@@ -133,6 +163,8 @@ TEST(Mutations, EveryCertificateListsEveryCheckOnceInOrder) {
   broken.trajectory.samples.clear();
   Plan single = reference_plan();
   single.trajectory.samples.resize(1);
+  single.cuts.clear();
+  single.task.framing.clear();
   for (const Plan& plan : {reference_plan(), broken, single}) {
     const Certificate certificate = verify(plan);
     ASSERT_EQ(certificate.checks.size(), kCheckKinds.size());

@@ -1,0 +1,154 @@
+// Whether the environment holds together: shapes that exist, tracks without gaps.
+#include <set>
+
+#include "framework/verify/checks.h"
+
+namespace lapwing {
+namespace {
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+bool within(double x, double a, double b) {
+  return std::min(a, b) <= x && x <= std::max(a, b);
+}
+
+// Whether p, which lies on the line through a and b, lies between them.
+bool between(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return within(p.x(), a.x(), b.x()) && within(p.y(), a.y(), b.y());
+}
+
+// Whether two segments have a point in common.
+bool meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+          const Eigen::Vector2d& d) {
+  const double a_side = cross(d - c, a - c), b_side = cross(d - c, b - c);
+  const double c_side = cross(b - a, c - a), d_side = cross(b - a, d - a);
+  if (((a_side > 0) != (b_side > 0) && a_side != 0 && b_side != 0) &&
+      ((c_side > 0) != (d_side > 0) && c_side != 0 && d_side != 0)) {
+    return true;
+  }
+  return (a_side == 0 && between(a, c, d)) || (b_side == 0 && between(b, c, d)) ||
+         (c_side == 0 && between(c, a, b)) || (d_side == 0 && between(d, a, b));
+}
+
+// Whether a polygon is one: no edge of no length, none that turns back on the one before it or
+// meets one that is not its neighbour.
+bool simple(const std::vector<Eigen::Vector2d>& corners) {
+  const std::size_t n = corners.size();
+  const auto corner = [&](std::size_t i) -> const Eigen::Vector2d& { return corners[i % n]; };
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector2d edge = corner(i + 1) - corner(i), next = corner(i + 2) - corner(i + 1);
+    if (!(edge.squaredNorm() > 0)) return false;
+    if (cross(edge, next) == 0 && edge.dot(next) < 0) return false;
+    const std::size_t end = i == 0 ? n - 1 : n;  // the last edge is the first one's neighbour
+    for (std::size_t k = i + 2; k < end; ++k) {
+      if (meet(corner(i), corner(i + 1), corner(k), corner(k + 1))) return false;
+    }
+  }
+  return true;
+}
+
+std::string problem_of(const Zone& zone) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (zone.corners.size() < 3) return " must have at least three corners";
+  if (zone.corners.size() > tolerances::kMostCorners) {
+    return " must have at most " + std::to_string(tolerances::kMostCorners) + " corners";
+  }
+  for (const Eigen::Vector2d& corner : zone.corners) {
+    if (!sound(corner.x()) || !sound(corner.y())) {
+      return " has a corner that is not finite or beyond 1e7";
+    }
+  }
+  if (!simple(zone.corners)) return " has edges that cross or touch, or corners that coincide";
+  if (!(sound(zone.floor) || zone.floor == -kNone) ||
+      !(sound(zone.ceiling) || zone.ceiling == kNone) || !(zone.floor < zone.ceiling)) {
+    return " must have its floor below its ceiling";
+  }
+  return "";
+}
+
+std::string problem_of(const Subject& subject) {
+  if (subject.times.empty()) return " must have at least one time";
+  if (subject.times.size() != subject.positions.size()) {
+    return " has " + std::to_string(subject.times.size()) + " times and " +
+           std::to_string(subject.positions.size()) + " positions";
+  }
+  for (std::size_t i = 0; i < subject.times.size(); ++i) {
+    if (!sound(subject.times[i]) || !sound(subject.positions[i])) {
+      return " holds a number that is not finite or beyond 1e7";
+    }
+    if (i > 0 && !(subject.times[i] > subject.times[i - 1])) {
+      return " has times that do not increase";
+    }
+  }
+  if (!(subject.height >= 0 && subject.width >= 0) || !sound(subject.height) ||
+      !sound(subject.width)) {
+    return " must have a height and a width of at least 0";
+  }
+  return "";
+}
+
+}  // namespace
+
+void list_problems(const Environment& environment, std::vector<std::string>& problems) {
+  if (!(environment.margin >= 0) || !sound(environment.margin)) {
+    problems.push_back("the margin must be at least 0");
+  }
+  for (const Sphere& sphere : environment.spheres) {
+    if (!sound(sphere.center) || !(sphere.radius > 0) || !sound(sphere.radius)) {
+      problems.push_back("sphere '" + sphere.name + "' must have a centre and a radius above 0");
+    }
+  }
+  for (const Box& box : environment.boxes) {
+    if (!sound(box.lower) || !sound(box.upper) || !(box.lower.array() < box.upper.array()).all()) {
+      problems.push_back("box '" + box.name + "' must have its lower corner below its upper one");
+    }
+  }
+  for (const Zone& zone : environment.zones) {
+    const std::string problem = problem_of(zone);
+    if (!problem.empty()) problems.push_back("zone '" + zone.name + "'" + problem);
+  }
+  std::set<std::string> names;
+  for (const Subject& subject : environment.subjects) {
+    if (subject.name.empty()) problems.push_back("a subject has no name");
+    if (!names.insert(subject.name).second) {
+      problems.push_back("two subjects are named '" + subject.name + "'");
+    }
+    const std::string problem = problem_of(subject);
+    if (!problem.empty()) problems.push_back("subject '" + subject.name + "'" + problem);
+  }
+}
+
+void list_problems(const Plan& film, double finish, std::vector<std::string>& problems) {
+  const auto judge = [&](const TimeSpan& span, const std::string& name) {
+    if (!(span.start < span.finish) || !(span.start >= -tolerances::kSpanTime) ||
+        !(span.finish <= finish + tolerances::kSpanTime)) {
+      problems.push_back(name + " must start before it finishes, and lie within the flight");
+    }
+  };
+  for (std::size_t i = 0; i < film.cuts.size(); ++i) {
+    const std::string name = "cut " + std::to_string(i + 1);
+    judge(film.cuts[i], name);
+    if (i > 0 && !(film.cuts[i].start > film.cuts[i - 1].finish)) {
+      problems.push_back(name + " must start after the one before it finishes");
+    }
+  }
+  for (std::size_t i = 0; i < film.task.framing.size(); ++i) {
+    const FramingTask& asked = film.task.framing[i];
+    const std::string name = "framing " + std::to_string(i + 1);
+    judge(asked.span, name);
+    const auto& subjects = film.environment.subjects;
+    if (std::none_of(subjects.begin(), subjects.end(),
+                     [&](const Subject& subject) { return subject.name == asked.subject; })) {
+      problems.push_back(name + " names the subject '" + asked.subject +
+                         "', which the environment lacks");
+    }
+  }
+  if (!film.task.framing.empty() &&
+      !(film.task.framing_share > 0 && film.task.framing_share <= 1)) {
+    problems.emplace_back("the share of framing must be above 0 and at most 1");
+  }
+}
+
+}  // namespace lapwing
