@@ -32,6 +32,8 @@ struct MissionSettings {
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
   std::function<void(const std::string&)> print = [](const std::string&) {};
+  // Sees every problem before it is solved, so that a study of solvers can keep it; may be null.
+  std::function<void(std::shared_ptr<const TrajectoryProblem>)> observe_problem;
 };
 
 // A problem being stated, then solved; Lua holds one or more references to it.

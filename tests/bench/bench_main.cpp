@@ -56,6 +56,18 @@ bool ratio(const Medians& medians, const char* ours, const char* opponent, doubl
   return times >= at_least && difference <= 1e-6 && a->counters.at("residual") <= 1e-8;
 }
 
+// The same for solvers that stop at the same quality, whatever their costs.
+bool faster(const Medians& medians, const char* ours, const char* opponent, double at_least) {
+  const Medians::Entry* a = medians.find(ours);
+  const Medians::Entry* b = medians.find(opponent);
+  if (!a || !b) return filtered;
+  const double times = b->milliseconds / a->milliseconds;
+  std::printf("%s: %.1f ms in %.0f iterations, %.1f times as fast as %s with %.0f (claimed: %g)\n",
+              ours, a->milliseconds, a->counters.at("iterations"), times, opponent,
+              b->counters.at("iterations"), at_least);
+  return times >= at_least;
+}
+
 bool growth(const Medians& medians, const char* small, const char* large, double at_most) {
   const Medians::Entry* a = medians.find(small);
   const Medians::Entry* b = medians.find(large);
@@ -83,6 +95,8 @@ int main(int argc, char** argv) {
   std::printf("\n");
   const bool held = ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s", 8) &
                     ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s_mehrotra", 8) &
+                    faster(medians, "to_half_a_percent/iqp", "to_half_a_percent/ipopt", 4) &
+                    faster(medians, "to_the_end/moved_warm", "to_the_end/moved_cold", 2) &
                     growth(medians, "interior_point/flight_30s", "interior_point/flight_300s", 15);
   return held && !medians.failed() ? 0 : 1;
 }

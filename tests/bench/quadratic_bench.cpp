@@ -1,10 +1,10 @@
 // The quadratic core against Ipopt, on the identical program.
 #include <benchmark/benchmark.h>
 
-#include "framework/plugin/registry.h"
 #include "framework/solve/interior_point.h"
 #include "framework/solve/trajectory_solver.h"
 #include "tests/bench/bench_problems.h"
+#include "tests/bench/bench_registry.h"
 #include "tests/bench/ipopt_program.h"
 
 namespace lapwing {
@@ -13,15 +13,10 @@ namespace {
 constexpr double kTolerance = 1e-8;
 constexpr std::uint64_t kSeed = 36;
 
-const Registry& registry() {
-  static const Registry instance(plugin_search_path({}));
-  return instance;
-}
-
 const QuadraticProgram& flight(double seconds) {
   static std::map<double, QuadraticProgram> programs;
   if (!programs.contains(seconds))
-    programs[seconds] = program_of(quadratic_flight(registry(), seconds, kSeed));
+    programs[seconds] = program_of(quadratic_flight(bench_registry(), seconds, kSeed));
   return programs[seconds];
 }
 
@@ -51,8 +46,8 @@ void ipopt(benchmark::State& state, double seconds, bool mehrotra) {
 
 // The whole solver, from the problem to its report.
 void iqp(benchmark::State& state, double seconds) {
-  const TrajectoryProblem problem = quadratic_flight(registry(), seconds, kSeed);
-  const auto solver = registry().create<TrajectorySolver>("iqp");
+  const TrajectoryProblem problem = quadratic_flight(bench_registry(), seconds, kSeed);
+  const auto solver = bench_registry().create<TrajectorySolver>("iqp");
   SolveResult result;
   for (auto _ : state) result = solver->solve(problem, {});
   state.counters["cost"] = result.report.cost;
