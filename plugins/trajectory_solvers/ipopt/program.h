@@ -1,0 +1,49 @@
+// The trajectory problem as a nonlinear program for Ipopt. Free of Ipopt's types: `ipopt.cpp`
+// passes them on.
+//
+// Its variables are the whole step x from a reference point, one number per column. On a line, that
+// is the number itself, moved. An orientation turned by x from its reference answers a small change
+// e of x with the small turn J(x) e in its own body frame, J the right Jacobian of the rotation
+// group; so with B = diag(I, J) the program's derivatives are those of the local model times B:
+//
+//   gradient  B'g     Jacobian  A B     Hessian  B'H B
+//
+// (of the Hessian, all but a term that vanishes where the Lagrangian is stationary).
+#pragma once
+
+#include "framework/problem/trajectory_problem.h"
+
+namespace lapwing {
+
+class Program {
+ public:
+  // Kept by reference. `exact`: curvature of residuals and rows too.
+  Program(const TrajectoryProblem& problem, Stages reference, bool exact);
+
+  int variables() const { return problem_.columns(); }
+  int rows() const { return problem_.rows(); }
+  const LocalModel& at_reference() const { return reference_model_; }  // bounds and patterns
+  const TrajectoryProblem& problem() const { return problem_; }
+
+  // All at x; nothing is computed twice for one x.
+  void move_to(const double* x);
+  const Stages& stages() const { return at_; }
+  double cost();
+  const Eigen::VectorXd& row_values();
+  const LocalModel& linear();  // gradient and Jacobian
+  // factor * cost + sum multipliers_r c_r: values in the pattern of the Hessian's lower triangle.
+  void hessian(double factor, const double* multipliers, double* values);
+
+ private:
+  void linearise(double factor, const Eigen::VectorXd& multipliers, LocalModel& model) const;
+
+  const TrajectoryProblem& problem_;
+  Stages reference_, at_;
+  bool exact_;
+  LocalModel reference_model_, linear_, curved_, straight_;
+  Eigen::VectorXd row_values_;
+  double cost_ = 0;
+  bool cost_known_ = false, rows_known_ = false, linear_known_ = false;
+};
+
+}  // namespace lapwing
