@@ -25,6 +25,7 @@ class SolveRecord {
 
   // One line of history. `step` is the accepted step length.
   void add(const Stages& at, double step);
+  const SolveIteration& latest() const { return history_.back(); }
   // The report on `point`, with its costs and violations.
   SolveResult finish(SolveStatus status, std::string message, int iterations,
                      WarmStart point) const;

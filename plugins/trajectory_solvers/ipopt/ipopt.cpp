@@ -11,6 +11,7 @@
 #include <mutex>
 
 #include <coin/IpIpoptApplication.hpp>
+#include <coin/IpIpoptCalculatedQuantities.hpp>
 #include <coin/IpIpoptData.hpp>
 #include <coin/IpTNLP.hpp>
 
@@ -27,9 +28,11 @@ using Eigen::VectorXd;
 using Index = ::Ipopt::Index;
 using Number = ::Ipopt::Number;
 
-constexpr double kNoBound = 2e19;     // Ipopt takes what is beyond 1e19 as none
+constexpr double kNoBound = 2e19;      // Ipopt takes what is beyond 1e19 as none
 constexpr double kWarmBarrier = 1e-6;  // where the barrier parameter begins from an earlier answer
 constexpr double kWarmPush = 1e-9;     // how far from its bounds an earlier answer is moved
+
+constexpr double kMet = 1e-6;  // in a row's own unit, of a point that is called feasible
 
 struct Settings {
   int iterations = 0;
@@ -69,8 +72,7 @@ class Ipopt final : public TrajectorySolver {
     settings_.tolerance = parameters.number("tolerance");
     settings_.feasibility = parameters.number("feasibility");
     settings_.acceptable_tolerance = parameters.number("acceptable_tolerance");
-    settings_.acceptable_iterations =
-        static_cast<int>(parameters.integer("acceptable_iterations"));
+    settings_.acceptable_iterations = static_cast<int>(parameters.integer("acceptable_iterations"));
     settings_.hessian = parameters.text("hessian");
     settings_.mu_strategy = parameters.text("mu_strategy");
   }
@@ -105,17 +107,18 @@ struct Outcome {
   VectorXd x, rows, bounds;  // x and multipliers, signed as the kernel's
   int iterations = 0;
   std::optional<SolveStatus> stopped;  // by us
+  bool converged = false;              // by our measure
 };
 
 // Between Ipopt and the program.
 class Bridge final : public ::Ipopt::TNLP {
  public:
-  Bridge(Program& program, const SolveRequest& request, SolveRecord& record, double feasibility,
-         Outcome& outcome)
+  Bridge(Program& program, const SolveRequest& request, const Settings& settings,
+         SolveRecord& record, Outcome& outcome)
       : program_(program),
         request_(request),
+        settings_(settings),
         record_(record),
-        feasibility_(feasibility),
         outcome_(outcome) {}
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian,
@@ -183,16 +186,20 @@ class Bridge final : public ::Ipopt::TNLP {
     return true;
   }
 
-  bool intermediate_callback(::Ipopt::AlgorithmMode, Index iteration, Number, Number, Number,
-                             Number, Number, Number, Number, Number alpha, Index,
-                             const ::Ipopt::IpoptData*,
-                             ::Ipopt::IpoptCalculatedQuantities*) override {
+  bool intermediate_callback(::Ipopt::AlgorithmMode mode, Index iteration, Number cost,
+                             Number violation, Number, Number, Number, Number, Number, Number alpha,
+                             Index, const ::Ipopt::IpoptData*,
+                             ::Ipopt::IpoptCalculatedQuantities* quantities) override {
     outcome_.iterations = iteration;
     if (request_.progress)
       request_.progress->report(-1.0, "interior-point iteration " + std::to_string(iteration));
     if (!accepted_.empty()) keep(accepted_, alpha);
     outcome_.stopped = record_.stopped();
-    return !outcome_.stopped;
+    // Ipopt's own test is absolute: a cost of 1e6 has not the digits for it.
+    outcome_.converged =
+        mode == ::Ipopt::RegularMode && violation <= settings_.feasibility &&
+        quantities->curr_nlp_error() <= settings_.tolerance * (1.0 + std::abs(cost));
+    return !outcome_.stopped && !outcome_.converged;
   }
 
   void finalize_solution(::Ipopt::SolverReturn, Index n, const Number* x, const Number* zl,
@@ -216,7 +223,8 @@ class Bridge final : public ::Ipopt::TNLP {
     const Map<const VectorXd> step(x.data(), static_cast<Index>(x.size()));
     const Stages at = program_.problem().retract(program_.reference(), step);
     record_.add(at, alpha);
-    if (record_.latest().violation > feasibility_ || record_.latest().cost >= best_cost_) return;
+    if (record_.latest().violation > settings_.feasibility || record_.latest().cost >= best_cost_)
+      return;
     best_cost_ = record_.latest().cost;
     best_ = step;
   }
@@ -231,14 +239,199 @@ class Bridge final : public ::Ipopt::TNLP {
 
   Program& program_;
   const SolveRequest& request_;
+  const Settings& settings_;
   SolveRecord& record_;
-  double feasibility_;
   Outcome& outcome_;
   std::vector<Number> accepted_;  // the iterate, known by where derivatives were last asked for
   VectorXd best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
   bool begun_ = false;
 };
+
+// Ipopt's own name of how it ended.
+const char* name_of(::Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case ::Ipopt::Solve_Succeeded:
+      return "Solve_Succeeded";
+    case ::Ipopt::Solved_To_Acceptable_Level:
+      return "Solved_To_Acceptable_Level";
+    case ::Ipopt::Infeasible_Problem_Detected:
+      return "Infeasible_Problem_Detected";
+    case ::Ipopt::Search_Direction_Becomes_Too_Small:
+      return "Search_Direction_Becomes_Too_Small";
+    case ::Ipopt::Diverging_Iterates:
+      return "Diverging_Iterates";
+    case ::Ipopt::User_Requested_Stop:
+      return "User_Requested_Stop";
+    case ::Ipopt::Feasible_Point_Found:
+      return "Feasible_Point_Found";
+    case ::Ipopt::Maximum_Iterations_Exceeded:
+      return "Maximum_Iterations_Exceeded";
+    case ::Ipopt::Restoration_Failed:
+      return "Restoration_Failed";
+    case ::Ipopt::Error_In_Step_Computation:
+      return "Error_In_Step_Computation";
+    case ::Ipopt::Maximum_CpuTime_Exceeded:
+      return "Maximum_CpuTime_Exceeded";
+    case ::Ipopt::Not_Enough_Degrees_Of_Freedom:
+      return "Not_Enough_Degrees_Of_Freedom";
+    case ::Ipopt::Invalid_Problem_Definition:
+      return "Invalid_Problem_Definition";
+    case ::Ipopt::Invalid_Option:
+      return "Invalid_Option";
+    case ::Ipopt::Invalid_Number_Detected:
+      return "Invalid_Number_Detected";
+    case ::Ipopt::Unrecoverable_Exception:
+      return "Unrecoverable_Exception";
+    case ::Ipopt::NonIpopt_Exception_Thrown:
+      return "NonIpopt_Exception_Thrown";
+    case ::Ipopt::Insufficient_Memory:
+      return "Insufficient_Memory";
+    case ::Ipopt::Internal_Error:
+      return "Internal_Error";
+  }
+  return "an unknown status";
+}
+
+// What an end means. `feasible`: the point that is returned meets every row.
+SolveStatus meaning(::Ipopt::ApplicationReturnStatus status, const Outcome& outcome,
+                    bool feasible) {
+  if (outcome.converged && feasible) return SolveStatus::optimal;
+  if (outcome.stopped) return *outcome.stopped;
+  switch (status) {
+    case ::Ipopt::Solve_Succeeded:
+      return feasible ? SolveStatus::optimal : SolveStatus::numerical_error;
+    case ::Ipopt::Infeasible_Problem_Detected:
+      return SolveStatus::infeasible;
+    case ::Ipopt::Maximum_Iterations_Exceeded:
+      return SolveStatus::iteration_limit;
+    case ::Ipopt::Solved_To_Acceptable_Level:
+    case ::Ipopt::Feasible_Point_Found:
+    case ::Ipopt::Search_Direction_Becomes_Too_Small:
+    case ::Ipopt::Restoration_Failed:
+    case ::Ipopt::Error_In_Step_Computation:
+      return feasible ? SolveStatus::feasible : SolveStatus::numerical_error;
+    default:
+      return SolveStatus::numerical_error;
+  }
+}
+
+// One solve with Ipopt as it is set up.
+class Run {
+ public:
+  Run(const TrajectoryProblem& problem, const SolveRequest& request, const Settings& settings)
+      : problem_(problem),
+        request_(request),
+        settings_(settings),
+        record_(problem, request),
+        program_(problem, record_.start(), settings.hessian == "exact") {}
+
+  SolveResult solve() {
+    if (const auto stop = record_.stopped()) return early(*stop, "");
+    const std::string crossed = say_crossed(problem_, program_.at_reference());
+    if (!crossed.empty()) return early(SolveStatus::infeasible, crossed);
+    limit_ = request_.iteration_limit.value_or(settings_.iterations);
+    if (limit_ <= 0) return early(SolveStatus::iteration_limit, "");
+    ::Ipopt::ApplicationReturnStatus status = optimise("make_parameter");
+    // As many equations as free numbers: fixed ones are then kept as variables.
+    if (status == ::Ipopt::Not_Enough_Degrees_Of_Freedom) status = optimise("relax_bounds");
+    return finish(status);
+  }
+
+ private:
+  SolveResult early(SolveStatus status, std::string message) {
+    WarmStart point{inside_bounds(program_.reference()), {}, {}};
+    if (record_.warm_multipliers()) {
+      point.row_multipliers = request_.warm_start->row_multipliers;
+      point.bound_multipliers = request_.warm_start->bound_multipliers;
+    }
+    return record_.finish(status, std::move(message), 0, std::move(point));
+  }
+
+  void set_options(::Ipopt::OptionsList& options, const char* fixed) const {
+    options.SetStringValue("sb", "yes");
+    options.SetNumericValue("tol", settings_.tolerance);
+    // Scaling by the first gradient would ruin the answer: that of a guess with kinks is 1e6 times
+    // what matters at the optimum. Units are of one size as they are.
+    options.SetStringValue("nlp_scaling_method", "none");
+    options.SetNumericValue("constr_viol_tol", settings_.feasibility);
+    options.SetNumericValue("acceptable_tol", settings_.acceptable_tolerance);
+    options.SetNumericValue("acceptable_constr_viol_tol", settings_.feasibility);
+    options.SetIntegerValue("acceptable_iter", settings_.acceptable_iterations);
+    options.SetIntegerValue("max_iter", limit_);
+    options.SetStringValue("mu_strategy", settings_.mu_strategy);
+    options.SetStringValue("fixed_variable_treatment", fixed);
+    options.SetStringValue("linear_solver", "mumps");
+    if (settings_.hessian == "limited_memory")
+      options.SetStringValue("hessian_approximation", "limited-memory");
+    if (problem_.quadratic())
+      for (const char* constant : {"jac_c_constant", "jac_d_constant", "hessian_constant"})
+        options.SetStringValue(constant, "yes");
+    if (!record_.warm_multipliers()) return;
+    options.SetStringValue("warm_start_init_point", "yes");
+    options.SetNumericValue("mu_init", kWarmBarrier);
+    for (const char* push :
+         {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
+          "warm_start_slack_bound_frac", "warm_start_mult_bound_push"})
+      options.SetNumericValue(push, kWarmPush);
+  }
+
+  ::Ipopt::ApplicationReturnStatus optimise(const char* fixed) {
+    static std::mutex one_at_a_time;  // MUMPS keeps state of its own
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    ::Ipopt::SmartPtr<::Ipopt::IpoptApplication> app = new ::Ipopt::IpoptApplication(false);
+    app->Jnlst()->AddJournal(new LogJournal);
+    set_options(*app->Options(), fixed);
+    const auto ready = app->Initialize("");  // no option file of the working directory
+    if (ready != ::Ipopt::Solve_Succeeded) return ready;
+    ::Ipopt::SmartPtr<Bridge> bridge = new Bridge(program_, request_, settings_, record_, outcome_);
+    const auto status = app->OptimizeTNLP(GetRawPtr(bridge));
+    best_ = bridge->best();
+    return status;
+  }
+
+  SolveResult finish(::Ipopt::ApplicationReturnStatus status) {
+    WarmStart point{program_.reference(), outcome_.rows, outcome_.bounds};
+    if (outcome_.x.size() > 0 && outcome_.x.allFinite())
+      point.stages = problem_.retract(program_.reference(), outcome_.x);
+    point.stages = inside_bounds(point.stages);
+    bool feasible = meets_rows(point.stages);
+    if (!feasible && best_.size() > 0) {  // the last iterate is not the best one
+      point.stages = inside_bounds(problem_.retract(program_.reference(), best_));
+      feasible = meets_rows(point.stages);
+    }
+    const SolveStatus means = meaning(status, outcome_, feasible);
+    std::string message;
+    if (means == SolveStatus::infeasible) message = say_missed(problem_.violations(point.stages));
+    if (means == SolveStatus::numerical_error || means == SolveStatus::feasible)
+      message = std::string("Ipopt ended with ") + name_of(status);
+    return record_.finish(means, std::move(message), outcome_.iterations, std::move(point));
+  }
+
+  // Ipopt's iterates pass their bounds by a hair.
+  Stages inside_bounds(const Stages& at) const {
+    LocalModel model;
+    problem_.linearise(at, model);
+    const VectorXd zero = VectorXd::Zero(problem_.columns());
+    return problem_.retract(at, zero.cwiseMax(model.step_lower).cwiseMin(model.step_upper));
+  }
+  bool meets_rows(const Stages& at) const {
+    return worst_row_violation(program_.at_reference(), problem_.row_values(at)) <= kMet;
+  }
+
+  const TrajectoryProblem& problem_;
+  const SolveRequest& request_;
+  const Settings& settings_;
+  SolveRecord record_;
+  Program program_;
+  Outcome outcome_;
+  VectorXd best_;
+  int limit_ = 0;
+};
+
+SolveResult Ipopt::solve(const TrajectoryProblem& problem, const SolveRequest& request) const {
+  return Run(problem, request, settings_).solve();
+}
 
 }  // namespace
 }  // namespace lapwing

@@ -24,6 +24,7 @@ class Program {
   int rows() const { return problem_.rows(); }
   const LocalModel& at_reference() const { return reference_model_; }  // bounds and patterns
   const TrajectoryProblem& problem() const { return problem_; }
+  const Stages& reference() const { return reference_; }
 
   // All at x; nothing is computed twice for one x.
   void move_to(const double* x);
@@ -35,8 +36,6 @@ class Program {
   void hessian(double factor, const double* multipliers, double* values);
 
  private:
-  void linearise(double factor, const Eigen::VectorXd& multipliers, LocalModel& model) const;
-
   const TrajectoryProblem& problem_;
   Stages reference_, at_;
   bool exact_;
