@@ -112,6 +112,39 @@ void evaluate_model_step(const StageColumns& columns, const BoundModel& model, c
   }
 }
 
+Stages TrajectoryProblem::simulate(const Stages& at) const {
+  const StageColumns& columns = impl_->columns;
+  const StageLayout& layout = columns.layout;
+  const int last = columns.horizon.stages - 1;
+  const int time = layout.offset(columns.time_block), step = layout.offset(columns.step_block);
+  Stages flown = at;
+  Workspace workspace;
+  for (int i = 0; i < last; ++i) {
+    if (columns.horizon.step_free) {
+      flown(step, i + 1) = flown(step, i);
+      flown(time, i + 1) = flown(time, i) + flown(step, i);
+    }
+    for (const BoundModel& model : columns.models) {
+      std::vector<double> x(model.arguments()), next(model.states);
+      columns.gather_model(model, flown, i, columns.step(flown, i), x.data());
+      model.model->flow({0, 1}, x.data(), next.data(), nullptr, workspace);
+      const double* from = next.data();
+      for (const int b : model.state_blocks) {
+        const BlockSpec& block = layout.block(b);
+        auto there = flown.col(i + 1).segment(layout.offset(b), block.size);
+        there = Eigen::Map<const Eigen::VectorXd>(from, block.size);
+        if (block.topology == Topology::quaternion) there.normalize();
+        from += block.size;
+      }
+      if (i + 1 < last) continue;
+      for (const int b : model.input_blocks)
+        flown.col(last).segment(layout.offset(b), layout.block(b).size) =
+            flown.col(i).segment(layout.offset(b), layout.block(b).size);
+    }
+  }
+  return flown;
+}
+
 void TrajectoryProblem::Impl::dynamics_values(const Stages& at, double* values) const {
   const int stages = columns.horizon.stages;
   ModelStep step;

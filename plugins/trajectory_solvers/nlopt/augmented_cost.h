@@ -1,0 +1,47 @@
+// The augmented Lagrangian of Powell, Hestenes and Rockafellar over everything that the flight does
+// not meet by itself: rows that are not dynamics, and bounds.
+//
+//   L(x) = cost(x) + sum_i rho_i/2 e_i^2,   e_i = distance of c_i - y_i/rho_i from [lower, upper]
+//
+// Smooth once; its minimiser's -rho_i e_i are the next multipliers y_i. They are signed as the
+// kernel's: above zero where the lower limit holds.
+#pragma once
+
+#include "framework/problem/trajectory_problem.h"
+
+namespace lapwing {
+
+// One limited quantity: a column of the problem or one of its rows.
+struct Limited {
+  bool is_row = false;
+  int index = 0;
+  double multiplier = 0, penalty = 1;
+  double error = 0;  // e at the last evaluation
+  double miss = 0;   // |change of the multiplier| / penalty at the last update
+};
+
+class AugmentedCost {
+ public:
+  // Rows that are not dynamics and have a limit, and `columns` that have one.
+  AugmentedCost(const TrajectoryProblem& problem, const std::vector<int>& columns);
+
+  std::vector<Limited>& limited() { return limited_; }
+
+  // L at the model's point; `gradient` in all columns.
+  double evaluate(const LocalModel& model, Eigen::VectorXd& gradient);
+  // Gauss-Newton Hessian of L (as last evaluated) times a step of all columns.
+  void hessian_times(const LocalModel& model, const Eigen::VectorXd& step,
+                     Eigen::VectorXd& product) const;
+  // Takes the next multipliers. Returns the largest miss.
+  double update();
+  // Raises the penalties of what was missed by more than `tolerance` and did not come down enough.
+  void raise(double tolerance);
+
+ private:
+  int dynamics_rows_ = 0;
+  std::vector<Limited> limited_;
+  std::vector<double> before_;  // misses of the update before
+  Eigen::VectorXd weights_;     // per row
+};
+
+}  // namespace lapwing

@@ -1,0 +1,410 @@
+// Algorithms of the NLopt library on the flown problem: its variables are the inputs and free
+// blocks, the states follow by simulation and derivatives by one adjoint sweep. Limits other than
+// plain bounds of variables go into an augmented Lagrangian, so that NLopt sees a smooth function
+// of bounded variables, in coordinates in which it is nearly round.
+//
+//   solver: {type: nlopt, algorithm: LD_LBFGS}
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <nlopt.h>
+
+#include "framework/plugin/plugin.h"
+#include "framework/solve/solve_record.h"
+#include "plugins/trajectory_solvers/nlopt/augmented_cost.h"
+#include "plugins/trajectory_solvers/nlopt/reduced_problem.h"
+#include "plugins/trajectory_solvers/nlopt/scaling.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kFirstPenalty = 10;      // over the curvature of the cost along a limit's normal
+constexpr int kSamples = 5;               // limits of one name at which that curvature is measured
+constexpr double kFirstTolerance = 1e-3;  // of the first inner problems
+constexpr double kDiagonal = 1e-6;        // stricter where coordinates are less round
+constexpr int kLargestDense = 3000;       // variables
+constexpr double kMet = 1e-6;             // in its own unit, what is called feasible
+constexpr int kPatience = 4;              // updates without progress that prove infeasibility
+constexpr double kProgress = 0.8;
+
+struct Settings {
+  int iterations = 0, cycle = 0, storage = 0;
+  double tolerance = 0, feasibility = 0;
+  nlopt_algorithm algorithm = NLOPT_LD_LBFGS;
+  bool dense = true;
+};
+
+const std::map<std::string, nlopt_algorithm>& algorithms() {
+  static const std::map<std::string, nlopt_algorithm> kAlgorithms{
+      {"LD_LBFGS", NLOPT_LD_LBFGS},
+      {"LD_VAR1", NLOPT_LD_VAR1},
+      {"LD_VAR2", NLOPT_LD_VAR2},
+      {"LD_TNEWTON", NLOPT_LD_TNEWTON},
+      {"LD_TNEWTON_RESTART", NLOPT_LD_TNEWTON_RESTART},
+      {"LD_TNEWTON_PRECOND", NLOPT_LD_TNEWTON_PRECOND},
+      {"LD_TNEWTON_PRECOND_RESTART", NLOPT_LD_TNEWTON_PRECOND_RESTART},
+      {"LD_MMA", NLOPT_LD_MMA},
+      {"LD_CCSAQ", NLOPT_LD_CCSAQ}};
+  return kAlgorithms;
+}
+
+class Nlopt final : public TrajectorySolver {
+ public:
+  static constexpr PluginText kText{"nlopt", "1.0.0",
+                                    "gradient methods on the flown trajectory, limits in an "
+                                    "augmented Lagrangian",
+                                    "Johnson, The NLopt nonlinear-optimization package"};
+  static ParameterTable parameters() {
+    std::vector<std::string> names{"LD_LBFGS"};
+    for (const auto& [name, algorithm] : algorithms())
+      if (name != names.front()) names.push_back(name);
+    return ParameterTable{}
+        .choice("algorithm", names.front(), names, "as NLopt names it")
+        .integer("iterations", 20000, "most evaluations of cost, limits and gradient",
+                 between(1, 10000000))
+        .number("tolerance", 1e-9, "",
+                "promised decrease, relative to the cost, that ends the solve",
+                between(1e-14, 1e-2))
+        .number("feasibility", 1e-7, "", "largest violation of a limit, in its own unit",
+                between(1e-10, 1e-5))
+        .choice("scaling", "dense", {"dense", "diagonal"},
+                "coordinates: rounded by the cost's whole second derivative at the start of each "
+                "inner problem, or number by number")
+        .integer("cycle", 200, "evaluations after which coordinates are rounded anew",
+                 between(2, 100000))
+        .integer("storage", 30, "steps that the method remembers", between(1, 1000));
+  }
+
+  explicit Nlopt(const Parameters& parameters) {
+    settings_.algorithm = algorithms().at(parameters.text("algorithm"));
+    settings_.iterations = static_cast<int>(parameters.integer("iterations"));
+    settings_.tolerance = parameters.number("tolerance");
+    settings_.feasibility = parameters.number("feasibility");
+    settings_.dense = parameters.text("scaling") == "dense";
+    settings_.cycle = static_cast<int>(parameters.integer("cycle"));
+    settings_.storage = static_cast<int>(parameters.integer("storage"));
+  }
+
+  SolveResult solve(const TrajectoryProblem& problem, const SolveRequest& request) const override;
+
+ private:
+  Settings settings_;
+};
+
+// Columns whose bounds the augmented cost looks after: with dense scaling all, as they are no
+// bounds of variables there; else those that follow by simulation.
+std::vector<int> limited_columns(const ReducedProblem& reduced, bool dense) {
+  std::vector<int> result;
+  if (dense) result = reduced.columns();
+  for (int c = 0; c < reduced.problem().columns(); ++c)
+    if (reduced.dependent(c)) result.push_back(c);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+class Run {
+ public:
+  Run(const TrajectoryProblem& problem, const SolveRequest& request, const Settings& settings)
+      : problem_(problem),
+        request_(request),
+        settings_(settings),
+        record_(problem, request),
+        reduced_(problem),
+        dense_(settings.dense && reduced_.size() <= kLargestDense),
+        augmented_(problem, limited_columns(reduced_, dense_)),
+        limit_(request.iteration_limit.value_or(settings.iterations)) {}
+
+  SolveResult solve();
+
+ private:
+  enum class Inner { converged, worn_out, stopped };
+
+  void begin();
+  void take_multipliers();
+  void set_penalties();
+  void round();  // coordinates, at model_
+  void first_step();
+  SolveStatus iterate();
+  Inner minimise(double tolerance);
+  void linearise(const Stages& at);
+  double evaluate(const double* w, double* gradient);
+  Stages inside_bounds(const Stages& at) const;
+  WarmStart answer();
+  std::string message(SolveStatus status, const Stages& at) const;
+
+  const TrajectoryProblem& problem_;
+  const SolveRequest& request_;
+  const Settings& settings_;
+  SolveRecord record_;
+  ReducedProblem reduced_;
+  bool dense_;
+  AugmentedCost augmented_;
+  int limit_;
+  Scaling scaling_;
+  Stages center_;  // of the coordinates: w = 0
+  LocalModel model_;
+  VectorXd gradient_;  // of the augmented cost in all columns
+  double value_ = 0;
+  int evaluations_ = 0;
+  std::optional<SolveStatus> stop_;
+  std::string crossed_;
+  // of the inner problem
+  nlopt_opt method_ = nullptr;
+  VectorXd lower_, upper_;  // of w
+  double inner_tolerance_ = 0, best_value_ = 0, best_slope_ = 0;
+  Stages best_;
+  bool inner_converged_ = false;
+};
+
+SolveResult Run::solve() {
+  begin();
+  SolveStatus status = SolveStatus::infeasible;
+  if (crossed_.empty()) status = iterate();
+  WarmStart point = answer();
+  std::string text = message(status, point.stages);
+  return record_.finish(status, std::move(text), evaluations_, std::move(point));
+}
+
+void Run::begin() {
+  center_ = inside_bounds(record_.start());
+  problem_.linearise(center_, model_);
+  crossed_ = say_crossed(problem_, model_);
+  stop_ = record_.stopped();
+  if (!stop_ && limit_ <= 0) stop_ = SolveStatus::iteration_limit;
+  if (stop_ || !crossed_.empty()) {
+    center_ = problem_.simulate(center_);
+    problem_.linearise(center_, model_);
+    return;
+  }
+  take_multipliers();
+  set_penalties();
+  if (request_.warm_start)
+    center_ = problem_.simulate(center_);
+  else
+    first_step();
+}
+
+void Run::take_multipliers() {
+  if (!record_.warm_multipliers()) return;
+  for (Limited& item : augmented_.limited())
+    item.multiplier = item.is_row ? request_.warm_start->row_multipliers(item.index)
+                                  : request_.warm_start->bound_multipliers(item.index);
+}
+
+void Run::round() {
+  VectorXd unit = VectorXd::Zero(reduced_.size()), all, product;
+  scaling_.set(reduced_.size(), dense_, [&](int k, VectorXd& result) {
+    unit(k) = 1;
+    reduced_.forward(model_, unit, nullptr, all);
+    unit(k) = 0;
+    augmented_.hessian_times(model_, all, product);
+    reduced_.backward(model_, product, result, nullptr);
+  });
+}
+
+// Penalties follow the cost's own curvature 1 / (a' H^-1 a) along each limit's normal a, so that
+// neither units nor weights matter.
+void Run::set_penalties() {
+  for (Limited& item : augmented_.limited()) item.error = 0;
+  round();
+  std::map<std::string, std::vector<Limited*>> groups;
+  for (Limited& item : augmented_.limited()) {
+    const std::string name =
+        item.is_row ? problem_.row_name(item.index) : problem_.column_name(item.index);
+    groups[name.substr(0, name.rfind(" at "))].push_back(&item);
+  }
+  VectorXd normal, reduced;
+  for (auto& [name, items] : groups) {
+    const std::size_t samples = std::min<std::size_t>(kSamples, items.size());
+    std::vector<double> curvatures;
+    for (std::size_t s = 0; s < samples; ++s) {
+      const Limited& item = *items[(2 * s + 1) * items.size() / (2 * samples)];
+      VectorXd one = VectorXd::Zero(item.is_row ? problem_.rows() : problem_.columns());
+      one(item.index) = 1;
+      if (item.is_row)
+        normal = model_.jacobian.transpose() * one;
+      else
+        normal = one;
+      reduced_.backward(model_, normal, reduced, nullptr);
+      const double compliance = scaling_.to_gradient(reduced).squaredNorm();
+      curvatures.push_back(compliance > 0 ? 1.0 / compliance : 1.0);
+    }
+    for (std::size_t k = 0; k < items.size(); ++k)
+      items[k]->penalty = kFirstPenalty * curvatures[k * samples / items.size()];
+  }
+}
+
+// The Gauss-Newton step at the guess itself, its dynamics linearised there: a path that no inputs
+// of the guess fly still says where to begin.
+void Run::first_step() {
+  VectorXd product, all, reduced, gradient;
+  augmented_.evaluate(model_, gradient);
+  round();
+  const VectorXd still = VectorXd::Zero(reduced_.size());
+  reduced_.forward(model_, still, &model_.values, all);
+  augmented_.hessian_times(model_, all, product);
+  gradient += product;
+  reduced_.backward(model_, gradient, reduced, nullptr);
+  const VectorXd step = -scaling_.to_variables(scaling_.to_gradient(reduced));
+  const Stages flown = inside_bounds(reduced_.fly(center_, step));
+  center_ = problem_.simulate(flown.allFinite() ? flown : center_);
+}
+
+void Run::linearise(const Stages& at) {
+  problem_.linearise(at, model_);
+  value_ = augmented_.evaluate(model_, gradient_);
+}
+
+double Run::evaluate(const double* w, double* gradient) {
+  if (!stop_) stop_ = record_.stopped();
+  if (!stop_ && evaluations_ >= limit_) stop_ = SolveStatus::iteration_limit;
+  if (stop_) {
+    nlopt_force_stop(method_);
+    return HUGE_VAL;
+  }
+  ++evaluations_;
+  if (request_.progress)
+    request_.progress->report(-1.0, "evaluation " + std::to_string(evaluations_));
+  const int n = reduced_.size();
+  const Eigen::Map<const VectorXd> at_w(w, n);
+  const Stages at = reduced_.fly(center_, scaling_.to_variables(at_w));
+  linearise(at);
+  VectorXd reduced;
+  reduced_.backward(model_, gradient_, reduced, nullptr);
+  VectorXd slope = scaling_.to_gradient(reduced);
+  if (gradient) Eigen::Map<VectorXd>(gradient, n) = slope;
+  if (!std::isfinite(value_) || !slope.allFinite()) return HUGE_VAL;
+  if (value_ > best_value_) return value_;
+  best_value_ = value_;
+  best_ = at;
+  for (int k = 0; k < n; ++k)  // what a bound holds back is no slope
+    if ((slope(k) > 0 && w[k] <= lower_(k)) || (slope(k) < 0 && w[k] >= upper_(k))) slope(k) = 0;
+  best_slope_ = slope.squaredNorm();
+  inner_converged_ = 0.5 * best_slope_ <= inner_tolerance_ * (1.0 + std::abs(model_.cost));
+  if (inner_converged_) nlopt_force_stop(method_);
+  return value_;
+}
+
+Run::Inner Run::minimise(double tolerance) {
+  linearise(center_);
+  round();
+  const int n = reduced_.size();
+  lower_.setConstant(n, -HUGE_VAL);
+  upper_.setConstant(n, HUGE_VAL);
+  for (int k = 0; k < n && !dense_; ++k) {
+    lower_(k) = std::min(0.0, model_.step_lower(reduced_.columns()[k]) * scaling_.roots()(k));
+    upper_(k) = std::max(0.0, model_.step_upper(reduced_.columns()[k]) * scaling_.roots()(k));
+  }
+  inner_tolerance_ = dense_ ? tolerance : kDiagonal * tolerance;
+  best_value_ = HUGE_VAL;
+  inner_converged_ = false;
+  if (n == 0) return Inner::converged;
+  method_ = nlopt_create(settings_.algorithm, n);
+  nlopt_set_min_objective(
+      method_,
+      [](unsigned, const double* w, double* gradient, void* run) {
+        return static_cast<Run*>(run)->evaluate(w, gradient);
+      },
+      this);
+  nlopt_set_lower_bounds(method_, lower_.data());
+  nlopt_set_upper_bounds(method_, upper_.data());
+  nlopt_set_vector_storage(method_, settings_.storage);
+  nlopt_set_maxeval(method_, settings_.cycle);
+  VectorXd w = VectorXd::Zero(n);
+  double value = 0;
+  nlopt_optimize(method_, w.data(), &value);  // how it ends says little: the best point counts
+  nlopt_destroy(method_);
+  method_ = nullptr;
+  if (std::isfinite(best_value_)) center_ = best_;
+  if (stop_) return Inner::stopped;
+  return inner_converged_ ? Inner::converged : Inner::worn_out;
+}
+
+SolveStatus Run::iterate() {
+  double tolerance = std::max(settings_.tolerance, kFirstTolerance);
+  double value_before = HUGE_VAL;
+  std::vector<double> misses;
+  while (!stop_) {
+    const Inner inner = minimise(tolerance);
+    record_.add(center_, 1.0);
+    if (inner == Inner::stopped) break;
+    if (inner == Inner::worn_out &&
+        best_value_ < value_before - settings_.tolerance * (1.0 + std::abs(best_value_))) {
+      value_before = best_value_;
+      continue;  // in fresh coordinates
+    }
+    value_before = HUGE_VAL;
+    linearise(center_);
+    misses.push_back(augmented_.update());
+    const bool tight = tolerance <= settings_.tolerance;
+    if (misses.back() <= settings_.feasibility && tight)
+      return inner == Inner::converged ? SolveStatus::optimal : SolveStatus::feasible;
+    const std::size_t n = misses.size();
+    if (n > kPatience && misses.back() > 10 * kMet &&
+        misses.back() > kProgress * misses[n - 1 - kPatience])
+      return SolveStatus::infeasible;
+    augmented_.raise(settings_.feasibility);
+    tolerance = std::max(settings_.tolerance, 0.1 * tolerance);
+  }
+  return *stop_;
+}
+
+Stages Run::inside_bounds(const Stages& at) const {
+  LocalModel model;
+  problem_.linearise(at, model);
+  const VectorXd zero = VectorXd::Zero(problem_.columns());
+  return problem_.retract(at, zero.cwiseMax(model.step_lower).cwiseMin(model.step_upper));
+}
+
+// Inputs exactly within their bounds, flown, with the multipliers of the Lagrangian.
+WarmStart Run::answer() {
+  WarmStart result;
+  // Only what is left after the states: these follow.
+  VectorXd step(reduced_.size());
+  problem_.linearise(center_, model_);
+  for (int k = 0; k < reduced_.size(); ++k) {
+    const int c = reduced_.columns()[k];
+    step(k) =
+        std::clamp(0.0, model_.step_lower(c), std::max(model_.step_lower(c), model_.step_upper(c)));
+  }
+  result.stages = reduced_.fly(center_, step);
+  problem_.linearise(result.stages, model_);
+  result.row_multipliers.setZero(problem_.rows());
+  result.bound_multipliers.setZero(problem_.columns());
+  for (const Limited& item : augmented_.limited())
+    (item.is_row ? result.row_multipliers : result.bound_multipliers)(item.index) = item.multiplier;
+  VectorXd gradient = model_.gradient - model_.jacobian.transpose() * result.row_multipliers -
+                      result.bound_multipliers;
+  VectorXd reduced, dynamics;
+  reduced_.backward(model_, gradient, reduced, &dynamics);
+  result.row_multipliers.head(problem_.dynamics_rows()) = -dynamics;
+  for (int c = 0; c < problem_.columns(); ++c)
+    if (problem_.bounds(c).first == problem_.bounds(c).second && !reduced_.dependent(c))
+      result.bound_multipliers(c) = gradient(c);
+  return result;
+}
+
+std::string Run::message(SolveStatus status, const Stages& at) const {
+  if (!crossed_.empty()) return crossed_;
+  if (status == SolveStatus::infeasible) return say_missed(problem_.violations(at));
+  if (status == SolveStatus::feasible)
+    return "NLopt made no more progress before the cost was shown to be the least";
+  return "";
+}
+
+SolveResult Nlopt::solve(const TrajectoryProblem& problem, const SolveRequest& request) const {
+  const std::string reason = ReducedProblem::unsupported(problem);
+  if (!reason.empty()) {
+    const SolveRecord record(problem, request);
+    return record.finish(SolveStatus::unsupported, reason, 0, {record.start(), {}, {}});
+  }
+  return Run(problem, request, settings_).solve();
+}
+
+}  // namespace
+}  // namespace lapwing
+
+LAPWING_PLUGINS(lapwing::Nlopt)
