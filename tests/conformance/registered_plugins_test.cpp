@@ -52,6 +52,17 @@ TEST(EveryPlugin, IsThere) {
                                    {"constraint", "state_limits"},
                                    {"constraint", "boundary_state"},
                                    {"constraint", "hard_keyframe"},
+                                   {"cost_term", "target_keyframe"},
+                                   {"cost_term", "gimbal_derivative"},
+                                   {"cost_term", "camera_angle"},
+                                   {"cost_term", "skewness"},
+                                   {"cost_term", "framing"},
+                                   {"cost_term", "occlusion"},
+                                   {"constraint", "sphere_obstacle"},
+                                   {"constraint", "box_obstacle"},
+                                   {"constraint", "no_fly_zone"},
+                                   {"constraint", "subject_distance"},
+                                   {"vehicle_model", "gimbal"},
                                    {"vehicle_model", "quadrotor"},
                                    {"trajectory_solver", "iqp"}})
     EXPECT_NO_THROW(plugins().find(kind, name)) << kind << " " << name;

@@ -8,7 +8,7 @@
 //   p:add_cost { type = "camera_angle", weight = 10, except = { { start = 4, finish = 5 } } }
 #include "framework/geometry/camera_axes.h"
 #include "framework/plugin/plugin.h"
-#include "framework/problem/camera_view.h"
+#include "framework/problem/camera_error.h"
 #include "framework/problem/differentiable.h"
 #include "framework/problem/time_spans.h"
 
