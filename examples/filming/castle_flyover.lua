@@ -12,4 +12,5 @@ return film.shot {
     { time = 10, position = {  0, -2, 14} },
     { time = 20, position = { 18,  4,  5} },
   },
+  obstacles = { { type = "sphere", name = "castle", center = {0, 0, 2}, radius = 5 } },
 }
