@@ -39,7 +39,7 @@ TEST(TimeSpans, RefuseWhatLiesBehindTheEnd) {
 }
 
 TEST(PathClearance, TakesTheLargestAccelerationThatLimitsAllow) {
-  Vehicle vehicle = laboratory_vehicle();
+  Vehicle vehicle = read_vehicle(vehicle_file());
   vehicle.acceleration_across_max = 3;
   vehicle.acceleration_up_max.reset();
   vehicle.acceleration_down_max.reset();
@@ -49,8 +49,7 @@ TEST(PathClearance, TakesTheLargestAccelerationThatLimitsAllow) {
   vehicle.acceleration_down_max = 2;
   EXPECT_DOUBLE_EQ(largest_acceleration(vehicle), 5);
   // Half a second from rest: the path bends by 5/32 m, the chord is up to 0.625 m long.
-  const double at_rest =
-      PathClearance(vehicle).at_stage<double>(1.0, Eigen::Vector3d::Zero(), 0.5);
+  const double at_rest = PathClearance(vehicle).at_stage<double>(1.0, Eigen::Vector3d::Zero(), 0.5);
   EXPECT_NEAR(at_rest, std::hypot(1.15625, (0.005 + 0.625) / 2), 1e-12);
   const double passed =
       PathClearance(vehicle).at_stage<double>(1.0, Eigen::Vector3d(0, 8, 0), 0.5, 2.0);
