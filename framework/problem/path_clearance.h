@@ -18,24 +18,37 @@ namespace lapwing {
 // The largest acceleration that the vehicle's limits allow in any direction, m/s^2.
 double largest_acceleration(const Vehicle& vehicle);
 
+// What the path does around one stage.
+template <class T>
+struct PathReach {
+  T bulge;          // m, by which it leaves its chords
+  T quarter_chord;  // m^2, a quarter of the longest chord squared
+
+  // The distance to ask of the stage, so that the path keeps `distance` (m).
+  T asked(double distance) const {
+    using std::sqrt;
+    const T kept = distance + bulge;
+    return sqrt(kept * kept + quarter_chord);
+  }
+};
+
 class PathClearance {
  public:
   PathClearance() = default;
   explicit PathClearance(const Vehicle& vehicle) : acceleration_(largest_acceleration(vehicle)) {}
 
-  // The distance to ask of a stage with this velocity, so that the path keeps `distance` (m). An
-  // obstacle that moves along straight lines no faster than `speed` (m/s) may turn between stages:
-  // it leaves its own chord by at most speed h / 2.
+  // Around a stage with this velocity. An obstacle that moves along straight lines no faster than
+  // `speed` (m/s) may turn between stages: it leaves its own chord by at most speed h / 2.
   template <class T>
-  T at_stage(double distance, const Eigen::Matrix<T, 3, 1>& velocity, const T& step,
-             double speed = 0) const {
+  PathReach<T> around(const Eigen::Matrix<T, 3, 1>& velocity, const T& step,
+                      double speed = 0) const {
     using std::sqrt;
     constexpr double kSmooth = 1e-4;  // (m/s)^2, so that the norm is smooth at rest
     const T squared =
         velocity.x() * velocity.x() + velocity.y() * velocity.y() + velocity.z() * velocity.z();
-    const T length = step * (sqrt(squared + kSmooth) + speed + (0.5 * acceleration_) * step);
-    const T kept = distance + step * (0.125 * acceleration_ * step + 0.5 * speed);
-    return sqrt(kept * kept + 0.25 * length * length);
+    const T half =
+        step * (0.5 * sqrt(squared + kSmooth) + 0.5 * speed + (0.25 * acceleration_) * step);
+    return {step * (0.125 * acceleration_ * step + 0.5 * speed), half * half};
   }
 
  private:

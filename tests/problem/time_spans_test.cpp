@@ -49,10 +49,11 @@ TEST(PathClearance, TakesTheLargestAccelerationThatLimitsAllow) {
   vehicle.acceleration_down_max = 2;
   EXPECT_DOUBLE_EQ(largest_acceleration(vehicle), 5);
   // Half a second from rest: the path bends by 5/32 m, the chord is up to 0.625 m long.
-  const double at_rest = PathClearance(vehicle).at_stage<double>(1.0, Eigen::Vector3d::Zero(), 0.5);
+  const double at_rest =
+      PathClearance(vehicle).around<double>(Eigen::Vector3d::Zero(), 0.5).asked(1.0);
   EXPECT_NEAR(at_rest, std::hypot(1.15625, (0.005 + 0.625) / 2), 1e-12);
   const double passed =
-      PathClearance(vehicle).at_stage<double>(1.0, Eigen::Vector3d(0, 8, 0), 0.5, 2.0);
+      PathClearance(vehicle).around<double>(Eigen::Vector3d(0, 8, 0), 0.5, 2.0).asked(1.0);
   EXPECT_NEAR(passed, std::hypot(1.65625, (4.0 + 1.0 + 0.625) / 2), 1e-5);
 }
 

@@ -35,7 +35,8 @@ class BoxObstacle final : public DifferentiableConstraint<BoxObstacle, 7> {
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const T asked = clearance_.at_stage<T>(margin_, stage.template vector<3>(1), stage.scalar(2));
+    const T asked =
+        clearance_.around<T>(stage.template vector<3>(1), stage.scalar(2)).asked(margin_);
     for (std::size_t k = 0; k < boxes_.size(); ++k)
       rows[static_cast<int>(k)] = distance(boxes_[k], stage.data(0)) - asked;
   }

@@ -114,7 +114,8 @@ class NoFlyZone final : public DifferentiableConstraint<NoFlyZone, 7> {
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const T asked = clearance_.at_stage<T>(margin_, stage.template vector<3>(1), stage.scalar(2));
+    const T asked =
+        clearance_.around<T>(stage.template vector<3>(1), stage.scalar(2)).asked(margin_);
     for (std::size_t k = 0; k < prisms_.size(); ++k)
       rows[static_cast<int>(k)] = distance(prisms_[k], stage.data(0)) - asked;
   }

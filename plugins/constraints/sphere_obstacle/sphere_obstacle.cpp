@@ -34,12 +34,11 @@ class SphereObstacle final : public DifferentiableConstraint<SphereObstacle, 7> 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
     const auto position = stage.template vector<3>(0);
-    const Eigen::Matrix<T, 3, 1> velocity = stage.template vector<3>(1);
+    const PathReach<T> reach = clearance_.around<T>(stage.template vector<3>(1), stage.scalar(2));
     for (std::size_t k = 0; k < spheres_.size(); ++k) {
       const Sphere& sphere = spheres_[k];
       rows[static_cast<int>(k)] =
-          distance<T>(position, sphere.center) -
-          clearance_.at_stage(sphere.radius + margin_, velocity, stage.scalar(2));
+          distance<T>(position, sphere.center) - reach.asked(sphere.radius + margin_);
     }
   }
 

@@ -61,7 +61,7 @@ class SubjectDistance final : public DifferentiableConstraint<SubjectDistance, 8
       const auto subject = subject_position<T>(subjects_[k], stage.scalar(2));
       rows[static_cast<int>(k)] =
           distance<T>(position - subject) -
-          clearance_.at_stage(distance_, velocity, stage.scalar(3), speeds_[k]);
+          clearance_.around(velocity, stage.scalar(3), speeds_[k]).asked(distance_);
     }
   }
 

@@ -126,7 +126,8 @@ TEST(Obstacles, TheWayOutShowsEverywhere) {
   spheres.expect_finite(centre, "at the centre");
   EXPECT_EQ(spheres.jacobian(centre).row(0).head<3>(), Eigen::RowVector3d(0, 0, 1));
   // Corners and edges of the zones and the box themselves.
-  for (const Eigen::Vector2d& corner : surroundings().zones[0].corners)
+  const std::vector<Eigen::Vector2d> corners = surroundings().zones[0].corners;
+  for (const Eigen::Vector2d& corner : corners)
     for (const double z : {0.0, 1.0, 2.0, 4.0, 9.0}) {
       zones.expect_finite(stage({corner.x(), corner.y(), z}, {0, 0, 0}, 0.1), "at a corner");
       if (z == 2.0) {
