@@ -102,7 +102,13 @@ local function add_camera(p, weights, camera, environment)
   p:add_cost { type = "target_derivative", weight = weights.target_smoothness,
                except = camera.cuts }
   p:add_cost { type = "gimbal_derivative", weight = weights.gimbal, except = camera.cuts }
-  p:add_cost { type = "camera_angle", weight = weights.camera, except = camera.cuts }
+  local elsewhere = table.move(camera.cuts, 1, #camera.cuts, 1, {})
+  for _, span in ipairs(camera.spans) do  -- a place in the image is another than its middle
+    if span.subject.place then
+      elsewhere[#elsewhere + 1] = { start = span.start, finish = span.finish }
+    end
+  end
+  p:add_cost { type = "camera_angle", weight = weights.camera, except = elsewhere }
   for _, span in ipairs(camera.spans) do
     local subject = span.subject
     local within = { { start = span.start, finish = span.finish } }

@@ -33,7 +33,7 @@ constexpr double kShortestStep = 1e-6;  // shorter line-search steps end the sol
 constexpr double kMeritMargin = 1.5;    // merit weight over the largest multiplier
 // Programs are solved to this share of what the one before promised, within these limits: early
 // ones only show the way.
-constexpr double kProgramShare = 1e-2, kProgramFinest = 1e-9, kProgramCoarsest = 1e-5;
+constexpr double kProgramShare = 0.1, kProgramFinest = 1e-9, kProgramCoarsest = 1e-2;
 constexpr double kElasticPenalty = 1e3;  // times 1 + |g|
 
 class Iqp final : public TrajectorySolver {
