@@ -12,6 +12,7 @@
 local input = require "mission.film_input"
 local problem = require "mission.film_problem"
 local shot_file = require "mission.shot_file"
+local subjects = require "mission.subjects"
 local times = require "mission.keyframe_times"
 
 local film = { shots = require "mission.shot_types" }
@@ -77,17 +78,29 @@ local of_file = { { name = "input", type = "text", summary = "a designer's shot,
 
 -- `only`: "unlimited", as if the vehicle could do anything; "flight", without the camera.
 local function attempt(run, shot, stretch, only)
-  local stated, task, cuts = problem.state(run, shot, stretch, only)
-  local result = { stretch = stretch, problem = stated, task = task, cuts = cuts }
+  local stated, task, camera = problem.state(run, shot, stretch, only)
+  local cuts = camera and camera.cuts or {}
+  local result = { stretch = stretch, task = task, camera = camera, cuts = cuts }
   result.solution = run:solve(stated, run.options.solver)
   result.verdict = run:certify(run:plan { solution = result.solution, task = task, cuts = cuts })
   return result
+end
+
+-- What more time would not mend: a way that obstacles close, a subject that the gimbal cannot see.
+local function blocked(failing)
+  return string.find(failing.verdict.failures[1] or "", "^clearance") ~= nil
+end
+local function out_of_sight(failing)
+  return string.find(failing.verdict.failures[1] or "", "^framing") ~= nil
 end
 
 -- Which limit a film breaks, where and when: a leg that is too fast for it, or else what the film
 -- would ask for if nothing held it.
 local function broken_limit(run, shot, failing, leg)
   if leg then return leg end
+  if out_of_sight(failing) then
+    return subjects.hidden(failing.camera, shot.vehicle) or failing.verdict.failures[1]
+  end
   local free = attempt(run, shot, failing.stretch, "unlimited")
   local limit = free.solution.status == "optimal" and free.verdict.failures[1]
   return limit or failing.verdict.failures[1] or failing.solution.message
@@ -145,8 +158,10 @@ local function fly(run, shot)
   if first.verdict.feasible or broken or run:cancelled() then
     return finished(run, shot, first, {}, first.verdict.feasible and first.stretch or nil)
   end
+  if not why and blocked(first) then return finished(run, shot, first, {}) end
+  local hopeless = not why and out_of_sight(first)
   why = broken_limit(run, shot, first, why)
-  if not o.hard and not auto then return finished(run, shot, first, { why }) end
+  if hopeless or not o.hard and not auto then return finished(run, shot, first, { why }) end
   local good = smallest_stretch(run, shot, first, least)
   local note = good and string.format("%s; certified from a stretch of %.2f", why, good.stretch)
     or string.format("%s; no stretch up to %g is certified", why, LARGEST_STRETCH)

@@ -148,7 +148,7 @@ local function guess(shot, stretch, keyframes, camera)
   return { times = camera.guess.times, positions = positions, yaws = camera.guess.yaws }
 end
 
--- Problem, task and cuts of a film with all times multiplied by `stretch`. `only`: "unlimited", as
+-- Problem, task and camera of a film with all times multiplied by `stretch`. `only`: "unlimited", as
 -- if the vehicle could do anything; "flight", without the camera.
 function problem.state(run, shot, stretch, only)
   local o = run.options
@@ -196,7 +196,7 @@ function problem.state(run, shot, stretch, only)
   end
   p:guess_path(guess(shot, stretch, keyframes, camera))
   p:finish()
-  return p, task, camera and camera.cuts or {}
+  return p, task, camera
 end
 
 return problem

@@ -198,4 +198,23 @@ function subjects.plan(run, shot, stretch, duration, vehicle)
   return { list = list, spans = spans, cuts = cuts, pulls = pulls, guess = guess }
 end
 
+-- Where the straight way between keyframes sees a subject so high or low that the gimbal cannot
+-- bring it into the image: a sentence, or nil.
+function subjects.hidden(camera, vehicle)
+  local gimbal, view = vehicle.gimbal, vehicle.half_view.up
+  local worst, sentence = 0, nil
+  for i, time in ipairs(camera.guess.times) do
+    local span, pitch = inside(camera.spans, time), camera.guess.pitches[i]
+    local limit = pitch > gimbal.pitch_max and gimbal.pitch_max or gimbal.pitch_min
+    local beyond = math.max(pitch - gimbal.pitch_max, gimbal.pitch_min - pitch) - view
+    if span and beyond > worst then
+      worst = beyond
+      sentence = string.format(
+        "gimbal_pitch of %.3g deg towards '%s' at %.4g s is beyond %.3g deg and half the image",
+        math.deg(pitch), span.subject.name, time, math.deg(limit))
+    end
+  end
+  return sentence
+end
+
 return subjects

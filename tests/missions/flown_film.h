@@ -20,6 +20,10 @@ namespace fs = std::filesystem;
 
 inline const fs::path kExamples = fs::path(LAPWING_SOURCE_DIR) / "examples/filming";
 
+inline constexpr const char* kCameraFilms[] = {"castle_flyover.lua",  "two_actors.lua",
+                                               "through_the_gap.lua", "orbit.lua",
+                                               "follow_walker.lua",   "crane_and_cut.lua"};
+
 struct Flown {
   int status = -1;
   Value result;
@@ -58,6 +62,17 @@ class Filming : public ::testing::Test {
     const std::string report = read_file(flown.folder / "report.html");
     EXPECT_NE(report.find("certified"), std::string::npos);
     EXPECT_EQ(report.find("src=\"http"), std::string::npos);
+  }
+
+  static double cost(const Flown& flown) {
+    return flown.result.at("solver").at("cost").as_number();
+  }
+  // Share of the time that the subject is in the image, by the certificate.
+  static double framing(const Flown& flown) {
+    for (const Value& check : flown.result.at("certificate").at("checks").as_list())
+      if (check.at("name").as_text() == "framing") return check.at("worst").as_number();
+    ADD_FAILURE() << "no framing check";
+    return 0;
   }
 
   fs::path folder_;
