@@ -106,8 +106,8 @@ class TrajectoryProblem {
   Stages initial_guess() const;  // the same for every solver
   Stages retract(const Stages& at, const Eigen::VectorXd& step) const;
   // The same first state, inputs and free blocks, flown: every later state follows through the
-  // models' flows, the last inputs equal those before, and the clock runs with the first step. Meets
-  // every dynamics row to rounding.
+  // models' flows, the last inputs equal those before, and the clock runs with the first step.
+  // Meets every dynamics row to rounding.
   Stages simulate(const Stages& at) const;
   Trajectory trajectory(const Stages& at) const;
 

@@ -25,6 +25,7 @@ constexpr double kProgress = 0.9;        // factor on the residual that counts a
 constexpr int kPatience = 15;            // iterations without progress before a proof is sought
 constexpr int kStalls = 3;               // stalls in a row that end a solve
 constexpr double kWarmFloor = 1e-3;      // least slack and multiplier of a warm start (scaled)
+constexpr double kWarmCentre = 1e-2;     // least product of the two
 
 // One side of all bounds: slack t and multiplier z where the bound is finite.
 struct Side {
@@ -171,6 +172,14 @@ void InteriorPoint::Impl::start_warm(const QuadraticProgram& problem,
       side->z(k) = std::max(0.0, side == &lower ? multiplier : -multiplier);
     }
   place_slacks(kWarmFloor);
+  // Centred: of slack and multiplier the smaller gives way until their product is kWarmCentre, or a
+  // bound that changes sides would hold up every step.
+  for (Side* side : {&lower, &upper})
+    for (Eigen::Index k = 0; k < side->z.size(); ++k) {
+      double &t = side->t(k), &z = side->z(k);
+      if (t * z >= kWarmCentre) continue;
+      (t > z ? z : t) = kWarmCentre / std::max(t, z);
+    }
 }
 
 void InteriorPoint::Impl::compute_residuals() {

@@ -148,8 +148,8 @@ local function guess(shot, stretch, keyframes, camera)
   return { times = camera.guess.times, positions = positions, yaws = camera.guess.yaws }
 end
 
--- Problem, task and camera of a film with all times multiplied by `stretch`. `only`: "unlimited", as
--- if the vehicle could do anything; "flight", without the camera.
+-- Problem, task and camera of a film with all times multiplied by `stretch`. `only`: "unlimited",
+-- as if the vehicle could do anything; "flight", without the camera.
 function problem.state(run, shot, stretch, only)
   local o = run.options
   local duration = shot.duration * stretch

@@ -55,8 +55,9 @@ TEST_F(Filming, AClosedWayIsReported) {
   write_file_atomically(folder_ / "closed.lua", R"(return require "mission.film".shot {
     name = "closed", duration = 12, hard = 0.5,
     keyframes = { { time = 0, position = {-10, 0, 3} }, { time = 12, position = {10, 0, 3} } },
-    obstacles = { { type = "box", name = "left wall", lower = {-1, -200, -50}, upper = {1, 0.2, 200} },
-                  { type = "box", name = "right wall", lower = {-1, -0.2, -50}, upper = {1, 200, 200} } } })");
+    obstacles = {
+      { type = "box", name = "left wall", lower = {-1, -200, -50}, upper = {1, 0.2, 200} },
+      { type = "box", name = "right wall", lower = {-1, -0.2, -50}, upper = {1, 200, 200} } } })");
   const Flown flown = fly((folder_ / "closed.lua").string(), "--set stretch=1");
   EXPECT_EQ(flown.status, 1);
   bool clearance = false;
