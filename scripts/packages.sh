@@ -2,10 +2,10 @@
 lapwing_packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev libyaml-cpp-dev liblua5.4-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
-  libcli11-dev libgeographiclib-dev
+  libcli11-dev libgeographiclib-dev coinor-libipopt-dev libnlopt-dev
 )
 lapwing_test_packages=(libgtest-dev chromium binutils)
-lapwing_bench_packages=(libbenchmark-dev coinor-libipopt-dev)
+lapwing_bench_packages=(libbenchmark-dev)
 
 # Prints the packages among "$@" that are not installed.
 lapwing_missing() {

@@ -345,5 +345,26 @@ TEST(TrajectoryProblem, AKeyframeAtTheVeryEndSurvivesRounding) {
   EXPECT_EQ(problem.row_name(problem.rows() - 1), "end.1 at 0.3 s");
 }
 
+// Flown from its first state and inputs alone, whatever the states said.
+TEST(TrajectoryProblem, SimulationMeetsTheDynamics) {
+  for (const bool step_free : {false, true}) {
+    TrajectoryProblem problem(plain_vehicle(), {.stages = 6, .step = 0.2, .step_free = step_free});
+    problem.add_model("tumbler", std::make_unique<Tumbler>());
+    problem.add_model("pendulum", std::make_unique<Pendulum>());
+    problem.add_block({.name = "target", .size = 3, .unit = "m"});
+    problem.finish();
+    const Stages at = random_point(problem, 7);
+    EXPECT_GT(problem.row_values(at).norm(), 0.1);
+    const Stages flown = problem.simulate(at);
+    EXPECT_LT(problem.row_values(flown).norm(), 1e-12);
+    EXPECT_EQ(flown.col(0), at.col(0));
+    for (const char* kept : {"spin", "target"}) {
+      const int offset = problem.layout().offset(problem.layout().index(kept));
+      EXPECT_EQ(flown.block(offset, 0, 1, 5), at.block(offset, 0, 1, 5)) << kept;
+    }
+    EXPECT_EQ(problem.simulate(flown), flown);
+  }
+}
+
 }  // namespace
 }  // namespace lapwing

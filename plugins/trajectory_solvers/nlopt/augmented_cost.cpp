@@ -1,5 +1,6 @@
 #include "plugins/trajectory_solvers/nlopt/augmented_cost.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lapwing {
@@ -7,6 +8,7 @@ namespace {
 
 constexpr double kEnough = 0.25;  // share of the last miss that may be left
 constexpr double kRaise = 10.0;
+constexpr double kNone = 0.95;  // share that is no progress
 
 }  // namespace
 
@@ -32,6 +34,7 @@ double AugmentedCost::evaluate(const LocalModel& model, VectorXd& gradient) {
     const double below = item.is_row ? model.row_lower(i) - model.values(i) : model.step_lower(i);
     const double above = item.is_row ? model.values(i) - model.row_upper(i) : -model.step_upper(i);
     const double shift = item.multiplier / item.penalty;
+    item.violation = std::max({0.0, below, above});
     item.error = below + shift > 0 ? -(below + shift) : (above - shift > 0 ? above - shift : 0.0);
     if (item.error == 0) continue;
     sum += 0.5 * item.penalty * item.error * item.error;
@@ -44,19 +47,29 @@ double AugmentedCost::evaluate(const LocalModel& model, VectorXd& gradient) {
   return sum;
 }
 
+void AugmentedCost::prepare_hessian(const LocalModel& model) {
+  std::vector<int> active(model.values.size(), -1);
+  active_.clear();
+  for (const Limited& item : limited_) {
+    if (!item.is_row || item.error == 0) continue;
+    active[item.index] = static_cast<int>(active_.size());
+    active_.push_back({item.penalty, {}});
+  }
+  for (int c = 0; c < model.jacobian.outerSize(); ++c)
+    for (SparseMatrix::InnerIterator e(model.jacobian, c); e; ++e)
+      if (active[e.row()] >= 0) active_[active[e.row()]].entries.push_back({c, e.value()});
+}
+
 void AugmentedCost::hessian_times(const LocalModel& model, const VectorXd& step,
                                   VectorXd& product) const {
   product = model.hessian.selfadjointView<Eigen::Lower>() * step;
-  VectorXd rows = model.jacobian * step;
-  VectorXd weighted = VectorXd::Zero(rows.size());
-  for (const Limited& item : limited_) {
-    if (item.error == 0) continue;
-    if (item.is_row)
-      weighted(item.index) = item.penalty * rows(item.index);
-    else
-      product(item.index) += item.penalty * step(item.index);
+  for (const Limited& item : limited_)
+    if (!item.is_row && item.error != 0) product(item.index) += item.penalty * step(item.index);
+  for (const ActiveRow& row : active_) {
+    double change = 0;
+    for (const auto& [column, value] : row.entries) change += value * step(column);
+    for (const auto& [column, value] : row.entries) product(column) += row.penalty * change * value;
   }
-  product += model.jacobian.transpose() * weighted;
 }
 
 double AugmentedCost::update() {
@@ -73,11 +86,23 @@ double AugmentedCost::update() {
   return worst;
 }
 
+double AugmentedCost::worst_violation() const {
+  double worst = 0;
+  for (const Limited& item : limited_) worst = std::max(worst, item.violation);
+  return worst;
+}
+
+double AugmentedCost::violation_energy() const {
+  double sum = 0;
+  for (const Limited& item : limited_) sum += 0.5 * item.penalty * item.violation * item.violation;
+  return sum;
+}
+
 void AugmentedCost::raise(double tolerance) {
   for (std::size_t k = 0; k < limited_.size(); ++k) {
     Limited& item = limited_[k];
     if (item.miss <= tolerance || item.miss <= kEnough * before_[k]) continue;
-    item.penalty *= kRaise;
+    item.penalty *= item.miss > kNone * before_[k] ? kRaise * kRaise : kRaise;
   }
 }
 

@@ -16,8 +16,9 @@ struct Limited {
   bool is_row = false;
   int index = 0;
   double multiplier = 0, penalty = 1;
-  double error = 0;  // e at the last evaluation
-  double miss = 0;   // |change of the multiplier| / penalty at the last update
+  double error = 0;      // e at the last evaluation
+  double violation = 0;  // there
+  double miss = 0;       // |change of the multiplier| / penalty at the last update
 };
 
 class AugmentedCost {
@@ -29,17 +30,28 @@ class AugmentedCost {
 
   // L at the model's point; `gradient` in all columns.
   double evaluate(const LocalModel& model, Eigen::VectorXd& gradient);
-  // Gauss-Newton Hessian of L (as last evaluated) times a step of all columns.
+  // Gauss-Newton Hessian of L, the limits with an error held, times a step of all columns. Prepared
+  // once for many steps.
+  void prepare_hessian(const LocalModel& model);
   void hessian_times(const LocalModel& model, const Eigen::VectorXd& step,
                      Eigen::VectorXd& product) const;
   // Takes the next multipliers. Returns the largest miss.
   double update();
+  // At the last evaluation: the largest violation, and the sum of penalty/2 violation^2.
+  double worst_violation() const;
+  double violation_energy() const;
   // Raises the penalties of what was missed by more than `tolerance` and did not come down enough.
   void raise(double tolerance);
 
  private:
+  struct ActiveRow {
+    double penalty;
+    std::vector<std::pair<int, double>> entries;  // column, value
+  };
+
   int dynamics_rows_ = 0;
   std::vector<Limited> limited_;
+  std::vector<ActiveRow> active_;
   std::vector<double> before_;  // misses of the update before
   Eigen::VectorXd weights_;     // per row
 };

@@ -21,14 +21,18 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kFirstPenalty = 10;      // over the curvature of the cost along a limit's normal
-constexpr int kSamples = 5;               // limits of one name at which that curvature is measured
+constexpr double kFirstPenalty = 10;  // over the curvature of the cost along a limit's normal
+constexpr int kSamples = 5;           // limits of one name at which that curvature is measured
+constexpr std::size_t kLargestEquations = 600;
 constexpr double kFirstTolerance = 1e-3;  // of the first inner problems
 constexpr double kDiagonal = 1e-6;        // stricter where coordinates are less round
+constexpr double kRoundOff = 1e-15;       // promised decrease that means nothing
+constexpr double kGain = 1e-3;            // of the first promised decrease that may be left
 constexpr int kLargestDense = 3000;       // variables
 constexpr double kMet = 1e-6;             // in its own unit, what is called feasible
 constexpr int kPatience = 4;              // updates without progress that prove infeasibility
 constexpr double kProgress = 0.8;
+constexpr double kOutweighed = 1e3;
 
 struct Settings {
   int iterations = 0, cycle = 0, storage = 0;
@@ -73,7 +77,7 @@ class Nlopt final : public TrajectorySolver {
         .choice("scaling", "dense", {"dense", "diagonal"},
                 "coordinates: rounded by the cost's whole second derivative at the start of each "
                 "inner problem, or number by number")
-        .integer("cycle", 200, "evaluations after which coordinates are rounded anew",
+        .integer("cycle", 40, "evaluations after which coordinates are rounded anew",
                  between(2, 100000))
         .integer("storage", 30, "steps that the method remembers", between(1, 1000));
   }
@@ -125,9 +129,12 @@ class Run {
   void begin();
   void take_multipliers();
   void set_penalties();
+  void set_equation_penalties(const std::vector<Limited*>& equations);
+  VectorXd round_normal(const Limited& item) const;
   void round();  // coordinates, at model_
   void first_step();
   SolveStatus iterate();
+  bool hopeless(const std::vector<double>& violations) const;
   Inner minimise(double tolerance);
   void linearise(const Stages& at);
   double evaluate(const double* w, double* gradient);
@@ -154,7 +161,9 @@ class Run {
   // of the inner problem
   nlopt_opt method_ = nullptr;
   VectorXd lower_, upper_;  // of w
-  double inner_tolerance_ = 0, best_value_ = 0, best_slope_ = 0;
+  double inner_tolerance_ = 0, best_value_ = 0;
+  double first_promised_ = 0, best_promised_ = 0;  // decrease, relative to the cost
+  int inner_start_ = 0;
   Stages best_;
   bool inner_converged_ = false;
 };
@@ -196,6 +205,7 @@ void Run::take_multipliers() {
 
 void Run::round() {
   VectorXd unit = VectorXd::Zero(reduced_.size()), all, product;
+  augmented_.prepare_hessian(model_);
   scaling_.set(reduced_.size(), dense_, [&](int k, VectorXd& result) {
     unit(k) = 1;
     reduced_.forward(model_, unit, nullptr, all);
@@ -205,35 +215,69 @@ void Run::round() {
   });
 }
 
-// Penalties follow the cost's own curvature 1 / (a' H^-1 a) along each limit's normal a, so that
-// neither units nor weights matter.
+// Penalties follow the cost's own curvature along each limit's normal a, so that neither units nor
+// weights matter: for equations that of meeting one while all others hold, (A H^-1 A')^-1 on its
+// diagonal; for other limits 1 / (a' H^-1 a), the equations held by their penalties.
 void Run::set_penalties() {
-  for (Limited& item : augmented_.limited()) item.error = 0;
-  round();
+  std::vector<Limited*> equations;
   std::map<std::string, std::vector<Limited*>> groups;
   for (Limited& item : augmented_.limited()) {
+    item.error = 0;
+    const auto [lower, upper] =
+        item.is_row ? std::pair{model_.row_lower(item.index), model_.row_upper(item.index)}
+                    : problem_.bounds(item.index);
+    if (lower == upper && equations.size() < kLargestEquations) {
+      equations.push_back(&item);
+      continue;
+    }
     const std::string name =
         item.is_row ? problem_.row_name(item.index) : problem_.column_name(item.index);
     groups[name.substr(0, name.rfind(" at "))].push_back(&item);
   }
-  VectorXd normal, reduced;
+  round();
+  set_equation_penalties(equations);
+  for (Limited* item : equations) item->error = 1;  // held
+  round();
   for (auto& [name, items] : groups) {
     const std::size_t samples = std::min<std::size_t>(kSamples, items.size());
     std::vector<double> curvatures;
     for (std::size_t s = 0; s < samples; ++s) {
-      const Limited& item = *items[(2 * s + 1) * items.size() / (2 * samples)];
-      VectorXd one = VectorXd::Zero(item.is_row ? problem_.rows() : problem_.columns());
-      one(item.index) = 1;
-      if (item.is_row)
-        normal = model_.jacobian.transpose() * one;
-      else
-        normal = one;
-      reduced_.backward(model_, normal, reduced, nullptr);
-      const double compliance = scaling_.to_gradient(reduced).squaredNorm();
+      const double compliance =
+          round_normal(*items[(2 * s + 1) * items.size() / (2 * samples)]).squaredNorm();
       curvatures.push_back(compliance > 0 ? 1.0 / compliance : 1.0);
     }
     for (std::size_t k = 0; k < items.size(); ++k)
       items[k]->penalty = kFirstPenalty * curvatures[k * samples / items.size()];
+  }
+}
+
+// The gradient of a limited quantity in round coordinates.
+VectorXd Run::round_normal(const Limited& item) const {
+  VectorXd one = VectorXd::Zero(item.is_row ? problem_.rows() : problem_.columns());
+  one(item.index) = 1;
+  VectorXd normal = item.is_row ? VectorXd(model_.jacobian.transpose() * one) : one;
+  VectorXd reduced;
+  reduced_.backward(model_, normal, reduced, nullptr);
+  return scaling_.to_gradient(reduced);
+}
+
+void Run::set_equation_penalties(const std::vector<Limited*>& equations) {
+  std::vector<VectorXd> normals;
+  std::vector<double> lengths;
+  for (const Limited* item : equations) {
+    normals.push_back(round_normal(*item));
+    lengths.push_back(normals.back().norm());
+    if (lengths.back() > 0) normals.back() /= lengths.back();
+  }
+  const int count = static_cast<int>(equations.size());
+  Scaling gram;
+  gram.set(count, true, [&](int k, VectorXd& result) {
+    for (int l = 0; l < count; ++l) result(l) = normals[k].dot(normals[l]);
+  });
+  for (int k = 0; k < count; ++k) {
+    const double length = lengths[k];
+    const double stiffness = gram.to_gradient(VectorXd::Unit(count, k)).squaredNorm();
+    equations[k]->penalty = length > 0 ? kFirstPenalty * stiffness / (length * length) : 1.0;
   }
 }
 
@@ -282,8 +326,12 @@ double Run::evaluate(const double* w, double* gradient) {
   best_ = at;
   for (int k = 0; k < n; ++k)  // what a bound holds back is no slope
     if ((slope(k) > 0 && w[k] <= lower_(k)) || (slope(k) < 0 && w[k] >= upper_(k))) slope(k) = 0;
-  best_slope_ = slope.squaredNorm();
-  inner_converged_ = 0.5 * best_slope_ <= inner_tolerance_ * (1.0 + std::abs(model_.cost));
+  const double promised = 0.5 * slope.squaredNorm() / (1.0 + std::abs(model_.cost));
+  if (evaluations_ == inner_start_) first_promised_ = promised;
+  best_promised_ = promised;
+  // Multipliers learn nothing from a point that has not moved.
+  inner_converged_ =
+      promised <= inner_tolerance_ && promised <= std::max(kRoundOff, kGain * first_promised_);
   if (inner_converged_) nlopt_force_stop(method_);
   return value_;
 }
@@ -301,6 +349,7 @@ Run::Inner Run::minimise(double tolerance) {
   inner_tolerance_ = dense_ ? tolerance : kDiagonal * tolerance;
   best_value_ = HUGE_VAL;
   inner_converged_ = false;
+  inner_start_ = evaluations_ + 1;
   if (n == 0) return Inner::converged;
   method_ = nlopt_create(settings_.algorithm, n);
   nlopt_set_min_objective(
@@ -323,10 +372,18 @@ Run::Inner Run::minimise(double tolerance) {
   return inner_converged_ ? Inner::converged : Inner::worn_out;
 }
 
+// The violation stays although all that is asked for weighs next to nothing beside it.
+bool Run::hopeless(const std::vector<double>& violations) const {
+  const std::size_t n = violations.size();
+  return n > kPatience && violations.back() > 10 * kMet &&
+         violations.back() > kProgress * violations[n - 1 - kPatience] &&
+         augmented_.violation_energy() > kOutweighed * (1.0 + std::abs(model_.cost));
+}
+
 SolveStatus Run::iterate() {
   double tolerance = std::max(settings_.tolerance, kFirstTolerance);
   double value_before = HUGE_VAL;
-  std::vector<double> misses;
+  std::vector<double> violations;
   while (!stop_) {
     const Inner inner = minimise(tolerance);
     record_.add(center_, 1.0);
@@ -338,14 +395,12 @@ SolveStatus Run::iterate() {
     }
     value_before = HUGE_VAL;
     linearise(center_);
-    misses.push_back(augmented_.update());
-    const bool tight = tolerance <= settings_.tolerance;
-    if (misses.back() <= settings_.feasibility && tight)
-      return inner == Inner::converged ? SolveStatus::optimal : SolveStatus::feasible;
-    const std::size_t n = misses.size();
-    if (n > kPatience && misses.back() > 10 * kMet &&
-        misses.back() > kProgress * misses[n - 1 - kPatience])
-      return SolveStatus::infeasible;
+    const double miss = augmented_.update();
+    const bool least = best_promised_ <= (dense_ ? 1.0 : kDiagonal) * settings_.tolerance;
+    if (miss <= settings_.feasibility && (least || inner == Inner::worn_out))
+      return least ? SolveStatus::optimal : SolveStatus::feasible;
+    violations.push_back(augmented_.worst_violation());
+    if (hopeless(violations)) return SolveStatus::infeasible;
     augmented_.raise(settings_.feasibility);
     tolerance = std::max(settings_.tolerance, 0.1 * tolerance);
   }
