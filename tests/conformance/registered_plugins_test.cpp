@@ -64,7 +64,9 @@ TEST(EveryPlugin, IsThere) {
                                    {"constraint", "subject_distance"},
                                    {"vehicle_model", "gimbal"},
                                    {"vehicle_model", "quadrotor"},
-                                   {"trajectory_solver", "iqp"}})
+                                   {"trajectory_solver", "iqp"},
+                                   {"trajectory_solver", "ipopt"},
+                                   {"trajectory_solver", "nlopt"}})
     EXPECT_NO_THROW(plugins().find(kind, name)) << kind << " " << name;
 }
 

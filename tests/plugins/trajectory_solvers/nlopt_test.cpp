@@ -35,7 +35,7 @@ TEST(Nlopt, DynamicsAndInputBoundsHoldExactly) {
 
 TEST(Nlopt, EveryAlgorithmIsHonest) {
   const TrajectoryProblem problem = problem_of(hurried());
-  const double best = solve("iqp", problem).report.cost;
+  const double best = solve("ipopt", problem).report.cost;
   for (const char* algorithm :
        {"LD_LBFGS", "LD_VAR1", "LD_VAR2", "LD_TNEWTON", "LD_TNEWTON_RESTART", "LD_TNEWTON_PRECOND",
         "LD_TNEWTON_PRECOND_RESTART", "LD_MMA", "LD_CCSAQ"}) {

@@ -1,7 +1,6 @@
 // What a general solver must do on films, whatever its method: the tests of each solver call these.
 #pragma once
 
-#include "framework/core/log.h"
 #include "tests/plugins/trajectory_solvers/film_problem.h"
 
 namespace lapwing {
@@ -37,14 +36,15 @@ inline Film impossible() {
   return film;
 }
 
-// The same optimum as iqp's, certified.
+// The same optimum as iqp's, which ends within 1 % of it, or a better one; certified.
 inline void expect_the_optimum(const char* solver, const Film& film, double relative) {
   const TrajectoryProblem problem = problem_of(film);
   const SolveResult ours = solve(solver, problem);
   const SolveResult other = solve("iqp", problem);
   EXPECT_EQ(ours.report.status, SolveStatus::optimal) << ours.report.message;
   ASSERT_EQ(other.report.status, SolveStatus::optimal) << other.report.message;
-  EXPECT_NEAR(ours.report.cost, other.report.cost, relative * other.report.cost);
+  EXPECT_LE(ours.report.cost, (1 + relative) * other.report.cost);
+  EXPECT_GE(ours.report.cost, 0.99 * other.report.cost);
   EXPECT_LE(ours.report.violations.front().amount, 1e-6) << ours.report.violations.front().row;
   EXPECT_EQ(failed_checks(film, problem, ours), "");
   ASSERT_FALSE(ours.report.history.empty());
