@@ -11,16 +11,23 @@ constexpr double kNearest = 1e-6;  // m in front; nearer has no meaningful pixel
 
 }  // namespace
 
-Pinhole Pinhole::scaled_to(int new_width) const {
-  const double scale = static_cast<double>(new_width) / width;
+Pinhole Pinhole::fitted(int most_across, int most_down) const {
+  const double scale =
+      std::min(static_cast<double>(most_across) / width, static_cast<double>(most_down) / height);
+  const auto pixels = [scale](int count) {
+    return std::max(1, static_cast<int>(std::lround(count * scale)));
+  };
   Pinhole scaled;
-  scaled.width = new_width;
-  scaled.height = std::max(1, static_cast<int>(std::lround(height * scale)));
-  scaled.focal_x = focal_x * scale;
-  scaled.focal_y = focal_y * scale;
+  scaled.width = pixels(width);
+  scaled.height = pixels(height);
+  // Whole pixels stretch the image a little; its edges show the same as before.
+  const double across = static_cast<double>(scaled.width) / width;
+  const double down = static_cast<double>(scaled.height) / height;
+  scaled.focal_x = focal_x * across;
+  scaled.focal_y = focal_y * down;
   // Centres of pixels lie half a pixel from the image's edge at every size.
-  scaled.principal_x = (principal_x + 0.5) * scale - 0.5;
-  scaled.principal_y = (principal_y + 0.5) * scale - 0.5;
+  scaled.principal_x = (principal_x + 0.5) * across - 0.5;
+  scaled.principal_y = (principal_y + 0.5) * down - 0.5;
   return scaled;
 }
 

@@ -17,8 +17,8 @@ struct Pinhole {
   double focal_x = 0, focal_y = 0;          // pixels
   double principal_x = 0, principal_y = 0;  // pixels
 
-  // The same view with as many pixels across as asked, at least 1; pixels keep their shape.
-  Pinhole scaled_to(int width) const;
+  // The same view with as many pixels as fit, at least 1 each way, to the rounding.
+  Pinhole fitted(int most_across, int most_down) const;
 };
 
 // The smallest box of an image, in pixels, that holds a thing; it may reach beyond the image.

@@ -84,7 +84,7 @@ constexpr Containment kContained[] = {
     {"lauxlib.h", "framework/mission/", false},
     {"yaml-cpp/", "framework/config/", true},
     {"CLI/", "framework/app/", false},
-    {"embree", "framework/geometry/", false},
+    {"embree", "framework/geometry/", true},
     {"assimp/", "framework/geometry/", false},
     {"tbb/", "framework/core/", false},
     {"oneapi/tbb", "framework/core/", false},
@@ -92,6 +92,7 @@ constexpr Containment kContained[] = {
     {"nlohmann/", "", true},
     {"fmt/", "", true},
     {"GeographicLib/", "", true},
+    {"png.h", "framework/export/", true},
     {"octomap/", "", true},
     {"ompl/", "", true},
     {"coin/", "", true},
@@ -103,7 +104,8 @@ constexpr Containment kContained[] = {
     {"torch/", "", true},
 };
 // Of these, one source file of the framework alone.
-constexpr const char* kSingleSource[] = {"GeographicLib/", "octomap/", "nanoflann", "torch/"};
+constexpr const char* kSingleSource[] = {"GeographicLib/", "png.h", "octomap/", "nanoflann",
+                                         "torch/"};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;

@@ -53,10 +53,15 @@ TEST(CameraView, RayIsTheInverseOfProjection) {
 TEST(CameraView, ScalingKeepsTheView) {
   CameraView view = view_at(0.7, -0.4);
   const Eigen::Vector3d point = view.position + 9 * view.ray(-0.5, 1079.5);  // a corner
-  view.pinhole = view.pinhole.scaled_to(320);
-  EXPECT_EQ(view.pinhole.height, 180);
-  EXPECT_NEAR(view.project(point)->x(), -0.5, 1e-9);
-  EXPECT_NEAR(view.project(point)->y(), 179.5, 1e-9);
+  const Pinhole whole = view.pinhole;
+  for (const auto& [across, down, width, height] :
+       std::vector<std::array<int, 4>>{{320, 320, 320, 180}, {500, 90, 160, 90}, {7, 7, 7, 4}}) {
+    view.pinhole = whole.fitted(across, down);
+    EXPECT_EQ(view.pinhole.width, width);
+    EXPECT_EQ(view.pinhole.height, height);
+    EXPECT_NEAR(view.project(point)->x(), -0.5, 1e-9);
+    EXPECT_NEAR(view.project(point)->y(), height - 0.5, 1e-9);
+  }
 }
 
 TEST(CameraView, BoxHoldsTheCylinder) {

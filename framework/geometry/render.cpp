@@ -1,0 +1,223 @@
+#include "framework/geometry/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::Vector3d;
+using Light = Eigen::Array3d;  // linear red, green, blue
+
+const Vector3d kSun = Vector3d(-0.45, -0.6, 0.9).normalized();  // towards it
+const Light kSunlight(1.0, 0.95, 0.86), kSkylight(0.42, 0.48, 0.58), kBounce(0.2, 0.19, 0.17);
+const Light kZenith(0.13, 0.3, 0.62), kHorizon(0.68, 0.77, 0.86);
+constexpr double kHaze = 900;            // m, over which all but 1/e is lost
+constexpr double kTint = 0.3;            // of a see-through body
+constexpr int kFine = 3;                 // samples across a pixel where something ends in it
+constexpr double kLargestPicture = 1e8;  // pixels
+
+double linear(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+Light linear(const Color& c) {
+  return {linear(c.red), linear(c.green), linear(c.blue)};
+}
+
+// Linear light, 0 to 1 in 4096 steps, as a byte of sRGB.
+std::uint8_t encoded(double light) {
+  static const auto table = [] {
+    std::array<std::uint8_t, 4097> bytes{};
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      const double v = static_cast<double>(i) / 4096;
+      const double srgb = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+      bytes[i] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(srgb, 0.0, 1.0)));
+    }
+    return bytes;
+  }();
+  return table[static_cast<std::size_t>(std::lround(4096 * std::clamp(light, 0.0, 1.0)))];
+}
+
+Light sky(const Vector3d& direction) {
+  const double up = std::sqrt(std::max(direction.z(), 0.0));
+  return kHorizon + up * (kZenith - kHorizon);
+}
+
+// The integral of a square wave of +-1, which a difference of averages over a width.
+double square_integral(double x) {
+  const double phase = x - 2 * std::floor(x / 2);
+  return phase < 1 ? phase : 2 - phase;
+}
+
+// Squares of +-1, averaged over a width in each direction.
+double checkers(const Vector3d& p, const Eigen::Array2d& width, double size) {
+  double value = 1;
+  for (int i = 0; i < 2; ++i) {
+    const double w = std::max(width[i] / size, 1e-6), x = p[i] / size;
+    value *= (square_integral(x + w / 2) - square_integral(x - w / 2)) / w;
+  }
+  return value;
+}
+
+// A ray of the picture and its neighbours one pixel to the right and down.
+struct PictureRay {
+  Vector3d origin, direction, right, down;
+  double pixels = 1;  // that this ray stands for, across
+};
+
+// How far apart the points are where neighbouring rays meet the ground, in x and y.
+Eigen::Array2d ground_width(const PictureRay& ray, const Vector3d& p) {
+  Eigen::Array2d width = Eigen::Array2d::Zero();
+  for (const Vector3d* direction : {&ray.right, &ray.down}) {
+    if (direction->z() * ray.direction.z() <= 0) return Eigen::Array2d::Constant(1e6);
+    const double distance = (p.z() - ray.origin.z()) / direction->z();
+    const Vector3d other = ray.origin + distance * *direction;
+    width = width.max((other - p).head<2>().array().abs());
+  }
+  return width * ray.pixels;
+}
+
+struct Sample {
+  Light light;
+  int shape = -1;  // what the ray met; -1 is the sky, and shadows count as shapes of their own
+};
+
+class Painter {
+ public:
+  Painter(const Scene& solid, const std::vector<Color>& solid_colors, const Scene& see_through,
+          const std::vector<Color>& see_through_colors, const CameraView& view)
+      : solid_(solid),
+        solid_colors_(solid_colors),
+        see_through_(see_through),
+        see_through_colors_(see_through_colors),
+        view_(view) {}
+
+  Sample sample(double x, double y, double pixels) const {
+    const PictureRay ray{view_.position, view_.ray(x, y), view_.ray(x + 1, y), view_.ray(x, y + 1),
+                         pixels};
+    const auto hit = solid_.cast(ray.origin, ray.direction);
+    Sample sample{sky(ray.direction), -1};
+    if (hit) sample = lit(*hit, ray);
+    if (see_through_.shapes().empty()) return sample;
+    const double farthest = hit ? hit->distance : std::numeric_limits<double>::infinity();
+    const auto veil = see_through_.cast(ray.origin, ray.direction, farthest);
+    if (!veil) return sample;
+    const Light color = light_of(see_through_colors_[static_cast<std::size_t>(veil->shape)]);
+    // More of it towards its outline, as with glass, so that its shape can be seen.
+    const double facing = std::abs(veil->normal.dot(ray.direction));
+    sample.light += kTint * (1.5 - facing) * (color * daylight(veil->normal, 1) - sample.light);
+    sample.shape += 1'000'000;
+    return sample;
+  }
+
+ private:
+  static Light light_of(const Color& linear_color) {
+    return {linear_color.red, linear_color.green, linear_color.blue};
+  }
+
+  static Light daylight(const Vector3d& normal, double sun) {
+    const double up = 0.5 + 0.5 * normal.z();
+    return kBounce + up * (kSkylight - kBounce) + sun * std::max(normal.dot(kSun), 0.0) * kSunlight;
+  }
+
+  Sample lit(const RayHit& hit, const PictureRay& ray) const {
+    const Vector3d p = ray.origin + hit.distance * ray.direction;
+    const auto index = static_cast<std::size_t>(hit.shape);
+    Light color = light_of(solid_colors_[index]);
+    if (std::holds_alternative<GroundShape>(solid_.shapes()[index])) {
+      const Eigen::Array2d width = ground_width(ray, p);
+      color *= 1 + 0.1 * checkers(p, width, 1) + 0.16 * checkers(p, width, 10);
+    }
+    // Off the surface, by more than what rounding may have put the point behind it.
+    const Vector3d start = p + 1e-9 * (1 + p.norm() + hit.distance) * hit.normal;
+    const bool shadow = hit.normal.dot(kSun) <= 0 || solid_.blocked(start, kSun);
+    const double clear = std::exp(-hit.distance / kHaze);
+    const Light light = color * daylight(hit.normal, shadow ? 0 : 1);
+    return {kHorizon + clear * (light - kHorizon), 2 * hit.shape + (shadow ? 1 : 0)};
+  }
+
+  const Scene& solid_;
+  const std::vector<Color>& solid_colors_;
+  const Scene& see_through_;
+  const std::vector<Color>& see_through_colors_;
+  const CameraView& view_;
+};
+
+// Pixels whose neighbours show something else.
+std::vector<bool> outlines(const std::vector<Sample>& samples, int width, int height) {
+  std::vector<bool> found(samples.size(), false);
+  const auto compare = [&](std::size_t a, std::size_t b) {
+    if (samples[a].shape != samples[b].shape) found[a] = found[b] = true;
+  };
+  const auto row = static_cast<std::size_t>(width);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if ((i + 1) % row != 0) compare(i, i + 1);
+    if (i + row < row * static_cast<std::size_t>(height)) compare(i, i + row);
+  }
+  return found;
+}
+
+std::vector<Shape> shapes_of(const std::vector<Body>& bodies, bool see_through) {
+  std::vector<Shape> shapes;
+  for (const Body& body : bodies) {
+    if (body.see_through == see_through) shapes.push_back(body.shape);
+  }
+  return shapes;
+}
+
+std::vector<Color> colors_of(const std::vector<Body>& bodies, bool see_through) {
+  std::vector<Color> colors;
+  for (const Body& body : bodies) {
+    if (body.see_through != see_through) continue;
+    const Light light = linear(body.color);
+    colors.push_back({light.x(), light.y(), light.z()});
+  }
+  return colors;
+}
+
+}  // namespace
+
+Renderer::Renderer(const std::vector<Body>& bodies)
+    : solid_(shapes_of(bodies, false)),
+      see_through_(shapes_of(bodies, true)),
+      solid_colors_(colors_of(bodies, false)),
+      see_through_colors_(colors_of(bodies, true)) {}
+
+Picture Renderer::picture(const CameraView& view) const {
+  const int width = view.pinhole.width, height = view.pinhole.height;
+  if (width < 1 || height < 1 || static_cast<double>(width) * height > kLargestPicture) {
+    throw InputError("a picture of " + std::to_string(width) + " by " + std::to_string(height) +
+                     " pixels: expected at least one and at most 100 million");
+  }
+  const Painter painter(solid_, solid_colors_, see_through_, see_through_colors_, view);
+  std::vector<Sample> samples;
+  samples.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) samples.push_back(painter.sample(x, y, 1));
+  }
+  const std::vector<bool> outline = outlines(samples, width, height);
+  Picture picture{width, height, {}};
+  picture.rgb.reserve(3 * samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    Light light = samples[i].light;
+    if (outline[i]) {
+      const auto x = static_cast<double>(i % static_cast<std::size_t>(width));
+      const auto y = static_cast<double>(i / static_cast<std::size_t>(width));
+      light.setZero();
+      for (int k = 0; k < kFine * kFine; ++k) {
+        const double dx = (k % kFine + 0.5) / kFine - 0.5, dy = (k / kFine + 0.5) / kFine - 0.5;
+        // What saturates does so before the mean is taken, or bright outlines would be jagged.
+        light += painter.sample(x + dx, y + dy, 1.0 / kFine).light.min(1.0);
+      }
+      light /= kFine * kFine;
+    }
+    for (const double v : light) picture.rgb.push_back(encoded(v));
+  }
+  return picture;
+}
+
+}  // namespace lapwing
