@@ -5,41 +5,27 @@
 namespace lapwing {
 namespace {
 
-// Charts of one plan over time; each `read` is a function of a sample.
-class Charts {
- public:
-  explicit Charts(const Plan& plan) : plan_(plan) {
-    for (const Sample& s : plan.trajectory.samples) times_.push_back(s.time);
-    for (std::size_t i = 0; i < plan.task.keyframes.size(); ++i) {
-      markers_.push_back({std::to_string(i + 1), plan.task.keyframes[i].time});
-    }
-  }
-
-  template <class Read>
-  Series series(const std::string& name, Read read, bool stepped = false) const {
-    Series out{name, times_, {}, stepped && plan_.trajectory.inputs_held};
-    for (const Sample& s : plan_.trajectory.samples) out.y.push_back(read(s));
-    return out;
-  }
-
-  Chart chart(const std::string& title, const std::string& label, const std::string& unit,
-              std::vector<Series> series, std::vector<LimitLine> limits = {}) const {
-    return {title,    time_axis(), Axis{label, unit}, std::move(series), std::move(limits),
-            markers_, {}};
-  }
-
- private:
-  const Plan& plan_;
-  std::vector<double> times_;
-  std::vector<Marker> markers_;
-};
-
 double across(const Eigen::Vector3d& v) {
   return v.head<2>().norm();
 }
 
 std::vector<LimitLine> both_ways(double limit) {
   return {{"maximum", limit}, {"minimum", -limit}};
+}
+
+// A subject that stands is a point; one that moves, its track while the flight lasts.
+void add_track(const Plan& plan, const Subject& subject, Drawing& drawing) {
+  constexpr int kMost = 200;
+  const auto& samples = plan.trajectory.samples;
+  const double start = samples.front().time, duration = plan.trajectory.duration();
+  drawing.points.push_back({subject.name, subject.position(start)});
+  if (subject.positions.size() < 2 || !(duration > 0)) return;
+  Polyline track{subject.name, {}, {}, {}};
+  for (int i = 0; i <= kMost; ++i) {
+    track.along.push_back(start + duration * i / kMost);
+    track.points.push_back(subject.position(track.along.back()));
+  }
+  drawing.lines.push_back(std::move(track));
 }
 
 Projection better_side(const Trajectory& trajectory) {
@@ -52,47 +38,7 @@ Projection better_side(const Trajectory& trajectory) {
   return extent.x() >= extent.y() ? Projection::from_south : Projection::from_east;
 }
 
-Chart gimbal_angles(const Charts& charts, const Vehicle& vehicle) {
-  Chart chart = charts.chart(
-      "Gimbal angles", "angle", "\u00b0",
-      {charts.series("yaw", [](const Sample& s) { return degrees(s.gimbal_yaw); }),
-       charts.series("pitch", [](const Sample& s) { return degrees(s.gimbal_pitch); })});
-  if (vehicle.gimbal) {
-    chart.limits = {{"pitch at most", degrees(vehicle.gimbal->pitch_max)},
-                    {"pitch at least", degrees(vehicle.gimbal->pitch_min)}};
-    if (vehicle.gimbal->yaw_max > vehicle.gimbal->yaw_min) {
-      chart.limits.push_back({"yaw at most", degrees(vehicle.gimbal->yaw_max)});
-      chart.limits.push_back({"yaw at least", degrees(vehicle.gimbal->yaw_min)});
-    }
-  }
-  return chart;
-}
-
-Chart gimbal_rates(const Charts& charts, const Vehicle& vehicle) {
-  Chart chart = charts.chart(
-      "Gimbal rates", "rate", "\u00b0/s",
-      {charts.series("yaw", [](const Sample& s) { return degrees(s.gimbal_yaw_rate); }),
-       charts.series("pitch", [](const Sample& s) { return degrees(s.gimbal_pitch_rate); })});
-  if (!vehicle.gimbal) return chart;
-  const double pitch = degrees(vehicle.gimbal->pitch_rate_max);
-  const double yaw = degrees(vehicle.gimbal->yaw_rate_max);
-  const bool turns = vehicle.gimbal->yaw_max > vehicle.gimbal->yaw_min;
-  if (!turns || yaw == pitch) {
-    chart.limits = both_ways(pitch);
-  } else {
-    chart.limits = {{"pitch at most", pitch},
-                    {"pitch at least", -pitch},
-                    {"yaw at most", yaw},
-                    {"yaw at least", -yaw}};
-  }
-  return chart;
-}
-
 }  // namespace
-
-Axis time_axis() {
-  return {"time", "s"};
-}
 
 Section path_section(const Plan& plan) {
   Drawing drawing;
@@ -110,6 +56,8 @@ Section path_section(const Plan& plan) {
   }
   drawing.spheres = plan.environment.spheres;
   drawing.boxes = plan.environment.boxes;
+  drawing.zones = plan.environment.zones;
+  for (const Subject& subject : plan.environment.subjects) add_track(plan, subject, drawing);
   const Projection side = better_side(plan.trajectory);
   const std::string from = side == Projection::from_south ? "south" : "east";
   return {"Path",
@@ -118,7 +66,7 @@ Section path_section(const Plan& plan) {
 }
 
 Section motion_section(const Plan& plan, const Vehicle& vehicle) {
-  const Charts charts(plan);
+  const TimeCharts charts(plan);
   Section section{"Motion", {}};
   section.blocks.push_back(
       charts.chart("Position", "position", "m",
@@ -152,7 +100,7 @@ Section motion_section(const Plan& plan, const Vehicle& vehicle) {
 }
 
 Section input_section(const Plan& plan, const Vehicle& vehicle) {
-  const Charts charts(plan);
+  const TimeCharts charts(plan);
   Section section{"Inputs", {}};
   if (plan.trajectory.model == MotionModel::force) {
     section.blocks.push_back(
@@ -180,7 +128,7 @@ Section input_section(const Plan& plan, const Vehicle& vehicle) {
 }
 
 Section direction_section(const Plan& plan, const Vehicle& vehicle) {
-  const Charts charts(plan);
+  const TimeCharts charts(plan);
   Section section{"Direction", {}};
   section.blocks.push_back(
       charts.chart("Yaw", "yaw", "\u00b0",
@@ -190,10 +138,6 @@ Section direction_section(const Plan& plan, const Vehicle& vehicle) {
         "Yaw rate", "yaw rate", "\u00b0/s",
         {charts.series("yaw rate", [](const Sample& s) { return degrees(s.yaw_rate); })},
         both_ways(degrees(vehicle.yaw_rate_max))));
-  }
-  if (plan.trajectory.has_gimbal) {
-    section.blocks.push_back(gimbal_angles(charts, vehicle));
-    section.blocks.push_back(gimbal_rates(charts, vehicle));
   }
   return section;
 }

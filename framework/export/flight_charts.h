@@ -3,14 +3,11 @@
 
 #include <vector>
 
-#include "framework/export/report.h"
+#include "framework/export/time_charts.h"
 #include "framework/trajectory/plan.h"
 #include "framework/vehicle/vehicle.h"
 
 namespace lapwing {
-
-// The axis that all charts and drawings of a flight share.
-Axis time_axis();
 
 // Path from above, from the side that shows more of it, and in space, coloured by speed.
 Section path_section(const Plan& plan);
@@ -18,7 +15,7 @@ Section path_section(const Plan& plan);
 Section motion_section(const Plan& plan, const Vehicle& vehicle);
 // Thrust and yaw torque (model force) or rotor thrusts (model rotors); empty for a `path`.
 Section input_section(const Plan& plan, const Vehicle& vehicle);
-// Yaw and, where the trajectory has it, the gimbal: angles and rates, in degrees.
+// Yaw and its rate, in degrees.
 Section direction_section(const Plan& plan, const Vehicle& vehicle);
 
 }  // namespace lapwing

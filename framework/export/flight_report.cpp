@@ -4,6 +4,7 @@
 
 #include "framework/core/json.h"
 #include "framework/core/units.h"
+#include "framework/export/film_charts.h"
 #include "framework/export/flight_charts.h"
 #include "framework/trajectory/interpolate.h"
 #include "framework/vehicle/vehicle.h"
@@ -269,6 +270,7 @@ std::vector<Section> flight_sections(const Plan& plan) {
     sections.push_back(std::move(inputs));
   }
   sections.push_back(direction_section(plan, vehicle));
+  if (plan.trajectory.has_gimbal) sections.push_back(camera_section(plan, vehicle));
   if (!plan.task.keyframes.empty()) sections.push_back(keyframe_section(plan));
   if (!plan.solver.is_null()) sections.push_back(solver_section(plan.solver));
   if (!plan.certificate.is_null()) {

@@ -236,12 +236,55 @@ class Page {
   }
 
   void block(const Image& image) {
-    if (image.png.compare(0, 8, "\x89PNG\r\n\x1a\n") != 0) {
-      fail(image.caption, "the image is no PNG file");
-    }
+    require_png(image.png, image.caption);
     out_ += "<figure class=\"block image wide\"><img alt=\"" + escaped(image.caption) +
             "\" src=\"data:image/png;base64," + base64(image.png) + "\"><figcaption>" +
             escaped(image.caption) + "</figcaption></figure>\n";
+  }
+
+  void block(const FilmStrip& strip) {
+    out_ += "<figure class=\"block strip wide\"><figcaption>" + escaped(strip.title) +
+            "</figcaption>\n<div class=\"frames\">\n";
+    for (const FilmFrame& frame : strip.frames) {
+      require_png(frame.png, strip.title);
+      out_ += "<div><div class=\"picture\"><img alt=\"" + escaped(frame.caption) + "\" width=\"" +
+              std::to_string(frame.width) + "\" height=\"" + std::to_string(frame.height) +
+              "\" src=\"data:image/png;base64," + base64(frame.png) + "\">";
+      frame_boxes(frame, strip.title);
+      out_ += "</div>" + escaped(frame.caption) + "</div>\n";
+    }
+    out_ += "</div></figure>\n";
+  }
+
+  void frame_boxes(const FilmFrame& frame, const std::string& title) {
+    if (frame.boxes.empty()) return;
+    out_ += "<svg viewBox=\"0 0 1 1\" preserveAspectRatio=\"none\">";
+    for (const FrameBox& box : frame.boxes) {
+      if (!(box.left <= box.right && box.top <= box.bottom) ||
+          !std::isfinite(box.right - box.left) || !std::isfinite(box.bottom - box.top)) {
+        fail(title, "a box in a frame is empty or not finite");
+      }
+      // Far beyond the frame nothing more shows, and figures stay short.
+      const auto share = [](double v) { return plain(std::clamp(v, -2.0, 3.0)); };
+      const auto size = [](double low, double high) {
+        return plain(std::clamp(high, -2.0, 3.0) - std::clamp(low, -2.0, 3.0));
+      };
+      out_ += "<rect style=\"stroke:var(--s" + std::to_string((box.color + 1) % 8) + ")\" x=\"" +
+              share(box.left) + "\" y=\"" + share(box.top) + "\" width=\"" +
+              size(box.left, box.right) + "\" height=\"" + size(box.top, box.bottom) +
+              "\"><title>" + escaped(box.label) + "</title></rect>";
+    }
+    out_ += "</svg>";
+  }
+
+  // For attributes: four digits behind the point.
+  static std::string plain(double value) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, 4).ptr};
+  }
+
+  void require_png(const std::string& bytes, const std::string& where) const {
+    if (bytes.compare(0, 8, "\x89PNG\r\n\x1a\n") != 0) fail(where, "the image is no PNG file");
   }
 
   const Report& report_;

@@ -111,6 +111,7 @@ struct Drawing {
   std::vector<LabelledPoint> points;
   std::vector<Sphere> spheres;
   std::vector<Box> boxes;
+  std::vector<Zone> zones;
   Axis along;  // what Polyline::along counts; a chart over the same axis shares its cursor
   Axis value;  // what Polyline::values hold
 };
@@ -134,7 +135,28 @@ struct Image {
   std::string caption;  // also read out in place of the image
 };
 
-using Block = std::variant<TextBlock, Facts, Table, Chart, PathView, Scene3D, Image>;
+// Where a thing is in a frame, as shares of its width and height from the upper left corner; it may
+// reach beyond the frame.
+struct FrameBox {
+  std::string label;
+  int color = 0;  // boxes of one thing share it
+  double left = 0, top = 0, right = 0, bottom = 0;
+};
+
+struct FilmFrame {
+  std::string png;  // the bytes of a PNG file
+  int width = 0, height = 0;
+  std::string caption;  // also read out in place of the frame
+  std::vector<FrameBox> boxes;
+};
+
+// Pictures in a row, as many side by side as fit.
+struct FilmStrip {
+  std::string title;
+  std::vector<FilmFrame> frames;
+};
+
+using Block = std::variant<TextBlock, Facts, Table, Chart, PathView, Scene3D, Image, FilmStrip>;
 
 struct Section {
   std::string title;

@@ -136,6 +136,20 @@ Json line(const Polyline& l, Writer& writer) {
   return out;
 }
 
+// Without bounds, `floor` and `ceiling` are null.
+Json zone(const Zone& z, const Writer& writer) {
+  Json x = Json::array(), y = Json::array();
+  for (const Eigen::Vector2d& corner : z.corners) {
+    x.push_back(rounded(writer.finite(corner.x(), "a corner of a zone")));
+    y.push_back(rounded(writer.finite(corner.y(), "a corner of a zone")));
+  }
+  return {{"label", z.name},
+          {"x", x},
+          {"y", y},
+          {"floor", rounded(z.floor)},
+          {"ceiling", rounded(z.ceiling)}};
+}
+
 Json drawing(const Drawing& d, Writer& writer) {
   Json lines = Json::array(), points = Json::array(), spheres = Json::array(),
        boxes = Json::array();
@@ -153,8 +167,10 @@ Json drawing(const Drawing& d, Writer& writer) {
                      {"lower", vector(b.lower, "a corner of a box", writer)},
                      {"upper", vector(b.upper, "a corner of a box", writer)}});
   }
-  return {{"lines", lines}, {"points", points},       {"spheres", spheres},
-          {"boxes", boxes}, {"along", axis(d.along)}, {"value", axis(d.value)}};
+  Json zones = Json::array();
+  for (const Zone& z : d.zones) zones.push_back(zone(z, writer));
+  return {{"lines", lines}, {"points", points},       {"spheres", spheres},    {"boxes", boxes},
+          {"zones", zones}, {"along", axis(d.along)}, {"value", axis(d.value)}};
 }
 
 void write(const Chart& c, const Section& section, Writer& writer) {

@@ -23,6 +23,12 @@ function drawingBounds(drawing) {
     include(s.center.map((v) => v + s.radius));
   }
   for (const b of drawing.boxes) { include(b.lower); include(b.upper); }
+  for (const z of drawing.zones) {
+    // Where a zone has no bound, whatever else is drawn says how much of it shows.
+    const heights = [z.floor, z.ceiling].filter((v) => v !== null);
+    if (!heights.length) heights.push(low[2] <= high[2] ? low[2] : 0);
+    z.x.forEach((x, i) => heights.forEach((h) => include([x, z.y[i], h])));
+  }
   return low[0] <= high[0] ? { low, high } : { low: [-1, -1, -1], high: [1, 1, 1] };
 }
 const linePoint = (line, i) => [line.x[i], line.y[i], line.z[i]];
@@ -63,6 +69,7 @@ function makePath(figure, spec) {
     drawAxes(svg, area, roundTicks(x0, x1, (x1 - x0) / step).ticks,
       roundTicks(y0, y1, (y1 - y0) / yStep).ticks, sx, sy, `${view.names[0]} [m]`,
       `${view.names[1]} [m]`);
+    drawZones(area);
     drawBodies();
     drawLines();
     drawPoints();
@@ -70,6 +77,23 @@ function makePath(figure, spec) {
       style: "fill:var(--s1)" });
     listen();
     if (old) old.replaceWith(svg); else plot.prepend(svg);
+  }
+
+  // Zones lie under everything else; a bound that is missing is the drawing's own edge.
+  function drawZones(area) {
+    for (const z of drawing.zones) {
+      let corners = z.x.map((x, i) => [sx(x), sy(z.y[i])]);
+      if (view.up === 2) {
+        const sides = view.across === 0 ? z.x : z.y;
+        const [left, right] = [sx(Math.min(...sides)), sx(Math.max(...sides))];
+        const bottom = z.floor === null ? area.bottom : sy(z.floor);
+        const top = z.ceiling === null ? area.top : sy(z.ceiling);
+        corners = [[left, bottom], [right, bottom], [right, top], [left, top]];
+      }
+      const node = svgChild(svg, "polygon", { class: "zone",
+        points: corners.map((p) => p.map((v) => v.toFixed(1)).join(",")).join(" ") });
+      svgChild(node, "title", {}, z.label);
+    }
   }
 
   function drawBodies() {

@@ -35,6 +35,7 @@ function makeScene(figure, spec) {
     const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
     theme = { ink: get("ink"), muted: get("muted"), line: get("line"), grid: get("grid"),
       panel: get("panel"), accent: get("s1"), shade: get("shade"),
+      zone: get("zone"), limit: get("limit"),
       series: [0, 1, 2, 3, 4, 5, 6, 7].map((i) => get(`s${i}`)),
       ramp: [0, 1, 2, 3].map((i) => rgb(get(`ramp${i}`))) };
   }
@@ -154,6 +155,7 @@ function makeScene(figure, spec) {
       } });
     }
     for (const b of drawing.boxes) items.push(...boxFaces(b));
+    for (const z of drawing.zones) items.push(...zoneFaces(z));
     return items.sort((a, b) => b.depth - a.depth);
   }
 
@@ -168,6 +170,28 @@ function makeScene(figure, spec) {
           pen.fill();
         } };
       });
+  }
+
+  // Walls and, where it has one, its floor and its ceiling; without a bound it ends with the scene.
+  function zoneFaces(zone) {
+    const bottom = zone.floor === null ? Math.min(ground, low[2]) : zone.floor;
+    const top = zone.ceiling === null ? Math.max(high[2], bottom) : zone.ceiling;
+    const ring = (height) => zone.x.map((x, i) => [x, zone.y[i], height]);
+    const lower = ring(bottom), upper = ring(top);
+    const faces = lower.map((p, i) => {
+      const k = (i + 1) % lower.length;
+      return [p, lower[k], upper[k], upper[i]];
+    });
+    if (zone.floor !== null) faces.push(lower);
+    if (zone.ceiling !== null) faces.push(upper);
+    return faces.map((face) => {
+      const c = face.map(project);
+      return { depth: c.reduce((sum, p) => sum + p.depth, 0) / c.length, draw() {
+        stroke([...c, c[0]], theme.limit, 0.8, [4, 3]);
+        pen.fillStyle = theme.zone;
+        pen.fill();
+      } };
+    });
   }
 
   function drawPoints() {

@@ -184,6 +184,15 @@ Drawing drawing(Fields& fields) {
     out.boxes.push_back({f.text("name"), f.vector3("lower"), f.vector3("upper")});
     f.finish();
   }
+  for (Fields& f : tables(fields, "zones")) {
+    Zone zone;
+    zone.name = f.text("name");
+    for (const auto& corner : f.rows("corners", 2)) zone.corners.emplace_back(corner[0], corner[1]);
+    zone.floor = f.optional_number("floor").value_or(zone.floor);
+    zone.ceiling = f.optional_number("ceiling").value_or(zone.ceiling);
+    f.finish();
+    out.zones.push_back(std::move(zone));
+  }
   if (given(fields, "along")) out.along = axis(fields.table("along"), false);
   if (given(fields, "value")) out.value = axis(fields.table("value"), false);
   return out;

@@ -13,7 +13,8 @@
 //     image  png_base64, caption
 //   axis     label, unit, whole, logarithmic (of y only)
 //   drawing  lines: name, points (triples), along, values; points: label, position;
-//            spheres: name, center, radius; boxes: name, lower, upper; along, value (axes)
+//            spheres: name, center, radius; boxes: name, lower, upper; zones: name, corners
+//            (pairs), floor, ceiling; along, value (axes)
 //   result   none, pass, fail, skipped
 //
 // Required are titles, names, labels, types, text, value, and the numbers of what is drawn; the

@@ -58,6 +58,10 @@ RTCRay ray_of(const Query& query) {
 
 }  // namespace
 
+bool drawable(const Shape& shape) {
+  return *problem_of(shape) == '\0';
+}
+
 struct Scene::Tracer {
   explicit Tracer(std::vector<Shape> list) : shapes(std::move(list)) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {

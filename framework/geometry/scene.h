@@ -47,6 +47,9 @@ struct GroundShape {
 
 using Shape = std::variant<BallShape, BlockShape, BoardShape, UprightCylinderShape, GroundShape>;
 
+// Whether a scene takes the shape: it has an extent, and finite numbers up to 1e5.
+bool drawable(const Shape& shape);
+
 struct RayHit {
   double distance = 0;                                // m along the ray
   int shape = 0;                                      // its place in the list
