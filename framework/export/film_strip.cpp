@@ -12,7 +12,7 @@
 namespace lapwing {
 namespace {
 
-constexpr int kFrameSize = 320;        // pixels, of the longer side
+constexpr int kFrameSize = 288;        // pixels, of the longer side
 constexpr double kPersonHeight = 1.8;  // m, of a subject that states none
 constexpr double kSlender = 3.6;       // height over width of a subject that states no width
 constexpr Color kGround{0.60, 0.61, 0.54};
@@ -78,8 +78,8 @@ std::vector<FrameBox> boxes_of(const Plan& plan, const CameraView& view, double 
     if (!box) continue;
     const auto across = [&](double x) { return (x + 0.5) / view.pinhole.width; };
     const auto down = [&](double y) { return (y + 0.5) / view.pinhole.height; };
-    boxes.push_back({subject.name, static_cast<int>(i), across(box->left), down(box->top),
-                     across(box->right), down(box->bottom)});
+    boxes.push_back(
+        {subject.name, across(box->left), down(box->top), across(box->right), down(box->bottom)});
   }
   return boxes;
 }
@@ -89,6 +89,10 @@ std::string caption_of(const Plan& plan, double time) {
   for (std::size_t i = 0; i < plan.task.keyframes.size(); ++i) {
     if (std::abs(plan.task.keyframes[i].time - time) > 1e-9) continue;
     caption += " \u00b7 keyframe " + std::to_string(i + 1);
+  }
+  if (plan.environment.subjects.size() < 2) return caption;
+  for (const std::size_t i : subjects_at(plan, time)) {
+    caption += " \u00b7 " + plan.environment.subjects[i].name;
   }
   return caption;
 }

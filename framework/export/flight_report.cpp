@@ -264,13 +264,13 @@ Section solver_section(const Value& solver) {
 std::vector<Section> flight_sections(const Plan& plan) {
   if (plan.trajectory.samples.empty()) throw Error("a flight without samples has no report");
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
-  std::vector<Section> sections{summary_section(plan, vehicle), path_section(plan),
-                                motion_section(plan, vehicle)};
+  std::vector<Section> sections{summary_section(plan, vehicle), path_section(plan)};
+  if (plan.trajectory.has_gimbal) sections.push_back(camera_section(plan, vehicle));
+  sections.push_back(motion_section(plan, vehicle));
   if (Section inputs = input_section(plan, vehicle); !inputs.blocks.empty()) {
     sections.push_back(std::move(inputs));
   }
   sections.push_back(direction_section(plan, vehicle));
-  if (plan.trajectory.has_gimbal) sections.push_back(camera_section(plan, vehicle));
   if (!plan.task.keyframes.empty()) sections.push_back(keyframe_section(plan));
   if (!plan.solver.is_null()) sections.push_back(solver_section(plan.solver));
   if (!plan.certificate.is_null()) {

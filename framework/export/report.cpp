@@ -269,8 +269,7 @@ class Page {
       const auto size = [](double low, double high) {
         return plain(std::clamp(high, -2.0, 3.0) - std::clamp(low, -2.0, 3.0));
       };
-      out_ += "<rect style=\"stroke:var(--s" + std::to_string((box.color + 1) % 8) + ")\" x=\"" +
-              share(box.left) + "\" y=\"" + share(box.top) + "\" width=\"" +
+      out_ += "<rect x=\"" + share(box.left) + "\" y=\"" + share(box.top) + "\" width=\"" +
               size(box.left, box.right) + "\" height=\"" + size(box.top, box.bottom) +
               "\"><title>" + escaped(box.label) + "</title></rect>";
     }

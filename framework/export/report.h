@@ -139,7 +139,6 @@ struct Image {
 // reach beyond the frame.
 struct FrameBox {
   std::string label;
-  int color = 0;  // boxes of one thing share it
   double left = 0, top = 0, right = 0, bottom = 0;
 };
 

@@ -39,7 +39,7 @@ std::uint8_t encoded(double light) {
     }
     return bytes;
   }();
-  return table[static_cast<std::size_t>(std::lround(4096 * std::clamp(light, 0.0, 1.0)))];
+  return table[static_cast<std::size_t>(4096 * std::clamp(light, 0.0, 1.0) + 0.5)];
 }
 
 Light sky(const Vector3d& direction) {
@@ -49,12 +49,14 @@ Light sky(const Vector3d& direction) {
 
 // The integral of a square wave of +-1, which a difference of averages over a width.
 double square_integral(double x) {
-  const double phase = x - 2 * std::floor(x / 2);
+  // Rounding by conversion, which is quicker than std::floor where that is a call.
+  const double phase = std::abs(x - 2 * static_cast<double>(static_cast<std::int64_t>(x / 2)));
   return phase < 1 ? phase : 2 - phase;
 }
 
 // Squares of +-1, averaged over a width in each direction.
 double checkers(const Vector3d& p, const Eigen::Array2d& width, double size) {
+  if (width.maxCoeff() > 16 * size) return 0;  // below 1/16 of what is a faint pattern anyway
   double value = 1;
   for (int i = 0; i < 2; ++i) {
     const double w = std::max(width[i] / size, 1e-6), x = p[i] / size;
@@ -63,20 +65,26 @@ double checkers(const Vector3d& p, const Eigen::Array2d& width, double size) {
   return value;
 }
 
-// A ray of the picture and its neighbours one pixel to the right and down.
+// A ray through a point of the picture.
 struct PictureRay {
-  Vector3d origin, direction, right, down;
-  double pixels = 1;  // that this ray stands for, across
+  Vector3d origin, direction;  // direction is a unit vector
+  double pixels;               // that this ray stands for, across
 };
 
-// How far apart the points are where neighbouring rays meet the ground, in x and y.
-Eigen::Array2d ground_width(const PictureRay& ray, const Vector3d& p) {
+// How far apart the points are where the rays one pixel to the right and down meet the ground, in x
+// and y.
+Eigen::Array2d ground_width(const CameraView& view, const PictureRay& ray, const Vector3d& p) {
+  const Vector3d& right = view.axes.right;
+  const Vector3d& down = view.axes.down;
+  // Along the axis, so that a step of a pixel is a step of the direction.
+  const Vector3d direction = ray.direction / view.axes.forward.dot(ray.direction);
   Eigen::Array2d width = Eigen::Array2d::Zero();
-  for (const Vector3d* direction : {&ray.right, &ray.down}) {
-    if (direction->z() * ray.direction.z() <= 0) return Eigen::Array2d::Constant(1e6);
-    const double distance = (p.z() - ray.origin.z()) / direction->z();
-    const Vector3d other = ray.origin + distance * *direction;
-    width = width.max((other - p).head<2>().array().abs());
+  for (const Vector3d& step :
+       {Vector3d(right / view.pinhole.focal_x), Vector3d(down / view.pinhole.focal_y)}) {
+    const Vector3d other = direction + step;
+    if (other.z() * direction.z() <= 0) return Eigen::Array2d::Constant(1e6);
+    const double distance = (p.z() - ray.origin.z()) / other.z();
+    width = width.max((ray.origin + distance * other - p).head<2>().array().abs());
   }
   return width * ray.pixels;
 }
@@ -97,8 +105,7 @@ class Painter {
         view_(view) {}
 
   Sample sample(double x, double y, double pixels) const {
-    const PictureRay ray{view_.position, view_.ray(x, y), view_.ray(x + 1, y), view_.ray(x, y + 1),
-                         pixels};
+    const PictureRay ray{view_.position, view_.ray(x, y), pixels};
     const auto hit = solid_.cast(ray.origin, ray.direction);
     Sample sample{sky(ray.direction), -1};
     if (hit) sample = lit(*hit, ray);
@@ -129,7 +136,7 @@ class Painter {
     const auto index = static_cast<std::size_t>(hit.shape);
     Light color = light_of(solid_colors_[index]);
     if (std::holds_alternative<GroundShape>(solid_.shapes()[index])) {
-      const Eigen::Array2d width = ground_width(ray, p);
+      const Eigen::Array2d width = ground_width(view_, ray, p);
       color *= 1 + 0.1 * checkers(p, width, 1) + 0.16 * checkers(p, width, 10);
     }
     // Off the surface, by more than what rounding may have put the point behind it.

@@ -104,8 +104,8 @@ constexpr Containment kContained[] = {
     {"torch/", "", true},
 };
 // Of these, one source file of the framework alone.
-constexpr const char* kSingleSource[] = {"GeographicLib/", "png.h", "octomap/", "nanoflann",
-                                         "torch/"};
+constexpr const char* kSingleSource[] = {"GeographicLib/", "embree",    "png.h",
+                                         "octomap/",       "nanoflann", "torch/"};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;

@@ -89,6 +89,30 @@ inline Value synthetic_solver() {
   return solver;
 }
 
+// A tower that stands and a boat that circles it, filmed in turn with a cut in between, and a zone
+// to keep out of; the camera of the flight looks where it likes.
+inline void add_film(Plan& plan) {
+  const double end = plan.trajectory.duration();
+  Subject boat{.name = "boat <&>", .times = {}, .positions = {}, .height = 3, .width = 2};
+  for (int i = 0; i <= 8; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 8;
+    boat.times.push_back(end * i / 8);
+    boat.positions.emplace_back(12 * std::cos(angle), 12 * std::sin(angle), 1.5);
+  }
+  plan.environment.subjects = {{"tower", {0}, {{0.5, -1.5, 6}}, 12, 5}, boat};
+  plan.environment.zones = {{.name = "harbour", .corners = {{-18, 6}, {-8, 6}, {-12, 16}}},
+                            {"cable", {{10, -14}, {20, -14}, {20, -12}, {10, -12}}, 4, 7}};
+  plan.cuts = {{0.45 * end, 0.55 * end}};
+  plan.task.framing = {{"tower", {0, 0.5 * end}}, {"boat <&>", {0.5 * end, end}}};
+  // The camera turns to what it films, so that it can be seen.
+  for (Sample& s : plan.trajectory.samples) {
+    const Subject& subject = plan.environment.subjects[s.time < 0.5 * end ? 0 : 1];
+    const Eigen::Vector3d d = subject.position(s.time) - s.position;
+    s.gimbal_yaw = std::remainder(std::atan2(d.y(), d.x()) - s.yaw, 2 * std::numbers::pi);
+    s.gimbal_pitch = std::atan2(d.z(), d.head<2>().norm()) + 0.1;
+  }
+}
+
 // `samples` samples over `duration` seconds and a keyframe every `spacing` seconds, each 0.2 m
 // beside the path.
 inline Plan synthetic_flight(double duration, int samples, double spacing, bool feasible = true) {

@@ -89,17 +89,18 @@ void expect_complete(const std::string& dom, int samples) {
   EXPECT_EQ(attribute(dom, "ready"), "true");
   EXPECT_EQ(attribute(dom, "requests"), "0");
   EXPECT_EQ(attribute(dom, "overflow"), "false") << "the page is wider than the window";
-  EXPECT_EQ(attribute(dom, "headings"),
-            "Summary;Path;Motion;Inputs;Direction;Keyframes;Solver;Certificate;Configuration");
+  EXPECT_EQ(
+      attribute(dom, "headings"),
+      "Summary;Path;Camera;Motion;Inputs;Direction;Keyframes;Solver;Certificate;Configuration");
   const std::string one = ":" + std::to_string(samples) + ":sized:ink";
   const std::string two = ":" + std::to_string(2 * samples) + ":sized:ink";
   const std::string three = ":" + std::to_string(3 * samples) + ":sized:ink";
   EXPECT_EQ(attribute(dom, "figures"),
             "Path from above" + one + ";Path from the south" + one + ";Path in space" + one +
-                ";Position" + three + ";Speed across" + one + ";Climb and descent" + one +
-                ";Acceleration across" + one + ";Acceleration up" + one + ";Thrust" + one +
-                ";Yaw torque" + one + ";Yaw" + one + ";Yaw rate" + one + ";Gimbal angles" + two +
-                ";Gimbal rates" + two + ";Weighted cost per term:36:sized:ink" +
+                ";Gimbal angles" + two + ";Gimbal rates" + two + ";Position" + three +
+                ";Speed across" + one + ";Climb and descent" + one + ";Acceleration across" + one +
+                ";Acceleration up" + one + ";Thrust" + one + ";Yaw torque" + one + ";Yaw" + one +
+                ";Yaw rate" + one + ";Weighted cost per term:36:sized:ink" +
                 ";Violation and step length:18:sized:ink");
 }
 
@@ -122,6 +123,59 @@ TEST_F(ReportInBrowser, LongFlightsStaySmallAndQuick) {
   const double milliseconds = std::atof(attribute(dom, "drawing").c_str());
   EXPECT_GT(milliseconds, 0);
   EXPECT_LT(milliseconds, 1000);
+}
+
+TEST_F(ReportInBrowser, ShowsWhatTheCameraFilms) {
+  Plan plan = synthetic_flight(20, 201, 4);
+  add_film(plan);
+  const std::string html = render_html(flight_report(plan));
+  EXPECT_LT(html.size(), 1u << 20);
+  const std::string dom = opened(html, std::string(kListFigures) + R"(
+const root = document.documentElement.dataset;
+const frames = [...document.querySelectorAll(".strip .picture")];
+root.frames = frames.length;
+root.sizes = frames.every((f) => f.clientWidth > 150 && f.clientHeight > 80);
+const boxes = frames.map((f) => f.querySelector("rect"));
+root.boxes = boxes.filter((b) => b && b.getBoundingClientRect().width > 3).length;
+root.zones = document.querySelectorAll(".zone").length;
+root.spans = [...document.querySelectorAll("figure")].filter((f) => f.querySelector(".span")).length;
+root.charts = document.querySelectorAll("figure.chart").length;
+Promise.all([...document.images].map((i) => i.decode())).then(() => {
+  // The subject is orange or blue inside its box, and the frame is not.
+  const canvas = document.createElement("canvas");
+  const pen = canvas.getContext("2d", { willReadFrequently: true });
+  let seen = 0;
+  frames.forEach((frame, i) => {
+    const image = frame.querySelector("img");
+    canvas.width = image.naturalWidth;
+    canvas.height = image.naturalHeight;
+    pen.drawImage(image, 0, 0);
+    const share = (name) => Number(boxes[i].getAttribute(name));
+    const x = (share("x") + share("width") / 2) * canvas.width;
+    const y = (share("y") + share("height") / 2) * canvas.height;
+    const [r, , b] = pen.getImageData(x, y, 1, 1).data;
+    if (Math.abs(r - b) > 25) ++seen;
+  });
+  root.seen = seen;
+});
+)");
+  EXPECT_EQ(attribute(dom, "error"), "");
+  EXPECT_EQ(attribute(dom, "ready"), "true");
+  EXPECT_EQ(attribute(dom, "requests"), "0");
+  EXPECT_EQ(attribute(dom, "overflow"), "false");
+  const int frames = std::stoi(attribute(dom, "frames"));
+  EXPECT_GE(frames, 9);
+  EXPECT_EQ(attribute(dom, "sizes"), "true");
+  EXPECT_EQ(attribute(dom, "boxes"), std::to_string(frames));
+  EXPECT_EQ(attribute(dom, "seen"), std::to_string(frames)) << "subjects inside their boxes";
+  EXPECT_EQ(attribute(dom, "zones"), "4") << "two zones in two path views";
+  EXPECT_EQ(attribute(dom, "spans"), std::to_string(std::stoi(attribute(dom, "charts")) - 2))
+      << "the cut is shaded in all charts but the solver's";
+  for (const char* title : {"Camera error", "Skewness", "Subject in the image, from its lower",
+                            "Subject in the image, from its left"}) {
+    EXPECT_NE(attribute(dom, "figures").find(title), std::string::npos) << title;
+  }
+  EXPECT_EQ(attribute(dom, "figures").find("blank"), std::string::npos);
 }
 
 TEST_F(ReportInBrowser, DrawsWhatItPromisesAndAnswersPointerAndKeys) {
