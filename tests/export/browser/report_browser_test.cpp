@@ -138,8 +138,9 @@ root.sizes = frames.every((f) => f.clientWidth > 150 && f.clientHeight > 80);
 const boxes = frames.map((f) => f.querySelector("rect"));
 root.boxes = boxes.filter((b) => b && b.getBoundingClientRect().width > 3).length;
 root.zones = document.querySelectorAll(".zone").length;
-root.spans = [...document.querySelectorAll("figure")].filter((f) => f.querySelector(".span")).length;
-root.charts = document.querySelectorAll("figure.chart").length;
+const charts = [...document.querySelectorAll("figure.chart")];
+root.spans = charts.filter((f) => f.querySelector(".span")).length;
+root.charts = charts.length;
 Promise.all([...document.images].map((i) => i.decode())).then(() => {
   // The subject is orange or blue inside its box, and the frame is not.
   const canvas = document.createElement("canvas");
