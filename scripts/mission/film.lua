@@ -28,12 +28,12 @@ local function weight(name, default, summary)
 end
 local weights = {
   weight("keyframe", 100, "miss of a keyframe, per m^2 and rad^2"),
-  weight("smoothness", 1e-4, "derivative of position"),
-  weight("yaw", 0.1, "second derivative of yaw"),
+  weight("smoothness", 1e-3, "derivative of position"),
+  weight("yaw", 0.02, "second derivative of yaw"),
   weight("effort", 0.01, "forces beyond hovering"),
   weight("target", 10, "target away from what is looked at, per m^2 s"),
   weight("target_smoothness", 0.01, "third derivative of the target"),
-  weight("gimbal", 0.1, "second derivative of the gimbal's angles"),
+  weight("gimbal", 0.02, "second derivative of the gimbal's angles"),
   weight("camera", 100, "camera away from the target, per rad^2 s"),
   weight("skewness", 0, "seeing a subject from far above or below"),
   weight("framing", 100, "a subject away from its place and size in the image"),

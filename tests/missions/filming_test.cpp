@@ -35,13 +35,13 @@ TEST_F(Filming, TwoRunsWriteTheSamePlan) {
 }
 
 TEST_F(Filming, SofterAndSmootherByConfiguration) {
-  // Ten thousand times the weight on snap: the same film, less snap, larger misses.
+  // A thousand times the weight on snap: the same film, less snap, larger misses.
   const auto smoothness = [](const Flown& flown, double weight) {
     return flown.result.at("solver").at("terms").at("smoothness").as_number() / weight;
   };
   const Flown stiff = fly("castle_flyover.lua");
   const Flown soft = fly("castle_flyover.lua", "--set weights.smoothness=1", "soft");
-  EXPECT_LT(smoothness(soft, 1), smoothness(stiff, 1e-4));
+  EXPECT_LT(smoothness(soft, 1), smoothness(stiff, 1e-3));
   EXPECT_GT(soft.result.at("solver").at("terms").at("keyframe").as_number(),
             stiff.result.at("solver").at("terms").at("keyframe").as_number());
 }
