@@ -58,6 +58,7 @@ void AugmentedCost::prepare_hessian(const LocalModel& model) {
   for (int c = 0; c < model.jacobian.outerSize(); ++c)
     for (SparseMatrix::InnerIterator e(model.jacobian, c); e; ++e)
       if (active[e.row()] >= 0) active_[active[e.row()]].entries.push_back({c, e.value()});
+  std::erase_if(active_, [](const ActiveRow& row) { return row.entries.empty(); });
 }
 
 void AugmentedCost::hessian_times(const LocalModel& model, const VectorXd& step,

@@ -21,18 +21,26 @@ struct Limited {
   double miss = 0;       // |change of the multiplier| / penalty at the last update
 };
 
+// A row of the problem that weighs something, with its gradient.
+struct ActiveRow {
+  double penalty;
+  std::vector<std::pair<int, double>> entries;  // column, value; in order
+};
+
 class AugmentedCost {
  public:
   // Rows that are not dynamics and have a limit, and `columns` that have one.
   AugmentedCost(const TrajectoryProblem& problem, const std::vector<int>& columns);
 
   std::vector<Limited>& limited() { return limited_; }
+  const std::vector<Limited>& limited() const { return limited_; }
 
   // L at the model's point; `gradient` in all columns.
   double evaluate(const LocalModel& model, Eigen::VectorXd& gradient);
   // Gauss-Newton Hessian of L, the limits with an error held, times a step of all columns. Prepared
   // once for many steps.
   void prepare_hessian(const LocalModel& model);
+  const std::vector<ActiveRow>& active_rows() const { return active_; }
   void hessian_times(const LocalModel& model, const Eigen::VectorXd& step,
                      Eigen::VectorXd& product) const;
   // Takes the next multipliers. Returns the largest miss.
@@ -44,11 +52,6 @@ class AugmentedCost {
   void raise(double tolerance);
 
  private:
-  struct ActiveRow {
-    double penalty;
-    std::vector<std::pair<int, double>> entries;  // column, value
-  };
-
   int dynamics_rows_ = 0;
   std::vector<Limited> limited_;
   std::vector<ActiveRow> active_;

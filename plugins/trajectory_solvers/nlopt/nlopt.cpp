@@ -24,11 +24,11 @@ using Eigen::VectorXd;
 constexpr double kFirstPenalty = 10;  // over the curvature of the cost along a limit's normal
 constexpr int kSamples = 5;           // limits of one name at which that curvature is measured
 constexpr std::size_t kLargestEquations = 600;
+constexpr double kDependent = 1e-12;      // squared distance of a unit vector from combinations
 constexpr double kFirstTolerance = 1e-3;  // of the first inner problems
 constexpr double kDiagonal = 1e-6;        // stricter where coordinates are less round
 constexpr double kRoundOff = 1e-15;       // promised decrease that means nothing
 constexpr double kGain = 1e-3;            // of the first promised decrease that may be left
-constexpr int kLargestDense = 3000;       // variables
 constexpr double kMet = 1e-6;             // in its own unit, what is called feasible
 constexpr int kPatience = 4;              // updates without progress that prove infeasibility
 constexpr double kProgress = 0.8;
@@ -38,7 +38,7 @@ struct Settings {
   int iterations = 0, cycle = 0, storage = 0;
   double tolerance = 0, feasibility = 0;
   nlopt_algorithm algorithm = NLOPT_LD_LBFGS;
-  bool dense = true;
+  bool whole = true;
 };
 
 const std::map<std::string, nlopt_algorithm>& algorithms() {
@@ -74,7 +74,7 @@ class Nlopt final : public TrajectorySolver {
                 between(1e-14, 1e-2))
         .number("feasibility", 1e-7, "", "largest violation of a limit, in its own unit",
                 between(1e-10, 1e-5))
-        .choice("scaling", "dense", {"dense", "diagonal"},
+        .choice("scaling", "whole", {"whole", "diagonal"},
                 "coordinates: rounded by the cost's whole second derivative at the start of each "
                 "inner problem, or number by number")
         .integer("cycle", 40, "evaluations after which coordinates are rounded anew",
@@ -87,7 +87,7 @@ class Nlopt final : public TrajectorySolver {
     settings_.iterations = static_cast<int>(parameters.integer("iterations"));
     settings_.tolerance = parameters.number("tolerance");
     settings_.feasibility = parameters.number("feasibility");
-    settings_.dense = parameters.text("scaling") == "dense";
+    settings_.whole = parameters.text("scaling") == "whole";
     settings_.cycle = static_cast<int>(parameters.integer("cycle"));
     settings_.storage = static_cast<int>(parameters.integer("storage"));
   }
@@ -98,14 +98,41 @@ class Nlopt final : public TrajectorySolver {
   Settings settings_;
 };
 
-// Columns whose bounds the augmented cost looks after: with dense scaling all, as they are no
+// Columns whose bounds the augmented cost looks after: with whole scaling all, as they are no
 // bounds of variables there; else those that follow by simulation.
-std::vector<int> limited_columns(const ReducedProblem& reduced, bool dense) {
+std::vector<int> limited_columns(const ReducedProblem& reduced, bool whole) {
   std::vector<int> result;
-  if (dense) result = reduced.columns();
+  if (whole) result = reduced.columns();
   for (int c = 0; c < reduced.problem().columns(); ++c)
     if (reduced.dependent(c)) result.push_back(c);
   std::sort(result.begin(), result.end());
+  return result;
+}
+
+// Diagonal of (N'N)^-1 for the columns N, 0 for a column of zeros. Columns that are combinations
+// of others get a large number.
+std::vector<double> inverse_gram_diagonal(const std::vector<VectorXd>& columns) {
+  const int n = static_cast<int>(columns.size());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> factor(n, n);
+  factor.setZero();
+  std::vector<double> lengths;
+  for (const VectorXd& column : columns) lengths.push_back(column.norm());
+  for (int i = 0; i < n; ++i)  // Cholesky, columns scaled to length 1
+    for (int j = 0; j <= i; ++j) {
+      const double scale = lengths[i] * lengths[j];
+      double entry = scale > 0 ? columns[i].dot(columns[j]) / scale : (i == j ? 1.0 : 0.0);
+      entry -= factor.row(i).head(j).dot(factor.row(j).head(j));
+      factor(i, j) = i == j ? std::sqrt(std::max(entry, kDependent)) : entry / factor(j, j);
+    }
+  std::vector<double> result(n, 0.0);
+  for (int k = 0; k < n; ++k) {
+    VectorXd solution = VectorXd::Zero(n);
+    for (int i = k; i < n; ++i)
+      solution(i) =
+          ((i == k ? 1.0 : 0.0) - factor.row(i).head(i).dot(solution.head(i).transpose())) /
+          factor(i, i);
+    if (lengths[k] > 0) result[k] = solution.squaredNorm() / (lengths[k] * lengths[k]);
+  }
   return result;
 }
 
@@ -117,8 +144,9 @@ class Run {
         settings_(settings),
         record_(problem, request),
         reduced_(problem),
-        dense_(settings.dense && reduced_.size() <= kLargestDense),
-        augmented_(problem, limited_columns(reduced_, dense_)),
+        whole_(settings.whole),
+        augmented_(problem, limited_columns(reduced_, whole_)),
+        scaling_(reduced_),
         limit_(request.iteration_limit.value_or(settings.iterations)) {}
 
   SolveResult solve();
@@ -147,10 +175,10 @@ class Run {
   const Settings& settings_;
   SolveRecord record_;
   ReducedProblem reduced_;
-  bool dense_;
+  bool whole_;
   AugmentedCost augmented_;
-  int limit_;
   Scaling scaling_;
+  int limit_;
   Stages center_;  // of the coordinates: w = 0
   LocalModel model_;
   VectorXd gradient_;  // of the augmented cost in all columns
@@ -204,15 +232,11 @@ void Run::take_multipliers() {
 }
 
 void Run::round() {
-  VectorXd unit = VectorXd::Zero(reduced_.size()), all, product;
   augmented_.prepare_hessian(model_);
-  scaling_.set(reduced_.size(), dense_, [&](int k, VectorXd& result) {
-    unit(k) = 1;
-    reduced_.forward(model_, unit, nullptr, all);
-    unit(k) = 0;
-    augmented_.hessian_times(model_, all, product);
-    reduced_.backward(model_, product, result, nullptr);
-  });
+  if (whole_)
+    scaling_.set_whole(model_, augmented_);
+  else
+    scaling_.set_diagonal(model_, augmented_);
 }
 
 // Penalties follow the cost's own curvature along each limit's normal a, so that neither units nor
@@ -263,22 +287,10 @@ VectorXd Run::round_normal(const Limited& item) const {
 
 void Run::set_equation_penalties(const std::vector<Limited*>& equations) {
   std::vector<VectorXd> normals;
-  std::vector<double> lengths;
-  for (const Limited* item : equations) {
-    normals.push_back(round_normal(*item));
-    lengths.push_back(normals.back().norm());
-    if (lengths.back() > 0) normals.back() /= lengths.back();
-  }
-  const int count = static_cast<int>(equations.size());
-  Scaling gram;
-  gram.set(count, true, [&](int k, VectorXd& result) {
-    for (int l = 0; l < count; ++l) result(l) = normals[k].dot(normals[l]);
-  });
-  for (int k = 0; k < count; ++k) {
-    const double length = lengths[k];
-    const double stiffness = gram.to_gradient(VectorXd::Unit(count, k)).squaredNorm();
-    equations[k]->penalty = length > 0 ? kFirstPenalty * stiffness / (length * length) : 1.0;
-  }
+  for (const Limited* item : equations) normals.push_back(round_normal(*item));
+  const std::vector<double> stiffness = inverse_gram_diagonal(normals);
+  for (std::size_t k = 0; k < equations.size(); ++k)
+    equations[k]->penalty = stiffness[k] > 0 ? kFirstPenalty * stiffness[k] : 1.0;
 }
 
 // The Gauss-Newton step at the guess itself, its dynamics linearised there: a path that no inputs
@@ -342,11 +354,11 @@ Run::Inner Run::minimise(double tolerance) {
   const int n = reduced_.size();
   lower_.setConstant(n, -HUGE_VAL);
   upper_.setConstant(n, HUGE_VAL);
-  for (int k = 0; k < n && !dense_; ++k) {
+  for (int k = 0; k < n && !whole_; ++k) {
     lower_(k) = std::min(0.0, model_.step_lower(reduced_.columns()[k]) * scaling_.roots()(k));
     upper_(k) = std::max(0.0, model_.step_upper(reduced_.columns()[k]) * scaling_.roots()(k));
   }
-  inner_tolerance_ = dense_ ? tolerance : kDiagonal * tolerance;
+  inner_tolerance_ = whole_ ? tolerance : kDiagonal * tolerance;
   best_value_ = HUGE_VAL;
   inner_converged_ = false;
   inner_start_ = evaluations_ + 1;
@@ -396,7 +408,7 @@ SolveStatus Run::iterate() {
     value_before = HUGE_VAL;
     linearise(center_);
     const double miss = augmented_.update();
-    const bool least = best_promised_ <= (dense_ ? 1.0 : kDiagonal) * settings_.tolerance;
+    const bool least = best_promised_ <= (whole_ ? 1.0 : kDiagonal) * settings_.tolerance;
     if (miss <= settings_.feasibility && (least || inner == Inner::worn_out))
       return least ? SolveStatus::optimal : SolveStatus::feasible;
     violations.push_back(augmented_.worst_violation());

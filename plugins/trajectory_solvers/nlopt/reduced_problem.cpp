@@ -33,10 +33,10 @@ ReducedProblem::ReducedProblem(const TrajectoryProblem& problem) : problem_(prob
     row.pivot = row.others.back().column;
     row.pivot_slot = row.others.back().slot;
     row.others.pop_back();
-    pivot_row_[row.pivot] = r;
   }
   std::sort(sweep_.begin(), sweep_.end(),
             [](const Row& a, const Row& b) { return a.pivot < b.pivot; });
+  for (std::size_t k = 0; k < sweep_.size(); ++k) pivot_row_[sweep_[k].pivot] = static_cast<int>(k);
   for (int c = 0; c < problem.columns(); ++c) {
     const auto [lower, upper] = problem.bounds(c);
     if (pivot_row_[c] < 0 && lower < upper) independent_.push_back(c);

@@ -24,6 +24,16 @@ class ReducedProblem {
   const std::vector<int>& columns() const { return independent_; }
   int size() const { return static_cast<int>(independent_.size()); }
   bool dependent(int column) const { return pivot_row_[column] >= 0; }
+  // The dynamics row that fixes a dependent column.
+  struct Entry {
+    int column;
+    int slot;  // in the Jacobian's values
+  };
+  struct Row {
+    int row, pivot, pivot_slot;
+    std::vector<Entry> others;
+  };
+  const Row& row_of(int column) const { return sweep_[pivot_row_[column]]; }
 
   // The trajectory flown after its independent numbers are moved by `step` (size()).
   Stages fly(const Stages& from, const Eigen::VectorXd& step) const;
@@ -40,18 +50,9 @@ class ReducedProblem {
                 Eigen::VectorXd* multipliers) const;
 
  private:
-  struct Entry {
-    int column;
-    int slot;  // in the Jacobian's values
-  };
-  struct Row {
-    int row, pivot, pivot_slot;
-    std::vector<Entry> others;
-  };
-
   const TrajectoryProblem& problem_;
   std::vector<Row> sweep_;      // dynamics rows by pivot column
-  std::vector<int> pivot_row_;  // by column: the row that fixes it, or -1
+  std::vector<int> pivot_row_;  // by column: where in sweep_ the row is that fixes it, or -1
   std::vector<int> independent_;
 };
 
