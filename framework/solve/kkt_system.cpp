@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/OrderingMethods>
+
 namespace lapwing {
 namespace {
 
@@ -83,7 +85,7 @@ void KktSystem::analyse(const QuadraticProgram& problem) {
     for (Entry e(a, j); e; ++e) jacobian_slots_.push_back(slot(n_ + static_cast<int>(e.row()), j));
   }
   for (int i = 0; i < n_ + m_; ++i) diagonal_slots_.push_back(slot(i, i));
-  factors_.analyzePattern(matrix_);
+  factors_.analyse(matrix_);
 }
 
 void KktSystem::set_up(const QuadraticProgram& problem, const std::vector<char>& fixed,
@@ -137,31 +139,9 @@ bool KktSystem::factorise(const VectorXd& diagonal) {
       values[diagonal_slots_[i]] = exact - strength * of_rows_;
       weight_(place_[i]) = exact < -1.0 ? -1.0 / exact : 1.0;
     }
-    factors_.factorize(matrix_);
-    if (factors_.info() == Eigen::Success && factors_.vectorD().allFinite()) return true;
+    if (factors_.factorise(matrix_)) return true;
   }
   return false;
-}
-
-// x = (L D L')^-1 right, plainly: Eigen's own solve copies and tests at every step.
-void KktSystem::backsolve(const VectorXd& right, VectorXd& x) const {
-  const Eigen::SparseMatrix<double>& l = factors_.matrixL().nestedExpression();
-  const int* const outer = l.outerIndexPtr();
-  const int* const inner = l.innerIndexPtr();
-  const double* const value = l.valuePtr();
-  const int size = n_ + m_;
-  x = right;
-  double* const v = x.data();
-  for (int j = 0; j < size; ++j) {
-    const double pivot = v[j];
-    for (int k = outer[j]; k < outer[j + 1]; ++k) v[inner[k]] -= value[k] * pivot;
-  }
-  x = x.cwiseQuotient(factors_.vectorD());
-  for (int j = size - 1; j >= 0; --j) {
-    double sum = v[j];
-    for (int k = outer[j]; k < outer[j + 1]; ++k) sum -= value[k] * v[inner[k]];
-    v[j] = sum;
-  }
 }
 
 // K x with the symmetric matrix, without the regularisation.
@@ -192,12 +172,14 @@ VectorXd KktSystem::solve(const VectorXd& right) {
   VectorXd ordered(size), x, correction;
   for (int i = 0; i < size; ++i) ordered(place_[i]) = right(i);
   // The first step is taken whole: where the matrix is singular it is long, which shows a ray.
-  backsolve(ordered, x);
+  x = ordered;
+  factors_.solve(x);
   VectorXd residual = weight_.cwiseProduct(ordered - product(x));
   const double scale = weight_.cwiseProduct(ordered).norm();
   std::vector<VectorXd> directions, images;
   for (int k = 0; k < kRefinements && residual.norm() > kRefined * scale; ++k) {
-    backsolve(residual.cwiseQuotient(weight_), correction);
+    correction = residual.cwiseQuotient(weight_);
+    factors_.solve(correction);
     VectorXd image = weight_.cwiseProduct(product(correction));
     for (std::size_t b = 0; b < images.size(); ++b) {
       const double share = images[b].dot(image);

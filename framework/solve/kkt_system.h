@@ -4,10 +4,8 @@
 
 #include <vector>
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCholesky>
-
 #include "framework/solve/equilibration.h"
+#include "framework/solve/supernodal_factors.h"
 
 namespace lapwing {
 
@@ -22,11 +20,8 @@ class KktSystem {
   Eigen::VectorXd solve(const Eigen::VectorXd& right);
 
  private:
-  using Factors =
-      Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper, Eigen::NaturalOrdering<int>>;
   bool same_pattern(const QuadraticProgram& problem) const;
   void analyse(const QuadraticProgram& problem);
-  void backsolve(const Eigen::VectorXd& right, Eigen::VectorXd& x) const;
   Eigen::VectorXd product(const Eigen::VectorXd& x) const;
 
   int n_ = 0, m_ = 0;
@@ -44,7 +39,7 @@ class KktSystem {
   // they count by D_s, or they would hide the equations.
   Eigen::VectorXd weight_;
   Eigen::SparseMatrix<double> matrix_;  // upper triangle, in order
-  Factors factors_;
+  SupernodalFactors factors_;
 };
 
 }  // namespace lapwing
