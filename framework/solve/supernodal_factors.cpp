@@ -5,6 +5,8 @@
 #include <cstring>
 #include <numeric>
 
+#include "framework/solve/supernodal_tree.h"
+
 namespace lapwing {
 namespace {
 
@@ -18,102 +20,6 @@ Pair load(const double* from) {
   Pair pair;
   std::memcpy(&pair, from, sizeof pair);
   return pair;
-}
-
-// Cost of a supernode, in multiply-adds of the dense kernels.
-constexpr double kOfNode = 50.0;  // loops begun and ended
-constexpr double kOfColumn = 20.0;
-constexpr double kOfAssembly = 3.0;  // an entry of the update matrix: scattered into the parent
-constexpr double kOfEntry = 8.0;  // an entry of the panel: some backsolves for each factorisation
-
-double cost(double width, double below) {
-  const auto squares = [](double k) { return k * (k + 1) * (2 * k + 1) / 6; };
-  return kOfNode + kOfColumn * width + 0.5 * (squares(width + below) - squares(below)) +
-         kOfAssembly * 0.5 * below * (below + 1) + kOfEntry * width * (0.5 * width + below);
-}
-
-// The elimination tree and the entries below the diagonal of each column of L.
-struct Tree {
-  std::vector<int> parent, below;
-};
-
-Tree elimination_tree(const Matrix& upper) {
-  const int n = static_cast<int>(upper.cols());
-  Tree tree{std::vector<int>(n, -1), std::vector<int>(n, 0)};
-  std::vector<int> seen(n, -1);
-  const int* const outer = upper.outerIndexPtr();
-  const int* const inner = upper.innerIndexPtr();
-  for (int j = 0; j < n; ++j) {
-    seen[j] = j;
-    for (int k = outer[j]; k < outer[j + 1]; ++k)
-      for (int i = inner[k]; i < j && seen[i] != j; i = tree.parent[i]) {
-        if (tree.parent[i] < 0) tree.parent[i] = j;
-        ++tree.below[i];
-        seen[i] = j;
-      }
-  }
-  return tree;
-}
-
-// Lists of the children of each column, in order.
-struct Children {
-  std::vector<int> first, next;
-  explicit Children(const std::vector<int>& parent)
-      : first(parent.size(), -1), next(parent.size(), -1) {
-    for (int j = static_cast<int>(parent.size()) - 1; j >= 0; --j)
-      if (parent[j] >= 0) {
-        next[j] = first[parent[j]];
-        first[parent[j]] = j;
-      }
-  }
-};
-
-// Which column stands for the supernode of each: the last of it. A child goes into its parent where
-// one larger block costs less than two, fullest children first.
-std::vector<int> merge(const Tree& tree) {
-  const int n = static_cast<int>(tree.parent.size());
-  std::vector<int> last(n), width(n, 1), candidates;
-  std::iota(last.begin(), last.end(), 0);
-  const Children children(tree.parent);
-  for (int j = 0; j < n; ++j) {
-    candidates.clear();
-    for (int c = children.first[j]; c >= 0; c = children.next[c]) candidates.push_back(c);
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [&](int a, int b) { return tree.below[a] > tree.below[b]; });
-    for (int c : candidates)
-      if (cost(width[c] + width[j], tree.below[j]) <
-          cost(width[c], tree.below[c]) + cost(width[j], tree.below[j])) {
-        last[c] = j;
-        width[j] += width[c];
-      }
-  }
-  for (int j = n - 1; j >= 0; --j) last[j] = last[last[j]];
-  return last;
-}
-
-// Columns that stand for supernodes, children before parents and next to them.
-std::vector<int> postorder(const std::vector<int>& parent, const std::vector<int>& last) {
-  const int n = static_cast<int>(parent.size());
-  std::vector<int> of_node(n, -1);
-  for (int j = 0; j < n; ++j)
-    if (last[j] == j && parent[j] >= 0) of_node[j] = last[parent[j]];
-  Children children(of_node);
-  std::vector<int> order, path;
-  for (int root = 0; root < n; ++root) {
-    if (last[root] != root || of_node[root] >= 0) continue;
-    path.push_back(root);
-    while (!path.empty()) {
-      const int j = path.back(), c = children.first[j];
-      if (c >= 0) {
-        children.first[j] = children.next[c];
-        path.push_back(c);
-      } else {
-        order.push_back(j);
-        path.pop_back();
-      }
-    }
-  }
-  return order;
 }
 
 // (y0, y1) -= the sum over k of column k of l, times c0[k], c1[k]; instead of += where `begin`.
@@ -244,9 +150,9 @@ void backward_narrow(const double* v, double* own, const double* l, std::ptrdiff
 
 void SupernodalFactors::analyse(const Matrix& upper) {
   const int n = static_cast<int>(upper.cols());
-  const Tree tree = elimination_tree(upper);
-  const std::vector<int> last = merge(tree);
-  const std::vector<int> order = postorder(tree.parent, last);
+  const EliminationTree tree = elimination_tree(upper);
+  const std::vector<int> last = merge_columns(tree);
+  const std::vector<int> order = supernode_order(tree.parent, last);
   std::vector<int> node_of(n);
   nodes_.assign(order.size(), {});
   for (int s = 0; s < static_cast<int>(order.size()); ++s) node_of[order[s]] = s;
