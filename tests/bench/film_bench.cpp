@@ -31,7 +31,7 @@ std::shared_ptr<const TrajectoryProblem> castle(const Overrides& overrides) {
 
 // 200 stages and every term that a film can have.
 const Overrides kAllTerms = {"duration=19.9", "keyframes[3].time=19.9", "weights.skewness=1",
-                             "subjects[1].place=[0.5, 0.5]", "subjects[1].size=0.25"};
+                             "subjects[1].size=0.25"};
 
 const TrajectoryProblem& film() {
   static const auto problem = castle(kAllTerms);
