@@ -13,6 +13,7 @@
 #include "framework/plugin/plugin.h"
 #include "framework/solve/solve_record.h"
 #include "plugins/trajectory_solvers/nlopt/augmented_cost.h"
+#include "plugins/trajectory_solvers/nlopt/penalties.h"
 #include "plugins/trajectory_solvers/nlopt/reduced_problem.h"
 #include "plugins/trajectory_solvers/nlopt/scaling.h"
 
@@ -21,10 +22,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kFirstPenalty = 10;  // over the curvature of the cost along a limit's normal
-constexpr int kSamples = 5;           // limits of one name at which that curvature is measured
-constexpr std::size_t kLargestEquations = 600;
-constexpr double kDependent = 1e-12;      // squared distance of a unit vector from combinations
 constexpr double kFirstTolerance = 1e-3;  // of the first inner problems
 constexpr double kDiagonal = 1e-6;        // stricter where coordinates are less round
 constexpr double kRoundOff = 1e-15;       // promised decrease that means nothing
@@ -109,33 +106,6 @@ std::vector<int> limited_columns(const ReducedProblem& reduced, bool whole) {
   return result;
 }
 
-// Diagonal of (N'N)^-1 for the columns N, 0 for a column of zeros. Columns that are combinations
-// of others get a large number.
-std::vector<double> inverse_gram_diagonal(const std::vector<VectorXd>& columns) {
-  const int n = static_cast<int>(columns.size());
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> factor(n, n);
-  factor.setZero();
-  std::vector<double> lengths;
-  for (const VectorXd& column : columns) lengths.push_back(column.norm());
-  for (int i = 0; i < n; ++i)  // Cholesky, columns scaled to length 1
-    for (int j = 0; j <= i; ++j) {
-      const double scale = lengths[i] * lengths[j];
-      double entry = scale > 0 ? columns[i].dot(columns[j]) / scale : (i == j ? 1.0 : 0.0);
-      entry -= factor.row(i).head(j).dot(factor.row(j).head(j));
-      factor(i, j) = i == j ? std::sqrt(std::max(entry, kDependent)) : entry / factor(j, j);
-    }
-  std::vector<double> result(n, 0.0);
-  for (int k = 0; k < n; ++k) {
-    VectorXd solution = VectorXd::Zero(n);
-    for (int i = k; i < n; ++i)
-      solution(i) =
-          ((i == k ? 1.0 : 0.0) - factor.row(i).head(i).dot(solution.head(i).transpose())) /
-          factor(i, i);
-    if (lengths[k] > 0) result[k] = solution.squaredNorm() / (lengths[k] * lengths[k]);
-  }
-  return result;
-}
-
 class Run {
  public:
   Run(const TrajectoryProblem& problem, const SolveRequest& request, const Settings& settings)
@@ -156,9 +126,6 @@ class Run {
 
   void begin();
   void take_multipliers();
-  void set_penalties();
-  void set_equation_penalties(const std::vector<Limited*>& equations);
-  VectorXd round_normal(const Limited& item) const;
   void round();  // coordinates, at model_
   void first_step();
   SolveStatus iterate();
@@ -217,7 +184,7 @@ void Run::begin() {
     return;
   }
   take_multipliers();
-  set_penalties();
+  set_first_penalties(reduced_, model_, augmented_, scaling_);
   if (request_.warm_start)
     center_ = problem_.simulate(center_);
   else
@@ -237,60 +204,6 @@ void Run::round() {
     scaling_.set_whole(model_, augmented_);
   else
     scaling_.set_diagonal(model_, augmented_);
-}
-
-// Penalties follow the cost's own curvature along each limit's normal a, so that neither units nor
-// weights matter: for equations that of meeting one while all others hold, (A H^-1 A')^-1 on its
-// diagonal; for other limits 1 / (a' H^-1 a), the equations held by their penalties.
-void Run::set_penalties() {
-  std::vector<Limited*> equations;
-  std::map<std::string, std::vector<Limited*>> groups;
-  for (Limited& item : augmented_.limited()) {
-    item.error = 0;
-    const auto [lower, upper] =
-        item.is_row ? std::pair{model_.row_lower(item.index), model_.row_upper(item.index)}
-                    : problem_.bounds(item.index);
-    if (lower == upper && equations.size() < kLargestEquations) {
-      equations.push_back(&item);
-      continue;
-    }
-    const std::string name =
-        item.is_row ? problem_.row_name(item.index) : problem_.column_name(item.index);
-    groups[name.substr(0, name.rfind(" at "))].push_back(&item);
-  }
-  round();
-  set_equation_penalties(equations);
-  for (Limited* item : equations) item->error = 1;  // held
-  round();
-  for (auto& [name, items] : groups) {
-    const std::size_t samples = std::min<std::size_t>(kSamples, items.size());
-    std::vector<double> curvatures;
-    for (std::size_t s = 0; s < samples; ++s) {
-      const double compliance =
-          round_normal(*items[(2 * s + 1) * items.size() / (2 * samples)]).squaredNorm();
-      curvatures.push_back(compliance > 0 ? 1.0 / compliance : 1.0);
-    }
-    for (std::size_t k = 0; k < items.size(); ++k)
-      items[k]->penalty = kFirstPenalty * curvatures[k * samples / items.size()];
-  }
-}
-
-// The gradient of a limited quantity in round coordinates.
-VectorXd Run::round_normal(const Limited& item) const {
-  VectorXd one = VectorXd::Zero(item.is_row ? problem_.rows() : problem_.columns());
-  one(item.index) = 1;
-  VectorXd normal = item.is_row ? VectorXd(model_.jacobian.transpose() * one) : one;
-  VectorXd reduced;
-  reduced_.backward(model_, normal, reduced, nullptr);
-  return scaling_.to_gradient(reduced);
-}
-
-void Run::set_equation_penalties(const std::vector<Limited*>& equations) {
-  std::vector<VectorXd> normals;
-  for (const Limited* item : equations) normals.push_back(round_normal(*item));
-  const std::vector<double> stiffness = inverse_gram_diagonal(normals);
-  for (std::size_t k = 0; k < equations.size(); ++k)
-    equations[k]->penalty = stiffness[k] > 0 ? kFirstPenalty * stiffness[k] : 1.0;
 }
 
 // The Gauss-Newton step at the guess itself, its dynamics linearised there: a path that no inputs
