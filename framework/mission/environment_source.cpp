@@ -26,6 +26,10 @@ Zone zone_of(const Parameters& given) {
                      "zone '" + zone.name + "': corners: expected at least three pairs x, y");
   for (std::size_t i = 0; i < numbers.size(); i += 2)
     zone.corners.emplace_back(numbers[i], numbers[i + 1]);
+  if (!is_simple_polygon(zone.corners))
+    throw InputError(given.origin("corners"),
+                     "zone '" + zone.name +
+                         "': its edges cross or touch, or corners coincide; list them in turn");
   if (given.has("floor")) zone.floor = given.number("floor");
   if (given.has("ceiling")) zone.ceiling = given.number("ceiling");
   if (!(zone.floor < zone.ceiling))

@@ -5,6 +5,32 @@
 namespace lapwing {
 namespace {
 
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+bool within(double x, double a, double b) {
+  return std::min(a, b) <= x && x <= std::max(a, b);
+}
+
+// Whether p, which lies on the line through a and b, lies between them.
+bool between(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return within(p.x(), a.x(), b.x()) && within(p.y(), a.y(), b.y());
+}
+
+// Whether two segments have a point in common.
+bool meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+          const Eigen::Vector2d& d) {
+  const double a_side = cross(d - c, a - c), b_side = cross(d - c, b - c);
+  const double c_side = cross(b - a, c - a), d_side = cross(b - a, d - a);
+  if (((a_side > 0) != (b_side > 0) && a_side != 0 && b_side != 0) &&
+      ((c_side > 0) != (d_side > 0) && c_side != 0 && d_side != 0)) {
+    return true;
+  }
+  return (a_side == 0 && between(a, c, d)) || (b_side == 0 && between(b, c, d)) ||
+         (c_side == 0 && between(c, a, b)) || (d_side == 0 && between(d, a, b));
+}
+
 // Distance from the edges of a polygon, negative inside by the even-odd rule.
 double polygon_distance(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& p) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -43,6 +69,22 @@ Eigen::Vector3d Subject::position(double time) const {
   const auto i = static_cast<std::size_t>(next - times.begin());
   const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
   return positions[i - 1] + share * (positions[i] - positions[i - 1]);
+}
+
+bool is_simple_polygon(const std::vector<Eigen::Vector2d>& corners) {
+  const std::size_t n = corners.size();
+  if (n < 3) return false;
+  const auto corner = [&](std::size_t i) -> const Eigen::Vector2d& { return corners[i % n]; };
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector2d edge = corner(i + 1) - corner(i), next = corner(i + 2) - corner(i + 1);
+    if (!(edge.squaredNorm() > 0)) return false;
+    if (cross(edge, next) == 0 && edge.dot(next) < 0) return false;
+    const std::size_t end = i == 0 ? n - 1 : n;  // the last edge is the first one's neighbour
+    for (std::size_t k = i + 2; k < end; ++k) {
+      if (meet(corner(i), corner(i + 1), corner(k), corner(k + 1))) return false;
+    }
+  }
+  return true;
 }
 
 double signed_distance(const Sphere& sphere, const Eigen::Vector3d& p) {

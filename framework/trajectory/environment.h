@@ -51,6 +51,10 @@ struct Environment {
   double margin = 0;              // m kept from every surface, vehicle radius included
 };
 
+// Whether corners bound one area: at least three, no edge of no length, none that turns back on the
+// one before it or meets one that is not its neighbour.
+bool is_simple_polygon(const std::vector<Eigen::Vector2d>& corners);
+
 // Signed distances from a surface, negative inside; to a zone's prism with its floor and ceiling.
 double signed_distance(const Sphere& sphere, const Eigen::Vector3d& p);
 double signed_distance(const Box& box, const Eigen::Vector3d& p);

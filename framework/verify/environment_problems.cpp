@@ -6,49 +6,6 @@
 namespace lapwing {
 namespace {
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-bool within(double x, double a, double b) {
-  return std::min(a, b) <= x && x <= std::max(a, b);
-}
-
-// Whether p, which lies on the line through a and b, lies between them.
-bool between(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return within(p.x(), a.x(), b.x()) && within(p.y(), a.y(), b.y());
-}
-
-// Whether two segments have a point in common.
-bool meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
-          const Eigen::Vector2d& d) {
-  const double a_side = cross(d - c, a - c), b_side = cross(d - c, b - c);
-  const double c_side = cross(b - a, c - a), d_side = cross(b - a, d - a);
-  if (((a_side > 0) != (b_side > 0) && a_side != 0 && b_side != 0) &&
-      ((c_side > 0) != (d_side > 0) && c_side != 0 && d_side != 0)) {
-    return true;
-  }
-  return (a_side == 0 && between(a, c, d)) || (b_side == 0 && between(b, c, d)) ||
-         (c_side == 0 && between(c, a, b)) || (d_side == 0 && between(d, a, b));
-}
-
-// Whether a polygon is one: no edge of no length, none that turns back on the one before it or
-// meets one that is not its neighbour.
-bool simple(const std::vector<Eigen::Vector2d>& corners) {
-  const std::size_t n = corners.size();
-  const auto corner = [&](std::size_t i) -> const Eigen::Vector2d& { return corners[i % n]; };
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector2d edge = corner(i + 1) - corner(i), next = corner(i + 2) - corner(i + 1);
-    if (!(edge.squaredNorm() > 0)) return false;
-    if (cross(edge, next) == 0 && edge.dot(next) < 0) return false;
-    const std::size_t end = i == 0 ? n - 1 : n;  // the last edge is the first one's neighbour
-    for (std::size_t k = i + 2; k < end; ++k) {
-      if (meet(corner(i), corner(i + 1), corner(k), corner(k + 1))) return false;
-    }
-  }
-  return true;
-}
-
 std::string problem_of(const Zone& zone) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (zone.corners.size() < 3) return " must have at least three corners";
@@ -60,7 +17,8 @@ std::string problem_of(const Zone& zone) {
       return " has a corner that is not finite or beyond 1e7";
     }
   }
-  if (!simple(zone.corners)) return " has edges that cross or touch, or corners that coincide";
+  if (!is_simple_polygon(zone.corners))
+    return " has edges that cross or touch, or corners that coincide";
   if (!(sound(zone.floor) || zone.floor == -kNone) ||
       !(sound(zone.ceiling) || zone.ceiling == kNone) || !(zone.floor < zone.ceiling)) {
     return " must have its floor below its ceiling";

@@ -139,11 +139,23 @@ local function finished(run, shot, chosen, notes, certified)
                     figures = { stretch = chosen.stretch, certified_stretch = certified } }
 end
 
+-- Subjects and looks ask for a camera that turns by itself.
+local function check_gimbal(run, shot)
+  if shot.vehicle.gimbal then return end
+  local message = "vehicle '" .. shot.vehicle.name .. "' has no gimbal to look at it with"
+  if #shot.subjects > 0 then run:fail("subjects[1]", message) end
+  for i, k in ipairs(shot.keyframes) do
+    if k.look_at or k.subject then run:fail("keyframes[" .. i .. "].look_at", message) end
+  end
+  if #shot.cuts > 0 then run:fail("cuts", "there is nothing to cut between: no subject") end
+end
+
 local function fly(run, shot)
   local o = run.options
   shot.vehicle = run:vehicle(o.vehicle)
   shot.cuts, shot.subjects = o.cuts, shot.subjects or {}
   if #shot.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
+  check_gimbal(run, shot)
   times.fill(shot, shot.vehicle)
   times.check(run, shot)
   times.unwrap_yaw(shot.keyframes)

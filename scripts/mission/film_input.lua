@@ -1,26 +1,52 @@
 -- What a film's script may give: the short forms written out, and the options declared.
 local input = {}
 
-local GRID = 0.25  -- s, between the samples of a track that is a function
-local MOST_SAMPLES = 4000
+local GRID = 0.1         -- s, between the samples of a track that is a function
+local MOST_SAMPLES = 10000
+local OFF_TRACK = 0.25   -- m, that the function may leave the straight way between two samples
+local MOST_OBSTACLES = 300
 
 -- A track as a function of time becomes a list, so that options are plain data.
 local function sampled(track, duration, what)
   if not duration then
-    lapwing.fail(what .. ": a track that is a function needs the film's duration")
+    lapwing.fail(what .. ": a function needs the film's duration, or keyframes with times")
   end
-  local count = math.min(MOST_SAMPLES, math.ceil(duration / GRID))
-  local list = {}
-  for i = 0, count do
-    local time = duration * i / count
+  local function at(time)
     local position = track(time)
     if type(position) ~= "table" or #position ~= 3 then
       lapwing.fail(string.format("%s: expected {x, y, z} at %g s, got %s", what, time,
                                  type(position)))
     end
-    list[i + 1] = { time = time, position = position }
+    return position
+  end
+  local count = math.min(MOST_SAMPLES, math.ceil(duration / GRID))
+  local list = {}
+  for i = 0, count do
+    local time = duration * i / count
+    list[i + 1] = { time = time, position = at(time) }
+    local before = list[i]
+    if before then
+      local middle, off = at((before.time + time) / 2), 0
+      for k = 1, 3 do
+        off = off + (middle[k] - (before.position[k] + list[i + 1].position[k]) / 2) ^ 2
+      end
+      if math.sqrt(off) > OFF_TRACK then
+        lapwing.fail(string.format("%s: leaves the straight way between %.4g and %.4g s by %.3g m; "
+          .. "give a list of times and positions", what, before.time, time, math.sqrt(off)))
+      end
+    end
   end
   return list
+end
+
+-- The duration that a shot gives, or the last time of its keyframes.
+local function duration_of(given)
+  if given.duration then return given.duration end
+  local last
+  for _, k in ipairs(type(given.keyframes) == "table" and given.keyframes or {}) do
+    if type(k) == "table" and type(k.time) == "number" then last = math.max(last or 0, k.time) end
+  end
+  return last
 end
 
 -- {{x, y}, ...} as {x, y, ...}
@@ -55,7 +81,7 @@ function input.written_out(given)
         local copy = {}
         for key, value in pairs(entry) do copy[key] = value end
         if type(copy.track) == "function" then
-          copy.track = sampled(copy.track, out.duration, what)
+          copy.track = sampled(copy.track, duration_of(out), what)
         end
         entry = copy
       end
@@ -101,7 +127,7 @@ input.subject = {
     summary = "the camera keeps this far from its middle; absent: as it likes" },
   { name = "place", type = "numbers", size = 2, minimum = 0, maximum = 1,
     summary = "in the image, from the upper left corner: {0.33, 0.5} is the left third" },
-  { name = "size", type = "number", above = 0, maximum = 10,
+  { name = "size", type = "number", above = 0, maximum = 1,
     summary = "its height as a share of the image's; absent: any" },
 }
 
@@ -141,6 +167,10 @@ local FORMS = { sphere = { center = true, radius = true }, box = { lower = true,
 
 -- The environment of a problem from the option `obstacles`.
 function input.environment(run, obstacles, margin)
+  if #obstacles > MOST_OBSTACLES then
+    run:fail("obstacles", string.format("%d are more than the %d that a film can keep clear of",
+                                        #obstacles, MOST_OBSTACLES))
+  end
   local environment = { spheres = {}, boxes = {}, zones = {}, margin = margin }
   local lists = { sphere = environment.spheres, box = environment.boxes,
                   no_fly_zone = environment.zones }

@@ -56,11 +56,20 @@ local function keyframes_of(shot, stretch, options)
   return made
 end
 
--- A keyframe so deep in an obstacle that it cannot be met.
-local function check_keyframes(run, p, shot, options)
+-- A keyframe so deep in an obstacle, or so near to a subject, that it cannot be met.
+local function check_keyframes(run, p, shot, options, stretch, camera)
+  local reach = options.hard or problem.MISS
   for i, k in ipairs(shot.keyframes) do
     local distance, name = p:nearest_obstacle(k.position)
-    local reach = options.hard or problem.MISS
+    for _, subject in ipairs(camera and camera.list or {}) do
+      local at, squares = tracks.at(subject.track, k.time * stretch), 0
+      for c = 1, 3 do squares = squares + (k.position[c] - at[c]) ^ 2 end
+      if subject.distance and math.sqrt(squares) + reach < subject.distance then
+        run:fail("keyframes[" .. i .. "].position", string.format(
+          "%.3g m from subject '%s', and %g m are to be kept", math.sqrt(squares), subject.name,
+          subject.distance))
+      end
+    end
     if distance + reach < options.margin then
       run:fail("keyframes[" .. i .. "].position", string.format(
         "%s obstacle '%s': %.3g m from its surface, and %g m are to be kept",
@@ -135,7 +144,7 @@ local function add_camera(p, weights, camera, environment)
 end
 
 -- The straight path through the keyframes, with the yaw that looks at the target.
-local function guess(shot, stretch, keyframes, camera)
+local function guess(keyframes, camera)
   if not camera or #keyframes.yaws > 0 then
     return { times = keyframes.times, positions = keyframes.positions, yaws = keyframes.headings }
   end
@@ -161,7 +170,7 @@ function problem.state(run, shot, stretch, only)
                                   duration / FEWEST_INTERVALS)
   local p = run:problem { vehicle = shot.vehicle, duration = duration, step = step,
                           environment = environment }
-  check_keyframes(run, p, shot, o)
+  check_keyframes(run, p, shot, o, stretch, camera)
   p:add_model { type = "quadrotor" }
   p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }
   p:add_cost(smoothness(o, shot.vehicle))
@@ -194,7 +203,7 @@ function problem.state(run, shot, stretch, only)
     end
     task.framing_share = #task.framing > 0 and o.framing or nil
   end
-  p:guess_path(guess(shot, stretch, keyframes, camera))
+  p:guess_path(guess(keyframes, camera))
   p:finish()
   return p, task, camera
 end

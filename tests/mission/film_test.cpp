@@ -47,8 +47,8 @@ TEST_F(FilmTest, FromOneSubjectToAnother) {
       "{ time = 12, position = {3, -8, 3} } } }");
   ASSERT_EQ(film.task.framing.size(), 2u);
   EXPECT_EQ(film.task.framing[0].subject, "a");
-  EXPECT_NEAR(film.task.framing[0].span.finish, 4.5, 1e-9) << "three seconds from one to the other";
-  EXPECT_NEAR(film.task.framing[1].span.start, 7.5, 1e-9);
+  EXPECT_NEAR(film.task.framing[0].span.finish, 5, 1e-9) << "half of the leg to go over";
+  EXPECT_NEAR(film.task.framing[1].span.start, 7, 1e-9);
   const auto target = [&](double time) {
     for (const Sample& s : film.trajectory.samples)
       if (s.time > time - 1e-6) return s.target;
@@ -66,7 +66,7 @@ TEST_F(FilmTest, TracksAreListsOrFunctions) {
       "} },";
   const std::string function = "subject = { track = function(t) return {t / 2, 0, 1} end },";
   const Plan a = plan(shot(list)), b = plan(shot(function));
-  EXPECT_EQ(b.environment.subjects[0].times.size(), 33u) << "every quarter of a second";
+  EXPECT_EQ(b.environment.subjects[0].times.size(), 81u) << "every tenth of a second";
   for (const double t : {0.0, 3.3, 8.0})
     EXPECT_LT(
         (a.environment.subjects[0].position(t) - b.environment.subjects[0].position(t)).norm(),
@@ -94,6 +94,74 @@ TEST_F(FilmTest, ACutLastsAsLongAsTheCameraNeeds) {
   ASSERT_EQ(film.cuts.size(), 1u);
   EXPECT_GE(film.cuts[0].finish, 6.2);
   EXPECT_LT(film.cuts[0].finish, 9);
+}
+
+// Looks two seconds apart, back and forth: each is framed, half of the time is left for turning.
+TEST_F(FilmTest, ShortLegsAreFramedToo) {
+  std::string keyframes;
+  for (int i = 0; i < 5; ++i)
+    keyframes += "{ time = " + std::to_string(2 * i) + ", position = {" + std::to_string(i) +
+                 ", -9, 3}, look_at = '" + (i % 2 ? "b" : "a") + "' }, ";
+  const Plan film = plan(
+      "return require('mission.film').shot { subjects = { { name = 'a', position = {-1, 0, 1} }, "
+      "{ name = 'b', position = {4, 0, 1} } }, keyframes = {" +
+      keyframes + "} }");
+  ASSERT_EQ(film.task.framing.size(), 5u);
+  double asked = 0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    const FramingTask& framing = film.task.framing[i];
+    EXPECT_EQ(framing.subject, i % 2 ? "b" : "a");
+    EXPECT_LE(framing.span.start, 2.0 * i);
+    EXPECT_GE(framing.span.finish, 2.0 * i);
+    asked += framing.span.finish - framing.span.start;
+  }
+  EXPECT_NEAR(asked, 4, 1e-9);
+}
+
+// A cut between two subjects: the one is framed up to it, the other from its end on.
+TEST_F(FilmTest, ACutChangesTheSubject) {
+  const Plan film = plan(
+      "return require('mission.film').shot { duration = 12, subjects = { "
+      "{ name = 'a', position = {-3, 0, 1} }, { name = 'b', position = {3, 0, 1} } }, "
+      "cuts = { { start = 2, finish = 4 } }, keyframes = { "
+      "{ time = 0, position = {-3, -8, 3}, look_at = 'a' }, "
+      "{ time = 12, position = {3, -8, 3}, look_at = 'b' } } }");
+  ASSERT_EQ(film.task.framing.size(), 2u);
+  EXPECT_EQ(film.task.framing[0].span.finish, 2);
+  EXPECT_EQ(film.task.framing[1].span.start, 4);
+  EXPECT_TRUE(verify(film).feasible());
+  for (const Sample& s : film.trajectory.samples) {
+    if (s.time > 2 && s.time < 4) continue;
+    const Eigen::Vector3d d = Eigen::Vector3d(s.time < 3 ? -3 : 3, 0, 1) - s.position;
+    EXPECT_NEAR(std::remainder(s.yaw + s.gimbal_yaw - std::atan2(d.y(), d.x()), 2 * M_PI), 0, 0.1)
+        << s.time;
+  }
+}
+
+TEST_F(FilmTest, WhatTheVehicleCannotFilmIsRefused) {
+  expect(shot("vehicle = 'vehicles/racer', subject = { position = {0, 0, 1} },"),
+         "subjects[1]: vehicle 'vehicles/racer' has no gimbal");
+  expect(shot("vehicle = 'vehicles/racer',", ", look_at = {0, 0, 1}"),
+         "keyframes[2].look_at: vehicle 'vehicles/racer' has no gimbal");
+  expect(shot("subject = { position = {5, -6, 4}, distance = 6 },"),
+         "keyframes[2].position: 1 m from subject 'subject', and 6 m are to be kept");
+  expect(shot("subject = { position = {0, 0, 1} }, cuts = { { start = 0, finish = 8 } },"),
+         "cuts: nothing of what is looked at is left to be seen");
+  expect(shot("subject = { track = function(t) return {3 * math.sin(t * 20 * math.pi + 1), 0, 1} "
+              "end },"),
+         "leaves the straight way between 0 and 0.1 s");
+}
+
+// A subject on ground that must not be flown over is filmed from outside it.
+TEST_F(FilmTest, ASubjectInsideANoFlyZoneIsFilmedFromOutside) {
+  const Plan film = plan(
+      "return require('mission.film').shot { duration = 12, "
+      "subject = { position = {0, 0, 1}, height = 2 }, obstacles = { { type = 'no_fly_zone', "
+      "name = 'stage', corners = {{-4, -4}, {4, -4}, {4, 4}, {-4, 4}} } }, keyframes = { "
+      "{ time = 0, position = {-10, -2, 4} }, { time = 12, position = {10, -2, 4} } } }");
+  EXPECT_TRUE(verify(film).feasible());
+  for (const Sample& s : film.trajectory.samples)
+    EXPECT_GE(signed_distance(film.environment.zones[0], s.position), 0.5) << s.time;
 }
 
 TEST_F(FilmTest, WrongSubjectsAreNamed) {
@@ -145,6 +213,8 @@ TEST_F(FilmTest, WrongObstaclesAreNamed) {
          "lower must be below upper");
   expect(obstacle("type = 'cone'"), "obstacles[1].type");
   expect(obstacle("type = 'no_fly_zone', corners = {{0, 0}, {1, 0}}"), "at least three pairs");
+  expect(obstacle("type = 'no_fly_zone', corners = {{0, 0}, {4, 4}, {4, 0}, {0, 4}}"),
+         "its edges cross or touch");
   expect(
       obstacle("type = 'no_fly_zone', corners = {{0, 0}, {1, 0}, {0, 1}}, floor = 3, ceiling = 2"),
       "ceiling must be above");
