@@ -141,7 +141,8 @@ root.zones = document.querySelectorAll(".zone").length;
 const charts = [...document.querySelectorAll("figure.chart")];
 root.spans = charts.filter((f) => f.querySelector(".span")).length;
 root.charts = charts.length;
-Promise.all([...document.images].map((i) => i.decode())).then(() => {
+// The load event comes after every image, before the document is printed.
+window.addEventListener("load", () => {
   // The subject is orange or blue inside its box, and the frame is not.
   const canvas = document.createElement("canvas");
   const pen = canvas.getContext("2d", { willReadFrequently: true });
