@@ -1,0 +1,25 @@
+#include "framework/core/parallel.h"
+
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace lapwing {
+
+int available_threads() {
+  return std::max(1, tbb::info::default_concurrency());
+}
+
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
+  const int most = threads > 0 ? threads : available_threads();
+  if (most == 1 || count < 2) {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+    return;
+  }
+  tbb::task_arena arena(most);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+}
+
+}  // namespace lapwing
