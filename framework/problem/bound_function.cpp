@@ -291,6 +291,8 @@ void BoundFunction::curvature(const StageColumns& columns, const Stages& at,
   std::vector<double> x(n), v(m), j(m * n), h(n * n), scaled(m);
   RowMajor chain;
   for (int k = 0; k < instances(); ++k) {
+    const double* own = multipliers + k * m;
+    if (std::all_of(own, own + m, [](double weight) { return weight == 0; })) continue;
     gather(columns, at, k, x.data(), &chain);
     const double step = columns.step(at, stage_[k]);
     const double root = shape_.integral ? std::sqrt(step) : 1.0;

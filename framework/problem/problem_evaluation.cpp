@@ -1,6 +1,7 @@
 // Values, local models and violations of a trajectory problem.
 #include <cmath>
 
+#include "framework/problem/convex_part.h"
 #include "framework/problem/trajectory_problem_impl.h"
 
 namespace lapwing {
@@ -109,7 +110,8 @@ void TrajectoryProblem::linearise(const Stages& at, LocalModel& model, Curvature
   std::copy(p.constant_hessian.begin(), p.constant_hessian.end(), model.hessian.valuePtr());
   model.cost = 0;
   model.gradient.setZero(columns());
-  const bool exact = curvature == Curvature::exact && multipliers != nullptr;
+  const bool rows_curved = curvature != Curvature::gauss_newton && multipliers != nullptr;
+  const bool exact = rows_curved && curvature == Curvature::exact;
   for (const CostEntry& cost : p.costs) p.add_cost_model(cost, at, exact, model, workspace);
 
   model.values.resize(rows());
@@ -129,8 +131,9 @@ void TrajectoryProblem::linearise(const Stages& at, LocalModel& model, Curvature
       if (entry.jacobian_slots[k] >= 0) j[entry.jacobian_slots[k]] += jacobian[k];
     std::copy(entry.lower.begin(), entry.lower.end(), model.row_lower.data() + entry.first_row);
     std::copy(entry.upper.begin(), entry.upper.end(), model.row_upper.data() + entry.first_row);
-    if (!exact || !entry.bound->curved()) continue;
+    if (!rows_curved || !entry.bound->curved()) continue;
     entry.bound->curvature(p.columns, at, multipliers->data() + entry.first_row, blocks, workspace);
+    if (!exact) take_convex_parts(blocks, entry.bound->width());
     scatter(*entry.bound, entry.hessian_slots, blocks, model.hessian.valuePtr());
   }
   model.step_lower.resize(columns());

@@ -36,7 +36,9 @@ namespace lapwing {
 using Stages = Eigen::MatrixXd;  // stage size x number of stages
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-enum class Curvature { gauss_newton, exact };
+// Of the Hessian: J'J of the terms; that and the convex part of every constraint's own second
+// derivatives, so that the model stays convex; or all second derivatives of the Lagrangian.
+enum class Curvature { gauss_newton, convex, exact };
 
 // The local model: cost ~ value + g'd + d'Hd/2, rows lower <= c + A d <= upper, x_min <= x+d <=
 // x_max.
@@ -117,8 +119,8 @@ class TrajectoryProblem {
   std::vector<TermCost> term_costs(const Stages& at) const;
   // Row values c, as in LocalModel.
   Eigen::VectorXd row_values(const Stages& at) const;
-  // Fills `model`; its sparsity is the same at every call. `multipliers` (one per row) is needed
-  // for exact curvature only: H += sum multipliers_r d2 c_r.
+  // Fills `model`; its sparsity is the same at every call. `multipliers` (one per row)
+  // weigh the curvature of rows: H += sum multipliers_r d2 c_r; without them there is none.
   void linearise(const Stages& at, LocalModel& model, Curvature curvature = Curvature::gauss_newton,
                  const Eigen::VectorXd* multipliers = nullptr) const;
   // Worst violation of every constraint, model and bound by name; largest first.

@@ -4,9 +4,10 @@
 //
 //   minimise g'd + d'Hd/2   with   lower <= c + A d <= upper,   x_min <= x + d <= x_max,
 //
-// H Gauss-Newton, and takes x + alpha d with the longest alpha in 1, 1/2, 1/4, ... that lowers the
-// merit  phi(x) = cost(x) + nu * sum of violations  by a share of what the model promises; nu
-// exceeds every multiplier. A purely quadratic problem is one program and one full step.
+// H Gauss-Newton's with the convex part of the constraints' curvature, and takes x + alpha d with
+// the longest alpha in 1, 1/2, 1/4, ... that lowers the merit  phi(x) = cost(x) + nu * sum of
+// violations  by a share of what the model promises; nu exceeds every multiplier. A purely
+// quadratic problem is one program and one full step.
 //
 // It stops as optimal when the violations are within `feasibility` and the model promises less than
 // `tolerance` * (1 + |cost|). Where the model's rows contradict each other its elastic form is
@@ -34,6 +35,7 @@ constexpr double kMeritMargin = 1.5;    // merit weight over the largest multipl
 // Programs are solved to this share of what the one before promised, within these limits: early
 // ones only show the way.
 constexpr double kProgramShare = 0.1, kProgramFinest = 1e-9, kProgramCoarsest = 1e-2;
+constexpr double kPushing = 1e-8;        // of the largest multiplier: smaller ones are none
 constexpr double kElasticPenalty = 1e3;  // times 1 + |g|
 
 class Iqp final : public TrajectorySolver {
@@ -86,6 +88,7 @@ class Solve {
 
   void move_inside_bounds();
   SolveStatus iterate();
+  void linearise();
   Step quadratic_step();
   Step elastic_step();
   std::optional<SolveStatus> stopped() const;
@@ -157,7 +160,7 @@ SolveStatus Solve::iterate() {
     if (const auto stop = stopped()) return *stop;
     if (request_.progress)
       request_.progress->report(-1.0, "quadratic program " + std::to_string(k));
-    problem_.linearise(at_, model_);
+    linearise();
     // What contradicts itself once mostly does so again: no second proof until violations vanish.
     Step step;
     if (!contradictory_) step = quadratic_step();
@@ -197,6 +200,17 @@ SolveStatus Solve::iterate() {
     }
   }
   return SolveStatus::iteration_limit;
+}
+
+void Solve::linearise() {
+  if (problem_.quadratic() || rows_.size() != problem_.rows() || rows_.size() == 0) {
+    problem_.linearise(at_, model_);
+    return;
+  }
+  // Rows that do not push have no curvature to weigh.
+  const double least = kPushing * rows_.cwiseAbs().maxCoeff();
+  const VectorXd pushing = (rows_.cwiseAbs().array() > least).select(-rows_, 0.0);
+  problem_.linearise(at_, model_, Curvature::convex, &pushing);
 }
 
 Solve::Step Solve::quadratic_step() {
