@@ -13,13 +13,18 @@ int available_threads() {
 }
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
-  const int most = threads > 0 ? threads : available_threads();
+  const int most = threads > 0 ? std::min(threads, available_threads()) : available_threads();
   if (most == 1 || count < 2) {
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }
   tbb::task_arena arena(most);
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+}
+
+void on_this_thread(const std::function<void()>& body) {
+  tbb::task_arena arena(1);
+  arena.execute(body);
 }
 
 }  // namespace lapwing

@@ -5,7 +5,7 @@
 
 #include "framework/core/error.h"
 #include "framework/export/film_view.h"
-#include "framework/export/png.h"
+#include "framework/geometry/png.h"
 #include "framework/geometry/render.h"
 #include "framework/trajectory/interpolate.h"
 

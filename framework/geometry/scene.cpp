@@ -7,19 +7,10 @@
 
 #include "framework/core/error.h"
 #include "framework/geometry/shape_hits.h"
+#include "framework/geometry/tracing_device.h"
 
 namespace lapwing {
 namespace {
-
-// One device for the process; building on the calling thread alone keeps runs repeatable.
-RTCDevice device() {
-  static const RTCDevice shared = rtcNewDevice("threads=1,set_affinity=0");
-  if (!shared) {
-    throw Error("Embree cannot be used on this machine (error " +
-                std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))) + ")");
-  }
-  return shared;
-}
 
 // What a traversal carries besides Embree's own ray: the ray in double precision and the best hit.
 struct Query : RTCIntersectContext {
@@ -72,9 +63,9 @@ struct Scene::Tracer {
       const bool endless = std::holds_alternative<GroundShape>(shapes[i]);
       (endless ? grounds : bounded).push_back(static_cast<int>(i));
     }
-    scene = rtcNewScene(device());
+    scene = rtcNewScene(tracing_device());
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    const RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_USER);
+    const RTCGeometry geometry = rtcNewGeometry(tracing_device(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bounded.size()));
     rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryBoundsFunction(geometry, bound, nullptr);
@@ -83,13 +74,7 @@ struct Scene::Tracer {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    const RTCError error = rtcGetDeviceError(device());
-    if (error != RTC_ERROR_NONE) {
-      rtcReleaseScene(scene);
-      throw Error("Embree could not build a scene (error " +
-                  std::to_string(static_cast<int>(error)) + ")");
-    }
+    commit(scene, "a scene");
   }
   ~Tracer() { rtcReleaseScene(scene); }
   Tracer(const Tracer&) = delete;

@@ -92,7 +92,7 @@ constexpr Containment kContained[] = {
     {"nlohmann/", "", true},
     {"fmt/", "", true},
     {"GeographicLib/", "", true},
-    {"png.h", "framework/export/", true},
+    {"png.h", "framework/geometry/", true},
     {"octomap/", "", true},
     {"ompl/", "", true},
     {"coin/", "", true},
@@ -104,8 +104,9 @@ constexpr Containment kContained[] = {
     {"torch/", "", true},
 };
 // Of these, one source file of the framework alone.
-constexpr const char* kSingleSource[] = {"GeographicLib/", "embree",    "png.h",
-                                         "octomap/",       "nanoflann", "torch/"};
+constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/",   "png.h",
+                                         "octomap/",       "opencv2/",  "CGAL/",
+                                         "nanoflann",      "torch/"};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;

@@ -4,7 +4,7 @@
 #include "framework/export/film_charts.h"
 #include "framework/export/film_strip.h"
 #include "framework/export/flight_report.h"
-#include "framework/export/png.h"
+#include "framework/geometry/png.h"
 #include "tests/export/synthetic_flight.h"
 
 namespace lapwing {

@@ -1,4 +1,4 @@
-#include "framework/export/png.h"
+#include "framework/geometry/png.h"
 
 #include <png.h>
 

@@ -1,0 +1,30 @@
+#include "framework/geometry/tracing_device.h"
+
+#include <embree3/rtcore.h>
+
+#include <string>
+
+#include "framework/core/error.h"
+#include "framework/core/parallel.h"
+
+namespace lapwing {
+
+RTCDeviceTy* tracing_device() {
+  static const RTCDevice shared = rtcNewDevice("set_affinity=0");
+  if (!shared) {
+    throw Error("Embree cannot be used on this machine (error " +
+                std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))) + ")");
+  }
+  return shared;
+}
+
+void commit(RTCSceneTy* scene, const char* what) {
+  on_this_thread([scene] { rtcCommitScene(scene); });
+  const RTCError error = rtcGetDeviceError(tracing_device());
+  if (error == RTC_ERROR_NONE) return;
+  rtcReleaseScene(scene);
+  throw Error(std::string("Embree could not build ") + what + " (error " +
+              std::to_string(static_cast<int>(error)) + ")");
+}
+
+}  // namespace lapwing
