@@ -78,9 +78,18 @@ Value json_of(const Outcome& outcome, const Invocation& invocation) {
   return object;
 }
 
+// What the certificate does not require, and what a user would still want to know.
+std::string reported_misses(const Certificate& certificate) {
+  std::string lines;
+  for (const Check& check : certificate.checks)
+    if (!check.required && check.skipped.empty() && !check.pass)
+      lines += "\n  reported: " + to_line(check);
+  return lines;
+}
+
 std::string in_words(const Outcome& outcome) {
   const std::string& status = outcome.status;
-  if (status == "ok") return "certified";
+  if (status == "ok") return "certified" + reported_misses(outcome.certificate);
   std::string words = status == "not_certified" ? "not certified" : status;
   const std::vector<Check> failures = outcome.certificate.failures();
   if (status == "cancelled") {

@@ -43,6 +43,7 @@ Subject subject_of(const Parameters& given) {
   subject.name = given.text("name");
   subject.height = given.number("height");
   subject.width = given.number("width");
+  subject.distance = given.number("distance");
   for (const Parameters& point : given.tables("track")) {
     const double time = point.number("time");
     if (!subject.times.empty() && !(time > subject.times.back()))
@@ -80,6 +81,8 @@ ParameterTable environment_table() {
   subject.required_text("name", "by which it is asked for")
       .number("height", 0, "m", "from foot to top", between(0, 1e5))
       .number("width", 0, "m", "diameter", between(0, 1e5))
+      .number("distance", 0, "m", "kept from its middle, judged by the certificate",
+              between(0, 1e5))
       .tables("track", point, "where it is, straight in between", true);
   ParameterTable table;
   table.tables("spheres", sphere, "to keep out of")

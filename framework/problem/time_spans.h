@@ -6,12 +6,9 @@
 
 #include "framework/core/parameters.h"
 #include "framework/problem/stage_function.h"
+#include "framework/trajectory/time_span.h"
 
 namespace lapwing {
-
-struct TimeSpan {
-  double start = 0, finish = 0;  // s, both included
-};
 
 // {start, finish}, one entry of a parameter that lists spans.
 ParameterTable time_span_table();

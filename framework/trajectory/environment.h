@@ -39,6 +39,7 @@ struct Subject {
   std::vector<Eigen::Vector3d> positions;  // of its middle, one per time
   double height = 0;                       // m, from foot to top; 0 is a point
   double width = 0;                        // m, diameter
+  double distance = 0;                     // m, kept from its middle; 0 asks for none
 
   Eigen::Vector3d position(double time) const;
 };
@@ -47,7 +48,7 @@ struct Environment {
   std::vector<Sphere> spheres;
   std::vector<Box> boxes;
   std::vector<Zone> zones;
-  std::vector<Subject> subjects;  // filmed; a distance is kept only where a problem asks for it
+  std::vector<Subject> subjects;  // filmed
   double margin = 0;              // m kept from every surface, vehicle radius included
 };
 

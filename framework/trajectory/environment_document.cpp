@@ -45,6 +45,7 @@ Value to_value(const Subject& subject) {
   value.set("positions", std::move(positions));
   value.set("height", subject.height);
   value.set("width", subject.width);
+  if (subject.distance != 0) value.set("distance", subject.distance);
   return value;
 }
 
@@ -75,6 +76,7 @@ Subject subject_from(Fields& fields) {
   }
   subject.height = fields.number("height");
   subject.width = fields.number("width");
+  subject.distance = fields.optional_number("distance").value_or(0.0);
   return subject;
 }
 

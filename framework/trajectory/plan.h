@@ -12,6 +12,7 @@
 #include "framework/core/value.h"
 #include "framework/geometry/geodetic.h"
 #include "framework/trajectory/environment.h"
+#include "framework/trajectory/time_span.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace lapwing {
@@ -23,11 +24,6 @@ struct KeyframeTask {
   double tolerance = 0.5;                              // m
   double time_tolerance = 0.1;                         // s
   double yaw_tolerance = 0.1745;                       // rad
-};
-
-// Between two times, ends included.
-struct TimeSpan {
-  double start = 0, finish = 0;  // s
 };
 
 // Which subject the camera is on, and when. Times outside all of these ask for nothing.

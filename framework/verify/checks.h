@@ -48,6 +48,7 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"gimbal_yaw_rate", CheckGroup::safety, true, "rad/s"},
     CheckKind{"gimbal_pitch_rate", CheckGroup::safety, true, "rad/s"},
     CheckKind{"clearance", CheckGroup::safety, true, "m"},
+    CheckKind{"subject_distance", CheckGroup::safety, true, "m"},
     CheckKind{"flight_time", CheckGroup::safety, true, "s"},
     CheckKind{"budget", CheckGroup::safety, true, "s"},
     CheckKind{"closed_loop", CheckGroup::safety, false, ""},
@@ -107,6 +108,7 @@ Document check_document(const Plan& plan);
 void check_dynamics(const Flight& flight, Certificate& certificate);
 void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);
+void check_subject_distance(const Flight& flight, Certificate& certificate);
 void check_time(const Flight& flight, Certificate& certificate);
 void check_task(const Flight& flight, Certificate& certificate);
 void check_framing(const Flight& flight, Certificate& certificate);

@@ -84,7 +84,8 @@ local function environment_of(run, options, camera)
   environment.subjects = {}
   for i, subject in ipairs(camera and camera.list or {}) do
     environment.subjects[i] = { name = subject.name, height = subject.height,
-                                width = subject.width, track = subject.track }
+                                width = subject.width, distance = subject.distance,
+                                track = subject.track }
   end
   return environment
 end

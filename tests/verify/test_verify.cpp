@@ -132,6 +132,33 @@ TEST(Verify, ObstacleGrazedBetweenSamplesIsFound) {
   EXPECT_TRUE(verify(plan).feasible());
 }
 
+TEST(Verify, DistanceFromSubjectsHasKnownValues) {
+  Plan plan = dip();  // at (5, -1, 0) after 1 s
+  EXPECT_NE(check_of(verify(plan), "subject_distance").skipped, "");
+  Subject still{.name = "still", .times = {0}, .positions = {{5, -3, 0}}};
+  Subject runner{
+      .name = "runner", .times = {0, 1, 2}, .positions = {{5, -9, 0}, {5, -2, 0}, {5, -9, 0}}};
+  plan.environment.subjects = {still, runner};
+  EXPECT_NE(check_of(verify(plan), "subject_distance").skipped, "") << "none asks";
+  plan.environment.subjects[0].distance = 1.9;
+  Check check = check_of(verify(plan), "subject_distance");
+  EXPECT_TRUE(check.pass);
+  EXPECT_LE(*check.worst, 2);
+  EXPECT_NEAR(*check.worst, 2, 3e-4);
+  EXPECT_EQ(check.detail, "subject 'still'");
+  plan.environment.subjects[1].distance = 1.5;  // it comes within 1 m at the corner of its track
+  check = check_of(verify(plan), "subject_distance");
+  EXPECT_FALSE(check.pass);
+  EXPECT_FALSE(verify(plan).feasible());
+  EXPECT_LE(*check.worst, 1);
+  EXPECT_NEAR(*check.worst, 1, 3e-4);
+  EXPECT_NEAR(check.at, 1, 1e-6);
+  EXPECT_EQ(check.detail, "subject 'runner'");
+  EXPECT_EQ(check.limit, 1.5);
+  plan.environment.subjects[0].distance = -1;
+  EXPECT_FALSE(check_of(verify(plan), "document").pass);
+}
+
 TEST(Verify, ClearanceOfBoxesHasKnownValues) {
   Plan plan = dip();
   const auto clearance = [&](const Eigen::Vector3d& lower, const Eigen::Vector3d& upper) {

@@ -187,11 +187,17 @@ SolveStatus Solve::iterate() {
     const double promised =
         -(model_.gradient.dot(step.d) +
           0.5 * step.d.dot(model_.hessian.selfadjointView<Eigen::Lower>() * step.d));
+    const double fine = std::max(kProgramFinest, kProgramShare * tolerance_);
+    const bool coarse = program_tolerance_ > fine;
     program_tolerance_ =
         std::clamp(kProgramShare * std::abs(promised) / (1.0 + std::abs(model_.cost)),
                    kProgramFinest, kProgramCoarsest);
     const bool still = std::abs(promised) <= tolerance_ * (1.0 + std::abs(model_.cost));
-    if (still && worst_violation() <= feasibility_) return SolveStatus::optimal;
+    if (still && worst_violation() <= feasibility_) {
+      if (!coarse) return SolveStatus::optimal;
+      program_tolerance_ = fine;  // a coarse program may promise less than there is
+      continue;
+    }
     contradictory_ = step.elastic && predicted_violation(step) > feasibility_;
     if (!line_search(step, violation)) {
       if (worst_violation() <= feasibility_) return SolveStatus::feasible;
