@@ -1,0 +1,48 @@
+// Depth images of a real sensor, from a folder:
+//
+//   camera-intrinsics.txt   3 x 3 numbers: focal lengths and principal point in pixels
+//   NAME.depth.png          16-bit grey, depth along the optical axis in millimetres, 0 is none
+//   NAME.pose.txt           4 x 4 numbers: camera (x right, y down, z forward) to world, metres
+//
+// Frames are in the order of their names. Their world need not have z up.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/geometry/depth_image.h"
+
+namespace lapwing {
+
+class DepthFolder {
+ public:
+  // Reads camera, poses and the size of the first image. Throws InputError naming the file: none
+  // there, numbers missing or not finite, focal lengths not above 0, a pose that is no rotation (to
+  // 1e-3) with a translation, an image without a pose.
+  explicit DepthFolder(const std::filesystem::path& folder);
+
+  std::size_t size() const { return names_.size(); }
+  const std::string& name(std::size_t frame) const { return names_[frame]; }
+  const Pinhole& pinhole() const { return pinhole_; }
+  const Pose& pose(std::size_t frame) const { return poses_[frame]; }
+
+  // Throws InputError for an image that cannot be read or has another size than the first.
+  // Thread-safe.
+  PosedDepthImage read(std::size_t frame) const;
+
+ private:
+  std::filesystem::path image_path(std::size_t frame) const;
+
+  std::filesystem::path folder_;
+  std::vector<std::string> names_;
+  std::vector<Pose> poses_;
+  Pinhole pinhole_;
+};
+
+// Writes one frame so that DepthFolder reads it back, depth to the nearest millimetre: infinite and
+// larger depths than 65.535 m become 0. Files appear whole or not at all.
+void write_depth_frame(const std::filesystem::path& folder, const std::string& name,
+                       const PosedDepthImage& frame);
+
+}  // namespace lapwing
