@@ -145,7 +145,7 @@ void write_depth_frame(const fs::path& folder, const std::string& name,
   camera += row;
   write_file_atomically(folder / kCamera, camera);
   write_file_atomically(folder / (name + kPoseEnd), pose + "0 0 0 1\n");
-  write_file_atomically(folder / (name + kImageEnd), encode_png(image));
+  write_file_atomically(folder / (name + kImageEnd), encode_grey16_png(image));
 }
 
 }  // namespace lapwing

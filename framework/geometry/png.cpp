@@ -132,7 +132,7 @@ std::string encode_png(const Picture& picture) {
                  picture.rgb.size() == 3 * pixels);
 }
 
-std::string encode_png(const Grey16& picture) {
+std::string encode_grey16_png(const Grey16& picture) {
   const std::size_t pixels = static_cast<std::size_t>(std::max(0, picture.width)) *
                              static_cast<std::size_t>(std::max(0, picture.height));
   return encoded(picture.width, picture.height, PNG_FORMAT_LINEAR_Y, picture.pixels.data(),

@@ -18,7 +18,7 @@ struct Grey16 {
 // The bytes of a PNG file; equal pictures give equal bytes with one version of zlib. Throws Error
 // when the picture has no pixel or its bytes do not fit its size.
 std::string encode_png(const Picture& picture);
-std::string encode_png(const Grey16& picture);
+std::string encode_grey16_png(const Grey16& picture);
 
 // Throws InputError, beginning with `name`, when the bytes are no whole PNG of one 16-bit channel,
 // or of more than 100 million pixels.

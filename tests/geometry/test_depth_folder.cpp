@@ -94,7 +94,7 @@ TEST_F(DepthFolders, PosesMustBeRotations) {
 
 TEST_F(DepthFolders, ImagesMustBeWholeAndOfOneSize) {
   const std::string good = read_file(folder_ / "frame-2.depth.png");
-  write("frame-2.depth.png", encode_png(Grey16{7, 6, std::vector<std::uint16_t>(42, 1)}));
+  write("frame-2.depth.png", encode_grey16_png(Grey16{7, 6, std::vector<std::uint16_t>(42, 1)}));
   EXPECT_NE(refusal().find("7 by 6 pixels among those of 8 by 6"), std::string::npos) << refusal();
   for (std::size_t size = 0; size + 1 < good.size(); ++size) {
     write("frame-2.depth.png", good.substr(0, size));
