@@ -4,9 +4,12 @@
 #include <charconv>
 #include <functional>
 #include <iostream>
+#include <sstream>
 
 #include "framework/core/json.h"
 #include "framework/core/log.h"
+#include "framework/core/units.h"
+#include "framework/vehicle/closed_loop.h"
 
 #ifndef LAPWING_VERSION
 #define LAPWING_VERSION "0.1.0"
@@ -99,12 +102,53 @@ void add_plan(CLI::App& command, std::filesystem::path& plan) {
   })->required();
 }
 
+// A number and nothing else.
+double read_number(const std::string& option, const std::string& text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw CLI::ValidationError(option, "expected a number, not '" + text + "'");
+  return number;
+}
+
+// "5,1" or "5,1,90".
+void read_wind(const std::string& text, FlightConditions& conditions) {
+  std::vector<double> numbers;
+  std::istringstream rest(text);
+  for (std::string part; std::getline(rest, part, ',');)
+    numbers.push_back(read_number("--wind", part));
+  if (numbers.size() < 2 || numbers.size() > 3)
+    throw CLI::ValidationError("--wind", "expected MEAN,GUST or MEAN,GUST,TO, not '" + text + "'");
+  conditions.wind_mean = numbers[0];
+  conditions.wind_gust = numbers[1];
+  if (numbers.size() > 2) conditions.wind_yaw = radians(numbers[2]);
+}
+
 void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
-                       std::string& format, std::filesystem::path& target, Command& command) {
+                       FlightConditions& conditions, std::string& format,
+                       std::filesystem::path& target, Command& command) {
   CLI::App* verify = app.add_subcommand("verify", "judge a plan from its numbers alone");
   add_plan(*verify, plan);
   add_json(*verify, invocation);
   verify->callback([&] { command = [&] { return verify_plan(plan, invocation); }; });
+
+  CLI::App* simulate =
+      app.add_subcommand("simulate", "fly a plan by the whole quadrotor under control");
+  add_plan(*simulate, plan);
+  add_text(*simulate, "--wind", "MEAN,GUST[,TO]",
+           "wind and gusts in m/s, and where it blows to in degrees (0: east)",
+           [&](const std::string& text) { read_wind(text, conditions); });
+  add_text(*simulate, "--mass-error", "PERCENT", "by which the true mass exceeds the plan's",
+           [&](const std::string& text) {
+             conditions.mass_error = read_number("--mass-error", text) / 100;
+           });
+  add_count(*simulate, "--seed", 0, kLargestSeed, "of the gusts",
+            [&](std::uint64_t seed) { conditions.seed = seed; });
+  add_text(*simulate, "-o,--output", "PATH", "write a report page",
+           [&](const std::string& path) { target = path; });
+  add_json(*simulate, invocation);
+  simulate->callback(
+      [&] { command = [&] { return simulate_plan(plan, conditions, target, invocation); }; });
 
   CLI::App* exported = app.add_subcommand("export", "write a plan in another format");
   add_plan(*exported, plan);
@@ -192,12 +236,13 @@ int run_command_line(int argc, const char* const* argv) {
   Invocation invocation;
   std::filesystem::path script, plan, target;
   std::string format, name;
+  FlightConditions conditions;
   Command command;
   add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
                "a folder of plugins, searched first");
   app.fallthrough();
   add_run(app, invocation, script, command);
-  add_plan_commands(app, invocation, plan, format, target, command);
+  add_plan_commands(app, invocation, plan, conditions, format, target, command);
   add_plugin_commands(app, invocation, name, command);
   try {
     app.parse(argc, argv);

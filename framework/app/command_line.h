@@ -43,6 +43,10 @@ int run_command_line(int argc, const char* const* argv);
 ExitStatus run_mission(const std::filesystem::path& script, const Invocation& invocation);
 ExitStatus show_configuration(const std::filesystem::path& script, const Invocation& invocation);
 ExitStatus verify_plan(const std::filesystem::path& plan, const Invocation& invocation);
+// Flies a plan by the whole quadrotor; writes a report page to `target` unless that is empty.
+struct FlightConditions;
+ExitStatus simulate_plan(const std::filesystem::path& plan, const FlightConditions& conditions,
+                         const std::filesystem::path& target, const Invocation& invocation);
 ExitStatus export_plan(const std::filesystem::path& plan, const std::string& format,
                        const std::filesystem::path& target, const Invocation& invocation);
 ExitStatus list_plugins(const Invocation& invocation);

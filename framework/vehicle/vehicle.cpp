@@ -32,6 +32,7 @@ Value rotors_to_value(const Rotors& rotors) {
   value.set("thrust_max", rotors.thrust_max);
   value.set("torque_coefficient", rotors.torque_coefficient);
   value.set("arm_length", rotors.arm_length);
+  value.set("lag", rotors.lag);
   value.set("diagonal", rotors.diagonal);
   return value;
 }
@@ -75,6 +76,7 @@ void read_body(Fields& fields, Vehicle& vehicle) {
   vehicle.name = fields.text("name");
   vehicle.mass = fields.number("mass");
   vehicle.inertia = fields.vector3("inertia");
+  vehicle.drag = fields.number("drag");
   vehicle.yaw_share = fields.number("yaw_share");
   vehicle.flight_time = fields.number("flight_time");
   Fields rotors = fields.table("rotors");
@@ -82,6 +84,7 @@ void read_body(Fields& fields, Vehicle& vehicle) {
   vehicle.rotors.thrust_max = rotors.number("thrust_max");
   vehicle.rotors.torque_coefficient = rotors.number("torque_coefficient");
   vehicle.rotors.arm_length = rotors.number("arm_length");
+  vehicle.rotors.lag = rotors.number("lag");
   vehicle.rotors.diagonal = rotors.boolean("diagonal");
   rotors.finish();
 }
@@ -135,6 +138,7 @@ Value to_value(const Vehicle& vehicle) {
   value.set("name", vehicle.name);
   value.set("mass", vehicle.mass);
   value.set("inertia", list_of(vehicle.inertia));
+  value.set("drag", vehicle.drag);
   value.set("rotors", rotors_to_value(vehicle.rotors));
   value.set("yaw_share", vehicle.yaw_share);
   value.set("limits", limits_to_value(vehicle));

@@ -19,6 +19,7 @@ struct Rotors {
   double thrust_min = 0;          // N, one rotor
   double torque_coefficient = 0;  // m, drag torque = coefficient * thrust (k_M / k_F)
   double arm_length = 0;          // m, rotor axis to centre of mass
+  double lag = 0;                 // s, time constant of thrust after its command
   bool diagonal = false;  // arms at 45 degrees to the body axes; else along them (fig. 3.11)
 };
 
@@ -42,6 +43,7 @@ struct Vehicle {
   std::string name;
   double mass = 0;                                    // kg
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  // kg m^2, body axes, diagonal
+  double drag = 0;                                    // N s/m, linear in the airspeed
   Rotors rotors;
   double yaw_share = 0;  // beta of 3.8.3: share of the largest yaw moment that is kept usable
   double speed_across_max = 0;                  // m/s, horizontal

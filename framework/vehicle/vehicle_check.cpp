@@ -53,6 +53,10 @@ class Checker {
                 text_of(v_.rotors.thrust_max, "N") + ")");
     positive(v_.rotors.torque_coefficient, "rotors.torque_coefficient");
     positive(v_.rotors.arm_length, "rotors.arm_length");
+    require(v_.rotors.lag >= 0 && v_.rotors.lag <= 1, "rotors.lag",
+            "must lie between 0 and 1 s, is " + text_of(v_.rotors.lag, "s"));
+    require(v_.drag >= 0 && v_.drag <= 100, "drag",
+            "must lie between 0 and 100 N s/m, is " + text_of(v_.drag, "N s/m"));
     require(v_.yaw_share > 0 && v_.yaw_share < 1, "yaw_share",
             "must lie between 0 and 1, both excluded, is " + text_of(v_.yaw_share, ""));
   }

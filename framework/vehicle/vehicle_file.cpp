@@ -12,6 +12,7 @@ ParameterTable rotors_table() {
       .required_number("torque_coefficient", "m", "drag torque of a rotor over its thrust",
                        above(0))
       .required_number("arm_length", "m", "from a rotor's axis to the centre of mass", above(0))
+      .number("lag", 0, "s", "time constant of the thrust after its command", between(0, 1))
       .choice("layout", "diagonal", {"diagonal", "along_axes"},
               "arms at 45 degrees to the body's axes, or along them");
   return table;
@@ -109,6 +110,8 @@ ParameterTable vehicle_table() {
   table.required_number("mass", "kg", "take-off mass, camera included", between(0.01, 100))
       .required_numbers("inertia", 3, "kg m^2", "moments of inertia about the body's axes",
                         above(0))
+      .number("drag", 0, "N s/m", "linear drag against the air; needed to fly in wind",
+              between(0, 100))
       .table("rotors", rotors_table(), "four equal rotors")
       .number("yaw_share", 0.2, "",
               "share of the largest yaw moment that stays usable at every thrust (beta of 3.8.3)",
@@ -135,11 +138,13 @@ Vehicle vehicle_from(const Parameters& vehicle, const Parameters& camera, std::s
   result.mass = vehicle.number("mass");
   const auto inertia = vehicle.numbers("inertia");
   result.inertia = {inertia[0], inertia[1], inertia[2]};
+  result.drag = vehicle.number("drag");
   const Parameters& rotors = vehicle.table("rotors");
   result.rotors = {.thrust_max = rotors.numbers("thrust")[1],
                    .thrust_min = rotors.numbers("thrust")[0],
                    .torque_coefficient = rotors.number("torque_coefficient"),
                    .arm_length = rotors.number("arm_length"),
+                   .lag = rotors.number("lag"),
                    .diagonal = rotors.text("layout") == "diagonal"};
   result.yaw_share = vehicle.number("yaw_share");
   result.flight_time = vehicle.number("flight_time");

@@ -51,7 +51,9 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"subject_distance", CheckGroup::safety, true, "m"},
     CheckKind{"flight_time", CheckGroup::safety, true, "s"},
     CheckKind{"budget", CheckGroup::safety, true, "s"},
-    CheckKind{"closed_loop", CheckGroup::safety, false, ""},
+    CheckKind{"closed_loop", CheckGroup::safety, true, "m"},
+    CheckKind{"closed_loop_yaw", CheckGroup::safety, true, "rad"},
+    CheckKind{"rotors_saturated", CheckGroup::safety, true, ""},
     CheckKind{"keyframe_time", CheckGroup::task, true, "s"},
     CheckKind{"keyframe_miss", CheckGroup::task, true, "m"},
     CheckKind{"keyframe_yaw", CheckGroup::task, true, "rad"},
@@ -109,6 +111,7 @@ void check_dynamics(const Flight& flight, Certificate& certificate);
 void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);
 void check_subject_distance(const Flight& flight, Certificate& certificate);
+void check_closed_loop(const Flight& flight, Certificate& certificate);
 void check_time(const Flight& flight, Certificate& certificate);
 void check_task(const Flight& flight, Certificate& certificate);
 void check_framing(const Flight& flight, Certificate& certificate);

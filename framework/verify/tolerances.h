@@ -25,6 +25,12 @@ inline constexpr double kDriftFactor = 10.0;
 // Between the acceleration that a sample states and force / mass + gravity.
 inline constexpr double kAcceleration = 1e-2;  // m/s^2
 
+// How far the whole quadrotor under control may stray from the plan in still air, and the share of
+// the time in which a rotor may be asked for more than it has.
+inline constexpr double kTracking = 0.25;         // m
+inline constexpr double kTrackingYaw = 0.087266;  // rad, 5 degrees
+inline constexpr double kSaturated = 0.01;
+
 // Resolution of the integrated motion: steps are short enough that between two of them the true
 // motion leaves the straight line, or passes what both ends show, by no more than this.
 inline constexpr double kStepMaximum = 0.02;    // s

@@ -1,0 +1,67 @@
+// lapwing simulate.
+#include <cstdio>
+
+#include "framework/app/command_line.h"
+#include "framework/core/files.h"
+#include "framework/core/units.h"
+#include "framework/export/simulation_report.h"
+#include "framework/vehicle/closed_loop.h"
+#include "framework/verify/verify.h"
+
+namespace lapwing {
+namespace {
+
+Value to_value(const FlownPath& path) {
+  Value value = Value::map();
+  value.set("lost", path.lost);
+  value.set("position_error_worst", path.position_error_worst);
+  value.set("position_error_at", path.position_error_at);
+  value.set("position_error_mean", path.position_error_mean);
+  value.set("yaw_error_worst", path.yaw_error_worst);
+  value.set("yaw_error_at", path.yaw_error_at);
+  value.set("rotor_speed_worst", path.rotor_speed_worst);
+  value.set("saturated_share", path.saturated_share);
+  return value;
+}
+
+void print(const Plan& plan, const FlownPath& path) {
+  std::printf("%s: %s\n", plan.mission.c_str(), path.lost ? "lost" : "flown");
+  std::printf("  distance from the plan  worst %.3f m at %.4g s, mean %.3f m\n",
+              path.position_error_worst, path.position_error_at, path.position_error_mean);
+  std::printf("  yaw against the plan    worst %.2f degrees at %.4g s\n",
+              degrees(path.yaw_error_worst), path.yaw_error_at);
+  std::printf("  rotor speed             up to %.1f %% of the largest\n",
+              100 * path.rotor_speed_worst);
+  std::printf("  rotors saturated        %.3g %% of the time\n", 100 * path.saturated_share);
+}
+
+// What the verifier would refuse cannot be flown either.
+void require_a_sound_plan(const Plan& plan) {
+  const Certificate certificate = verify(plan);
+  const Check* document = certificate.find("document");
+  if (!document->pass) throw InputError({}, "the plan does not hold together: " + document->detail);
+}
+
+}  // namespace
+
+ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditions& conditions,
+                         const std::filesystem::path& target, const Invocation& invocation) {
+  const Plan plan = read_plan(file);
+  require_a_sound_plan(plan);
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  const FlownPath path = fly(plan.trajectory, vehicle, conditions);
+  if (!target.empty())
+    write_file_atomically(target, render_html(simulation_report(plan, vehicle, path)));
+  if (invocation.json) {
+    Value object = Value::map();
+    object.set("plan", file.string());
+    object.set("mission", plan.mission);
+    object.set("simulation", to_value(path));
+    print_json(object);
+  } else {
+    print(plan, path);
+  }
+  return path.lost ? ExitStatus::not_certified : ExitStatus::done;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,128 @@
+#include "framework/vehicle/flight_controller.h"
+
+#include <algorithm>
+
+#include "framework/core/units.h"
+#include "framework/vehicle/riccati.h"
+
+namespace lapwing {
+
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+namespace {
+
+// What an acceleration of kAcceleration is worth.
+constexpr double kAcceleration = 2.0;  // m/s^2
+constexpr double kPosition = 0.1;      // m
+constexpr double kVelocity = 0.5;      // m/s
+constexpr double kIntegral = 0.1;      // m s
+constexpr double kAttitude = 0.5;      // rad, that asks for a share of the free moment
+constexpr double kMomentShare = 0.5;
+constexpr double kFastestTilt = 20.0, kFastestYaw = 4.0;  // rad/s
+constexpr double kDifference = 0.01;                      // s, of the attitude's derivatives
+constexpr double kAlongHeading = 1e-3;  // sine of the angle between force and heading
+
+double squared(double x) {
+  return x * x;
+}
+
+// The rotation vector of a unit quaternion.
+Vector3d rotation_vector(Quaterniond q) {
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  const double sine = q.vec().norm();
+  if (sine < 1e-12) return 2 * q.vec();
+  return 2 * std::atan2(sine, q.w()) / sine * q.vec();
+}
+
+}  // namespace
+
+ControllerGains gains_of(const Vehicle& vehicle) {
+  // States: integral of the error, error, its rate; input: acceleration.
+  Matrix3d a = Matrix3d::Zero();
+  a(0, 1) = a(1, 2) = 1;
+  const Vector3d b(0, 0, 1);
+  const Vector3d weights(1 / squared(kIntegral), 1 / squared(kPosition), 1 / squared(kVelocity));
+  const Eigen::MatrixXd k = regulator_gain(
+      a, b, weights.asDiagonal(), Eigen::MatrixXd::Constant(1, 1, 1 / squared(kAcceleration)));
+  ControllerGains gains{.integral = k(0, 0), .position = k(0, 1), .velocity = k(0, 2)};
+
+  const Rotors& rotors = vehicle.rotors;
+  const double hover = vehicle.mass * kGravity / 4;
+  const double room = std::min(hover - rotors.thrust_min, rotors.thrust_max - hover);
+  // Rows 1 and 2 of the mixer: the moment of all rotors, each using its room.
+  const double tilt = room * std::min(mixer_of(rotors).row(1).cwiseAbs().sum(),
+                                      mixer_of(rotors).row(2).cwiseAbs().sum());
+  const auto bandwidth = [](double moment, double inertia, double fastest) {
+    return std::min(fastest, std::sqrt(kMomentShare * moment / (kAttitude * inertia)));
+  };
+  const Vector3d bandwidths(bandwidth(tilt, vehicle.inertia.x(), kFastestTilt),
+                            bandwidth(tilt, vehicle.inertia.y(), kFastestTilt),
+                            bandwidth(4 * room * rotors.torque_coefficient, vehicle.inertia.z(),
+                                      kFastestYaw));
+  gains.attitude = vehicle.inertia.cwiseProduct(bandwidths.cwiseAbs2());
+  gains.rates = 2 * vehicle.inertia.cwiseProduct(bandwidths);
+  return gains;
+}
+
+Quaterniond attitude_of(const Vector3d& force, double yaw) {
+  const Vector3d z = force.norm() > 0 ? Vector3d(force.normalized()) : Vector3d::UnitZ();
+  const Vector3d heading(std::cos(yaw), std::sin(yaw), 0);
+  Vector3d y = z.cross(heading);
+  if (y.norm() < kAlongHeading) y = Vector3d(-heading.y(), heading.x(), 0);
+  y = (y - y.dot(z) * z).normalized();
+  Matrix3d r;
+  r << y.cross(z), y, z;
+  return Quaterniond(r);
+}
+
+FlightController::FlightController(const Vehicle& vehicle, const ReferenceMotion& reference)
+    : reference_(reference),
+      mass_(vehicle.mass),
+      lag_(vehicle.rotors.lag),
+      inertia_(vehicle.inertia),
+      gains_(gains_of(vehicle)),
+      allocation_(vehicle) {}
+
+AttitudeReference FlightController::attitude(double time) const {
+  const auto at = [&](double t) {
+    const ReferencePoint point =
+        reference_.at(std::clamp(t, reference_.start(), reference_.finish()));
+    return attitude_of(reference_.force(point), point.yaw);
+  };
+  const Quaterniond before = at(time - kDifference), now = at(time), after = at(time + kDifference);
+  const Vector3d first = rotation_vector(before.conjugate() * now) / kDifference;
+  const Vector3d second = rotation_vector(now.conjugate() * after) / kDifference;
+  return {now, (first + second) / 2, (second - first) / kDifference};
+}
+
+RotorCommand FlightController::command(double time, const BodyState& state, double step) {
+  const ReferencePoint wanted = reference_.at(time);
+  const Vector3d error = state.position - wanted.position;
+  if (!saturated_) integral_ += step * error;
+  const Vector3d feedback = gains_.integral * integral_ + gains_.position * error +
+                            gains_.velocity * (state.velocity - wanted.velocity);
+  const Vector3d force = reference_.force(wanted) - mass_ * feedback;  // (3.14)
+
+  const AttitudeReference forward = attitude(time);
+  const Vector3d ahead = attitude(time + lag_).accelerations;  // rotors answer that much later
+  const Quaterniond target = attitude_of(force, wanted.yaw);
+  const Matrix3d r = state.orientation.toRotationMatrix(), rd = target.toRotationMatrix();
+  const Matrix3d skew = rd.transpose() * r - r.transpose() * rd;
+  const Vector3d error_r = 0.5 * Vector3d(skew(2, 1), skew(0, 2), skew(1, 0));
+  const Vector3d carried = r.transpose() * (rd * forward.body_rates);  // wanted rates, body
+  const Vector3d error_rates = state.body_rates - carried;
+  const Vector3d& omega = state.body_rates;
+  const Vector3d moment =
+      -gains_.attitude.cwiseProduct(error_r) - gains_.rates.cwiseProduct(error_rates) +
+      omega.cross(inertia_.cwiseProduct(omega)) +
+      inertia_.cwiseProduct(r.transpose() * (rd * ahead) - omega.cross(carried));
+  Eigen::Vector4d wrench;
+  wrench << force.dot(r.col(2)), moment;  // (3.15)
+  RotorCommand command = allocation_(wrench);
+  saturated_ = command.saturated;
+  return command;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,82 @@
+#include "framework/vehicle/reference_motion.h"
+
+#include <algorithm>
+
+#include "framework/core/error.h"
+#include "framework/core/units.h"
+
+namespace lapwing {
+
+using Eigen::Vector3d;
+
+ReferenceMotion::ReferenceMotion(const Trajectory& trajectory, const Vehicle& vehicle)
+    : trajectory_(trajectory),
+      mass_(vehicle.mass),
+      drag_(vehicle.drag),
+      yaw_inertia_(vehicle.inertia.z()) {
+  if (trajectory.model != MotionModel::force)
+    throw InputError({}, "only plans of the motion model 'force' can be flown by the controller");
+  if (trajectory.samples.size() < 2) throw InputError({}, "a flight needs two samples at least");
+}
+
+std::size_t ReferenceMotion::interval(double time) const {
+  const auto& samples = trajectory_.samples;
+  const auto next = std::upper_bound(samples.begin() + 1, samples.end() - 1, time,
+                                     [](double t, const Sample& s) { return t < s.time; });
+  return static_cast<std::size_t>(next - samples.begin()) - 1;
+}
+
+Vector3d ReferenceMotion::acceleration(std::size_t sample) const {
+  return trajectory_.samples[sample].force / mass_ - Vector3d(0, 0, kGravity);
+}
+
+Vector3d ReferenceMotion::smoothed_acceleration(std::size_t interval, double time) const {
+  const auto& samples = trajectory_.samples;
+  const auto middle = [&](std::size_t i) { return (samples[i].time + samples[i + 1].time) / 2; };
+  const std::size_t last = samples.size() - 2;
+  const bool early = time < middle(interval);
+  if ((early && interval == 0) || (!early && interval == last)) return acceleration(interval);
+  const std::size_t from = early ? interval - 1 : interval;
+  const double share = (time - middle(from)) / (middle(from + 1) - middle(from));
+  return acceleration(from) + share * (acceleration(from + 1) - acceleration(from));
+}
+
+ReferencePoint ReferenceMotion::at(double time) const {
+  const auto& samples = trajectory_.samples;
+  ReferencePoint point;
+  if (time <= start() || time >= finish()) {
+    const Sample& end = time <= start() ? samples.front() : samples.back();
+    point.position = end.position;
+    point.yaw = end.yaw;
+    if (time == start() || time == finish()) {
+      point.velocity = end.velocity;
+      point.yaw_rate = end.yaw_rate;
+      point.acceleration = acceleration(time == start() ? 0 : samples.size() - 2);
+    }
+    return point;
+  }
+  const std::size_t i = interval(time);
+  const Sample& s = samples[i];
+  const double t = time - s.time, h = samples[i + 1].time - s.time;
+  const Vector3d a = acceleration(i);
+  const double spin = s.yaw_torque / yaw_inertia_;
+  Vector3d jerk = Vector3d::Zero();
+  double spin_rate = 0;
+  if (!trajectory_.inputs_held) {
+    jerk = (acceleration(i + 1) - a) / h;
+    spin_rate = (samples[i + 1].yaw_torque / yaw_inertia_ - spin) / h;
+  }
+  point.position = s.position + t * (s.velocity + t * (a / 2 + t * jerk / 6));
+  point.velocity = s.velocity + t * (a + t * jerk / 2);
+  point.acceleration =
+      trajectory_.inputs_held ? smoothed_acceleration(i, time) : Vector3d(a + t * jerk);
+  point.yaw = s.yaw + t * (s.yaw_rate + t * (spin / 2 + t * spin_rate / 6));
+  point.yaw_rate = s.yaw_rate + t * (spin + t * spin_rate / 2);
+  return point;
+}
+
+Vector3d ReferenceMotion::force(const ReferencePoint& point) const {
+  return mass_ * (point.acceleration + Vector3d(0, 0, kGravity)) + drag_ * point.velocity;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,40 @@
+// What a trajectory asks of the controller at any time.
+#pragma once
+
+#include "framework/trajectory/trajectory.h"
+#include "framework/vehicle/vehicle.h"
+
+namespace lapwing {
+
+struct ReferencePoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();      // m, world
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      // m/s, world
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, world
+  double yaw = 0, yaw_rate = 0;                            // rad, rad/s
+};
+
+// Of a trajectory of the motion model `force`: from each sample on by its inputs, held or linear.
+// Held accelerations jump from sample to sample; as feed-forward, which no body follows in jumps,
+// they are made linear between the middles of their intervals. Before the start and after the end
+// the vehicle hovers.
+class ReferenceMotion {
+ public:
+  // Keeps a reference. Throws InputError for another motion model or fewer than two samples.
+  ReferenceMotion(const Trajectory& trajectory, const Vehicle& vehicle);
+
+  ReferencePoint at(double time) const;
+  // Thrust that the acceleration needs, N, world: m (a - g) and the drag of the velocity.
+  Eigen::Vector3d force(const ReferencePoint& point) const;
+  double start() const { return trajectory_.samples.front().time; }
+  double finish() const { return trajectory_.samples.back().time; }
+
+ private:
+  std::size_t interval(double time) const;
+  Eigen::Vector3d acceleration(std::size_t sample) const;
+  Eigen::Vector3d smoothed_acceleration(std::size_t interval, double time) const;
+
+  const Trajectory& trajectory_;
+  double mass_, drag_, yaw_inertia_;
+};
+
+}  // namespace lapwing

@@ -1,0 +1,15 @@
+// Linear quadratic regulators.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace lapwing {
+
+// K of the feedback u = -K x that minimises the integral of x'Qx + u'Ru for x' = A x + B u, from
+// the stabilising solution of the algebraic Riccati equation A'P + PA - P B R^-1 B' P + Q = 0
+// (Laub, IEEE Trans. Autom. Control 24(6), 1979, with eigenvectors). Throws Error when there is
+// none: (A, B) is not stabilisable, or Q leaves a mode on the imaginary axis unseen.
+Eigen::MatrixXd regulator_gain(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                               const Eigen::MatrixXd& q, const Eigen::MatrixXd& r);
+
+}  // namespace lapwing

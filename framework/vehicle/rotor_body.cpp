@@ -1,0 +1,101 @@
+#include "framework/vehicle/rotor_body.h"
+
+#include <numbers>
+
+#include "framework/core/units.h"
+
+namespace lapwing {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+Eigen::Matrix4d mixer_of(const Rotors& rotors) {
+  Eigen::Matrix4d mixer;
+  for (int i = 0; i < 4; ++i) {
+    const double angle = (i + (rotors.diagonal ? 0.5 : 0.0)) * std::numbers::pi / 2;
+    mixer(0, i) = 1;
+    mixer(1, i) = rotors.arm_length * std::sin(angle);
+    mixer(2, i) = -rotors.arm_length * std::cos(angle);
+    mixer(3, i) = (i % 2 == 0 ? 1 : -1) * rotors.torque_coefficient;
+  }
+  return mixer;
+}
+
+RotorBody::RotorBody(const Vehicle& vehicle, double mass_factor)
+    : mass_(mass_factor * vehicle.mass),
+      drag_(vehicle.drag),
+      lag_(vehicle.rotors.lag),
+      inertia_(mass_factor * vehicle.inertia),
+      mixer_(mixer_of(vehicle.rotors)) {}
+
+// Time derivatives, those of the orientation as body rates.
+struct RotorBody::Rates {
+  Vector3d position, velocity, turn, body_rates;
+  Vector4d rotor_thrusts;
+};
+
+RotorBody::Rates RotorBody::rates(const BodyState& state, const Vector4d& commanded,
+                                  const Vector3d& wind) const {
+  const Vector4d u = wrench(state.rotor_thrusts);
+  const Vector3d thrust = state.orientation * Vector3d(0, 0, u(0));
+  const Vector3d moment = u.tail<3>();
+  const Vector3d spin = inertia_.cwiseProduct(state.body_rates);
+  Rates rates;
+  rates.position = state.velocity;
+  rates.velocity = (thrust - drag_ * (state.velocity - wind)) / mass_ - Vector3d(0, 0, kGravity);
+  rates.turn = state.body_rates;
+  rates.body_rates = (moment - state.body_rates.cross(spin)).cwiseQuotient(inertia_);
+  rates.rotor_thrusts =
+      lag_ > 0 ? Vector4d((commanded - state.rotor_thrusts) / lag_) : Vector4d::Zero().eval();
+  return rates;
+}
+
+namespace {
+
+Quaterniond turned(const Quaterniond& from, const Vector3d& turn) {
+  const double angle = turn.norm();
+  if (angle == 0) return from;
+  return (from * Quaterniond(Eigen::AngleAxisd(angle, turn / angle))).normalized();
+}
+
+// d/dt of the rotation vector whose exponential the body turns by; to the order that Runge-Kutta 4
+// needs.
+Vector3d turn_rate(const Vector3d& turn, const Vector3d& body_rates) {
+  const Vector3d once = turn.cross(body_rates);
+  return body_rates + once / 2 + turn.cross(once) / 12;
+}
+
+}  // namespace
+
+BodyState RotorBody::after(const BodyState& state, const Vector4d& commanded, const Vector3d& wind,
+                           double step) const {
+  BodyState from = state;
+  if (lag_ <= 0) from.rotor_thrusts = commanded;
+  BodyState sum = from;
+  Vector3d sum_turn = Vector3d::Zero(), turn = Vector3d::Zero();
+  BodyState at = from;
+  constexpr double kWeights[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  constexpr double kNext[] = {0.5, 0.5, 1.0, 0.0};  // of the step, to the next stage
+  for (int k = 0; k < 4; ++k) {
+    Rates r = rates(at, commanded, wind);
+    r.turn = turn_rate(turn, r.turn);
+    const double share = kWeights[k] * step;
+    sum.position += share * r.position;
+    sum.velocity += share * r.velocity;
+    sum.body_rates += share * r.body_rates;
+    sum.rotor_thrusts += share * r.rotor_thrusts;
+    sum_turn += share * r.turn;
+    const double next = kNext[k] * step;
+    turn = next * r.turn;
+    at.position = from.position + next * r.position;
+    at.velocity = from.velocity + next * r.velocity;
+    at.body_rates = from.body_rates + next * r.body_rates;
+    at.rotor_thrusts = from.rotor_thrusts + next * r.rotor_thrusts;
+    at.orientation = turned(from.orientation, turn);
+  }
+  sum.orientation = turned(from.orientation, sum_turn);
+  return sum;
+}
+
+}  // namespace lapwing

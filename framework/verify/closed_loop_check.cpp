@@ -1,0 +1,33 @@
+// The plan flown by the whole quadrotor under control (vehicle/closed_loop.h), in still air.
+#include "framework/vehicle/closed_loop.h"
+
+#include "framework/verify/checks.h"
+
+namespace lapwing {
+
+void check_closed_loop(const Flight& flight, Certificate& certificate) {
+  constexpr std::array kNames = {"closed_loop", "closed_loop_yaw", "rotors_saturated"};
+  const Trajectory& trajectory = flight.plan.trajectory;
+  std::string reason;
+  if (trajectory.model != MotionModel::force)
+    reason = "only plans of the motion model 'force' are flown by the controller";
+  else if (trajectory.samples.size() < 2)
+    reason = "a single sample is no flight";
+  if (!reason.empty()) {
+    for (const char* name : kNames) certificate.checks.push_back(skipped_check(name, reason));
+    return;
+  }
+  const FlownPath path = fly(trajectory, flight.vehicle);
+  const double infinite = std::numeric_limits<double>::infinity();
+  Check tracking =
+      judged(make_check("closed_loop"), path.lost ? infinite : path.position_error_worst,
+             tolerances::kTracking, 0, path.position_error_at);
+  if (path.lost) tracking.detail = "the vehicle is lost: it turns over or strays beyond 100 m";
+  certificate.checks.push_back(tracking);
+  certificate.checks.push_back(judged(make_check("closed_loop_yaw"), path.yaw_error_worst,
+                                      tolerances::kTrackingYaw, 0, path.yaw_error_at));
+  certificate.checks.push_back(judged(make_check("rotors_saturated"), path.saturated_share,
+                                      tolerances::kSaturated, 0, trajectory.samples.front().time));
+}
+
+}  // namespace lapwing
