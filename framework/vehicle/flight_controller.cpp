@@ -20,6 +20,8 @@ constexpr double kVelocity = 0.5;      // m/s
 constexpr double kIntegral = 0.1;      // m s
 constexpr double kAttitude = 0.5;      // rad, that asks for a share of the free moment
 constexpr double kMomentShare = 0.5;
+constexpr double kLagShare = 0.5;  // bandwidth of the attitude times the rotors' lag
+constexpr double kResponse = 0.2;  // s, of an attitude that is fast enough for these weights
 constexpr double kFastestTilt = 20.0, kFastestYaw = 4.0;  // rad/s
 constexpr double kDifference = 0.01;                      // s, of the attitude's derivatives
 constexpr double kAlongHeading = 1e-3;  // sine of the angle between force and heading
@@ -39,30 +41,33 @@ Vector3d rotation_vector(Quaterniond q) {
 }  // namespace
 
 ControllerGains gains_of(const Vehicle& vehicle) {
-  // States: integral of the error, error, its rate; input: acceleration.
-  Matrix3d a = Matrix3d::Zero();
-  a(0, 1) = a(1, 2) = 1;
-  const Vector3d b(0, 0, 1);
-  const Vector3d weights(1 / squared(kIntegral), 1 / squared(kPosition), 1 / squared(kVelocity));
-  const Eigen::MatrixXd k = regulator_gain(
-      a, b, weights.asDiagonal(), Eigen::MatrixXd::Constant(1, 1, 1 / squared(kAcceleration)));
-  ControllerGains gains{.integral = k(0, 0), .position = k(0, 1), .velocity = k(0, 2)};
-
   const Rotors& rotors = vehicle.rotors;
   const double hover = vehicle.mass * kGravity / 4;
   const double room = std::min(hover - rotors.thrust_min, rotors.thrust_max - hover);
-  // Rows 1 and 2 of the mixer: the moment of all rotors, each using its room.
-  const double tilt = room * std::min(mixer_of(rotors).row(1).cwiseAbs().sum(),
-                                      mixer_of(rotors).row(2).cwiseAbs().sum());
-  const auto bandwidth = [](double moment, double inertia, double fastest) {
-    return std::min(fastest, std::sqrt(kMomentShare * moment / (kAttitude * inertia)));
+  const Eigen::Vector4d moments = room * mixer_of(rotors).cwiseAbs().rowwise().sum();
+  const double fastest = rotors.lag > 0 ? kLagShare / rotors.lag : kFastestTilt;
+  const auto bandwidth = [&](double moment, double inertia, double limit) {
+    return std::min({limit, fastest, std::sqrt(kMomentShare * moment / (kAttitude * inertia))});
   };
-  const Vector3d bandwidths(bandwidth(tilt, vehicle.inertia.x(), kFastestTilt),
-                            bandwidth(tilt, vehicle.inertia.y(), kFastestTilt),
-                            bandwidth(4 * room * rotors.torque_coefficient, vehicle.inertia.z(),
-                                      kFastestYaw));
-  gains.attitude = vehicle.inertia.cwiseProduct(bandwidths.cwiseAbs2());
-  gains.rates = 2 * vehicle.inertia.cwiseProduct(bandwidths);
+  const Vector3d& inertia = vehicle.inertia;
+  const Vector3d bandwidths(bandwidth(moments(1), inertia.x(), kFastestTilt),
+                            bandwidth(moments(2), inertia.y(), kFastestTilt),
+                            bandwidth(moments(3), inertia.z(), kFastestYaw));
+  ControllerGains gains;
+  gains.attitude = inertia.cwiseProduct(bandwidths.cwiseAbs2());
+  gains.rates = 2 * inertia.cwiseProduct(bandwidths);
+
+  // States: integral of the error, error, its rate; input: acceleration.
+  Matrix3d a = Matrix3d::Zero();
+  a(0, 1) = a(1, 2) = 1;
+  const double response = 2 / bandwidths.head<2>().minCoeff() + rotors.lag;
+  const double slower = std::max(1.0, response / kResponse);
+  const Vector3d weights(1 / squared(kIntegral * slower * slower * slower),
+                         1 / squared(kPosition * slower * slower), 1 / squared(kVelocity * slower));
+  const Eigen::MatrixXd k =
+      regulator_gain(a, Vector3d(0, 0, 1), weights.asDiagonal(),
+                     Eigen::MatrixXd::Constant(1, 1, 1 / squared(kAcceleration)));
+  gains.integral = k(0, 0), gains.position = k(0, 1), gains.velocity = k(0, 2);
   return gains;
 }
 

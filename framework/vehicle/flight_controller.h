@@ -16,10 +16,11 @@ struct ControllerGains {
   Eigen::Vector3d rates = Eigen::Vector3d::Zero();     // N m s per rad, K_omega
 };
 
-// The regulator weighs deviations by what is worth an acceleration of 2 m/s^2: 0.1 m, 0.5 m/s, 0.1
-// m s. The attitude loop is critically damped; its bandwidth is such that an error of 0.5 rad asks
-// for half of the moment that rotors have left beside hovering, at most 20 rad/s about roll and
-// pitch and 4 rad/s about yaw.
+// The attitude loop is critically damped. Its bandwidth w is such that an error of 0.5 rad asks for
+// half of the moment that rotors have left beside hovering; at most 20 rad/s about roll and pitch,
+// 4 rad/s about yaw, and 0.5 over the rotors' lag. The regulator weighs deviations by what is worth
+// an acceleration of 2 m/s^2: 0.1 m, 0.5 m/s, 0.1 m s. Where the attitude answers later than 0.2 s
+// (2/w and the lag) all times of the regulator grow in proportion.
 ControllerGains gains_of(const Vehicle& vehicle);
 
 // The attitude whose z axis is along `force` and whose x axis points to `yaw`. Where the force

@@ -9,6 +9,10 @@ namespace lapwing {
 
 using Eigen::Vector3d;
 
+namespace {
+constexpr double kLongestRamp = 0.2;  // s
+}
+
 ReferenceMotion::ReferenceMotion(const Trajectory& trajectory, const Vehicle& vehicle)
     : trajectory_(trajectory),
       mass_(vehicle.mass),
@@ -32,12 +36,13 @@ Vector3d ReferenceMotion::acceleration(std::size_t sample) const {
 
 Vector3d ReferenceMotion::smoothed_acceleration(std::size_t interval, double time) const {
   const auto& samples = trajectory_.samples;
-  const auto middle = [&](std::size_t i) { return (samples[i].time + samples[i + 1].time) / 2; };
-  const std::size_t last = samples.size() - 2;
-  const bool early = time < middle(interval);
-  if ((early && interval == 0) || (!early && interval == last)) return acceleration(interval);
-  const std::size_t from = early ? interval - 1 : interval;
-  const double share = (time - middle(from)) / (middle(from + 1) - middle(from));
+  const auto length = [&](std::size_t i) { return samples[i + 1].time - samples[i].time; };
+  const bool early = 2 * (time - samples[interval].time) < length(interval);
+  if ((early && interval == 0) || (!early && interval + 2 == samples.size()))
+    return acceleration(interval);
+  const std::size_t from = early ? interval - 1 : interval;  // the ramp's jump comes after it
+  const double ramp = std::min({length(from), length(from + 1), kLongestRamp});
+  const double share = std::clamp((time - samples[from + 1].time) / ramp + 0.5, 0.0, 1.0);
   return acceleration(from) + share * (acceleration(from + 1) - acceleration(from));
 }
 

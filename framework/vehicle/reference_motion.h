@@ -15,8 +15,8 @@ struct ReferencePoint {
 
 // Of a trajectory of the motion model `force`: from each sample on by its inputs, held or linear.
 // Held accelerations jump from sample to sample; as feed-forward, which no body follows in jumps,
-// they are made linear between the middles of their intervals. Before the start and after the end
-// the vehicle hovers.
+// they change along a ramp around the jump, as long as the shorter interval and 0.2 s at most.
+// Before the start and after the end the vehicle hovers.
 class ReferenceMotion {
  public:
   // Keeps a reference. Throws InputError for another motion model or fewer than two samples.

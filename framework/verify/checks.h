@@ -53,7 +53,7 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"budget", CheckGroup::safety, true, "s"},
     CheckKind{"closed_loop", CheckGroup::safety, true, "m"},
     CheckKind{"closed_loop_yaw", CheckGroup::safety, true, "rad"},
-    CheckKind{"rotors_saturated", CheckGroup::safety, true, ""},
+    CheckKind{"rotors_saturated", CheckGroup::safety, false, ""},
     CheckKind{"keyframe_time", CheckGroup::task, true, "s"},
     CheckKind{"keyframe_miss", CheckGroup::task, true, "m"},
     CheckKind{"keyframe_yaw", CheckGroup::task, true, "rad"},

@@ -69,6 +69,7 @@ const std::vector<Mutation>& mutations() {
       {"stated_acceleration", [](Plan& p) { sample(p, 9).acceleration.x() += 0.05; }},
       {"thrust_max", vehicle([](Vehicle& v) { v.rotors.thrust_max = 4.22; })},
       {"thrust_min", vehicle([](Vehicle& v) { v.rotors.thrust_min = 2.825; })},
+      {"closed_loop", vehicle([](Vehicle& v) { v.rotors.lag = 0.3; })},
       {"yaw_torque", vehicle([](Vehicle& v) { v.rotors.torque_coefficient = 0.0005; })},
       {"speed_across", vehicle([](Vehicle& v) { v.speed_across_max = 3; })},
       {"climb_speed", vehicle([](Vehicle& v) { v.climb_speed_max = 0.5; })},
@@ -143,13 +144,23 @@ TEST(Mutations, ForceDownwardsAloneIsRefused) {
   // down.
   const Drive down{{0, 0, -13.5}}, up{{0, 0, 6.75}};
   const Plan plan = PlanBuilder(true).add(0.1, down).add(0.2, up).finish();
-  EXPECT_EQ(failures_of(plan), std::set<std::string>{"force_up"});
+  EXPECT_EQ(failures_of(plan),
+            (std::set<std::string>{"force_up", "closed_loop", "closed_loop_yaw"}));
+}
+
+TEST(Mutations, RotorsAreSaturatedWhereTheyCannotFollow) {
+  Plan plan = reference_plan();
+  EXPECT_EQ(*verify(plan).find("rotors_saturated")->worst, 0);
+  vehicle([](Vehicle& v) { v.inertia.head<2>() *= 200; })(plan);
+  EXPECT_FALSE(verify(plan).find("rotors_saturated")->pass);
 }
 
 TEST(Mutations, CoverEveryCheckThatIsMade) {
-  // The last two are reported alone; test_framing.cpp judges them.
-  std::set<std::string> covered{"force_up", "acceleration_up", "acceleration_down", "whole_subject",
-                                "line_of_sight"};
+  // Upside down two fail above; the last three are reported alone: test_framing.cpp judges two of
+  // them, RotorsAreSaturatedWhereTheyCannotFollow below the other.
+  std::set<std::string> covered{"force_up",          "closed_loop_yaw", "acceleration_up",
+                                "acceleration_down", "whole_subject",   "line_of_sight",
+                                "rotors_saturated"};
   for (const Mutation& mutation : mutations()) covered.insert(mutation.check);
   const Certificate certificate = verify(reference_plan());
   for (const Check& check : certificate.checks) {

@@ -62,6 +62,10 @@ inline TrajectoryProblem problem_of(const Film& film) {
   else
     problem.add_cost("keyframe", 1000.0, registry.create<CostTerm>("keyframe", keyframes));
   problem.add_cost("snap", 1e-3, registry.create<CostTerm>("derivative", table({{"order", 4}})));
+  // Differences of positions alone do not see forces that alternate from stage to stage.
+  problem.add_cost(
+      "calm", 1e-5,
+      registry.create<CostTerm>("derivative", table({{"block", "force"}, {"order", 1}})));
   problem.add_cost("yaw", 1.0, registry.create<CostTerm>("yaw_derivative"));
   problem.add_constraint("input_limits",
                          registry.create<Constraint>("input_limits", table({{"norm", film.norm}})));

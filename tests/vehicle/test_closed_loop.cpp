@@ -1,0 +1,125 @@
+// The controller and the flight under control.
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/core/units.h"
+#include "framework/vehicle/closed_loop.h"
+#include "framework/vehicle/flight_controller.h"
+#include "framework/vehicle/riccati.h"
+#include "tests/verify/reference_plan.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+
+TEST(Riccati, DoubleIntegratorHasItsKnownGain) {
+  MatrixXd a(2, 2), b(2, 1);
+  a << 0, 1, 0, 0;
+  b << 0, 1;
+  const MatrixXd k = regulator_gain(a, b, MatrixXd::Identity(2, 2), MatrixXd::Identity(1, 1));
+  EXPECT_NEAR(k(0, 0), 1, 1e-12);
+  EXPECT_NEAR(k(0, 1), std::sqrt(3), 1e-12);
+}
+
+TEST(Riccati, WhatCannotBeStabilisedIsRefused) {
+  MatrixXd a(2, 2), b(2, 1);
+  a << 1, 0, 0, -1;  // the growing state is not driven
+  b << 0, 1;
+  EXPECT_THROW(regulator_gain(a, b, MatrixXd::Identity(2, 2), MatrixXd::Identity(1, 1)), Error);
+}
+
+TEST(Attitude, ThrustAndHeadingAreWhereTheyShouldBe) {
+  for (const double yaw : {0.0, 1.0, 3.1, -2.0})
+    for (const Vector3d& force : {Vector3d(0, 0, 1), Vector3d(3, -2, 9), Vector3d(-5, 1, 2)}) {
+      const Eigen::Matrix3d r = attitude_of(force, yaw).toRotationMatrix();
+      EXPECT_LT((r.col(2) - force.normalized()).norm(), 1e-12);
+      EXPECT_NEAR(r.col(1).dot(Vector3d(std::cos(yaw), std::sin(yaw), 0)), 0, 1e-12);
+      EXPECT_GT(r.col(0).dot(Vector3d(std::cos(yaw), std::sin(yaw), 0)), 0);
+    }
+}
+
+TEST(Attitude, ThrustAlongTheHeadingIsNoAccident) {
+  for (const Vector3d& force : {Vector3d(2, 0, 0), Vector3d(-2, 0, 0), Vector3d(0, 0, 0)}) {
+    const Eigen::Matrix3d r = attitude_of(force, 0).toRotationMatrix();
+    EXPECT_TRUE(r.allFinite());
+    EXPECT_LT((r.transpose() * r - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  }
+}
+
+Vehicle real_vehicle() {
+  Vehicle vehicle = reference_vehicle();
+  vehicle.drag = 0.2;
+  vehicle.rotors.lag = 0.04;
+  return vehicle;
+}
+
+TEST(ClosedLoop, FollowsAPlanToTheMillimetre) {
+  const Plan plan = reference_plan();
+  const FlownPath path = fly(plan.trajectory, real_vehicle());
+  EXPECT_FALSE(path.lost);
+  EXPECT_LT(path.position_error_worst, 0.01);
+  EXPECT_LT(path.yaw_error_worst, radians(0.5));
+  EXPECT_EQ(path.saturated_share, 0);
+  EXPECT_LT(path.position_error_mean, path.position_error_worst);
+  EXPECT_NEAR(path.samples.back().time, plan.trajectory.samples.back().time, 1e-9);
+}
+
+// Integral action takes away what wind and a wrong mass do at first.
+TEST(ClosedLoop, WindAndWrongMassAreOvercome) {
+  Vehicle vehicle = real_vehicle();
+  PlanBuilder builder(true, {}, vehicle);
+  for (int i = 0; i < 150; ++i) builder.add(0.1, {});
+  const Trajectory hover = builder.finish().trajectory;
+  for (const FlightConditions& conditions :
+       {FlightConditions{.wind_mean = 6}, FlightConditions{.mass_error = 0.1},
+        FlightConditions{.mass_error = -0.1}}) {
+    const FlownPath path = fly(hover, vehicle, conditions);
+    EXPECT_GT(path.position_error_worst, 0.01);
+    EXPECT_LT(path.position_error_worst, 0.25);
+    EXPECT_LT(path.samples.back().position_error, 1e-3);
+  }
+}
+
+TEST(ClosedLoop, GustsRepeatWithTheirSeedAlone) {
+  const Trajectory trajectory = reference_plan().trajectory;
+  const auto end = [&](std::uint64_t seed) {
+    return fly(trajectory, real_vehicle(), {.wind_gust = 2, .seed = seed})
+        .samples.back()
+        .state.position;
+  };
+  EXPECT_EQ(end(1), end(1));
+  EXPECT_NE(end(1), end(2));
+}
+
+TEST(ClosedLoop, AHalvedStepChangesLittle) {
+  const Trajectory trajectory = reference_plan().trajectory;
+  const FlownPath coarse = fly(trajectory, real_vehicle(), {.mass_error = 0.05, .step = 0.002});
+  const FlownPath fine = fly(trajectory, real_vehicle(), {.mass_error = 0.05, .step = 0.001});
+  EXPECT_NEAR(coarse.position_error_worst, fine.position_error_worst,
+              0.03 * fine.position_error_worst);
+}
+
+TEST(ClosedLoop, ImpossibleFlightsAreLostNotLoopedFor) {
+  const Drive dive{{0, 0, -20}};  // faster than falling
+  PlanBuilder builder(true, {}, real_vehicle());
+  for (int i = 0; i < 100; ++i) builder.add(0.1, dive);
+  const FlownPath path = fly(builder.finish().trajectory, real_vehicle());
+  EXPECT_TRUE(path.lost);
+  EXPECT_LT(path.samples.back().time, 9);
+}
+
+TEST(ClosedLoop, RefusesWhatMakesNoSense) {
+  const Trajectory trajectory = reference_plan().trajectory;
+  EXPECT_THROW(fly(trajectory, reference_vehicle(), {.wind_mean = 3}), InputError);  // no drag
+  EXPECT_THROW(fly(trajectory, real_vehicle(), {.wind_mean = -3}), InputError);
+  EXPECT_THROW(fly(trajectory, real_vehicle(), {.mass_error = -1}), InputError);
+  EXPECT_THROW(fly(trajectory, real_vehicle(), {.step = 0}), InputError);
+  Trajectory path = trajectory;
+  path.model = MotionModel::path;
+  EXPECT_THROW(fly(path, real_vehicle()), InputError);
+}
+
+}  // namespace
+}  // namespace lapwing
