@@ -1,0 +1,52 @@
+// brick equals octomap to the bit.
+#include "framework/core/random.h"
+#include "framework/map/map_file.h"
+#include "tests/plugins/maps/depth_frames.h"
+#include "tests/plugins/maps/map_pair.h"
+
+namespace lapwing {
+namespace {
+
+Value parameters(const std::string& mode, double resolution) {
+  Value value = Value::map();
+  value.set("mode", mode);
+  value.set("resolution", resolution);
+  return value;
+}
+
+struct Pair {
+  std::unique_ptr<Map> octomap, brick;
+  explicit Pair(const Value& value)
+      : octomap(make_map("octomap", value)), brick(make_map("brick", value)) {}
+  void integrate(const PosedDepthImage& frame) {
+    octomap->integrate(frame);
+    brick->integrate(frame);
+  }
+};
+
+class EqualMaps : public testing::TestWithParam<const char*> {};
+
+TEST_P(EqualMaps, OnRealFrames) {
+  if (!data_folder()) GTEST_SKIP() << "no ../shared/data (LAPWING_DATA)";
+  Value value = parameters(GetParam(), 0.05);
+  value.set("pixel_step", 4);
+  Pair pair(value);
+  for (const PosedDepthImage& frame : real_frames(12)) pair.integrate(frame);
+  EXPECT_EQ(first_difference(*pair.octomap, *pair.brick), "");
+  EXPECT_GT(pair.brick->counts().occupied, 1000u);
+  EXPECT_GT(pair.brick->counts().free, 20000u);
+}
+
+TEST_P(EqualMaps, InAStreet) {
+  Value value = parameters(GetParam(), 0.2);
+  value.set("maximum_range", 30.0);
+  Pair pair(value);
+  for (const PosedDepthImage& frame : street_frames(12, 80, 60)) pair.integrate(frame);
+  EXPECT_EQ(first_difference(*pair.octomap, *pair.brick), "");
+  EXPECT_TRUE(map_file_bytes(".ot", *pair.octomap) == map_file_bytes(".ot", *pair.brick));
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, EqualMaps, testing::Values("discretised", "exact"));
+
+}  // namespace
+}  // namespace lapwing
