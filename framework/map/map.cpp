@@ -30,15 +30,20 @@ bool inside(const VoxelGrid& grid, const Eigen::Vector3f& p) {
   return std::abs(p.x()) < reach && std::abs(p.y()) < reach && std::abs(p.z()) < reach;
 }
 
+bool is_unit(const Eigen::Vector3d& direction) {
+  return std::abs(direction.squaredNorm() - 1) < 1e-6;
+}
+
 }  // namespace
 
 void Map::integrate(std::span<const Eigen::Vector3f> points_W, const Eigen::Vector3f& origin_W) {
   if (!inside(grid_, origin_W))
-    throw InputError("a scan is taken from " + text(origin_W.cast<double>()) + "; " + reach_of(grid_));
+    throw InputError("a scan is taken from " + text(origin_W.cast<double>()) + "; " +
+                     reach_of(grid_));
   for (std::size_t k = 0; k < points_W.size(); ++k)
     if (!inside(grid_, points_W[k]))
-      throw InputError("point " + std::to_string(k) + " of a scan lies at " + text(points_W[k].cast<double>()) +
-                       "; " + reach_of(grid_));
+      throw InputError("point " + std::to_string(k) + " of a scan lies at " +
+                       text(points_W[k].cast<double>()) + "; " + reach_of(grid_));
   if (!points_W.empty()) insert(points_W, origin_W);
 }
 
@@ -75,13 +80,15 @@ void Map::cast(std::span<const MapRay> rays, std::span<MapRayHit> hits) const {
   if (rays.size() != hits.size()) throw Error("as many hits as rays are needed");
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const MapRay& ray = rays[k];
+    if (grid_.contains(ray.origin) && is_unit(ray.direction) && ray.range > 0 &&
+        std::isfinite(ray.range))
+      continue;
     const std::string name = "ray " + std::to_string(k);
     if (!grid_.contains(ray.origin))
       throw InputError(name + " starts at " + text(ray.origin) + "; " + reach_of(grid_));
-    if (!(std::abs(ray.direction.squaredNorm() - 1) < 1e-6))
+    if (!is_unit(ray.direction))
       throw InputError(name + " points along " + text(ray.direction) + ", which is no unit vector");
-    if (!(ray.range > 0) || !std::isfinite(ray.range))
-      throw InputError(name + " has range " + text(ray.range) + "; it must be positive and finite");
+    throw InputError(name + " has range " + text(ray.range) + "; it must be positive and finite");
   }
   cast_checked(rays, hits);
 }
@@ -112,8 +119,7 @@ bool Map::swept_box_free(const Eigen::Vector3d& from_W, const Eigen::Vector3d& t
 void Map::read_means(int level, std::span<const VoxelKey> keys,
                      std::span<MeanReading> means) const {
   if (level < 0 || level > 10)
-    throw InputError("means over cubes of level " + std::to_string(level) +
-                     "; levels are 0 to 10");
+    throw InputError("means over cubes of level " + std::to_string(level) + "; levels are 0 to 10");
   if (keys.size() != means.size()) throw Error("as many means as keys are needed");
   means_checked(level, keys, means);
 }
@@ -121,8 +127,8 @@ void Map::read_means(int level, std::span<const VoxelKey> keys,
 void Map::require_memory(std::size_t bytes) const {
   if (bytes <= settings_.memory_limit) return;
   const auto mebibytes = [](std::size_t n) { return std::to_string((n + (1u << 20) - 1) >> 20); };
-  throw InputError("the map would take " + mebibytes(bytes) + " MiB, more than its memory_limit of " +
-                   mebibytes(settings_.memory_limit) +
+  throw InputError("the map would take " + mebibytes(bytes) +
+                   " MiB, more than its memory_limit of " + mebibytes(settings_.memory_limit) +
                    " MiB: raise it, take larger voxels or a shorter maximum_range");
 }
 

@@ -19,23 +19,23 @@ namespace lapwing {
 
 // What a map knows of one voxel.
 struct VoxelReading {
-  bool known = false;        // measured or imported at least once
+  bool known = false;  // measured or imported at least once
   VoxelState state = VoxelState::unknown;
-  float log_odds = 0;        // 0, as likely as not, where it is not known
+  float log_odds = 0;              // 0, as likely as not, where it is not known
   std::uint16_t observations = 0;  // 65535: that many or more; 0 unless the map counts them
 };
 
 struct MapRay {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();     // m, inside the largest map
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();      // m, inside the largest map
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  // unit vector
   double range = 0;                                      // m; voxels that begin there are not met
 };
 
 // The first voxel on a ray that is not free.
 struct MapRayHit {
-  VoxelKey voxel;       // where there is none, 0
+  VoxelKey voxel;                       // where there is none, 0
   VoxelState state = VoxelState::free;  // free: nothing within range
-  float distance = 0;   // m to its face, 0 from within; the range where there is none
+  float distance = 0;  // m to its face, 0 from within; the range where there is none
 };
 
 // The mean over the voxels of a cube, unknown ones with occupancy 0.5 and uncertainty 1.

@@ -14,8 +14,8 @@
 namespace lapwing {
 
 struct MapFile {
-  double resolution = 0;      // m
-  bool two_states = false;    // .bt: log odds are plus or minus infinity
+  double resolution = 0;          // m
+  bool two_states = false;        // .bt: log odds are plus or minus infinity
   std::vector<VoxelLeaf> leaves;  // in order of their Morton numbers
 };
 

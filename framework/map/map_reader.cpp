@@ -27,8 +27,8 @@ class Reader {
     const std::size_t least = file_.two_states ? size_ / 4 : size_ * node_bytes();
     if (size_ > 8 * bytes_.size() || least > bytes_.size() - at_)
       fail("says that it holds " + std::to_string(size_) + " nodes, for which at least " +
-           std::to_string(least) + " bytes are needed, but " +
-           std::to_string(bytes_.size() - at_) + " bytes follow: it was cut off");
+           std::to_string(least) + " bytes are needed, but " + std::to_string(bytes_.size() - at_) +
+           " bytes follow: it was cut off");
     if (file_.two_states) {
       ++nodes_;
       two_states({}, kTreeDepth);
@@ -62,10 +62,11 @@ class Reader {
 
   void header() {
     const std::string_view first = line();
-    if (first.starts_with(kTwoStates)) file_.two_states = true;
+    if (first.starts_with(kTwoStates))
+      file_.two_states = true;
     else if (!first.starts_with(kLogOdds))
-      fail("is no OctoMap file: its first line is neither '" + std::string(kTwoStates) +
-           "' nor '" + std::string(kLogOdds) + "'");
+      fail("is no OctoMap file: its first line is neither '" + std::string(kTwoStates) + "' nor '" +
+           std::string(kLogOdds) + "'");
     bool has_size = false, has_id = false;
     for (std::string_view text = line(); text != "data"; text = line()) {
       if (text.empty() || text.starts_with('#')) continue;
@@ -83,8 +84,7 @@ class Reader {
         if (!has_size) fail("has size '" + value + "', which is no number of nodes");
       } else if (key == "res") {
         const char* end = value.data() + value.size();
-        if (std::from_chars(value.data(), end, file_.resolution).ptr != end)
-          file_.resolution = 0;
+        if (std::from_chars(value.data(), end, file_.resolution).ptr != end) file_.resolution = 0;
         if (!(file_.resolution > 1e-6 && file_.resolution < 1e6))
           fail("has resolution '" + value + "'; it must be a positive number of metres");
       } else {
@@ -167,9 +167,8 @@ class Reader {
 
 MapFile parse_map(std::string_view bytes, const std::string& name) {
   MapFile file = Reader(bytes, name).read();
-  std::sort(file.leaves.begin(), file.leaves.end(), [](const VoxelLeaf& a, const VoxelLeaf& b) {
-    return a.key.morton() < b.key.morton();
-  });
+  std::sort(file.leaves.begin(), file.leaves.end(),
+            [](const VoxelLeaf& a, const VoxelLeaf& b) { return a.key.morton() < b.key.morton(); });
   return file;
 }
 

@@ -32,8 +32,8 @@ ParameterTable map_parameters() {
 MapSettings map_settings(const Parameters& parameters) {
   MapSettings settings;
   settings.resolution = parameters.number("resolution");
-  settings.mode = parameters.text("mode") == "exact" ? IntegrationMode::exact
-                                                     : IntegrationMode::discretised;
+  settings.mode =
+      parameters.text("mode") == "exact" ? IntegrationMode::exact : IntegrationMode::discretised;
   settings.hit = log_odds_of(parameters.number("hit"));
   settings.miss = log_odds_of(parameters.number("miss"));
   settings.clamp_min = log_odds_of(parameters.number("clamp_min"));

@@ -16,14 +16,14 @@ enum class IntegrationMode { exact, discretised };
 struct MapSettings {
   double resolution = 0.2;  // m, edge of a voxel
   IntegrationMode mode = IntegrationMode::discretised;
-  float hit = 0, miss = 0;              // log odds that a measurement adds
-  float clamp_min = 0, clamp_max = 0;   // log odds
-  float free_below = 0;                 // log odds; free is less
-  float occupied_above = 0;             // log odds; occupied is more
+  float hit = 0, miss = 0;             // log odds that a measurement adds
+  float clamp_min = 0, clamp_max = 0;  // log odds
+  float free_below = 0;                // log odds; free is less
+  float occupied_above = 0;            // log odds; occupied is more
   double maximum_range = std::numeric_limits<double>::infinity();  // m
-  int pixel_step = 1;        // of depth images, every n-th pixel of every n-th row
-  bool observations = false; // count how often each voxel was measured
-  double information = 0.5;  // eta of (5.1)
+  int pixel_step = 1;         // of depth images, every n-th pixel of every n-th row
+  bool observations = false;  // count how often each voxel was measured
+  double information = 0.5;   // eta of (5.1)
   std::size_t memory_limit = std::size_t{4096} << 20;  // bytes
 
   VoxelState state(float log_odds) const {

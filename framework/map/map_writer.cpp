@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kMostPoints = 50'000'000;
 
 struct Node {
-  float value = 0;  // of an inner node its children's greatest
+  float value = 0;          // of an inner node its children's greatest
   std::uint32_t first = 0;  // of its children, which lie together
   std::uint8_t children = 0;
 };
@@ -133,8 +133,7 @@ std::string log_odds(const Map& map) {
   std::vector<VoxelLeaf> leaves;
   map.for_each_leaf([&](const VoxelLeaf& leaf) { leaves.push_back(leaf); });
   const Tree tree(std::move(leaves));
-  std::string out =
-      header("# Octomap OcTree file", tree, tree.size(), map.settings().resolution);
+  std::string out = header("# Octomap OcTree file", tree, tree.size(), map.settings().resolution);
   if (!tree.empty()) append_log_odds(tree, tree.root(), out);
   return out;
 }

@@ -6,13 +6,16 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include "framework/map/map.h"
 
 namespace lapwing {
 
 struct RayWalk {
+  // A ray that moves less along an axis stays in its layer: a millionth of a voxel off at the end.
+  static constexpr double kLevel = 1e-12;
+  static constexpr double kNever = 1e300;  // m
+
   int cell[3];         // where the ray is; leaves 0 to 65535 where it leaves every map
   int step[3];         // -1, 0, 1
   double entered = 0;  // m along the ray to the face through which it came
@@ -25,13 +28,12 @@ struct RayWalk {
       cell[i] = start_[i] = grid.index(origin_W[i]);
       step[i] = d > kLevel ? 1 : d < -kLevel ? -1 : 0;
       if (step[i] == 0) {
-        first_[i] = spacing_[i] = std::numeric_limits<double>::infinity();
-        rate_[i] = 0;
+        first_[i] = kNever;
+        spacing_[i] = 0;
         continue;
       }
       first_[i] = (grid.face(cell[i] + (step[i] > 0)) - origin_W[i]) / d;
       spacing_[i] = grid.resolution() / std::abs(d);
-      rate_[i] = std::abs(d) * grid.per_metre();
     }
   }
 
@@ -51,48 +53,17 @@ struct RayWalk {
     entered = t[axis];
   }
 
-  // To the first voxel outside the aligned cube of (2^level)^3 voxels that the ray is in.
-  void leave_cube(int level) {
-    const int low = (1 << level) - 1;
-    double t[3];
-    for (int i = 0; i < 3; ++i) {
-      const int more = step[i] > 0 ? low - (cell[i] & low) : cell[i] & low;
-      t[i] = crossing(i, made(i) + more);
-    }
-    const int axis = earliest(t);
-    const double at = t[axis];
-    for (int i = 0; i < 3; ++i)
-      if (i != axis && step[i] != 0) move_to(i, at, i > axis);
-    cell[axis] = step[axis] > 0 ? (cell[axis] | low) + 1 : (cell[axis] & ~low) - 1;
-    entered = at;
-  }
-
  private:
-  static constexpr double kLevel = 1e-12;  // along an axis: a millionth of a voxel off at the end
-
   int made(int i) const { return (cell[i] - start_[i]) * step[i]; }
-  double crossing(int i, int n) const { return first_[i] + (step[i] ? n * spacing_[i] : 0); }
+  double crossing(int i, int n) const { return first_[i] + n * spacing_[i]; }
 
   static int earliest(const double t[3]) {
     if (t[0] < t[1]) return t[0] < t[2] ? 0 : 2;
     return t[1] < t[2] ? 1 : 2;
   }
 
-  // Makes all crossings along axis i before the distance `at`, and those there if `ties`.
-  void move_to(int i, double at, bool ties) {
-    const auto before = [&](int n) {
-      const double t = crossing(i, n);
-      return t < at || (ties && t == at);
-    };
-    const int least = made(i);
-    int n = std::max(least, static_cast<int>((at - first_[i]) * rate_[i]) + 1);
-    while (n > least && !before(n - 1)) --n;
-    while (before(n)) ++n;
-    cell[i] = start_[i] + n * step[i];
-  }
-
   int start_[3];
-  double first_[3], spacing_[3], rate_[3];
+  double first_[3], spacing_[3];
 };
 
 // The hit of a ray that met nothing within its range, and of one that left the largest map.

@@ -46,7 +46,8 @@ void scan_points(const PosedDepthImage& measured, int pixel_step, double maximum
       const Eigen::Vector3d ray = row + ((x - pinhole.principal_x) / pinhole.focal_x) * R_WC.col(0);
       if (std::isinf(depth) && depth > 0) {
         if (!std::isfinite(maximum_range))
-          throw InputError(place(x, y) + " of a depth image found nothing: give the map a "
+          throw InputError(place(x, y) +
+                           " of a depth image found nothing: give the map a "
                            "maximum_range, up to which such rays are free");
         // The middle of a voxel at most 0.87 voxels away still lies beyond.
         const double far = (maximum_range + 2 * resolution) / ray.norm();

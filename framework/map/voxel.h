@@ -93,7 +93,9 @@ class VoxelGrid {
   }
   // The face of a voxel towards lower coordinates.
   double face(int index) const { return (index - kCenterKey) * resolution_; }
-  Eigen::Vector3d corner(const VoxelKey& key) const { return {face(key.x), face(key.y), face(key.z)}; }
+  Eigen::Vector3d corner(const VoxelKey& key) const {
+    return {face(key.x), face(key.y), face(key.z)};
+  }
 
  private:
   double resolution_, per_metre_;

@@ -7,6 +7,7 @@
 #include "framework/plugin/plugin.h"
 #include "plugins/maps/brick/brick_grid.h"
 #include "plugins/maps/brick/brick_reads.h"
+#include "plugins/maps/brick/cast_lanes.h"
 #include "plugins/maps/brick/scan_marks.h"
 #include "plugins/maps/brick/voxel_update.h"
 
@@ -41,9 +42,9 @@ class BrickMap : public Map {
   void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const override {
     const std::size_t parts = (rays.size() + kRaysAPart - 1) / kRaysAPart;
     parallel_for(parts, threads(), [&](std::size_t part) {
-      const std::size_t end = std::min(rays.size(), (part + 1) * kRaysAPart);
-      for (std::size_t k = part * kRaysAPart; k < end; ++k)
-        hits[k] = first_hit(bricks_, settings(), grid(), rays[k]);
+      const std::size_t first = part * kRaysAPart;
+      const std::size_t count = std::min(rays.size() - first, kRaysAPart);
+      cast_rays(bricks_, settings(), rays.subspan(first, count), hits.subspan(first, count));
     });
   }
 
@@ -55,8 +56,7 @@ class BrickMap : public Map {
       means[k] = mean_of_cube(bricks_, settings(), level, keys[k]);
   }
 
-  void insert(std::span<const Eigen::Vector3f> points_W,
-              const Eigen::Vector3f& origin_W) override;
+  void insert(std::span<const Eigen::Vector3f> points_W, const Eigen::Vector3f& origin_W) override;
   void assign(std::span<const VoxelLeaf> leaves) override;
 
  private:
@@ -138,8 +138,7 @@ void BrickMap::update(const Change& change) {
   }
 }
 
-void BrickMap::insert(std::span<const Eigen::Vector3f> points_W,
-                      const Eigen::Vector3f& origin_W) {
+void BrickMap::insert(std::span<const Eigen::Vector3f> points_W, const Eigen::Vector3f& origin_W) {
   const std::span<const BrickMarks> found = marks_.mark(points_W, origin_W, threads());
   changes_.clear();
   std::size_t bricks = 0, slots = 0;
@@ -167,8 +166,10 @@ std::size_t BrickMap::bytes_for(std::span<const VoxelLeaf> leaves) const {
     const std::uint64_t morton = leaf.key.morton();
     if (leaf.level < kChunkLevel) parts[0].push_back(morton >> 3 * kChunkLevel);
     if (leaf.level < kBrickLevel) parts[1].push_back(morton >> 3 * kBrickLevel);
-    if (leaf.level < kBlockLevel) parts[2].push_back(morton >> 3 * kBlockLevel);
-    else blocks += std::size_t{1} << 3 * (leaf.level - kBlockLevel);
+    if (leaf.level < kBlockLevel)
+      parts[2].push_back(morton >> 3 * kBlockLevel);
+    else
+      blocks += std::size_t{1} << 3 * (leaf.level - kBlockLevel);
     if (settings().observations && leaf.level >= kChunkLevel)
       slots += std::size_t{1} << 3 * (leaf.level - kChunkLevel);
   }

@@ -100,8 +100,8 @@ void BrickGrid::tidy(Block& block, int place, std::uint64_t chunks) {
   brick.forget_means();
   for (; chunks; chunks &= chunks - 1) {
     const int chunk = std::countr_zero(chunks);
-    brick.all_free = brick.free[chunk] == kAll ? brick.all_free | bit(chunk)
-                                               : brick.all_free & ~bit(chunk);
+    brick.all_free =
+        brick.free[chunk] == kAll ? brick.all_free | bit(chunk) : brick.all_free & ~bit(chunk);
     if (settings_.observations || brick.known[chunk] != kAll || !brick.has_slot(chunk)) continue;
     const float* of = values(brick.content[chunk]);
     const float first = of[0];
@@ -109,8 +109,8 @@ void BrickGrid::tidy(Block& block, int place, std::uint64_t chunks) {
     drop_slot(brick, chunk);
     brick.content[chunk] = std::bit_cast<std::uint32_t>(first);
   }
-  block.all_free = brick.all_free == kAll ? block.all_free | bit(place)
-                                          : block.all_free & ~bit(place);
+  block.all_free =
+      brick.all_free == kAll ? block.all_free | bit(place) : block.all_free & ~bit(place);
   if (brick.slotted != 0 || settings_.observations) return;
   for (int chunk = 0; chunk < 64; ++chunk)
     if (brick.known[chunk] != kAll || brick.content[chunk] != brick.content[0]) return;

@@ -19,7 +19,8 @@ namespace lapwing::brick_map {
 inline constexpr int kChunkLevel = 2, kBrickLevel = 4, kBlockLevel = 6;
 inline constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-// Place of a voxel in its chunk (shift 0), of a chunk in its brick (2), of a brick in its block (4).
+// Place of a voxel in its chunk (shift 0), of a chunk in its brick (2), of a brick in its block
+// (4).
 inline int place(const int cell[3], int shift) {
   return (cell[0] >> shift & 3) | (cell[1] >> shift & 3) << 2 | (cell[2] >> shift & 3) << 4;
 }
@@ -27,9 +28,13 @@ inline int place(const VoxelKey& key, int shift) {
   const int cell[3] = {key.x, key.y, key.z};
   return place(cell, shift);
 }
-inline std::uint64_t bit(int place) { return std::uint64_t{1} << place; }
+inline std::uint64_t bit(int place) {
+  return std::uint64_t{1} << place;
+}
 // The 2^3 parts around a place that form an aligned cube.
-inline std::uint64_t eight(int place) { return std::uint64_t{0x330033} << (place & 0b101010); }
+inline std::uint64_t eight(int place) {
+  return std::uint64_t{0x330033} << (place & 0b101010);
+}
 
 // 16^3 voxels. A chunk without a slot is alike throughout: unknown, or of one log odds.
 struct DenseBrick {
@@ -82,13 +87,16 @@ class BrickGrid {
   void drop_slot(DenseBrick& brick, int chunk);
   void drop_brick(Block& block, int place);
 
-  float* values(std::uint32_t slot) { return slots_[slot / kSlotsAPage]->values[slot % kSlotsAPage]; }
+  float* values(std::uint32_t slot) {
+    return slots_[slot / kSlotsAPage]->values[slot % kSlotsAPage];
+  }
   const float* values(std::uint32_t slot) const {
     return slots_[slot / kSlotsAPage]->values[slot % kSlotsAPage];
   }
   // Null unless observations are counted.
   std::uint16_t* observations(std::uint32_t slot) {
-    return settings_.observations ? counts_[slot / kSlotsAPage]->counts[slot % kSlotsAPage] : nullptr;
+    return settings_.observations ? counts_[slot / kSlotsAPage]->counts[slot % kSlotsAPage]
+                                  : nullptr;
   }
   const std::uint16_t* observations(std::uint32_t slot) const {
     return const_cast<BrickGrid*>(this)->observations(slot);
@@ -98,7 +106,8 @@ class BrickGrid {
   // brought up to date. Maps that count observations keep their slots.
   void tidy(Block& block, int place, std::uint64_t chunks);
   void set_chunk(DenseBrick& brick, int chunk, float log_odds);  // alike throughout, no slot before
-  void set_brick(Block& block, int place, float log_odds);  // alike throughout, no DenseBrick before
+  void set_brick(Block& block, int place,
+                 float log_odds);  // alike throughout, no DenseBrick before
 
   // In the order of their keys.
   std::vector<const Block*> blocks() const;
@@ -126,9 +135,7 @@ class BrickGrid {
   static std::uint32_t block_key(const int cell[3]) {
     return static_cast<std::uint32_t>(cell[0] >> 6 | (cell[1] >> 6) << 10 | (cell[2] >> 6) << 20);
   }
-  std::size_t hash(std::uint32_t key) const {
-    return (key * 0x9e3779b97f4a7c15ull) >> shift_;
-  }
+  std::size_t hash(std::uint32_t key) const { return (key * 0x9e3779b97f4a7c15ull) >> shift_; }
   void grow_table();
 
   MapSettings settings_;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/map/ray_walk.h"
-
 namespace lapwing::brick_map {
 namespace {
 
-bool has(std::uint64_t word, int place) { return word >> place & 1; }
+bool has(std::uint64_t word, int place) {
+  return word >> place & 1;
+}
 
 VoxelKey key_at(const VoxelKey& corner, int place, int shift) {
   return {static_cast<std::uint16_t>(corner.x + ((place & 3) << shift)),
@@ -42,49 +42,6 @@ VoxelReading read_voxel(const BrickGrid& bricks, const MapSettings& settings, co
   reading.known = true;
   reading.state = settings.state(reading.log_odds);
   return reading;
-}
-
-MapRayHit first_hit(const BrickGrid& bricks, const MapSettings& settings, const VoxelGrid& grid,
-                    const MapRay& ray) {
-  RayWalk walk(grid, ray.origin, ray.direction);
-  const Block* block = nullptr;
-  int corner[3] = {-1, -1, -1};
-  MapRayHit hit;
-  while (true) {
-    const int* cell = walk.cell;
-    if (((cell[0] ^ corner[0]) | (cell[1] ^ corner[1]) | (cell[2] ^ corner[2])) & ~63) {
-      block = bricks.find(cell);
-      for (int i = 0; i < 3; ++i) corner[i] = cell[i];
-      if (!block) break;
-    }
-    const int at = place(cell, kBrickLevel);
-    int level = 0;
-    if (has(block->all_free, at)) {
-      level = block->all_free == kAll                              ? kBlockLevel
-              : (block->all_free & eight(at)) == eight(at) ? kBrickLevel + 1
-                                                                   : kBrickLevel;
-    } else {
-      if (!block->has_brick(at)) break;
-      const DenseBrick& brick = *block->content[at].brick;
-      const int chunk = place(cell, kChunkLevel);
-      if (has(brick.all_free, chunk)) {
-        level = (brick.all_free & eight(chunk)) == eight(chunk) ? kChunkLevel + 1 : kChunkLevel;
-      } else {
-        const std::uint64_t free = brick.free[chunk];
-        const int voxel = place(cell, 0);
-        if (!has(free, voxel)) break;
-        level = (free & eight(voxel)) == eight(voxel) ? 1 : 0;
-      }
-    }
-    if (level == 0) walk.advance();
-    else walk.leave_cube(level);
-    if (walk.entered >= ray.range) return nothing_within(ray);
-    if (!walk.inside()) return end_of_map(walk);
-  }
-  hit.voxel = walk.key();
-  hit.state = read_voxel(bricks, settings, hit.voxel).state;
-  hit.distance = static_cast<float>(std::max(walk.entered, 0.0));
-  return hit;
 }
 
 namespace {
@@ -125,9 +82,8 @@ bool block_free(const SweptBox& box, const int corner[3], const Block& block) {
     if (!block.has_brick(at)) {
       // All of it blocks, but the box may pass it between two voxels' middles: ask the voxels.
       const int shift = kChunkLevel;
-      return parts_free(box, brick_at, shift, 0, [&](int, const int chunk_at[3]) {
-        return chunk_free(box, chunk_at, 0);
-      });
+      return parts_free(box, brick_at, shift, 0,
+                        [&](int, const int chunk_at[3]) { return chunk_free(box, chunk_at, 0); });
     }
     const DenseBrick& brick = *block.content[at].brick;
     return parts_free(box, brick_at, kChunkLevel, brick.all_free,

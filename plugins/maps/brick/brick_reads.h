@@ -11,8 +11,6 @@
 namespace lapwing::brick_map {
 
 VoxelReading read_voxel(const BrickGrid& bricks, const MapSettings& settings, const VoxelKey& key);
-MapRayHit first_hit(const BrickGrid& bricks, const MapSettings& settings, const VoxelGrid& grid,
-                    const MapRay& ray);
 bool sweep_free(const BrickGrid& bricks, const SweptBox& box);
 MeanReading mean_of_cube(const BrickGrid& bricks, const MapSettings& settings, int level,
                          const VoxelKey& key);

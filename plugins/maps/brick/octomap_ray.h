@@ -35,7 +35,7 @@ class RayOrigin {
   const int* cell() const { return cell_; }
 
   // False when the end lies in the first voxel, so that there is nothing to pass.
-  bool start(const Eigen::Vector3f& end_W, RayStart& ray) const {
+  __attribute__((always_inline)) bool start(const Eigen::Vector3f& end_W, RayStart& ray) const {
     for (int i = 0; i < 3; ++i) ray.end[i] = grid_.index(end_W[i]);
     if (ray.end[0] == cell_[0] && ray.end[1] == cell_[1] && ray.end[2] == cell_[2]) return false;
     float x = end_W.x() - origin_.x(), y = end_W.y() - origin_.y(), z = end_W.z() - origin_.z();

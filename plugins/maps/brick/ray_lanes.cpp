@@ -11,7 +11,7 @@ struct Lanes {
   FourLong step[3], at, end;
 };
 
-inline void park(Lanes& lanes, int lane, std::int64_t parking) {
+__attribute__((always_inline)) inline void park(Lanes& lanes, int lane, std::int64_t parking) {
   for (int i = 0; i < 3; ++i) {
     lanes.t[i][lane] = lanes.spacing[i][lane] = 0;
     lanes.step[i][lane] = 0;
@@ -22,9 +22,9 @@ inline void park(Lanes& lanes, int lane, std::int64_t parking) {
 }
 
 // Takes the next ray that passes anything; false when there is none.
-inline bool load(Lanes& lanes, int lane, const RayOrigin& origin,
-                 std::span<const Eigen::Vector3f> ends_W, std::size_t& next,
-                 const MarkTarget& target) {
+__attribute__((always_inline)) inline bool load(Lanes& lanes, int lane, const RayOrigin& origin,
+                                                std::span<const Eigen::Vector3f> ends_W,
+                                                std::size_t& next, const MarkTarget& target) {
   RayStart ray;
   while (next < ends_W.size()) {
     if (!origin.start(ends_W[next++], ray)) continue;
@@ -71,8 +71,10 @@ __attribute__((always_inline)) inline void walk(const RayOrigin& origin,
     }
     lanes.t[0] = tx, lanes.t[1] = ty, lanes.t[2] = tz, lanes.at = at;
     for (int lane = 0; lane < 4; ++lane) {
-      if (!done[lane]) mark(target, at[lane]);
-      else busy -= !load(lanes, lane, origin, ends_W, next, target);
+      if (!done[lane])
+        mark(target, at[lane]);
+      else
+        busy -= !load(lanes, lane, origin, ends_W, next, target);
     }
   }
 }

@@ -20,7 +20,8 @@ struct BrickMarks {
 
 class ScanMarks {
  public:
-  explicit ScanMarks(const MapSettings& settings) : settings_(settings), grid_(settings.resolution) {}
+  explicit ScanMarks(const MapSettings& settings)
+      : settings_(settings), grid_(settings.resolution) {}
 
   // The marks of a scan, brick by brick, valid until the next. Rays are OctoMap's to the bit, as
   // is what becomes of them; see README.md.
@@ -48,7 +49,8 @@ class ScanMarks {
   VoxelGrid grid_;
   int base_[3] = {}, size_[3] = {};  // of the box that holds all rays, in voxels
   std::int64_t stride_[3] = {};
-  std::unique_ptr<std::uint8_t[], Free> marks_;  // a byte for each voxel of the box, then some spare
+  std::unique_ptr<std::uint8_t[], Free>
+      marks_;  // a byte for each voxel of the box, then some spare
   std::size_t room_ = 0;
   std::vector<Eigen::Vector3f> ends_, rays_;  // one ray to each of rays_
   std::vector<std::int64_t> hits_;

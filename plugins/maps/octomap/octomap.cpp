@@ -10,7 +10,9 @@
 namespace lapwing {
 namespace {
 
-octomap::OcTreeKey key_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
+octomap::OcTreeKey key_of(const VoxelKey& key) {
+  return {key.x, key.y, key.z};
+}
 
 // A tree whose "log odds" are numbers of observations.
 class CountTree final : public octomap::OcTree {
@@ -39,8 +41,10 @@ void set_below(octomap::OcTree& tree, octomap::OcTreeNode* node, bool made, int 
   const unsigned child = octomap::computeChildIdx(key_of(leaf.key), level - 1);
   const bool missing = !tree.nodeChildExists(node, child);
   const bool pruned = missing && !made && !tree.nodeHasChildren(node);
-  if (pruned) tree.expandNode(node);
-  else if (missing) tree.createNodeChild(node, child);
+  if (pruned)
+    tree.expandNode(node);
+  else if (missing)
+    tree.createNodeChild(node, child);
   set_below(tree, tree.getNodeChild(node, child), missing && !pruned, level - 1, leaf, value);
   if (!tree.pruneNode(node)) node->updateOccupancyChildren();
 }
@@ -60,7 +64,9 @@ class Octomap final : public Map {
   static ParameterTable parameters() { return map_parameters(); }
 
   explicit Octomap(const Parameters& parameters)
-      : Map(map_settings(parameters)), tree_(settings().resolution), counts_(tree_.getResolution()) {
+      : Map(map_settings(parameters)),
+        tree_(settings().resolution),
+        counts_(tree_.getResolution()) {
     tree_.setProbHit(parameters.number("hit"));
     tree_.setProbMiss(parameters.number("miss"));
     tree_.setClampingThresMin(parameters.number("clamp_min"));
@@ -86,8 +92,10 @@ class Octomap final : public Map {
                       static_cast<std::uint8_t>(kTreeDepth - leaf.getDepth()),
                       0,
                       leaf->getLogOdds()};
-      if (settings().observations) visit_counted(found, visit);
-      else visit(found);
+      if (settings().observations)
+        visit_counted(found, visit);
+      else
+        visit(found);
     }
   }
 
@@ -126,8 +134,7 @@ class Octomap final : public Map {
   }
 
  protected:
-  void insert(std::span<const Eigen::Vector3f> points_W,
-              const Eigen::Vector3f& origin_W) override {
+  void insert(std::span<const Eigen::Vector3f> points_W, const Eigen::Vector3f& origin_W) override {
     octomap::Pointcloud cloud;
     cloud.reserve(points_W.size());
     for (const Eigen::Vector3f& p : points_W) cloud.push_back(p.x(), p.y(), p.z());
@@ -138,8 +145,10 @@ class Octomap final : public Map {
     if (!settings().observations)
       return tree_.insertPointCloud(cloud, origin, range, false, discretise);
     octomap::KeySet free, occupied;
-    if (discretise) tree_.computeDiscreteUpdate(cloud, origin, free, occupied, range);
-    else tree_.computeUpdate(cloud, origin, free, occupied, range);
+    if (discretise)
+      tree_.computeDiscreteUpdate(cloud, origin, free, occupied, range);
+    else
+      tree_.computeUpdate(cloud, origin, free, occupied, range);
     for (const octomap::OcTreeKey& key : free) tree_.updateNode(key, false);
     for (const octomap::OcTreeKey& key : occupied) tree_.updateNode(key, true);
     for (const octomap::KeySet* keys : {&free, &occupied})
@@ -175,9 +184,9 @@ class Octomap final : public Map {
 
  private:
   VoxelState state(int x, int y, int z) const {
-    const octomap::OcTreeNode* node =
-        tree_.search(octomap::OcTreeKey(static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                                        static_cast<std::uint16_t>(z)));
+    const octomap::OcTreeNode* node = tree_.search(
+        octomap::OcTreeKey(static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                           static_cast<std::uint16_t>(z)));
     return node ? settings().state(node->getLogOdds()) : VoxelState::unknown;
   }
 

@@ -43,8 +43,7 @@ std::vector<std::uint16_t> read_gray16(const fs::path& path, int& width, int& he
 PosedDepthImage real_frame(const fs::path& stem) {
   PosedDepthImage frame;
   Pinhole& pinhole = frame.image.pinhole;
-  const auto millimetres =
-      read_gray16(stem.string() + ".depth.png", pinhole.width, pinhole.height);
+  const auto millimetres = read_gray16(stem.string() + ".depth.png", pinhole.width, pinhole.height);
   pinhole.focal_x = pinhole.focal_y = 585;
   pinhole.principal_x = 320;
   pinhole.principal_y = 240;
