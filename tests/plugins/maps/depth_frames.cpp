@@ -1,62 +1,15 @@
 #include "tests/plugins/maps/depth_frames.h"
 
-#include <png.h>
-
-#include <cstdio>
 #include <cstdlib>
-#include <fstream>
 
-#include "framework/core/error.h"
 #include "framework/core/random.h"
+#include "framework/geometry/depth_folder.h"
 #include "framework/geometry/scene.h"
 
 namespace lapwing {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::uint16_t> read_gray16(const fs::path& path, int& width, int& height) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_file(&png, path.c_str())) throw Error(path.string());
-  png_image_free(&png);
-  // The simplified reader would take the numbers for linear light and change nothing of them only
-  // in this format.
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  png_structp read = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-  png_infop info = png_create_info_struct(read);
-  png_init_io(read, file);
-  png_read_png(read, info, PNG_TRANSFORM_SWAP_ENDIAN, nullptr);
-  width = static_cast<int>(png_get_image_width(read, info));
-  height = static_cast<int>(png_get_image_height(read, info));
-  std::vector<std::uint16_t> pixels;
-  png_bytepp rows = png_get_rows(read, info);
-  for (int y = 0; y < height; ++y) {
-    const auto* row = reinterpret_cast<const std::uint16_t*>(rows[y]);
-    pixels.insert(pixels.end(), row, row + width);
-  }
-  png_destroy_read_struct(&read, &info, nullptr);
-  std::fclose(file);
-  return pixels;
-}
-
-PosedDepthImage real_frame(const fs::path& stem) {
-  PosedDepthImage frame;
-  Pinhole& pinhole = frame.image.pinhole;
-  const auto millimetres = read_gray16(stem.string() + ".depth.png", pinhole.width, pinhole.height);
-  pinhole.focal_x = pinhole.focal_y = 585;
-  pinhole.principal_x = 320;
-  pinhole.principal_y = 240;
-  for (const std::uint16_t depth : millimetres)
-    frame.image.depth.push_back(depth == 65535 ? 0.0f : static_cast<float>(depth) / 1000.0f);
-  std::ifstream poses(stem.string() + ".pose.txt");
-  Eigen::Matrix4d T_WC;
-  for (int k = 0; k < 16; ++k) poses >> T_WC(k / 4, k % 4);
-  frame.camera.position = T_WC.topRightCorner<3, 1>();
-  frame.camera.orientation =
-      Eigen::Quaterniond(Eigen::Matrix3d(T_WC.topLeftCorner<3, 3>())).normalized();
-  return frame;
-}
 
 Scene made_street() {
   std::vector<Shape> shapes{GroundShape{0}};
@@ -95,9 +48,8 @@ std::optional<fs::path> data_folder() {
 
 std::vector<PosedDepthImage> real_frames(int count) {
   std::vector<PosedDepthImage> frames;
-  for (int k = 0; k < count; ++k)
-    frames.push_back(
-        real_frame(*data_folder() / "depth" / ("frame-000" + std::to_string(150 + k))));
+  const DepthFolder folder(*data_folder() / "depth");
+  for (int k = 0; k < count; ++k) frames.push_back(folder.read(static_cast<std::size_t>(k)));
   return frames;
 }
 
