@@ -162,6 +162,30 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
       [&] { command = [&] { return export_plan(plan, format, target, invocation); }; });
 }
 
+void add_map_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& file,
+                      std::filesystem::path& target, Command& command) {
+  CLI::App* map = app.add_subcommand("map", "map files: .bt, .ot");
+  map->require_subcommand(1);
+  const auto add = [&](const char* name, const char* help) {
+    CLI::App* made = map->add_subcommand(name, help);
+    add_text(*made, "file", "MAP", "a .bt or .ot file", [&](const std::string& path) {
+      file = path;
+    })->required();
+    return made;
+  };
+  CLI::App* info = add("info", "what a map holds");
+  add_json(*info, invocation);
+  info->callback([&] { command = [&] { return show_map(file, invocation); }; });
+  CLI::App* convert = add("convert", "write a map in another format: .ot, .bt, .ply");
+  CLI::App* view = add("view", "write a report page with pictures");
+  for (CLI::App* made : {convert, view})
+    add_text(*made, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
+      target = path;
+    })->required();
+  convert->callback([&] { command = [&] { return convert_map(file, target, invocation); }; });
+  view->callback([&] { command = [&] { return view_map(file, target, invocation); }; });
+}
+
 void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
                          Command& command) {
   CLI::App* plugins = app.add_subcommand("plugins", "what plugins there are");
@@ -243,6 +267,7 @@ int run_command_line(int argc, const char* const* argv) {
   app.fallthrough();
   add_run(app, invocation, script, command);
   add_plan_commands(app, invocation, plan, conditions, format, target, command);
+  add_map_commands(app, invocation, plan, target, command);
   add_plugin_commands(app, invocation, name, command);
   try {
     app.parse(argc, argv);

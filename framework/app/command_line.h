@@ -49,6 +49,12 @@ ExitStatus simulate_plan(const std::filesystem::path& plan, const FlightConditio
                          const std::filesystem::path& target, const Invocation& invocation);
 ExitStatus export_plan(const std::filesystem::path& plan, const std::string& format,
                        const std::filesystem::path& target, const Invocation& invocation);
+ExitStatus show_map(const std::filesystem::path& file, const Invocation& invocation);
+// By the ending of the target: .ot, .bt or .ply.
+ExitStatus convert_map(const std::filesystem::path& file, const std::filesystem::path& target,
+                       const Invocation& invocation);
+ExitStatus view_map(const std::filesystem::path& file, const std::filesystem::path& target,
+                    const Invocation& invocation);
 ExitStatus list_plugins(const Invocation& invocation);
 ExitStatus show_plugin(const std::string& name, const Invocation& invocation);
 ExitStatus show_plugin_path(const Invocation& invocation);

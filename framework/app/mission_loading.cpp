@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <thread>
 
 #include "framework/config/lookup.h"
 #include "framework/config/shipped.h"
@@ -52,6 +53,9 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
   for (const std::string& name : invocation.configs) layers.push_back(read_config(name, search));
   settings.limits = sandbox_limits(layers, invocation.overrides);
   settings.seed = invocation.seed;
+  settings.threads = invocation.threads > 0
+                         ? invocation.threads
+                         : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   settings.data = data_folders(invocation);
   settings.registry = &registry;
   settings.cancellation = cancellation;

@@ -5,6 +5,7 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/interruption.h"
+#include "framework/app/mapping_run.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
 #include "framework/core/json.h"
@@ -170,6 +171,10 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   log::info("mission " + mission->name() + ", seed " + std::to_string(invocation.seed));
   outcome.result = mission->plan();
   progress.clear();
+  if (outcome.result.mapping) {
+    outcome.seconds = steady_seconds() - begin;
+    return finish_mapping({outcome.result, outcome.folder, outcome.seconds}, invocation, capture);
+  }
   outcome.certificate = verify(outcome.result.plan);
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome);

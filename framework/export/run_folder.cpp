@@ -42,6 +42,7 @@ std::filesystem::path run_folder(std::string_view mission, const std::filesystem
 void write_run_folder(const std::filesystem::path& folder, const RunFiles& files) {
   const std::pair<const char*, const std::optional<std::string>&> all[] = {
       {"run.log", files.log},
+      {"map.ot", files.map},
       {"report.html", files.report},
       {"trajectory.csv", files.trajectory},
       {"plan.json", files.plan}};

@@ -24,6 +24,7 @@ struct RunFiles {
   std::optional<std::string> trajectory = {};  // trajectory.csv
   std::optional<std::string> report = {};      // report.html
   std::optional<std::string> log = {};         // run.log
+  std::optional<std::string> map = {};         // map.ot
 };
 
 // Creates the folder and writes each file whole or not at all; plan.json last, so that a folder

@@ -30,6 +30,15 @@ void DataFiles::allow(const fs::path& file) {
 }
 
 fs::path DataFiles::find(const std::string& name, const std::string& inside) const {
+  return find_entry(name, inside, false);
+}
+
+fs::path DataFiles::find_folder(const std::string& name) const {
+  return find_entry(name, "", true);
+}
+
+fs::path DataFiles::find_entry(const std::string& name, const std::string& inside,
+                               bool folder_wanted) const {
   if (name.empty() || name.find('\0') != std::string::npos) {
     throw InputError("a text that is empty or holds a NUL is no file name");
   }
@@ -37,7 +46,8 @@ fs::path DataFiles::find(const std::string& name, const std::string& inside) con
   std::error_code error;
   const fs::path as_named = fs::canonical(wanted, error);
   if (!error && std::find(allowed_.begin(), allowed_.end(), as_named) != allowed_.end()) {
-    return as_named;
+    if (folder_wanted == fs::is_directory(as_named, error)) return as_named;
+    throw InputError("'" + name + "' is no " + (folder_wanted ? "folder" : "regular file"));
   }
   for (const fs::path& part : wanted) {
     if (part == "..") {
@@ -56,8 +66,9 @@ fs::path DataFiles::find(const std::string& name, const std::string& inside) con
       const fs::path file = fs::canonical(candidate, error);
       if (error) continue;
       if (lies_in(file, root)) {
-        if (fs::is_regular_file(file, error)) return file;
-        throw InputError("'" + name + "' is no regular file");
+        if (folder_wanted ? fs::is_directory(file, error) : fs::is_regular_file(file, error))
+          return file;
+        throw InputError("'" + name + "' is no " + (folder_wanted ? "folder" : "regular file"));
       }
       if (wanted.is_relative()) {
         throw InputError("'" + name + "' leads out of " + folder.string());
@@ -65,7 +76,7 @@ fs::path DataFiles::find(const std::string& name, const std::string& inside) con
     }
     looked += (looked.empty() ? "" : ", ") + folder.string();
   }
-  throw InputError("data file '" + name + "' not found in " +
+  throw InputError("data " + std::string(folder_wanted ? "folder" : "file") + " '" + name + "' not found in " +
                    (looked.empty() ? "any folder" : looked) + "; name its folder with --data DIR");
 }
 

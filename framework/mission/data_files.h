@@ -24,12 +24,18 @@ class DataFiles {
   // looked for and where.
   std::filesystem::path find(const std::string& name, const std::string& inside = "") const;
 
+  // A folder, found by the same rules.
+  std::filesystem::path find_folder(const std::string& name) const;
+
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
 
   // InputError with line and column for malformed or truncated text.
   Value read_json(const std::string& name, const std::string& inside = "") const;
 
  private:
+  std::filesystem::path find_entry(const std::string& name, const std::string& inside,
+                                   bool folder) const;
+
   std::vector<std::filesystem::path> folders_;
   std::vector<std::filesystem::path> allowed_;  // canonical
 };

@@ -5,6 +5,7 @@
 #include "framework/config/overrides.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
+#include "framework/mission/map_objects.h"
 #include "framework/mission/options.h"
 
 namespace lapwing {
@@ -51,6 +52,7 @@ void Mission::Impl::load() {
     open_lapwing_library(state, run);
     open_problem_library(state);
     open_plan_library(state);
+    open_map_library(state);
     sandbox.run_script(state, script);
     read_mission(state);
   });
@@ -142,10 +144,17 @@ MissionResult Mission::plan() {
     lua_getfield(state, LUA_REGISTRYINDEX, kPlanFunction);
     push_run(state);
     lua_call(state, 1, 1);
+    if (const MapObject* mapped = test_object<MapObject>(state, -1, kMapType)) {
+      result.mapping = mapped->mapping;
+      result.plan.mission = impl.run.name;
+      result.plan.kind = impl.run.kind;
+      result.plan.configuration = impl.run.configuration;
+      return;
+    }
     PlanObject* planned = test_object<PlanObject>(state, -1, kPlanType);
     if (!planned) {
       throw InputError(impl.sandbox.script_position(state),
-                       std::string("plan: expected the function to return run:plan{...}, got ") +
+                       std::string("plan: expected the function to return run:plan{...} or a map, got ") +
                            luaL_typename(state, -1));
     }
     result.plan = planned->plan;

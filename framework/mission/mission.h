@@ -14,11 +14,14 @@
 #include <string>
 #include <vector>
 
+#include "framework/mission/map_work.h"
 #include "framework/mission/run.h"
 
 namespace lapwing {
 
 struct MissionResult {
+  // Of a mapping mission, which returns a map and has no plan; else null.
+  std::shared_ptr<const Mapping> mapping;
   Plan plan;  // without certificate
   SolveReport report;
   std::string solver;

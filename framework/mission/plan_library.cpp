@@ -7,10 +7,20 @@
 #include "framework/core/log.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
+#include "framework/mission/map_objects.h"
 #include "framework/mission/run.h"
 #include "framework/verify/verify.h"
 
 namespace lapwing {
+
+void refuse_field(const std::string& what, const std::string& field,
+                               const Value& fields) {
+  std::vector<std::string> known;
+  for (const auto& [key, value] : fields.as_map()) known.push_back(key);
+  const std::string nearest = nearest_name(field, known);
+  throw InputError(what + " has no field '" + field + "'" +
+                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
 
 namespace {
 
@@ -87,15 +97,6 @@ int solve(lua_State* state) {
             (report.message.empty() ? "" : "; " + report.message));
   new_object(state, kSolutionType, std::move(solution));
   return 1;
-}
-
-[[noreturn]] void refuse_field(const std::string& what, const std::string& field,
-                               const Value& fields) {
-  std::vector<std::string> known;
-  for (const auto& [key, value] : fields.as_map()) known.push_back(key);
-  const std::string nearest = nearest_name(field, known);
-  throw InputError(what + " has no field '" + field + "'" +
-                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
 }
 
 // Fields of a solution: status, message, solver, cost, iterations, violations.
@@ -364,6 +365,13 @@ int run_field(lua_State* state) {
                                      {"fail", &guarded<fail>}};
   std::vector<std::string> known = {"options"};
   for (const luaL_Reg& method : methods) {
+    if (field == method.name) {
+      lua_pushcfunction(state, method.func);
+      return 1;
+    }
+    known.emplace_back(method.name);
+  }
+  for (const luaL_Reg& method : map_methods_of_run()) {
     if (field == method.name) {
       lua_pushcfunction(state, method.func);
       return 1;

@@ -25,6 +25,7 @@ namespace lapwing {
 struct MissionSettings {
   SandboxLimits limits;
   std::uint64_t seed = 1;
+  int threads = 1;                          // of maps and renderings; results are the same
   std::filesystem::path scripts;            // shipped; holds mission/film.lua
   std::filesystem::path configs;            // shipped; holds vehicles/solo.yaml
   std::vector<std::filesystem::path> data;  // --data and LAPWING_DATA
@@ -85,6 +86,10 @@ void push_run(lua_State* state);
 // The methods of `run`, for the type's table.
 int problem_of_run(lua_State* state);
 int vehicle_of_run(lua_State* state);
+
+// InputError: "a plan has no field 'tme'; did you mean 'time'?"
+[[noreturn]] void refuse_field(const std::string& what, const std::string& field,
+                               const Value& fields);
 
 // The table argument at `index`, checked; keys in `without` are the caller's. The script's position
 // is the origin of every value.

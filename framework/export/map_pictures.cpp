@@ -1,0 +1,185 @@
+#include "framework/export/map_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lapwing {
+namespace {
+
+using Byte3 = std::array<std::uint8_t, 3>;
+
+constexpr Byte3 kUnknown = {58, 62, 70}, kFree = {236, 236, 230}, kOccupied = {30, 34, 44};
+
+// From dark blue over green to yellow, even to the eye: a few stops of viridis (van der Walt and
+// Smith, 2015).
+Byte3 height_color(double share) {
+  static constexpr double kStops[5][3] = {
+      {68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
+  const double at = std::clamp(share, 0.0, 1.0) * 4;
+  const int k = std::min(3, static_cast<int>(at));
+  Byte3 color;
+  for (int c = 0; c < 3; ++c)
+    color[c] =
+        static_cast<std::uint8_t>(kStops[k][c] + (at - k) * (kStops[k + 1][c] - kStops[k][c]));
+  return color;
+}
+
+Byte3 lit(Byte3 color, double light) {
+  for (std::uint8_t& c : color)
+    c = static_cast<std::uint8_t>(std::clamp(std::lround(c * light), 0l, 255l));
+  return color;
+}
+
+// Columns of voxels seen from above, several to a pixel where there are too many.
+struct Columns {
+  VoxelBox box;
+  int per_pixel = 1, width = 0, height = 0;
+
+  Columns(const VoxelBox& bounds, int most_pixels) : box(bounds) {
+    const int across = bounds.upper.x - bounds.lower.x + 1;
+    const int up = bounds.upper.y - bounds.lower.y + 1;
+    per_pixel = std::max(1, (std::max(across, up) + most_pixels - 1) / most_pixels);
+    width = (across + per_pixel - 1) / per_pixel;
+    height = (up + per_pixel - 1) / per_pixel;
+  }
+  // Calls f(pixel) for every pixel that a leaf covers; north is up.
+  template <class F>
+  void cover(const VoxelLeaf& leaf, F f) const {
+    const int size = 1 << leaf.level;
+    const int left = (leaf.key.x - box.lower.x) / per_pixel;
+    const int right = (std::min<int>(leaf.key.x + size - 1, box.upper.x) - box.lower.x) / per_pixel;
+    const int low = (leaf.key.y - box.lower.y) / per_pixel;
+    const int high = (std::min<int>(leaf.key.y + size - 1, box.upper.y) - box.lower.y) / per_pixel;
+    for (int y = low; y <= high; ++y)
+      for (int x = left; x <= right; ++x) f((height - 1 - y) * width + x);
+  }
+};
+
+MapPicture blank(const Columns& columns, const Map& map) {
+  MapPicture made;
+  made.picture.width = columns.width;
+  made.picture.height = columns.height;
+  made.picture.rgb.resize(static_cast<std::size_t>(columns.width) * columns.height * 3);
+  made.metres = columns.per_pixel * map.grid().resolution();
+  return made;
+}
+
+void paint(Picture& picture, std::size_t pixel, const Byte3& color) {
+  std::copy(color.begin(), color.end(),
+            picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
+}
+
+double height_of(const Map& map, int key) {
+  return (key - kCenterKey) * map.grid().resolution();
+}
+
+// Colours the pixels whose columns a leaf at this height covers; later leaves are laid over
+// earlier.
+template <class Color>
+MapPicture cut(const Map& map, double height, int most_pixels, Color color_of) {
+  const auto bounds = map.bounds();
+  if (!bounds) return {};
+  const Columns columns(*bounds, most_pixels);
+  MapPicture made = blank(columns, map);
+  for (std::size_t i = 0; i < made.picture.rgb.size() / 3; ++i) paint(made.picture, i, kUnknown);
+  const int key = map.grid().index(height);
+  std::vector<bool> occupied(made.picture.rgb.size() / 3);
+  map.for_each_leaf([&](const VoxelLeaf& leaf) {
+    if (key < leaf.key.z || key >= leaf.key.z + (1 << leaf.level)) return;
+    const VoxelState state = map.settings().state(leaf.log_odds);
+    columns.cover(leaf, [&](int pixel) {
+      const auto at = static_cast<std::size_t>(pixel);
+      if (occupied[at]) return;  // where several share a pixel, what is in the way shows
+      occupied[at] = state == VoxelState::occupied;
+      paint(made.picture, at, color_of(leaf, state));
+    });
+  });
+  made.lowest = made.highest = height;
+  return made;
+}
+
+}  // namespace
+
+MapPicture height_picture(const Map& map, int most_pixels) {
+  const auto bounds = map.bounds();
+  if (!bounds) return {};
+  const Columns columns(*bounds, most_pixels);
+  MapPicture made = blank(columns, map);
+  const std::size_t pixels = made.picture.rgb.size() / 3;
+  constexpr int kNothing = -1;
+  std::vector<int> top(pixels, kNothing);
+  std::vector<bool> free(pixels);
+  map.for_each_leaf([&](const VoxelLeaf& leaf) {
+    const VoxelState state = map.settings().state(leaf.log_odds);
+    columns.cover(leaf, [&](int pixel) {
+      const auto at = static_cast<std::size_t>(pixel);
+      if (state == VoxelState::occupied)
+        top[at] = std::max(top[at], leaf.key.z + (1 << leaf.level) - 1);
+      else if (state == VoxelState::free)
+        free[at] = true;
+    });
+  });
+  std::vector<int> heights;
+  for (const int z : top)
+    if (z != kNothing) heights.push_back(z);
+  if (heights.empty()) heights.push_back(bounds->lower.z);
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  made.lowest = height_of(map, *low), made.highest = height_of(map, *high + 1);
+  const double span = std::max(1, *high - *low);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (top[i] == kNothing) {
+      paint(made.picture, i, free[i] ? kFree : kUnknown);
+      continue;
+    }
+    const auto neighbour = [&](bool there, std::size_t j) {
+      return there && top[j] != kNothing ? top[j] : top[i];
+    };
+    const std::size_t x = i % static_cast<std::size_t>(columns.width);
+    const auto row = static_cast<std::size_t>(columns.width);
+    const double slope =
+        (top[i] - neighbour(x > 0, i - 1)) + (top[i] - neighbour(i >= row, i - row));
+    const double light = 1 + 0.25 * std::tanh(slope * 0.5 / columns.per_pixel);
+    paint(made.picture, i, lit(height_color((top[i] - *low) / span), light));
+  }
+  return made;
+}
+
+MapPicture cut_picture(const Map& map, double height, int most_pixels) {
+  return cut(map, height, most_pixels, [](const VoxelLeaf&, VoxelState state) {
+    return state == VoxelState::occupied ? kOccupied
+           : state == VoxelState::free   ? kFree
+                                         : Byte3{140, 140, 146};
+  });
+}
+
+MapPicture uncertainty_picture(const Map& map, double height, int most_pixels) {
+  return cut(map, height, most_pixels, [&](const VoxelLeaf& leaf, VoxelState) {
+    return height_color(1 - map.uncertainty(leaf.observations));
+  });
+}
+
+Picture depth_picture(const DepthImage& image) {
+  Picture picture{image.pinhole.width, image.pinhole.height, {}};
+  picture.rgb.resize(image.depth.size() * 3);
+  float nearest = std::numeric_limits<float>::infinity(), farthest = 0;
+  for (const float depth : image.depth)
+    if (depth > 0 && std::isfinite(depth)) {
+      nearest = std::min(nearest, depth);
+      farthest = std::max(farthest, depth);
+    }
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    const float depth = image.depth[i];
+    if (!(depth > 0)) continue;  // black
+    if (!std::isfinite(depth)) {
+      paint(picture, i, {24, 30, 66});
+      continue;
+    }
+    // By the inverse of the depth: as much room for the near as for the far.
+    const double share =
+        farthest > nearest ? (1 / depth - 1 / farthest) / (1 / nearest - 1 / farthest) : 1;
+    paint(picture, i, height_color(0.08 + 0.92 * share));
+  }
+  return picture;
+}
+
+}  // namespace lapwing

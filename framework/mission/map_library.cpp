@@ -1,0 +1,204 @@
+// Maps and surfaces: what mapping missions ask of `run`.
+#include <cmath>
+
+#include <lua.hpp>
+
+#include "framework/geometry/mesh_file.h"
+#include "framework/map/map_file.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/map_objects.h"
+
+namespace lapwing {
+namespace {
+
+Eigen::Vector3d vector_of(std::span<const double> numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+MapWork work_of(const MissionRun& run) {
+  return {run.settings.threads, run.settings.cancellation, run.settings.progress};
+}
+
+Value list_of(const Eigen::Vector3d& v) {
+  return Value(Value::List{v.x(), v.y(), v.z()});
+}
+
+// -- surfaces ------------------------------------------------------------------------------------
+
+int push_surface(lua_State* state, std::string name, TriangleMesh mesh,
+                 const Eigen::AlignedBox3d& region) {
+  SurfaceObject surface{name, nullptr, region};
+  surface.scene = std::make_shared<MeshScene>(std::move(mesh), name);
+  new_object(state, kSurfaceType, std::move(surface));
+  return 1;
+}
+
+// run:read_surface(name): from a mesh file.
+int read_surface(lua_State* state) {
+  const std::string name = text_argument(state, 2, "read_surface");
+  MeshFile file = read_mesh(run_of(state).files.find(name, "meshes"));
+  run_of(state).settings.print(name + ": " + file.description());
+  const Eigen::AlignedBox3d bounds = file.mesh.bounds();
+  return push_surface(state, name, std::move(file.mesh), bounds);
+}
+
+// Fields: name, triangles, lower and upper (of its bounds), region = {lower =, upper =}.
+int surface_field(lua_State* state) {
+  const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
+  const std::string field = text_argument(state, 2, "surface");
+  const Eigen::AlignedBox3d bounds = surface.scene->mesh().bounds();
+  Value region = Value::map(), fields = Value::map();
+  region.set("lower", list_of(surface.region.min()));
+  region.set("upper", list_of(surface.region.max()));
+  fields.set("name", surface.name);
+  fields.set("triangles", static_cast<std::int64_t>(surface.scene->mesh().triangles.size()));
+  fields.set("lower", list_of(bounds.min()));
+  fields.set("upper", list_of(bounds.max()));
+  fields.set("region", std::move(region));
+  const Value* found = fields.find(field);
+  if (!found) refuse_field("a surface", field, fields);
+  push_value(state, *found);
+  return 1;
+}
+
+// -- maps ----------------------------------------------------------------------------------------
+
+// run:map(plugin): "brick" or {type = "brick", resolution = 0.2, ...}
+int map(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Value given = value_from_lua(state, 2, Sandbox::of(state).script_position(state), "map");
+  const Value* type = given.is_map() ? given.find("type") : &given;
+  if (!type || !type->is_text())
+    throw InputError(given.origin(), "map: expected a map's name or a table with its `type`");
+  Value parameters = Value::map();
+  parameters.with_origin(given.origin());
+  if (given.is_map())
+    for (const auto& [key, value] : given.as_map())
+      if (key != "type") parameters.set(key, value);
+  MapObject object;
+  object.mapping = std::make_shared<Mapping>();
+  object.mapping->plugin = type->as_text();
+  object.mapping->map = run.settings.registry->create<Map>(type->as_text(), parameters, "map");
+  new_object(state, kMapType, std::move(object));
+  return 1;
+}
+
+ParameterTable scan_table() {
+  ParameterTable camera;
+  camera.integer("width", 160, "pixels", between(1, 10000))
+      .integer("height", 120, "pixels", between(1, 10000))
+      .number("view_deg", 90, "deg", "angle across", {1, 170});
+  ParameterTable noise;
+  noise.number("dropped", 0, "", "share of the pixels without a measurement", between(0, 1))
+      .number("sigma", 0, "m", "of the depth, normal", between(0, 100));
+  ParameterTable pose;
+  pose.required_numbers("position", 3, "m", "world")
+      .number("yaw", 0, "rad", "heading")
+      .number("pitch", 0, "rad", "positive up");
+  ParameterTable table;
+  table.table("camera", camera, "a pinhole in the middle of its image")
+      .table("noise", noise, "of the sensor")
+      .number("range", 20, "m", "largest depth", above(0))
+      .tables("poses", pose, "of the camera", true);
+  return table;
+}
+
+// map:scan{surface =, poses = {{position =, yaw =, pitch =}}, camera =, range =, noise =}
+int scan(lua_State* state) {
+  MissionRun& run = run_of(state);
+  Mapping& mapping = *object_argument<MapObject>(state, 1, kMapType).mapping;
+  static constexpr std::string_view kObjects[] = {"surface"};
+  const Parameters given = table_argument(state, 2, scan_table(), "scan", kObjects);
+  lua_getfield(state, 2, "surface");
+  const SurfaceObject& surface = object_argument<SurfaceObject>(state, -1, kSurfaceType);
+  const Parameters& camera = given.table("camera");
+  DepthSensor sensor;
+  sensor.range = given.number("range");
+  const int width = static_cast<int>(camera.integer("width"));
+  const int height = static_cast<int>(camera.integer("height"));
+  const double focal = width / 2.0 / std::tan(camera.number("view_deg") * EIGEN_PI / 360);
+  sensor.pinhole = {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
+  const Parameters& noise = given.table("noise");
+  if (noise.number("dropped") > 0 || noise.number("sigma") > 0)
+    sensor.noise = DepthNoise{noise.number("dropped"), noise.number("sigma")};
+  std::vector<Pose> poses;
+  for (const Parameters& pose : given.tables("poses"))
+    poses.push_back(
+        camera_pose(vector_of(pose.numbers("position")), pose.number("yaw"), pose.number("pitch")));
+  if (poses.empty()) throw InputError(given.origin("poses"), "scan: no pose to look from");
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  map_surface(mapping, *surface.scene, poses, sensor, run.settings.seed, work_of(run));
+  mapping.source = std::to_string(poses.size()) + " views of '" + surface.name + "'";
+  return 0;
+}
+
+// map:scan_folder(name): depth images and poses of a folder.
+int scan_folder(lua_State* state) {
+  MissionRun& run = run_of(state);
+  Mapping& mapping = *object_argument<MapObject>(state, 1, kMapType).mapping;
+  const std::string name = text_argument(state, 2, "scan_folder");
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  const DepthFolder folder(run.files.find_folder(name));
+  map_folder(mapping, folder, work_of(run));
+  mapping.source = std::to_string(folder.size()) + " depth images of '" + name + "'";
+  return 0;
+}
+
+// run:map_resolution(name): of a map file.
+int map_resolution(lua_State* state) {
+  const std::string name = text_argument(state, 2, "map_resolution");
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  lua_pushnumber(state, read_map_file(run_of(state).files.find(name, "maps")).resolution);
+  return 1;
+}
+
+// map:load(name): all voxels of a map file of the same resolution.
+int load(lua_State* state) {
+  MissionRun& run = run_of(state);
+  Mapping& mapping = *object_argument<MapObject>(state, 1, kMapType).mapping;
+  const std::string name = text_argument(state, 2, "load");
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  const MapFile file = read_map_file(run.files.find(name, "maps"));
+  const double resolution = mapping.map->grid().resolution();
+  if (std::abs(file.resolution - resolution) > 1e-9 * resolution)
+    throw InputError("'" + name + "' has voxels of " + std::to_string(file.resolution) +
+                     " m, the map has voxels of " + std::to_string(resolution) + " m");
+  mapping.map->import(file.leaves);
+  mapping.source = "file '" + name + "'";
+  return 0;
+}
+
+// map:counts(): {known =, free =, occupied =, bytes =}
+int counts(lua_State* state) {
+  const Map& map = *object_argument<MapObject>(state, 1, kMapType).mapping->map;
+  const VoxelCounts counted = map.counts();
+  Value value = Value::map();
+  value.set("known", static_cast<std::int64_t>(counted.known));
+  value.set("free", static_cast<std::int64_t>(counted.free));
+  value.set("occupied", static_cast<std::int64_t>(counted.occupied));
+  value.set("bytes", static_cast<std::int64_t>(map.bytes()));
+  push_value(state, value);
+  return 1;
+}
+
+}  // namespace
+
+void open_map_library(lua_State* state) {
+  static const luaL_Reg methods[] = {{"scan", &guarded<scan>},
+                                     {"scan_folder", &guarded<scan_folder>},
+                                     {"load", &guarded<load>},
+                                     {"counts", &guarded<counts>},
+                                     {nullptr, nullptr}};
+  define_type<MapObject>(state, kMapType, methods);
+  define_type<SurfaceObject>(state, kSurfaceType, nullptr, &guarded<surface_field>);
+}
+
+std::span<const luaL_Reg> map_methods_of_run() {
+  static const luaL_Reg methods[] = {{"read_surface", &guarded<read_surface>},
+                                     {"map", &guarded<map>},
+                                     {"map_resolution", &guarded<map_resolution>}};
+  return methods;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,33 @@
+// Maps and surfaces as Lua holds them.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "framework/mission/map_work.h"
+#include "framework/mission/run.h"
+
+struct luaL_Reg;
+
+namespace lapwing {
+
+struct MapObject {
+  std::shared_ptr<Mapping> mapping;
+};
+
+struct SurfaceObject {
+  std::string name;
+  std::shared_ptr<MeshScene> scene;
+  Eigen::AlignedBox3d region;  // of interest, m
+};
+
+inline constexpr const char* kMapType = "map";
+inline constexpr const char* kSurfaceType = "surface";
+
+// Adds the types above; after open_lapwing_library.
+void open_map_library(lua_State* state);
+// surface, read_surface, map, map_resolution.
+std::span<const luaL_Reg> map_methods_of_run();
+
+}  // namespace lapwing

@@ -1,0 +1,135 @@
+-- Maps: what depth images, files or views of a scene tell of a space.
+--
+--   local map = require "mission.map"
+--   return map.of_scene { name = "street", scene = "street" }
+--   return map.of_folder { name = "my depth" }       -- --set input=FOLDER
+--   return map.of_file { name = "my map" }           -- --set input=FILE
+--
+-- Missions of kind `map` return a map instead of a plan. What every backend takes is an option of
+-- the mission (`resolution`, `mode`, `pixel_step`, `observations`); `map` is the backend alone, so
+-- that `--set map=octomap` changes nothing but speed and memory.
+local views = require "mission.views"
+
+local M = {}
+
+local SHARED = {  -- as the backends' own defaults
+  { name = "resolution", type = "number", unit = "m", default = 0.2, minimum = 0.001,
+    maximum = 1000, summary = "edge of a voxel" },
+  { name = "mode", type = "choice", choices = { "discretised", "exact" }, default = "discretised",
+    summary = "a ray for every voxel that holds a point, or for every point" },
+  { name = "pixel_step", type = "integer", default = 1, minimum = 1, maximum = 1000,
+    summary = "every so many pixels and rows of an image are used" },
+  { name = "observations", type = "boolean", default = false,
+    summary = "count how often each voxel was measured, for its uncertainty" },
+}
+local MAP = { name = "map", type = "plugin", kind = "map", default = "brick",
+              summary = "the map's backend, and its update rule" }
+local INPUT = { name = "input", type = "text", summary = "the user's own data" }
+
+local SENSOR = {
+  { name = "width", type = "integer", default = 160, minimum = 1, summary = "pixels" },
+  { name = "height", type = "integer", default = 120, minimum = 1, summary = "pixels" },
+  { name = "view_deg", type = "number", unit = "deg", default = 90, minimum = 1, maximum = 170,
+    summary = "angle across the image" },
+  { name = "range", type = "number", unit = "m", default = 20, minimum = 0.01,
+    summary = "largest depth" },
+  { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
+    summary = "share of the pixels without a measurement" },
+  { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0,
+    summary = "noise of the depth" },
+}
+
+local function declarations(own)
+  local all = { MAP }
+  for _, list in ipairs { SHARED, own } do
+    for _, declared in ipairs(list) do all[#all + 1] = declared end
+  end
+  return all
+end
+
+-- The map that the options ask for, with what the mission itself knows.
+local function new_map(run, known)
+  local o = run.options
+  local made = type(o.map) == "table" and o.map or { type = o.map }
+  for _, shared in ipairs(SHARED) do
+    local own = made[shared.name]
+    if own ~= nil and own ~= shared.default and own ~= o[shared.name] then
+      run:fail("map." .. shared.name, string.format("every backend takes it: set %s = %s instead",
+                                                    shared.name, tostring(own)))
+    end
+    made[shared.name] = o[shared.name]
+  end
+  for key, value in pairs(known) do made[key] = value end
+  return run:map(made)
+end
+
+local function missing_input(what, example)
+  return string.format("%s: say which with --set input=PATH (%s)", what, example)
+end
+
+-- Views of a scene that scripts/scene makes, from a flight over and through it.
+function M.of_scene(given)
+  local own = {
+    { name = "scene", type = "text", summary = "a scene of scripts/scene: street, suburb, ..." },
+    { name = "scene_seed", type = "integer", default = 1, summary = "of the scene" },
+    { name = "sensor", type = "table", fields = SENSOR, summary = "the depth camera" },
+    { name = "views", type = "integer", default = 400, minimum = 1, maximum = 100000,
+      summary = "how many images" },
+  }
+  local name = given.name
+  given.name = nil
+  return {
+    kind = "map", name = name, options = lapwing.options(declarations(own), given),
+    plan = function(run)
+      local o = run.options
+      local scene = require("scene." .. o.scene) { seed = o.scene_seed }
+      local surface = run:surface(scene)
+      local made = new_map(run, { maximum_range = o.sensor.range })
+      made:scan {
+        surface = surface,
+        poses = views.over(surface, o.views),
+        range = o.sensor.range,
+        camera = { width = o.sensor.width, height = o.sensor.height,
+                   view_deg = o.sensor.view_deg },
+        noise = { dropped = o.sensor.dropped, sigma = o.sensor.sigma },
+      }
+      return made
+    end,
+  }
+end
+
+-- Depth images with poses: a folder of NAME.depth.png, NAME.pose.txt and camera-intrinsics.txt.
+function M.of_folder(given)
+  local name = given.name
+  given.name = nil
+  return {
+    kind = "map", name = name, options = lapwing.options(declarations { INPUT }, given),
+    plan = function(run)
+      local o = run.options
+      if not o.input then
+        lapwing.fail(missing_input("a folder of depth images", "NAME.depth.png, NAME.pose.txt"))
+      end
+      local made = new_map(run, {})
+      made:scan_folder(o.input)
+      return made
+    end,
+  }
+end
+
+-- A map file: .bt or .ot. The edge of its voxels is the file's.
+function M.of_file(given)
+  local name = given.name
+  given.name = nil
+  return {
+    kind = "map", name = name, options = lapwing.options(declarations { INPUT }, given),
+    plan = function(run)
+      local o = run.options
+      if not o.input then lapwing.fail(missing_input("a map", ".bt or .ot")) end
+      local made = new_map(run, { resolution = run:map_resolution(o.input) })
+      made:load(o.input)
+      return made
+    end,
+  }
+end
+
+return M
