@@ -83,7 +83,7 @@ ExitStatus view_map(const fs::path& file, const fs::path& target, const Invocati
   const std::unique_ptr<Map> map = loaded(file, registry);
   write_file_atomically(target, render_html(map_report({.title = file.filename().string(),
                                                         .plugin = "brick",
-                                                        .source = file.string(),
+                                                        .source = file.filename().string(),
                                                         .map = map.get()})));
   return ExitStatus::done;
 }

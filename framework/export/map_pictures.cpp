@@ -30,6 +30,39 @@ Byte3 lit(Byte3 color, double light) {
   return color;
 }
 
+// Of the voxels that are free or occupied; of all known ones where there is none.
+std::optional<VoxelBox> decided_bounds(const Map& map) {
+  VoxelBox box{{65535, 65535, 65535}, {0, 0, 0}};
+  bool found = false;
+  map.for_each_leaf([&](const VoxelLeaf& leaf) {
+    if (map.settings().state(leaf.log_odds) == VoxelState::unknown) return;
+    found = true;
+    const auto last = static_cast<std::uint16_t>((1 << leaf.level) - 1);
+    box.lower.x = std::min(box.lower.x, leaf.key.x);
+    box.lower.y = std::min(box.lower.y, leaf.key.y);
+    box.lower.z = std::min(box.lower.z, leaf.key.z);
+    box.upper.x = std::max<std::uint16_t>(box.upper.x, leaf.key.x + last);
+    box.upper.y = std::max<std::uint16_t>(box.upper.y, leaf.key.y + last);
+    box.upper.z = std::max<std::uint16_t>(box.upper.z, leaf.key.z + last);
+  });
+  return found ? box : map.bounds();
+}
+
+// Small pictures larger, each pixel as a square.
+void magnify(MapPicture& made, int most_pixels) {
+  Picture& from = made.picture;
+  const int factor = most_pixels / std::max({1, from.width, from.height});
+  if (factor < 2) return;
+  Picture to{from.width * factor, from.height * factor, {}};
+  to.rgb.reserve(static_cast<std::size_t>(to.width) * to.height * 3);
+  for (int y = 0; y < to.height; ++y)
+    for (int x = 0; x < to.width; ++x) {
+      const auto pixel = from.rgb.begin() + 3 * (y / factor * from.width + x / factor);
+      to.rgb.insert(to.rgb.end(), pixel, pixel + 3);
+    }
+  from = std::move(to);
+}
+
 // Columns of voxels seen from above, several to a pixel where there are too many.
 struct Columns {
   VoxelBox box;
@@ -46,9 +79,12 @@ struct Columns {
   template <class F>
   void cover(const VoxelLeaf& leaf, F f) const {
     const int size = 1 << leaf.level;
-    const int left = (leaf.key.x - box.lower.x) / per_pixel;
+    if (leaf.key.x > box.upper.x || leaf.key.y > box.upper.y || leaf.key.x + size <= box.lower.x ||
+        leaf.key.y + size <= box.lower.y)
+      return;
+    const int left = (std::max(leaf.key.x, box.lower.x) - box.lower.x) / per_pixel;
     const int right = (std::min<int>(leaf.key.x + size - 1, box.upper.x) - box.lower.x) / per_pixel;
-    const int low = (leaf.key.y - box.lower.y) / per_pixel;
+    const int low = (std::max(leaf.key.y, box.lower.y) - box.lower.y) / per_pixel;
     const int high = (std::min<int>(leaf.key.y + size - 1, box.upper.y) - box.lower.y) / per_pixel;
     for (int y = low; y <= high; ++y)
       for (int x = left; x <= right; ++x) f((height - 1 - y) * width + x);
@@ -77,7 +113,7 @@ double height_of(const Map& map, int key) {
 // earlier.
 template <class Color>
 MapPicture cut(const Map& map, double height, int most_pixels, Color color_of) {
-  const auto bounds = map.bounds();
+  const auto bounds = decided_bounds(map);
   if (!bounds) return {};
   const Columns columns(*bounds, most_pixels);
   MapPicture made = blank(columns, map);
@@ -95,13 +131,14 @@ MapPicture cut(const Map& map, double height, int most_pixels, Color color_of) {
     });
   });
   made.lowest = made.highest = height;
+  magnify(made, most_pixels);
   return made;
 }
 
 }  // namespace
 
 MapPicture height_picture(const Map& map, int most_pixels) {
-  const auto bounds = map.bounds();
+  const auto bounds = decided_bounds(map);
   if (!bounds) return {};
   const Columns columns(*bounds, most_pixels);
   MapPicture made = blank(columns, map);
@@ -141,6 +178,7 @@ MapPicture height_picture(const Map& map, int most_pixels) {
     const double light = 1 + 0.25 * std::tanh(slope * 0.5 / columns.per_pixel);
     paint(made.picture, i, lit(height_color((top[i] - *low) / span), light));
   }
+  magnify(made, most_pixels);
   return made;
 }
 

@@ -12,7 +12,7 @@ namespace lapwing {
 struct MapPicture {
   Picture picture;
   double lowest = 0, highest = 0;  // m, heights at both ends of the colours
-  double metres = 0;               // of a pixel
+  double metres = 0;               // edge of what one square of it shows
 };
 MapPicture height_picture(const Map& map, int most_pixels);
 // A level cut through the voxels at `height`: occupied dark, free light, unknown grey.

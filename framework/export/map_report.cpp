@@ -17,7 +17,7 @@ std::string metres(double value) {
 }
 
 std::string caption(const std::string& what, const MapPicture& made) {
-  return what + "; " + metres(made.metres) + " a pixel, north is up";
+  return what + "; squares of " + metres(made.metres) + ", north is up";
 }
 
 // The height at which a level cut shows most: the one with the most free voxels.
