@@ -1,50 +1,21 @@
 #include "framework/geometry/render.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/geometry/daylight.h"
 
 namespace lapwing {
 namespace {
 
 using Eigen::Vector3d;
-using Light = Eigen::Array3d;  // linear red, green, blue
 
-const Vector3d kSun = Vector3d(-0.45, -0.6, 0.9).normalized();  // towards it
-const Light kSunlight(1.0, 0.95, 0.86), kSkylight(0.42, 0.48, 0.58), kBounce(0.2, 0.19, 0.17);
-const Light kZenith(0.13, 0.3, 0.62), kHorizon(0.68, 0.77, 0.86);
-constexpr double kHaze = 900;            // m, over which all but 1/e is lost
-constexpr double kTint = 0.3;            // of a see-through body
-constexpr int kFine = 3;                 // samples across a pixel where something ends in it
-constexpr double kLargestPicture = 1e8;  // pixels
-
-double linear(double srgb) {
-  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
+constexpr double kTint = 0.3;  // of a see-through body
+constexpr int kFine = 3;       // samples across a pixel where something ends in it
 
 Light linear(const Color& c) {
-  return {linear(c.red), linear(c.green), linear(c.blue)};
-}
-
-// Linear light, 0 to 1 in 4096 steps, as a byte of sRGB.
-std::uint8_t encoded(double light) {
-  static const auto table = [] {
-    std::array<std::uint8_t, 4097> bytes{};
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-      const double v = static_cast<double>(i) / 4096;
-      const double srgb = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-      bytes[i] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(srgb, 0.0, 1.0)));
-    }
-    return bytes;
-  }();
-  return table[static_cast<std::size_t>(4096 * std::clamp(light, 0.0, 1.0) + 0.5)];
-}
-
-Light sky(const Vector3d& direction) {
-  const double up = std::sqrt(std::max(direction.z(), 0.0));
-  return kHorizon + up * (kZenith - kHorizon);
+  return {linear_light(c.red), linear_light(c.green), linear_light(c.blue)};
 }
 
 // The integral of a square wave of +-1, which a difference of averages over a width.
@@ -107,7 +78,7 @@ class Painter {
   Sample sample(double x, double y, double pixels) const {
     const PictureRay ray{view_.position, view_.ray(x, y), pixels};
     const auto hit = solid_.cast(ray.origin, ray.direction);
-    Sample sample{sky(ray.direction), -1};
+    Sample sample{sky_light(ray.direction), -1};
     if (hit) sample = lit(*hit, ray);
     if (see_through_.shapes().empty()) return sample;
     const double farthest = hit ? hit->distance : std::numeric_limits<double>::infinity();
@@ -126,11 +97,6 @@ class Painter {
     return {linear_color.red, linear_color.green, linear_color.blue};
   }
 
-  static Light daylight(const Vector3d& normal, double sun) {
-    const double up = 0.5 + 0.5 * normal.z();
-    return kBounce + up * (kSkylight - kBounce) + sun * std::max(normal.dot(kSun), 0.0) * kSunlight;
-  }
-
   Sample lit(const RayHit& hit, const PictureRay& ray) const {
     const Vector3d p = ray.origin + hit.distance * ray.direction;
     const auto index = static_cast<std::size_t>(hit.shape);
@@ -141,10 +107,9 @@ class Painter {
     }
     // Off the surface, by more than what rounding may have put the point behind it.
     const Vector3d start = p + 1e-9 * (1 + p.norm() + hit.distance) * hit.normal;
-    const bool shadow = hit.normal.dot(kSun) <= 0 || solid_.blocked(start, kSun);
-    const double clear = std::exp(-hit.distance / kHaze);
+    const bool shadow = hit.normal.dot(towards_sun()) <= 0 || solid_.blocked(start, towards_sun());
     const Light light = color * daylight(hit.normal, shadow ? 0 : 1);
-    return {kHorizon + clear * (light - kHorizon), 2 * hit.shape + (shadow ? 1 : 0)};
+    return {through_haze(light, hit.distance), 2 * hit.shape + (shadow ? 1 : 0)};
   }
 
   const Scene& solid_;
@@ -222,7 +187,7 @@ Picture Renderer::picture(const CameraView& view) const {
       }
       light /= kFine * kFine;
     }
-    for (const double v : light) picture.rgb.push_back(encoded(v));
+    for (const double v : light) picture.rgb.push_back(encoded_light(v));
   }
   return picture;
 }

@@ -7,6 +7,7 @@
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
 #include "framework/mission/options.h"
+#include "framework/mission/scene_script.h"
 
 namespace lapwing {
 
@@ -53,6 +54,7 @@ void Mission::Impl::load() {
     open_problem_library(state);
     open_plan_library(state);
     open_map_library(state);
+    open_scene_library(state);
     sandbox.run_script(state, script);
     read_mission(state);
   });

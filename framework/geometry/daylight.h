@@ -1,0 +1,28 @@
+// The light of rendered pictures: one sun, a sky, haze. Internal to this room.
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+namespace lapwing {
+
+using Light = Eigen::Array3d;  // linear red, green, blue
+
+inline constexpr double kHaze = 900;            // m, over which all but 1/e is lost
+inline constexpr double kLargestPicture = 1e8;  // pixels
+
+// The unit vector towards the sun.
+const Eigen::Vector3d& towards_sun();
+
+// What falls on a surface: `sun` is the share of sunlight that reaches it.
+Light daylight(const Eigen::Vector3d& normal, double sun);
+Light sky_light(const Eigen::Vector3d& direction);
+// Light from `distance` metres away, through the haze.
+Light through_haze(const Light& light, double distance);
+
+double linear_light(double srgb);
+// Linear light, 0 to 1 in 4096 steps, as a byte of sRGB.
+std::uint8_t encoded_light(double light);
+
+}  // namespace lapwing
