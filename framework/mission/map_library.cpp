@@ -8,6 +8,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
+#include "framework/mission/scene_script.h"
 
 namespace lapwing {
 namespace {
@@ -32,6 +33,12 @@ int push_surface(lua_State* state, std::string name, TriangleMesh mesh,
   surface.scene = std::make_shared<MeshScene>(std::move(mesh), name);
   new_object(state, kSurfaceType, std::move(surface));
   return 1;
+}
+
+// run:surface(scene): of a scene that a script has made (lapwing.scene).
+int surface(lua_State* state) {
+  GeneratedScene made = finished_scene(object_argument<SceneObject>(state, 2, kSceneType));
+  return push_surface(state, made.name, std::move(made.mesh), made.region);
 }
 
 // run:read_surface(name): from a mesh file.
@@ -195,7 +202,8 @@ void open_map_library(lua_State* state) {
 }
 
 std::span<const luaL_Reg> map_methods_of_run() {
-  static const luaL_Reg methods[] = {{"read_surface", &guarded<read_surface>},
+  static const luaL_Reg methods[] = {{"surface", &guarded<surface>},
+                                     {"read_surface", &guarded<read_surface>},
                                      {"map", &guarded<map>},
                                      {"map_resolution", &guarded<map_resolution>}};
   return methods;
