@@ -12,7 +12,9 @@
 #include "framework/core/log.h"
 #include "framework/export/exporter.h"
 #include "framework/export/flight_report.h"
+#include "framework/export/light_painting.h"
 #include "framework/export/run_folder.h"
+#include "framework/geometry/png.h"
 #include "framework/verify/verify.h"
 
 namespace lapwing {
@@ -24,7 +26,8 @@ struct Outcome {
   Certificate certificate;
   std::string status;  // ok, not_certified, infeasible, failed, cancelled
   std::filesystem::path folder;
-  double seconds = 0;  // wall clock, all of it
+  double seconds = 0;                        // wall clock, all of it
+  std::optional<std::string> long_exposure;  // PNG
 };
 
 std::string status_of(const MissionResult& result, const Certificate& certificate, bool cancelled) {
@@ -127,6 +130,10 @@ std::string report_page(const Outcome& outcome) {
     findings.text = text;
     report.sections.insert(report.sections.begin(), Section{"Findings", {findings}});
   }
+  if (outcome.long_exposure) {
+    Image image{*outcome.long_exposure, "What a camera with an open shutter sees of the flight"};
+    report.sections.insert(report.sections.begin() + 1, Section{"Long exposure", {image}});
+  }
   return render_html(report);
 }
 
@@ -140,7 +147,15 @@ void write_files(const Outcome& outcome, const Registry& registry, const log::Ca
   for (const std::string& note : outcome.result.notes) log::info(note);
   for (const Check& check : outcome.certificate.failures()) log::info("fails: " + to_line(check));
   files.log = capture.text();
+  files.long_exposure = outcome.long_exposure;
   write_run_folder(outcome.folder, files);
+}
+
+// Of the flight under control.
+std::string photograph(const Plan& plan) {
+  constexpr int kWidth = 1000;  // pixels
+  const FlownPath flown = fly(plan.trajectory, vehicle_from_value(plan.vehicle));
+  return encode_png(long_exposure(plan, flown, kWidth));
 }
 
 void complete_plan(Outcome& outcome) {
@@ -178,6 +193,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   outcome.certificate = verify(outcome.result.plan);
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome);
+  if (!outcome.result.plan.lights.empty()) outcome.long_exposure = photograph(outcome.result.plan);
   write_files(outcome, registry, capture);
   outcome.seconds = steady_seconds() - begin;
   if (invocation.json) {

@@ -43,6 +43,7 @@ void write_run_folder(const std::filesystem::path& folder, const RunFiles& files
   const std::pair<const char*, const std::optional<std::string>&> all[] = {
       {"run.log", files.log},
       {"map.ot", files.map},
+      {"long_exposure.png", files.long_exposure},
       {"report.html", files.report},
       {"trajectory.csv", files.trajectory},
       {"plan.json", files.plan}};

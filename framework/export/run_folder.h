@@ -20,11 +20,12 @@ std::filesystem::path run_folder(std::string_view mission,
 // Contents of the files; what is absent is not written, and a file of that name left by an earlier
 // run is removed, so that a folder never mixes two runs.
 struct RunFiles {
-  std::optional<std::string> plan = {};        // plan.json
-  std::optional<std::string> trajectory = {};  // trajectory.csv
-  std::optional<std::string> report = {};      // report.html
-  std::optional<std::string> log = {};         // run.log
-  std::optional<std::string> map = {};         // map.ot
+  std::optional<std::string> plan = {};           // plan.json
+  std::optional<std::string> trajectory = {};     // trajectory.csv
+  std::optional<std::string> report = {};         // report.html
+  std::optional<std::string> log = {};            // run.log
+  std::optional<std::string> map = {};            // map.ot
+  std::optional<std::string> long_exposure = {};  // long_exposure.png
 };
 
 // Creates the folder and writes each file whole or not at all; plan.json last, so that a folder

@@ -80,9 +80,12 @@ fs::path DataFiles::find_entry(const std::string& name, const std::string& insid
                    (looked.empty() ? "any folder" : looked) + "; name its folder with --data DIR");
 }
 
+std::string DataFiles::read_text(const std::string& name, const std::string& inside) const {
+  return read_file(find(name, inside), kLargestFile);
+}
+
 Value DataFiles::read_json(const std::string& name, const std::string& inside) const {
-  const fs::path file = find(name, inside);
-  return from_json(read_file(file, kLargestFile), name);
+  return from_json(read_text(name, inside), name);
 }
 
 }  // namespace lapwing

@@ -29,6 +29,8 @@ class DataFiles {
 
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
 
+  // At most 64 MiB.
+  std::string read_text(const std::string& name, const std::string& inside = "") const;
   // InputError with line and column for malformed or truncated text.
   Value read_json(const std::string& name, const std::string& inside = "") const;
 

@@ -21,6 +21,15 @@ int read_json(lua_State* state) {
   return 1;
 }
 
+// lapwing.read_text(name [, folder]): the text of a file, found as read_json finds it.
+int read_text(lua_State* state) {
+  const std::string name = text_argument(state, 1, "lapwing.read_text");
+  const std::string folder =
+      lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, "lapwing.read_text");
+  push_text(state, run_of(state).files.read_text(name, folder));
+  return 1;
+}
+
 GeodeticPoint geodetic_argument(lua_State* state, int index, const char* what) {
   ParameterTable table;
   table.required_number("lat", "", "degrees north", between(-90, 90))
@@ -85,6 +94,7 @@ void open_lapwing_library(lua_State* state, MissionRun& run) {
   lua_setfield(state, LUA_REGISTRYINDEX, "lapwing.run");
   define_type<MissionOptions>(state, kOptionsType, nullptr, nullptr);
   const luaL_Reg functions[] = {{"read_json", &guarded<read_json>},
+                                {"read_text", &guarded<read_text>},
                                 {"local_from_geodetic", &guarded<local_from_geodetic>},
                                 {"options", &guarded<options>},
                                 {"fail", &guarded<fail>},

@@ -5,6 +5,7 @@
 #include <lua.hpp>
 
 #include "framework/core/log.h"
+#include "framework/export/light_painting.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
@@ -13,8 +14,7 @@
 
 namespace lapwing {
 
-void refuse_field(const std::string& what, const std::string& field,
-                               const Value& fields) {
+void refuse_field(const std::string& what, const std::string& field, const Value& fields) {
   std::vector<std::string> known;
   for (const auto& [key, value] : fields.as_map()) known.push_back(key);
   const std::string nearest = nearest_name(field, known);
@@ -23,6 +23,8 @@ void refuse_field(const std::string& what, const std::string& field,
 }
 
 namespace {
+
+constexpr double kMostPathPoints = 1e6;
 
 // -- run:solve
 // -------------------------------------------------------------------------------------
@@ -176,6 +178,17 @@ Eigen::Vector3d vector_of(std::span<const double> numbers) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+// x, y, z of each point in turn.
+Points points_of(const Parameters& given, const std::string& key) {
+  const auto numbers = given.numbers(key);
+  if (numbers.size() < 6 || numbers.size() % 3 != 0)
+    throw InputError(given.origin(key), key + ": expected x, y, z of two points or more");
+  Points points;
+  for (std::size_t i = 0; i < numbers.size(); i += 3)
+    points.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  return points;
+}
+
 ParameterTable span_table() {
   ParameterTable table;
   table.required_number("start", "s", "from the start of the flight", at_least(0))
@@ -192,11 +205,17 @@ ParameterTable task_table() {
       .number("tolerance", standard.tolerance, "m", "largest miss", above(0))
       .number("time_tolerance", standard.time_tolerance, "s", "how far off in time", at_least(0))
       .number("yaw_tolerance", standard.yaw_tolerance, "rad", "largest miss of yaw", above(0));
+  ParameterTable stroke;
+  stroke.required_numbers("points", 0, "m", "x, y, z of each point in turn, world");
   ParameterTable framing = span_table();
   framing.required_text("subject", "which is in the image");
   ParameterTable table;
   table.tables("keyframes", keyframe, "to fly through")
       .tables("framing", framing, "which subject is in the image, and when")
+      .tables("strokes", stroke, "to draw with light")
+      .number("drawing_tolerance", Task{}.drawing_tolerance, "m",
+              "mean distance between light and strokes", above(0))
+      .numbers("drawing_view", {0, 1, 0}, "", "the way that spectators look")
       .number("framing_share", Task{}.framing_share, "", "of that time", {0, 1, true});
   return table;
 }
@@ -217,6 +236,10 @@ Task task_of(const Parameters& given) {
     task.framing.push_back(
         {entry.text("subject"), {entry.number("start"), entry.number("finish")}});
   task.framing_share = given.number("framing_share");
+  for (const Parameters& entry : given.tables("strokes"))
+    task.strokes.push_back(points_of(entry, "points"));
+  task.drawing_tolerance = given.number("drawing_tolerance");
+  task.drawing_view = vector_of(given.numbers("drawing_view"));
   return task;
 }
 
@@ -229,6 +252,7 @@ ParameterTable plan_table() {
   table.table("task", task_table(), "what the flight is to do")
       .tables("cuts", span_table(), "footage that is thrown away")
       .optional_number("budget", "s", "of flight", above(0))
+      .tables("lights", span_table(), "when the light is on")
       .table("geodetic_origin", origin, "where the world frame lies");
   return table;
 }
@@ -268,6 +292,8 @@ int plan(lua_State* state) {
   document.task = task_of(given.table("task"));
   for (const Parameters& cut : given.tables("cuts"))
     document.cuts.push_back({cut.number("start"), cut.number("finish")});
+  for (const Parameters& light : given.tables("lights"))
+    document.lights.push_back({light.number("start"), light.number("finish")});
   if (given.has("budget")) document.budget = given.number("budget");
   const Parameters& place = given.table("geodetic_origin");
   if (place.has("lat") && place.has("lon")) {
@@ -277,6 +303,55 @@ int plan(lua_State* state) {
   document.configuration = run.configuration;
   document.solver = to_value(solution.result.report, solution.solver);
   new_object(state, kPlanType, std::move(made));
+  return 1;
+}
+
+// run:fly(plan): how it comes out under control in still air; with strokes, how far the light is
+// from them.
+int fly_plan(lua_State* state) {
+  const PlanObject& object = object_argument<PlanObject>(state, 2, kPlanType);
+  Value result = Value::map();
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    const FlownPath flown = fly(object.plan.trajectory, vehicle_from_value(object.plan.vehicle), {},
+                                run_of(state).settings.cancellation);
+    result.set("lost", flown.lost);
+    result.set("position_error", flown.position_error_worst);
+    result.set("yaw_error", flown.yaw_error_worst);
+    if (!object.plan.task.strokes.empty()) {
+      const DrawingError error = drawing_error(object.plan, flown);
+      result.set("mean_drawing_error", error.mean);
+      result.set("worst_drawing_error", error.worst);
+    }
+  }
+  push_value(state, result);
+  return 1;
+}
+
+// run:time_path{points = {x, y, z, ...}, spacing =, rounding =, speed =, acceleration =}: {points =
+// {x, y, z, ...}, times = {...}}, as fast as the limits allow, from rest to rest.
+int time_path(lua_State* state) {
+  ParameterTable table;
+  table.required_numbers("points", 0, "m", "x, y, z of each point in turn, world")
+      .number("spacing", 0.01, "m", "between the points of the answer", above(0))
+      .number("rounding", 0, "m", "of corners, standard deviation", at_least(0))
+      .required_number("speed", "m/s", "largest", above(0))
+      .required_number("acceleration", "m/s^2", "largest, along and across together", above(0));
+  const Parameters given = table_argument(state, 2, table, "time_path");
+  const Points path = points_of(given, "points");
+  const double spacing = given.number("spacing"), length = length_of(path);
+  if (!(length > 0)) throw InputError(given.origin("points"), "time_path: the path has no length");
+  if (length / spacing > kMostPathPoints)
+    throw InputError(given.origin("spacing"), "time_path: more than a million points");
+  const Points smooth = rounded(resampled(path, spacing), given.number("rounding"));
+  const std::vector<double> times =
+      fastest_times(smooth, {given.number("speed"), given.number("acceleration")});
+  Value points = Value::list(), result = Value::map();
+  for (const Eigen::Vector3d& p : smooth)
+    for (int axis = 0; axis < 3; ++axis) points.push_back(p(axis));
+  result.set("points", std::move(points));
+  result.set("times", Value(Value::List(times.begin(), times.end())));
+  push_value(state, result);
   return 1;
 }
 
@@ -360,6 +435,8 @@ int run_field(lua_State* state) {
                                      {"solve", &guarded<solve>},
                                      {"plan", &guarded<plan>},
                                      {"certify", &guarded<certify>},
+                                     {"fly", &guarded<fly_plan>},
+                                     {"time_path", &guarded<time_path>},
                                      {"cancelled", &guarded<cancelled>},
                                      {"progress", &guarded<progress>},
                                      {"fail", &guarded<fail>}};

@@ -153,7 +153,8 @@ Value to_value(const Plan& plan) {
   value.set("motion", motion_to_value(plan.trajectory));
   value.set("samples", std::move(samples));
   value.set("environment", environment_to_value(plan.environment));
-  if (!plan.cuts.empty()) value.set("cuts", cuts_to_value(plan.cuts));
+  if (!plan.cuts.empty()) value.set("cuts", spans_to_value(plan.cuts));
+  if (!plan.lights.empty()) value.set("lights", spans_to_value(plan.lights));
   if (plan.budget) value.set("budget", *plan.budget);
   value.set("task", task_to_value(plan.task));
   if (!plan.configuration.is_null()) value.set("configuration", plan.configuration);
@@ -180,7 +181,8 @@ Plan plan_from_value(const Value& value) {
     fields.add_error("samples", "expected at least one sample");
   }
   plan.environment = environment_from(fields.table("environment"));
-  plan.cuts = cuts_from(fields.optional_tables("cuts"));
+  plan.cuts = spans_from(fields.optional_tables("cuts"));
+  plan.lights = spans_from(fields.optional_tables("lights"));
   plan.budget = fields.optional_number("budget");
   plan.task = task_from(fields.table("task"));
   plan.configuration = fields.opaque("configuration");

@@ -12,6 +12,7 @@
 #include "framework/core/value.h"
 #include "framework/geometry/geodetic.h"
 #include "framework/trajectory/environment.h"
+#include "framework/trajectory/polyline.h"
 #include "framework/trajectory/time_span.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -35,8 +36,12 @@ struct FramingTask {
 struct Task {
   std::vector<KeyframeTask> keyframes;
   std::vector<FramingTask> framing;
-  double framing_share = 0.95;  // of the time asked for, cuts excepted, that the middle of the
-                                // subject is inside the image
+  double framing_share = 0.95;      // of the time asked for, cuts excepted, that the middle of the
+                                    // subject is inside the image
+  std::vector<Points> strokes;      // to draw with light, world
+  double drawing_tolerance = 0.05;  // m, of the mean distance between light and strokes
+  Eigen::Vector3d drawing_view =
+      Eigen::Vector3d::UnitY();  // the way that its spectators look, world
 };
 
 struct Plan {
@@ -48,6 +53,7 @@ struct Plan {
   Trajectory trajectory;
   Environment environment;
   std::vector<TimeSpan> cuts;    // footage thrown away; in order, apart from each other
+  std::vector<TimeSpan> lights;  // when the light is on; in order, apart from each other
   std::optional<double> budget;  // s of flight
   Task task;
   Value configuration;  // effective, with overrides

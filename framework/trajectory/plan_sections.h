@@ -10,8 +10,8 @@ namespace lapwing {
 Value environment_to_value(const Environment& environment);
 Environment environment_from(Fields fields);
 
-Value cuts_to_value(const std::vector<TimeSpan>& cuts);
-std::vector<TimeSpan> cuts_from(std::vector<Fields> entries);
+Value spans_to_value(const std::vector<TimeSpan>& cuts);
+std::vector<TimeSpan> spans_from(std::vector<Fields> entries);
 
 // A task that asks for no framing has neither of its keys.
 Value task_to_value(const Task& task);

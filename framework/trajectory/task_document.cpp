@@ -41,7 +41,7 @@ TimeSpan span_from(Fields& fields) {
 
 }  // namespace
 
-Value cuts_to_value(const std::vector<TimeSpan>& cuts) {
+Value spans_to_value(const std::vector<TimeSpan>& cuts) {
   Value list = Value::list();
   for (const TimeSpan& cut : cuts) {
     Value entry = Value::map();
@@ -51,7 +51,7 @@ Value cuts_to_value(const std::vector<TimeSpan>& cuts) {
   return list;
 }
 
-std::vector<TimeSpan> cuts_from(std::vector<Fields> entries) {
+std::vector<TimeSpan> spans_from(std::vector<Fields> entries) {
   std::vector<TimeSpan> cuts;
   for (Fields& entry : entries) {
     cuts.push_back(span_from(entry));
@@ -64,6 +64,21 @@ Value task_to_value(const Task& task) {
   Value keyframes = Value::list(), framing = Value::list(), value = Value::map();
   for (const KeyframeTask& keyframe : task.keyframes) keyframes.push_back(to_value(keyframe));
   value.set("keyframes", std::move(keyframes));
+  if (!task.strokes.empty()) {
+    Value strokes = Value::list();
+    for (const Points& stroke : task.strokes) {
+      Value points = Value::list();
+      for (const Eigen::Vector3d& p : stroke)
+        points.push_back(Value(Value::List{p.x(), p.y(), p.z()}));
+      Value entry = Value::map();
+      entry.set("points", std::move(points));
+      strokes.push_back(std::move(entry));
+    }
+    value.set("strokes", std::move(strokes));
+    value.set("drawing_tolerance", task.drawing_tolerance);
+    const Eigen::Vector3d& view = task.drawing_view;
+    value.set("drawing_view", Value(Value::List{view.x(), view.y(), view.z()}));
+  }
   if (task.framing.empty()) return value;
   for (const FramingTask& asked : task.framing) {
     Value entry = Value::map();
@@ -81,6 +96,16 @@ Task task_from(Fields fields) {
   for (Fields& entry : fields.tables("keyframes")) {
     task.keyframes.push_back(keyframe_from(entry));
     entry.finish();
+  }
+  if (fields.has("strokes") || fields.has("drawing_tolerance")) {
+    for (Fields& entry : fields.tables("strokes")) {
+      Points stroke;
+      for (const auto& p : entry.rows("points", 3)) stroke.emplace_back(p[0], p[1], p[2]);
+      task.strokes.push_back(std::move(stroke));
+      entry.finish();
+    }
+    task.drawing_tolerance = fields.number("drawing_tolerance");
+    task.drawing_view = fields.vector3("drawing_view");
   }
   if (fields.has("framing") || fields.has("framing_share")) {
     for (Fields& entry : fields.tables("framing")) {

@@ -61,7 +61,7 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"whole_subject", CheckGroup::task, false, ""},
     CheckKind{"line_of_sight", CheckGroup::task, false, ""},
     CheckKind{"gates", CheckGroup::task, true, ""},
-    CheckKind{"drawing", CheckGroup::task, true, ""},
+    CheckKind{"drawing", CheckGroup::task, true, "m"},
     CheckKind{"coverage", CheckGroup::task, true, ""},
 };
 
@@ -114,6 +114,7 @@ void check_subject_distance(const Flight& flight, Certificate& certificate);
 void check_closed_loop(const Flight& flight, Certificate& certificate);
 void check_time(const Flight& flight, Certificate& certificate);
 void check_task(const Flight& flight, Certificate& certificate);
+void check_drawing(const Flight& flight, Certificate& certificate);
 void check_framing(const Flight& flight, Certificate& certificate);
 
 // What of the environment, the cuts and the framing does not hold together, in words. The spans are

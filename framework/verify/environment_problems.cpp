@@ -88,13 +88,27 @@ void list_problems(const Plan& film, double finish, std::vector<std::string>& pr
       problems.push_back(name + " must start before it finishes, and lie within the flight");
     }
   };
-  for (std::size_t i = 0; i < film.cuts.size(); ++i) {
-    const std::string name = "cut " + std::to_string(i + 1);
-    judge(film.cuts[i], name);
-    if (i > 0 && !(film.cuts[i].start > film.cuts[i - 1].finish)) {
-      problems.push_back(name + " must start after the one before it finishes");
+  const auto judge_all = [&](const std::vector<TimeSpan>& spans, const char* kind) {
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+      const std::string name = kind + std::to_string(i + 1);
+      judge(spans[i], name);
+      if (i > 0 && !(spans[i].start > spans[i - 1].finish))
+        problems.push_back(name + " must start after the one before it finishes");
     }
+  };
+  judge_all(film.cuts, "cut ");
+  judge_all(film.lights, "light ");
+  for (std::size_t i = 0; i < film.task.strokes.size(); ++i) {
+    const Points& stroke = film.task.strokes[i];
+    if (stroke.size() < 2 || !(length_of(stroke) > 0) ||
+        !std::all_of(stroke.begin(), stroke.end(), [](const auto& p) { return sound(p); }))
+      problems.push_back("stroke " + std::to_string(i + 1) +
+                         " must have a length, and finite coordinates up to 1e7");
   }
+  if (!film.task.strokes.empty() && !(film.task.drawing_tolerance > 0))
+    problems.emplace_back("the tolerance of the drawing must be above 0");
+  if (!sound(film.task.drawing_view) || !(film.task.drawing_view.norm() > 0))
+    problems.emplace_back("the view of the drawing must be a direction");
   for (std::size_t i = 0; i < film.task.framing.size(); ++i) {
     const FramingTask& asked = film.task.framing[i];
     const std::string name = "framing " + std::to_string(i + 1);

@@ -119,7 +119,7 @@ void check_task(const Flight& flight, Certificate& certificate) {
   checks.push_back(yaw.check("no keyframe states a yaw"));
   check_framing(flight, certificate);
   checks.push_back(skipped_check("gates", "the task has no gate"));
-  checks.push_back(skipped_check("drawing", "the task has no stroke"));
+  check_drawing(flight, certificate);
   checks.push_back(skipped_check("coverage", "the task has no region to cover"));
 }
 

@@ -72,7 +72,7 @@ function M.of_scene(given)
   local own = {
     { name = "scene", type = "text", summary = "a scene of scripts/scene: street, suburb, ..." },
     { name = "scene_seed", type = "integer", default = 1, summary = "of the scene" },
-    { name = "sensor", type = "table", fields = SENSOR, summary = "the depth camera" },
+    { name = "sensor", type = "table", table = SENSOR, summary = "the depth camera" },
     { name = "views", type = "integer", default = 400, minimum = 1, maximum = 100000,
       summary = "how many images" },
   }

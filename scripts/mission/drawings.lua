@@ -1,0 +1,122 @@
+-- What is drawn: strokes from a text, an SVG picture or points, placed in the world and joined.
+local fonts = require "mission.stroke_font"
+local svg = require "mission.svg"
+
+local M = {}
+
+-- Strokes as {{x, y}, ...}, y up, and the height of what is 1 high in the drawing.
+function M.read(run)
+  local o = run.options
+  local given = 0
+  for _, source in ipairs { "text", "svg", "strokes", "input" } do
+    if o[source] and #o[source] > 0 then given = given + 1 end
+  end
+  if given ~= 1 then
+    lapwing.fail("a drawing comes from one of: text, svg, strokes, --set input=PICTURE.svg")
+  end
+  if o.text then
+    local strokes, missing
+    if o.font then
+      strokes, missing = fonts.hershey_strokes(o.text, lapwing.read_text(o.font, "strokes/hershey"))
+    else
+      strokes, missing = fonts.strokes(o.text)
+    end
+    if not strokes then
+      run:fail("text", string.format("the font has no glyph for '%s'", missing))
+    end
+    if #strokes == 0 then run:fail("text", "there is nothing to draw") end
+    return strokes, 1
+  elseif o.strokes and #o.strokes > 0 then
+    local strokes = {}
+    for i, stroke in ipairs(o.strokes) do
+      local points = {}
+      if #stroke.points < 4 or #stroke.points % 2 ~= 0 then
+        run:fail("strokes[" .. i .. "].points", "expected x, y of two points or more")
+      end
+      for k = 1, #stroke.points, 2 do
+        points[#points + 1] = { stroke.points[k], stroke.points[k + 1] }
+      end
+      strokes[i] = points
+    end
+    return strokes
+  end
+  local name = o.svg or o.input
+  local good, strokes = pcall(svg.strokes, lapwing.read_text(name, "strokes"))
+  if not good then lapwing.fail(name .. ": " .. tostring(strokes):gsub("^[^ ]*:%d+: ", "")) end
+  for _, stroke in ipairs(strokes) do
+    for _, p in ipairs(stroke) do
+      p[2] = -p[2]
+      if p[1] ~= p[1] or p[2] ~= p[2] or math.abs(p[1]) > 1e9 or math.abs(p[2]) > 1e9 then
+        lapwing.fail(name .. ": a path holds a number that is not finite or too large")
+      end
+    end
+  end
+  if #strokes == 0 then lapwing.fail(name .. ": no path is drawn in it") end
+  return strokes
+end
+
+-- Points that repeat the one before, and strokes without a length, left out.
+function M.without_repeats(strokes)
+  local kept = {}
+  for _, stroke in ipairs(strokes) do
+    local points = { stroke[1] }
+    for i = 2, #stroke do
+      local p, q = points[#points], stroke[i]
+      if (p[1] - q[1]) ^ 2 + (p[2] - q[2]) ^ 2 > 1e-12 then points[#points + 1] = q end
+    end
+    if #points > 1 then kept[#kept + 1] = points end
+  end
+  return kept
+end
+
+-- Into the world: {{x, y, z}, ...} per stroke.
+function M.placed(strokes, unit, o)
+  local left, right, low, high = math.huge, -math.huge, math.huge, -math.huge
+  for _, stroke in ipairs(strokes) do
+    for _, p in ipairs(stroke) do
+      left, right = math.min(left, p[1]), math.max(right, p[1])
+      low, high = math.min(low, p[2]), math.max(high, p[2])
+    end
+  end
+  local scale = o.height / (unit or math.max(high - low, 1e-9))
+  local yaw = math.rad(o.view_yaw_deg)
+  local across = { math.sin(yaw), -math.cos(yaw) }  -- to the right of who looks that way
+  local world = {}
+  for i, stroke in ipairs(strokes) do
+    world[i] = {}
+    for k, p in ipairs(stroke) do
+      local u = scale * (p[1] - (left + right) / 2)
+      world[i][k] = { o.origin[1] + u * across[1], o.origin[2] + u * across[2],
+                      o.origin[3] + scale * (p[2] - low) }
+    end
+  end
+  return world
+end
+
+-- x, y, z of each point in turn.
+function M.flat(points)
+  local numbers = {}
+  for _, p in ipairs(points) do table.move(p, 1, 3, #numbers + 1, numbers) end
+  return numbers
+end
+
+local function distance(a, b)
+  return math.sqrt((a[1] - b[1]) ^ 2 + (a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2)
+end
+
+-- One path through all strokes, and per stroke the shares of its length that are lit.
+function M.joined(strokes)
+  local points, lit, length = {}, {}, 0
+  for i, stroke in ipairs(strokes) do
+    for k, p in ipairs(stroke) do
+      if #points > 0 then length = length + distance(points[#points], p) end
+      points[#points + 1] = p
+      if k == 1 then lit[i] = { length } end
+    end
+    lit[i][2] = length
+  end
+  for _, span in ipairs(lit) do span[1], span[2] = span[1] / length, span[2] / length end
+  return points, lit
+end
+
+return M

@@ -1,0 +1,165 @@
+-- Light paintings (thesis 3.7.1): strokes of a drawing, flown with a light that is on along them.
+--
+--   local light_painting = require "mission.light_painting"
+--   return light_painting.text { name = "hello", text = "HELLO", height = 2 }
+--
+-- Drawings come from a text in a font of strokes, an SVG picture, or points. They stand upright at
+-- `origin`, the middle of their lower edge; spectators look along `view_yaw_deg`.
+local drawings = require "mission.drawings"
+local order = require "mission.stroke_order"
+
+local M = {}
+
+local function weight(name, default, summary)
+  return { name = name, type = "number", default = default, minimum = 0, summary = summary }
+end
+
+local DECLARATIONS = {
+  { name = "text", type = "text", summary = "what to write" },
+  { name = "font", type = "text", summary = "a Hershey font, .jhf; absent: our own capitals" },
+  { name = "svg", type = "text", summary = "a picture whose paths are drawn" },
+  { name = "input", type = "text", summary = "the same, from the command line" },
+  { name = "strokes", type = "tables", summary = "lists of points of one's own", table = {
+    { name = "points", type = "numbers", summary = "x, y, x, y, ... y up" } } },
+  { name = "height", type = "number", unit = "m", default = 2, minimum = 0.01,
+    summary = "of a capital letter, or of the picture" },
+  { name = "origin", type = "numbers", size = 3, unit = "m", default = { 0, 0, 2 },
+    summary = "middle of the drawing's lower edge, world" },
+  { name = "view_yaw_deg", type = "number", unit = "deg", default = 90,
+    summary = "where spectators look; 90: from south to north" },
+  { name = "reorder", type = "boolean", default = true,
+    summary = "draw strokes in the order that is shortest to fly" },
+  { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "a vehicle file" },
+  { name = "speed", type = "number", unit = "m/s", default = 1.5, minimum = 0.01,
+    summary = "largest; the vehicle's own limits hold too" },
+  { name = "acceleration", type = "number", unit = "m/s^2", default = 2, minimum = 0.01,
+    summary = "largest, along and across the path together" },
+  { name = "rounding", type = "number", unit = "m", default = 0.015, minimum = 0,
+    summary = "of sharp corners" },
+  { name = "tolerance", type = "number", unit = "m", default = 0.02, minimum = 0.001,
+    summary = "mean distance of the light from the drawing, flown; slower until it is kept" },
+  { name = "slowest", type = "number", default = 0.1, minimum = 0.01, maximum = 1,
+    summary = "share of the speed below which no slower flight is tried" },
+  { name = "step", type = "number", unit = "s", default = 0.05, minimum = 0.005,
+    summary = "between stages" },
+  { name = "weights", type = "table", summary = "of the cost", table = {
+    weight("drawing", 1e4, "places along the strokes"),
+    weight("smoothness", 1e-4, "snap: more rounds the strokes (fig. 3.8 B)"),
+    weight("effort", 1e-4, "forces beyond hovering") } },
+  { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
+    summary = "trajectory solver" },
+}
+
+local SPACING = 0.01     -- m, between points of the timed path
+local SLOWER = 0.8       -- speed of the next try
+local MOST_STAGES = 3000
+
+local function at_share(times, share)
+  local place = 1 + share * (#times - 1)
+  local k = math.min(math.floor(place), #times - 1)
+  return times[k] + (place - k) * (times[k + 1] - times[k])
+end
+
+-- Places on the timed path at every stage.
+local function places_of(timed, count, duration)
+  local places, k = {}, 1
+  for i = 0, count - 1 do
+    local time = i * duration / (count - 1)
+    while k < #timed.times - 1 and timed.times[k + 1] < time do k = k + 1 end
+    local from, to = timed.times[k], timed.times[k + 1]
+    local share = to > from and math.min(1, (time - from) / (to - from)) or 1
+    local p = {}
+    for axis = 1, 3 do
+      local a, b = timed.points[3 * (k - 1) + axis], timed.points[3 * k + axis]
+      p[axis] = a + share * (b - a)
+    end
+    places[i + 1] = { time = time, value = p }
+  end
+  return places
+end
+
+local function solved(run, timed, vehicle)
+  local o = run.options
+  local duration = timed.times[#timed.times]
+  local count = math.max(5, math.ceil(duration / o.step) + 1)
+  if count > MOST_STAGES then
+    run:fail("step", string.format("%.4g s of flight are more than %d stages; draw faster, less, "
+                                   .. "or with a longer step", duration, MOST_STAGES))
+  end
+  local places = places_of(timed, count, duration)
+  local p = run:problem { vehicle = vehicle, duration = duration, step = duration / (count - 1),
+                          environment = {} }
+  p:add_model { type = "quadrotor" }
+  p:add_cost { type = "keyframe", name = "drawing", weight = o.weights.drawing / count,
+               keyframes = places }
+  p:add_cost { type = "derivative", name = "smoothness", block = "force", order = 2,
+               weight = o.weights.smoothness / vehicle.mass ^ 2 }
+  p:add_cost { type = "yaw_derivative", name = "yaw", weight = 1 }
+  p:add_cost { type = "input_effort", name = "effort", weight = o.weights.effort }
+  for _, limit in ipairs { "input_limits", "state_limits" } do p:add_constraint { type = limit } end
+  local first, last = places[1].value, places[count].value
+  p:add_constraint { type = "boundary_state", start_yaw = 0, start_position = first,
+                     finish_position = last }
+  local times, positions, yaws = {}, {}, {}
+  for i, place in ipairs(places) do times[i], positions[i], yaws[i] = place.time, place.value, 0 end
+  p:guess_path { times = times, positions = positions, yaws = yaws }
+  p:finish()
+  return run:solve(p, o.solver)
+end
+
+local function plan_of(run, strokes, lights, solution, figures)
+  local yaw = math.rad(run.options.view_yaw_deg)
+  local task = { strokes = {}, drawing_view = { math.cos(yaw), math.sin(yaw), 0 } }
+  for i, stroke in ipairs(strokes) do task.strokes[i] = { points = drawings.flat(stroke) } end
+  return run:plan { solution = solution, task = task, lights = lights,
+                    figures = figures }
+end
+
+local function painted(run)
+  local o = run.options
+  local vehicle = run:vehicle(o.vehicle)
+  local drawn, unit = drawings.read(run)
+  drawn = drawings.without_repeats(drawn)
+  if #drawn == 0 then lapwing.fail("the drawing has no line of any length") end
+  if o.reorder then drawn = order.short(drawn) end
+  local strokes = drawings.placed(drawn, unit, o)
+  local path, lit = drawings.joined(strokes)
+  local fastest = 0.95 * math.min(vehicle.speed_across, vehicle.climb_speed, vehicle.descent_speed)
+  local strongest = 0.9 * vehicle.acceleration_across
+  local share = 1
+  while true do
+    local timed = run:time_path {
+      points = drawings.flat(path), spacing = SPACING, rounding = o.rounding,
+      speed = share * math.min(o.speed, fastest),
+      acceleration = share ^ 2 * math.min(o.acceleration, strongest),
+    }
+    local lights = {}
+    for i, span in ipairs(lit) do
+      local light = { start = at_share(timed.times, span[1]), finish = at_share(timed.times, span[2]) }
+      local before = lights[#lights]
+      if before and light.start <= before.finish then before.finish = light.finish
+      else lights[#lights + 1] = light end
+    end
+    local solution = solved(run, timed, vehicle)
+    local flown = run:fly(plan_of(run, strokes, lights, solution))
+    local slower = share * SLOWER
+    if flown.mean_drawing_error <= o.tolerance or slower < o.slowest or run:cancelled() then
+      return plan_of(run, strokes, lights, solution, {
+        mean_error = flown.mean_drawing_error, worst_error = flown.worst_drawing_error,
+        strokes = #strokes, speed_share = share,
+      })
+    end
+    share = slower
+  end
+end
+
+local function mission(given)
+  local name = given.name
+  given.name = nil
+  return { kind = "light_painting", name = name, options = lapwing.options(DECLARATIONS, given),
+           plan = painted }
+end
+
+M.text, M.picture, M.strokes = mission, mission, mission
+
+return M
