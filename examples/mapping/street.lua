@@ -5,6 +5,6 @@ return map.of_scene {
   name   = "street",
   scene  = "street",
   resolution = 0.2,  -- m
-  sensor = { width = 160, height = 120, view_deg = 90, range = 30 },
-  views  = 600,
+  sensor = { width = 160, height = 120, view_deg = 90, range = 20 },
+  views  = 300,
 }

@@ -6,6 +6,6 @@ return map.of_scene {
   scene  = "suburb",
   resolution = 0.2,  -- m
   observations = true,
-  sensor = { range = 30, dropped = 0.4, sigma = 0.1 },
-  views  = 600,
+  sensor = { range = 20, dropped = 0.4, sigma = 0.1 },
+  views  = 300,
 }

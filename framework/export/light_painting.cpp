@@ -9,9 +9,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kMargin = 0.15;    // of the drawing's size, around it
-constexpr double kCore = 0.004;     // standard deviations of the light's image, of the picture's
-constexpr double kHalo = 0.02;      //   width
+constexpr double kMargin = 0.15;               // of the drawing's size, around it
+constexpr double kCore = 0.010, kHalo = 0.05;  // standard deviations of the light's image, of the
+                                               // picture's shorter side
 constexpr double kHaloShare = 0.1;  // of the core's peak
 constexpr double kFullSpeed = 1.0;  // m/s, at which a stroke is as bright as white paper
 constexpr double kColor[] = {1.0, 0.86, 0.62};
@@ -83,7 +83,8 @@ Picture long_exposure(const Plan& plan, const FlownPath& flown, int width) {
   Exposure exposure{
       width, std::clamp(static_cast<int>(scale * (upper.y() - lower.y())), 1, 4 * width), {}};
   exposure.light.assign(static_cast<std::size_t>(width) * exposure.height, 0.0);
-  const double core = kCore * width, halo = kHalo * width;
+  const double shorter = std::min(exposure.width, exposure.height);
+  const double core = std::max(0.7, kCore * shorter), halo = kHalo * shorter;
   const double apart = core / 2;  // pixels between two splats
   for (std::size_t i = 1; i < flown.samples.size(); ++i) {
     const FlownSample &a = flown.samples[i - 1], &b = flown.samples[i];

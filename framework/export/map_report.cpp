@@ -20,18 +20,22 @@ std::string caption(const std::string& what, const MapPicture& made) {
   return what + "; squares of " + metres(made.metres) + ", north is up";
 }
 
-// The height at which a level cut shows most: the one with the most free voxels.
+// The height at which a level cut shows most: much that is free and much that is in the way.
 double telling_height(const Map& map, const VoxelBox& bounds) {
-  std::vector<std::uint64_t> free(bounds.upper.z - bounds.lower.z + 1);
+  const auto levels = static_cast<std::size_t>(bounds.upper.z - bounds.lower.z + 1);
+  std::vector<double> free(levels), occupied(levels);
   map.for_each_leaf([&](const VoxelLeaf& leaf) {
-    if (map.settings().state(leaf.log_odds) != VoxelState::free) return;
+    const VoxelState state = map.settings().state(leaf.log_odds);
+    if (state == VoxelState::unknown) return;
+    std::vector<double>& counts = state == VoxelState::free ? free : occupied;
     const int size = 1 << leaf.level;
     for (int z = leaf.key.z; z < leaf.key.z + size; ++z)
       if (bounds.lower.z <= z && z <= bounds.upper.z)
-        free[static_cast<std::size_t>(z - bounds.lower.z)] +=
-            static_cast<std::uint64_t>(size) * size;
+        counts[static_cast<std::size_t>(z - bounds.lower.z)] += static_cast<double>(size) * size;
   });
-  const auto most = std::max_element(free.begin(), free.end()) - free.begin();
+  std::size_t most = 0;
+  for (std::size_t z = 0; z < levels; ++z)
+    if (free[z] * (occupied[z] + 1) > free[most] * (occupied[most] + 1)) most = z;
   return (bounds.lower.z + static_cast<int>(most) - kCenterKey + 0.5) * map.grid().resolution();
 }
 

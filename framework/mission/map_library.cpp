@@ -25,6 +25,16 @@ Value list_of(const Eigen::Vector3d& v) {
   return Value(Value::List{v.x(), v.y(), v.z()});
 }
 
+Eigen::Vector3d point_argument(lua_State* state, int index, const char* what) {
+  const Value given = value_from_lua(state, index, Sandbox::of(state).script_position(state), what);
+  if (!given.is_list() || given.as_list().size() != 3)
+    throw InputError(std::string(what) + ": expected a place {x, y, z}");
+  Eigen::Vector3d p;
+  for (int axis = 0; axis < 3; ++axis)
+    p(axis) = given.as_list()[static_cast<std::size_t>(axis)].as_number();
+  return p;
+}
+
 // -- surfaces ------------------------------------------------------------------------------------
 
 int push_surface(lua_State* state, std::string name, TriangleMesh mesh,
@@ -50,10 +60,31 @@ int read_surface(lua_State* state) {
   return push_surface(state, name, std::move(file.mesh), bounds);
 }
 
+// surface:clearance(p): metres to the nearest triangle, 50 at most.
+int clearance(lua_State* state) {
+  constexpr double kReach = 50;
+  const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
+  const auto nearest = surface.scene->nearest(point_argument(state, 2, "clearance"), kReach);
+  lua_pushnumber(state, nearest ? nearest->distance : kReach);
+  return 1;
+}
+
+// surface:covered(p): whether there is anything straight above.
+int covered(lua_State* state) {
+  const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
+  const Eigen::Vector3d p = point_argument(state, 2, "covered");
+  lua_pushboolean(state, surface.scene->blocked({.origin = p, .direction = {0, 0, 1}}));
+  return 1;
+}
+
 // Fields: name, triangles, lower and upper (of its bounds), region = {lower =, upper =}.
 int surface_field(lua_State* state) {
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
   const std::string field = text_argument(state, 2, "surface");
+  if (field == "clearance" || field == "covered") {
+    lua_pushcfunction(state, field == "covered" ? &guarded<covered> : &guarded<clearance>);
+    return 1;
+  }
   const Eigen::AlignedBox3d bounds = surface.scene->mesh().bounds();
   Value region = Value::map(), fields = Value::map();
   region.set("lower", list_of(surface.region.min()));
