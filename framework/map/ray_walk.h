@@ -32,8 +32,9 @@ struct RayWalk {
         spacing_[i] = 0;
         continue;
       }
-      first_[i] = (grid.face(cell[i] + (step[i] > 0)) - origin_W[i]) / d;
-      spacing_[i] = grid.resolution() / std::abs(d);
+      const double per_metre = 1 / d;
+      first_[i] = (grid.face(cell[i] + (step[i] > 0)) - origin_W[i]) * per_metre;
+      spacing_[i] = grid.resolution() * std::abs(per_metre);
     }
   }
 

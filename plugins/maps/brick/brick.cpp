@@ -64,7 +64,7 @@ class BrickMap : public Map {
   struct Change {
     Block* block;
     DenseBrick* brick;
-    const BrickMarks* marks;
+    ScanMarks::Corner corner;
     std::uint64_t chunks;
   };
 
@@ -113,20 +113,22 @@ std::uint64_t BrickMap::changed_chunks(const BrickMarks& marks, std::size_t& bri
 }
 
 void BrickMap::prepare(Change& change) {
-  change.block = &bricks_.make_block(change.marks->cell);
-  change.brick = &bricks_.make_brick(*change.block, place(change.marks->cell, kBrickLevel));
+  change.block = &bricks_.make_block(change.corner.cell);
+  change.brick = &bricks_.make_brick(*change.block, place(change.corner.cell, kBrickLevel));
   for (std::uint64_t left = change.chunks; left; left &= left - 1)
     bricks_.make_slot(*change.brick, std::countr_zero(left));
 }
 
 void BrickMap::update(const Change& change) {
+  const BrickMarks marks = marks_.take(change.corner, true);
+  if (!change.brick) return;
   DenseBrick& brick = *change.brick;
   for (std::uint64_t left = change.chunks; left; left &= left - 1) {
     const int chunk = std::countr_zero(left);
-    const std::uint64_t measured = change.marks->measured[chunk];
+    const std::uint64_t measured = marks.measured[chunk];
     const std::uint32_t slot = brick.content[chunk];
     const std::uint64_t free =
-        update_voxels(bricks_.values(slot), measured, change.marks->hit[chunk], settings());
+        update_voxels(bricks_.values(slot), measured, marks.hit[chunk], settings());
     brick.known[chunk] |= measured;
     brick.free[chunk] = (brick.free[chunk] & ~measured) | free;
     std::uint16_t* observations = bricks_.observations(slot);
@@ -139,23 +141,29 @@ void BrickMap::update(const Change& change) {
 }
 
 void BrickMap::insert(std::span<const Eigen::Vector3f> points_W, const Eigen::Vector3f& origin_W) {
-  const std::span<const BrickMarks> found = marks_.mark(points_W, origin_W, threads());
   changes_.clear();
   std::size_t bricks = 0, slots = 0;
-  for (const BrickMarks& marks : found) {
-    const std::uint64_t chunks = changed_chunks(marks, bricks, slots);
-    if (chunks) changes_.push_back({nullptr, nullptr, &marks, chunks});
-  }
+  for (const ScanMarks::Corner& corner : marks_.mark(points_W, origin_W, threads()))
+    changes_.push_back(
+        {nullptr, nullptr, corner, changed_chunks(marks_.take(corner, false), bricks, slots)});
   slots -= std::min(slots, bricks_.spare_slots());
-  require_memory(bytes() + BrickGrid::bytes_of(bricks / 8, bricks, slots, settings().observations));
-  for (Change& change : changes_) prepare(change);
+  const std::size_t more =
+      BrickGrid::bytes_of(bricks / 8, bricks, slots, settings().observations);
+  const bool fits = bytes() + more <= settings().memory_limit;
+  for (Change& change : changes_)
+    if (change.chunks && fits) prepare(change);
   const std::size_t parts = (changes_.size() + kBricksAPart - 1) / kBricksAPart;
   parallel_for(parts, threads(), [&](std::size_t part) {
     const std::size_t end = std::min(changes_.size(), (part + 1) * kBricksAPart);
     for (std::size_t k = part * kBricksAPart; k < end; ++k) update(changes_[k]);
   });
+  if (!fits) {
+    marks_.finish();
+    require_memory(bytes() + more);
+  }
   for (const Change& change : changes_)
-    bricks_.tidy(*change.block, place(change.marks->cell, kBrickLevel), change.chunks);
+    if (change.chunks) bricks_.tidy(*change.block, place(change.corner.cell, kBrickLevel), change.chunks);
+  marks_.finish();
 }
 
 // What the leaves take at most, beyond what there is.

@@ -34,6 +34,12 @@ class RayOrigin {
 
   const int* cell() const { return cell_; }
 
+  // Whether a point lies in the first voxel.
+  bool holds(const Eigen::Vector3f& p_W) const {
+    return grid_.index(p_W.x()) == cell_[0] && grid_.index(p_W.y()) == cell_[1] &&
+           grid_.index(p_W.z()) == cell_[2];
+  }
+
   // False when the end lies in the first voxel, so that there is nothing to pass.
   __attribute__((always_inline)) bool start(const Eigen::Vector3f& end_W, RayStart& ray) const {
     for (int i = 0; i < 3; ++i) ray.end[i] = grid_.index(end_W[i]);

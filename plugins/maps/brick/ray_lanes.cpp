@@ -42,10 +42,13 @@ __attribute__((always_inline)) inline bool load(Lanes& lanes, int lane, const Ra
   return false;
 }
 
+template <bool kPages>
 inline void mark(const MarkTarget& target, std::int64_t at) {
   __atomic_store_n(target.marks + at, kPassed, __ATOMIC_RELAXED);
+  if constexpr (kPages) __atomic_store_n(target.pages + (at >> kPageShift), 1, __ATOMIC_RELAXED);
 }
 
+template <bool kPages>
 __attribute__((always_inline)) inline void walk(const RayOrigin& origin,
                                                 std::span<const Eigen::Vector3f> ends_W,
                                                 const MarkTarget& target) {
@@ -67,12 +70,12 @@ __attribute__((always_inline)) inline void walk(const RayOrigin& origin,
       const Four least = xy_least < tz ? xy_least : tz;
       done = (at == lanes.end) | (least > lanes.length);
       if (done[0] | done[1] | done[2] | done[3]) break;
-      for (int lane = 0; lane < 4; ++lane) mark(target, at[lane]);
+      for (int lane = 0; lane < 4; ++lane) mark<kPages>(target, at[lane]);
     }
     lanes.t[0] = tx, lanes.t[1] = ty, lanes.t[2] = tz, lanes.at = at;
     for (int lane = 0; lane < 4; ++lane) {
       if (!done[lane])
-        mark(target, at[lane]);
+        mark<kPages>(target, at[lane]);
       else
         busy -= !load(lanes, lane, origin, ends_W, next, target);
     }
@@ -83,7 +86,8 @@ __attribute__((always_inline)) inline void walk(const RayOrigin& origin,
 __attribute__((target("avx2"))) void walk_avx2(const RayOrigin& origin,
                                                std::span<const Eigen::Vector3f> ends_W,
                                                const MarkTarget& target) {
-  walk(origin, ends_W, target);
+  if (target.pages) walk<true>(origin, ends_W, target);
+  else walk<false>(origin, ends_W, target);
 }
 #endif
 
@@ -94,7 +98,8 @@ void mark_rays(const RayOrigin& origin, std::span<const Eigen::Vector3f> ends_W,
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2")) return walk_avx2(origin, ends_W, target);
 #endif
-  walk(origin, ends_W, target);
+  if (target.pages) walk<true>(origin, ends_W, target);
+  else walk<false>(origin, ends_W, target);
 }
 
 }  // namespace lapwing::brick_map

@@ -10,15 +10,17 @@ namespace lapwing::brick_map {
 
 inline constexpr std::uint8_t kPassed = 0x80, kHit = 0xc0;
 
-// The bytes of a box of voxels. `first` is the byte of the ray's first voxel, `last[i]` and
-// `stride[i]` what a step along axis i adds; `parking` is a byte that nobody reads.
+// A byte for every voxel of a box, and one for every 4096 of those that is set when one of them is; `pages`
+// may be null.
+inline constexpr int kPageShift = 12;
 struct MarkTarget {
-  std::uint8_t* marks;
-  std::int64_t stride[3];
-  std::int64_t first, parking;
+  std::uint8_t *marks, *pages;
+  std::int64_t stride[3];  // what a step along an axis adds
+  std::int64_t first;      // the byte of the voxel that all rays start in
+  std::int64_t parking;    // one that nobody reads
 };
 
-// Marks what rays to each of `ends_W` pass, but for the voxel that each starts in. Several threads
+// Marks what rays to each of `ends_W` pass, but for the voxel that they start in. Several threads
 // may mark in the same bytes.
 void mark_rays(const RayOrigin& origin, std::span<const Eigen::Vector3f> ends_W,
                const MarkTarget& target);

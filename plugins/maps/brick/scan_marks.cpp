@@ -1,8 +1,9 @@
 #include "plugins/maps/brick/scan_marks.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstring>
-#include <unordered_map>
 
 #include "framework/core/parallel.h"
 #include "plugins/maps/brick/ray_lanes.h"
@@ -11,7 +12,7 @@ namespace lapwing::brick_map {
 namespace {
 
 constexpr std::uint8_t kSeen = 1;  // an end voxel that has its ray
-constexpr std::size_t kKept = 16u << 20, kSpare = 64;
+constexpr std::size_t kKept = 4u << 20, kSpare = 64;
 constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;
 constexpr std::size_t kRaysAPart = 512;
 
@@ -36,40 +37,53 @@ void add_row(const std::uint8_t* row, int y, int z, BrickMarks& marks) {
 
 }  // namespace
 
-std::span<const BrickMarks> ScanMarks::mark(std::span<const Eigen::Vector3f> points_W,
-                                            const Eigen::Vector3f& origin_W, int threads) {
+std::span<const ScanMarks::Corner> ScanMarks::mark(std::span<const Eigen::Vector3f> points_W,
+                                                   const Eigen::Vector3f& origin_W, int threads) {
   find_box(points_W, origin_W);
   make_room();
+  std::span<const Eigen::Vector3f> ends = points_W;
   if (settings_.mode == IntegrationMode::discretised) {
     discretise(points_W);
-    clip(ends_, origin_W);
-  } else {
-    clip(points_W, origin_W);
+    ends = ends_;
   }
   const RayOrigin origin(grid_, origin_W);
-  MarkTarget target{marks_.get(),
-                    {stride_[0], stride_[1], stride_[2]},
-                    offset(origin.cell()),
-                    stride_[2] * size_[2]};
-  RayStart ray;
-  if (std::any_of(rays_.begin(), rays_.end(),
-                  [&](const Eigen::Vector3f& end) { return origin.start(end, ray); }))
-    marks_[target.first] = kPassed;
-  const std::size_t parts = (rays_.size() + kRaysAPart - 1) / kRaysAPart;
-  parallel_for(threads > 1 ? parts : 1, threads, [&](std::size_t part) {
-    const std::span<const Eigen::Vector3f> all(rays_);
-    if (threads <= 1) return mark_rays(origin, all, target);
-    const std::size_t first = part * kRaysAPart;
-    mark_rays(origin, all.subspan(first, std::min(kRaysAPart, all.size() - first)), target);
+  const MarkTarget target{marks_.get(),
+                          pages_.get(),
+                          {stride_[0], stride_[1], stride_[2]},
+                          offset(origin.cell()),
+                          stride_[2] * size_[2]};
+  std::atomic<bool> passed = false;  // rays within one voxel pass nothing, not even that
+  parallel_for((ends.size() + kRaysAPart - 1) / kRaysAPart, threads, [&](std::size_t part) {
+    std::array<Eigen::Vector3f, kRaysAPart> rays;
+    const std::size_t first = part * kRaysAPart, count = std::min(kRaysAPart, ends.size() - first);
+    std::copy_n(ends.begin() + static_cast<std::ptrdiff_t>(first), count, rays.begin());
+    bool any = false;
+    for (std::size_t k = 0; k < count; ++k) {
+      clip(rays[k], origin_W);
+      any = any || !origin.holds(rays[k]);
+    }
+    if (any) passed.store(true, std::memory_order_relaxed);
+    mark_rays(origin, {rays.data(), count}, target);
   });
-  marks_[target.parking] = 0;
-  for (const std::int64_t hit : hits_) marks_[hit] = kHit;
-  collect(threads);
-  if (room_ > kKept) {
-    marks_.reset();
-    room_ = 0;
+  if (passed) {
+    marks_[target.first] = kPassed;
+    note_page(target.first);
   }
+  marks_[target.parking] = 0;
+  mark_hits(ends, origin_W);
+  find_bricks();
   return found_;
+}
+
+void ScanMarks::mark_hits(std::span<const Eigen::Vector3f> ends_W,
+                          const Eigen::Vector3f& origin_W) {
+  for (Eigen::Vector3f end : ends_W) {
+    if (!clip(end, origin_W)) continue;
+    const int cell[3] = {grid_.index(end.x()), grid_.index(end.y()), grid_.index(end.z())};
+    const std::int64_t at = offset(cell);
+    marks_[at] = kHit;
+    note_page(at);
+  }
 }
 
 // Rays lie between their ends; rounding takes them one voxel further at most.
@@ -95,10 +109,15 @@ void ScanMarks::find_box(std::span<const Eigen::Vector3f> points_W,
 void ScanMarks::make_room() {
   const std::size_t needed = static_cast<std::size_t>(stride_[2]) * size_[2] + kSpare;
   if (needed <= room_) return;
+  room_ = 0;
   marks_.reset();
+  // Zero, and where it is large only there once it is touched.
   marks_.reset(static_cast<std::uint8_t*>(std::calloc(needed, 1)));
-  room_ = marks_ ? needed : 0;
-  if (!marks_) throw std::bad_alloc();
+  pages_.reset(needed > kKept
+                   ? static_cast<std::uint8_t*>(std::calloc((needed >> kPageShift) + 1, 1))
+                   : nullptr);
+  if (!marks_ || (needed > kKept && !pages_)) throw std::bad_alloc();
+  room_ = needed;
 }
 
 void ScanMarks::discretise(std::span<const Eigen::Vector3f> points_W) {
@@ -109,9 +128,10 @@ void ScanMarks::discretise(std::span<const Eigen::Vector3f> points_W) {
                         cell[1] >= base_[1] && cell[1] < base_[1] + size_[1] &&
                         cell[2] >= base_[2] && cell[2] < base_[2] + size_[2];
     if (in_box) {
-      std::uint8_t& mark = marks_[offset(cell)];
-      if (mark == kSeen) continue;
-      mark = kSeen;
+      const std::int64_t at = offset(cell);
+      if (marks_[at] == kSeen) continue;
+      marks_[at] = kSeen;
+      note_page(at);
     }
     ends_.push_back({static_cast<float>(grid_.center(cell[0])),
                      static_cast<float>(grid_.center(cell[1])),
@@ -120,64 +140,79 @@ void ScanMarks::discretise(std::span<const Eigen::Vector3f> points_W) {
 }
 
 // Beyond the maximum range a ray clears up to it and hits nothing.
-void ScanMarks::clip(std::span<const Eigen::Vector3f> ends_W, const Eigen::Vector3f& origin_W) {
-  rays_.clear();
-  hits_.clear();
-  for (const Eigen::Vector3f& end : ends_W) {
-    if (std::isfinite(settings_.maximum_range)) {
-      const float x = end.x() - origin_W.x(), y = end.y() - origin_W.y(),
-                  z = end.z() - origin_W.z();
-      const float squared = x * x + y * y + z * z;
-      const double distance = std::sqrt(static_cast<double>(squared));
-      if (!(distance <= settings_.maximum_range)) {
-        const float length = static_cast<float>(distance);
-        const float range = static_cast<float>(settings_.maximum_range);
-        rays_.push_back({origin_W.x() + x / length * range, origin_W.y() + y / length * range,
-                         origin_W.z() + z / length * range});
-        continue;
-      }
-    }
-    const int cell[3] = {grid_.index(end.x()), grid_.index(end.y()), grid_.index(end.z())};
-    rays_.push_back(end);
-    hits_.push_back(offset(cell));
-  }
+bool ScanMarks::clip(Eigen::Vector3f& end_W, const Eigen::Vector3f& origin_W) const {
+  if (!std::isfinite(settings_.maximum_range)) return true;
+  const float x = end_W.x() - origin_W.x(), y = end_W.y() - origin_W.y(),
+              z = end_W.z() - origin_W.z();
+  const float squared = x * x + y * y + z * z;
+  const double distance = std::sqrt(static_cast<double>(squared));
+  if (distance <= settings_.maximum_range) return true;
+  const float length = static_cast<float>(distance);
+  const float range = static_cast<float>(settings_.maximum_range);
+  end_W = {origin_W.x() + x / length * range, origin_W.y() + y / length * range,
+           origin_W.z() + z / length * range};
+  return false;
 }
 
-// Takes the marks out of the bytes, which are zero again afterwards.
-void ScanMarks::collect(int) {
+void ScanMarks::find_bricks() {
   found_.clear();
+  const int across = size_[0] / 16;
+  std::vector<std::uint8_t> touched(static_cast<std::size_t>(across));
   for (int bz = 0; bz < size_[2]; bz += 16)
-    for (int by = 0; by < size_[1]; by += 16)
-      for (int bx = 0; bx < size_[0]; bx += 16) {
-        BrickMarks* marks = nullptr;
-        for (int z = 0; z < 16; ++z)
-          for (int y = 0; y < 16; ++y) {
-            std::uint8_t* row = marks_.get() + bx + stride_[1] * (by + y) + stride_[2] * (bz + z);
-            std::uint64_t bytes[2];
-            std::memcpy(bytes, row, 16);
-            if ((bytes[0] | bytes[1]) == 0) continue;
-            if (!marks) {
-              found_.emplace_back();
-              marks = &found_.back();
-              marks->cell[0] = base_[0] + bx;
-              marks->cell[1] = base_[1] + by;
-              marks->cell[2] = base_[2] + bz;
-              std::fill_n(marks->measured, 64, 0);
-              std::fill_n(marks->hit, 64, 0);
-            }
-            add_row(row, y, z, *marks);
-            std::memset(row, 0, 16);
-          }
-        if (!marks) continue;
-        for (int chunk = 0; chunk < 64; ++chunk)
-          if (marks->measured[chunk]) marks->chunks |= std::uint64_t{1} << chunk;
-        if (marks->chunks == 0) found_.pop_back();
+    for (int by = 0; by < size_[1]; by += 16) {
+      bool any = false;
+      for (int z = bz; z < bz + 16; ++z)
+        for (int y = by; y < by + 16; ++y) any |= touch(y, z, touched);
+      if (!any) continue;
+      for (int bx = 0; bx < across; ++bx) {
+        if (touched[bx]) found_.push_back({{base_[0] + 16 * bx, base_[1] + by, base_[2] + bz}});
+        touched[bx] = 0;
       }
+    }
+}
+
+// Notes which sixteens of a row have a mark; false for none.
+bool ScanMarks::touch(int y, int z, std::vector<std::uint8_t>& touched) const {
+  const std::int64_t row = stride_[1] * y + stride_[2] * z, last = row + stride_[1] - 1;
+  bool any = !pages_;
+  for (std::int64_t page = row >> kPageShift; !any && page <= last >> kPageShift; ++page)
+    any = pages_[page];
+  if (!any) return false;
+  const std::uint8_t* at = marks_.get() + row;
+  for (std::uint8_t& mark : touched) {
+    std::uint64_t bytes[2];
+    std::memcpy(bytes, at, 16);
+    mark |= (bytes[0] | bytes[1]) != 0;
+    at += 16;
+  }
+  return true;
+}
+
+BrickMarks ScanMarks::take(const Corner& corner, bool clear) {
+  BrickMarks marks{};
+  std::copy_n(corner.cell, 3, marks.cell);
+  std::uint8_t* const first = marks_.get() + offset(corner.cell);
+  for (int z = 0; z < 16; ++z)
+    for (int y = 0; y < 16; ++y) {
+      std::uint8_t* row = first + stride_[1] * y + stride_[2] * z;
+      add_row(row, y, z, marks);
+      if (clear) std::memset(row, 0, 16);
+    }
+  for (int chunk = 0; chunk < 64; ++chunk)
+    if (marks.measured[chunk]) marks.chunks |= std::uint64_t{1} << chunk;
+  return marks;
+}
+
+void ScanMarks::finish() {
+  if (room_ <= kKept) return;
+  marks_.reset();
+  pages_.reset();
+  room_ = 0;
 }
 
 std::size_t ScanMarks::bytes() const {
-  return room_ + (ends_.capacity() + rays_.capacity()) * sizeof(Eigen::Vector3f) +
-         hits_.capacity() * sizeof(std::int64_t) + found_.capacity() * sizeof(BrickMarks);
+  return room_ + ends_.capacity() * sizeof(Eigen::Vector3f) +
+         found_.capacity() * sizeof(Corner);
 }
 
 }  // namespace lapwing::brick_map

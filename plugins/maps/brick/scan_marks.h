@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/map/map_settings.h"
+#include "plugins/maps/brick/ray_lanes.h"
 
 namespace lapwing::brick_map {
 
@@ -23,10 +24,17 @@ class ScanMarks {
   explicit ScanMarks(const MapSettings& settings)
       : settings_(settings), grid_(settings.resolution) {}
 
-  // The marks of a scan, brick by brick, valid until the next. Rays are OctoMap's to the bit, as
-  // is what becomes of them; see README.md.
-  std::span<const BrickMarks> mark(std::span<const Eigen::Vector3f> points_W,
-                                   const Eigen::Vector3f& origin_W, int threads);
+  // Marks a scan and returns the lowest voxels of the bricks with a mark; `take` them all before
+  // the next scan. Rays are OctoMap's to the bit, as is what becomes of them; see README.md.
+  struct Corner {
+    int cell[3];
+  };
+  std::span<const Corner> mark(std::span<const Eigen::Vector3f> points_W,
+                               const Eigen::Vector3f& origin_W, int threads);
+  // The marks of one brick; `clear` forgets them. Thread-safe for different bricks.
+  BrickMarks take(const Corner& corner, bool clear);
+  // Gives back what would be too much to keep.
+  void finish();
   // Of what is kept for the next scan.
   std::size_t bytes() const;
 
@@ -34,12 +42,19 @@ class ScanMarks {
   struct Free {
     void operator()(std::uint8_t* bytes) const { std::free(bytes); }
   };
+  using Bytes = std::unique_ptr<std::uint8_t[], Free>;
 
   void find_box(std::span<const Eigen::Vector3f> points_W, const Eigen::Vector3f& origin_W);
   void make_room();
   void discretise(std::span<const Eigen::Vector3f> points_W);
-  void clip(std::span<const Eigen::Vector3f> ends_W, const Eigen::Vector3f& origin_W);
-  void collect(int threads);
+  // Where a ray towards the end really ends; false for one beyond the range, which hits nothing.
+  bool clip(Eigen::Vector3f& end_W, const Eigen::Vector3f& origin_W) const;
+  void mark_hits(std::span<const Eigen::Vector3f> ends_W, const Eigen::Vector3f& origin_W);
+  void find_bricks();
+  bool touch(int y, int z, std::vector<std::uint8_t>& touched) const;
+  void note_page(std::int64_t at) {
+    if (pages_) pages_[at >> kPageShift] = 1;
+  }
   std::int64_t offset(const int cell[3]) const {
     return (cell[0] - base_[0]) + stride_[1] * (cell[1] - base_[1]) +
            stride_[2] * (cell[2] - base_[2]);
@@ -49,12 +64,10 @@ class ScanMarks {
   VoxelGrid grid_;
   int base_[3] = {}, size_[3] = {};  // of the box that holds all rays, in voxels
   std::int64_t stride_[3] = {};
-  std::unique_ptr<std::uint8_t[], Free>
-      marks_;  // a byte for each voxel of the box, then some spare
+  Bytes marks_, pages_;  // see MarkTarget; pages for large boxes only
   std::size_t room_ = 0;
-  std::vector<Eigen::Vector3f> ends_, rays_;  // one ray to each of rays_
-  std::vector<std::int64_t> hits_;
-  std::vector<BrickMarks> found_;
+  std::vector<Eigen::Vector3f> ends_;
+  std::vector<Corner> found_;
 };
 
 }  // namespace lapwing::brick_map
