@@ -63,6 +63,7 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
     return check_registered<VehicleModel>(registry, entry, options, check_vehicle_model);
   if (entry.kind == TrajectorySolver::kKind)
     return check_registered<TrajectorySolver>(registry, entry, options, check_trajectory_solver);
+  if (entry.kind == Map::kKind) return check_registered<Map>(registry, entry, options, check_map);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
 }
 

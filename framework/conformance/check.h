@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/map/map.h"
 #include "framework/plugin/registry.h"
 #include "framework/problem/constraint.h"
 #include "framework/problem/cost_term.h"
@@ -51,6 +52,8 @@ std::vector<CheckResult> check_vehicle_model(const Specimen<VehicleModel>& subje
                                              const CheckOptions& options = {});
 std::vector<CheckResult> check_trajectory_solver(const Specimen<TrajectorySolver>& subject,
                                                  const CheckOptions& options = {});
+
+std::vector<CheckResult> check_map(const Specimen<Map>& subject, const CheckOptions& options = {});
 
 template <class Kind>
 Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {

@@ -18,7 +18,8 @@ const Registry& plugins() {
 std::vector<PluginEntry> checked_entries() {
   std::vector<PluginEntry> result;
   for (const PluginEntry& entry : plugins().entries())
-    for (const char* kind : {"cost_term", "constraint", "vehicle_model", "trajectory_solver"})
+    for (const char* kind :
+         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }
@@ -64,6 +65,8 @@ TEST(EveryPlugin, IsThere) {
                                    {"constraint", "subject_distance"},
                                    {"vehicle_model", "gimbal"},
                                    {"vehicle_model", "quadrotor"},
+                                   {"map", "octomap"},
+                                   {"map", "brick"},
                                    {"trajectory_solver", "iqp"},
                                    {"trajectory_solver", "ipopt"},
                                    {"trajectory_solver", "nlopt"}})

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "framework/core/files.h"
-#include "tests/map/plain_map.h"
+#include "tests/map/small_map.h"
 
 namespace lapwing {
 namespace {
@@ -60,7 +60,7 @@ TEST(MapFile, ReadsLogOddsByHandAndLeavesColoursOut) {
 }
 
 TEST(MapFile, WhatIsWrittenIsRead) {
-  PlainMap map(0.25);
+  SmallMap map(0.25);
   std::vector<VoxelLeaf> leaves;
   for (int k = 0; k < 500; ++k)
     leaves.push_back(
@@ -73,7 +73,7 @@ TEST(MapFile, WhatIsWrittenIsRead) {
   map.import(leaves);
   const MapFile file = parse_map(map_file_bytes(".ot", map), "x.ot");
   EXPECT_EQ(file.resolution, 0.25);
-  PlainMap again(0.25);
+  SmallMap again(0.25);
   again.import(file.leaves);
   EXPECT_TRUE(map_file_bytes(".ot", again) == map_file_bytes(".ot", map));
   bool merged = false;
@@ -83,7 +83,7 @@ TEST(MapFile, WhatIsWrittenIsRead) {
 }
 
 TEST(MapFile, TwoStatesLeaveOutWhatIsInBetween) {
-  PlainMap map;
+  SmallMap map;
   map.import(std::vector<VoxelLeaf>{
       {{7, 7, 7}, 0, 0, -2.0f}, {{8, 8, 8}, 0, 0, 0.5f}, {{9, 9, 9}, 0, 0, 2.0f}});
   const MapFile file = parse_map(map_file_bytes(".bt", map), "x.bt");
@@ -92,13 +92,13 @@ TEST(MapFile, TwoStatesLeaveOutWhatIsInBetween) {
 }
 
 TEST(MapFile, AnEmptyMapAndAFullOne) {
-  const PlainMap empty;
+  const SmallMap empty;
   for (const char* ending : {".bt", ".ot"})
     EXPECT_TRUE(parse_map(map_file_bytes(ending, empty), "x").leaves.empty());
 }
 
 TEST(MapFile, PointsAreTheMiddlesOfOccupiedVoxels) {
-  PlainMap map(0.5);
+  SmallMap map(0.5);
   map.import(std::vector<VoxelLeaf>{{{32768, 32769, 32767}, 0, 0, 3.0f},
                                     {{32770, 32769, 32767}, 0, 0, -2.0f}});
   const std::string ply = map_file_bytes(".ply", map);
@@ -148,7 +148,7 @@ TEST(MapFile, HostileFilesAreRefusedWithTheReason) {
 }
 
 TEST(MapFile, EveryCutIsNoticed) {
-  PlainMap map;
+  SmallMap map;
   map.import(std::vector<VoxelLeaf>{{{7, 7, 7}, 0, 0, -2.0f}, {{900, 8, 8}, 0, 0, 2.0f}});
   for (const char* ending : {".bt", ".ot"}) {
     const std::string bytes = map_file_bytes(ending, map);
@@ -161,7 +161,7 @@ TEST(MapFile, WritingIsWholeOrNotAtAll) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "lapwing_map_file";
   std::filesystem::remove_all(folder);
-  PlainMap map;
+  SmallMap map;
   map.import(std::vector<VoxelLeaf>{{{7, 7, 7}, 0, 0, -2.0f}});
   write_map_file(folder / "a.ot", map);
   EXPECT_EQ(read_map_file(folder / "a.ot").leaves.size(), 1u);

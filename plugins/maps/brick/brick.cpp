@@ -147,8 +147,7 @@ void BrickMap::insert(std::span<const Eigen::Vector3f> points_W, const Eigen::Ve
     changes_.push_back(
         {nullptr, nullptr, corner, changed_chunks(marks_.take(corner, false), bricks, slots)});
   slots -= std::min(slots, bricks_.spare_slots());
-  const std::size_t more =
-      BrickGrid::bytes_of(bricks / 8, bricks, slots, settings().observations);
+  const std::size_t more = BrickGrid::bytes_of(bricks / 8, bricks, slots, settings().observations);
   const bool fits = bytes() + more <= settings().memory_limit;
   for (Change& change : changes_)
     if (change.chunks && fits) prepare(change);
@@ -162,7 +161,8 @@ void BrickMap::insert(std::span<const Eigen::Vector3f> points_W, const Eigen::Ve
     require_memory(bytes() + more);
   }
   for (const Change& change : changes_)
-    if (change.chunks) bricks_.tidy(*change.block, place(change.corner.cell, kBrickLevel), change.chunks);
+    if (change.chunks)
+      bricks_.tidy(*change.block, place(change.corner.cell, kBrickLevel), change.chunks);
   marks_.finish();
 }
 

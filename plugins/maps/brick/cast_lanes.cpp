@@ -69,8 +69,9 @@ constexpr std::array<Ahead, 32> kAhead = all_parts_ahead();
 
 // Rays before they start.
 struct Starts {
-  FourInt cell[3][kBeam / 4], start[3][kBeam / 4];  // mirrored; counted from `start`, going on at `cell`
-  FourInt descends[kBeam / 4], along[kBeam / 4];    // axes, as bits; an axis or kAlongNone
+  FourInt cell[3][kBeam / 4],
+      start[3][kBeam / 4];  // mirrored; counted from `start`, going on at `cell`
+  FourInt descends[kBeam / 4], along[kBeam / 4];  // axes, as bits; an axis or kAlongNone
   Four first[3][kBeam / 4], spacing[3][kBeam / 4], rate[3][kBeam / 4];
 
   // Up to distance `from` everything is known to be free.
@@ -92,7 +93,8 @@ struct Starts {
         size[i] = d < 0 ? -d : d;
       }
       const Four by_x = 0.4 * size[0], by_y = 0.4 * size[1], by_z = 0.4 * size[2];
-      const FourLong x = (by_x > size[1]) & (by_x > size[2]), y = (by_y > size[0]) & (by_y > size[2]),
+      const FourLong x = (by_x > size[1]) & (by_x > size[2]),
+                     y = (by_y > size[0]) & (by_y > size[2]),
                      z = (by_z > size[0]) & (by_z > size[1]);
       along[g] = 3 + __builtin_convertvector(3 * x + 2 * y + z, FourInt);
     }
@@ -114,10 +116,8 @@ struct Starts {
     first[i][g] = moves ? next : zero + RayWalk::kNever;
     spacing[i][g] = moves ? grid.resolution() * apart : zero;
     rate[i][g] = moves ? (falls ? -d : d) * grid.per_metre() : zero;
-    const Four nearest =
-        __builtin_convertvector(__builtin_convertvector((from - first[i][g]) * rate[i][g] + 0.5,
-                                                        FourInt),
-                                Four);
+    const Four nearest = __builtin_convertvector(
+        __builtin_convertvector((from - first[i][g]) * rate[i][g] + 0.5, FourInt), Four);
     const Four count = nearest + (first[i][g] + nearest * spacing[i][g] < from ? one : zero);
     const FourInt mirror = __builtin_convertvector(falls, FourInt);
     start[i][g] = (__builtin_convertvector(index, FourInt) + kCenterKey) ^ (mirror & 0xffff);
@@ -153,7 +153,11 @@ class Caster {
  public:
   Caster(const BrickGrid& bricks, const MapSettings& settings, std::span<const MapRay> rays,
          std::span<MapRayHit> hits)
-      : bricks_(bricks), settings_(settings), grid_(settings.resolution), rays_(rays), hits_(hits) {}
+      : bricks_(bricks),
+        settings_(settings),
+        grid_(settings.resolution),
+        rays_(rays),
+        hits_(hits) {}
 
   __attribute__((always_inline)) void run() {
     for (int lane = 0; lane < kLanes; ++lane) next_ray(lane);
@@ -171,7 +175,7 @@ class Caster {
     const FourLong far = lanes.entered >= lanes.range;
     // Put together in registers: the four are read back as one.
     lanes.edges = FourInt{visit(lanes, group, 0, far[0]), visit(lanes, group, 1, far[1]),
-                        visit(lanes, group, 2, far[2]), visit(lanes, group, 3, far[3])};
+                          visit(lanes, group, 2, far[2]), visit(lanes, group, 3, far[3])};
   }
 
   __attribute__((always_inline)) int visit(const Lanes& lanes, int group, int k, bool far) {
@@ -198,8 +202,8 @@ class Caster {
     const unsigned at = places >> 16;
     if (!(block.bricked >> at & 1)) {
       if (!(block.all_free >> at & 1)) return hit(lanes, of, k, state_of_brick(block, at));
-      return ahead.edges[4 + all(block.all_free, ahead.some[at]) +
-                         all(block.all_free, ahead.all[at])];
+      return ahead
+          .edges[4 + all(block.all_free, ahead.some[at]) + all(block.all_free, ahead.all[at])];
     }
     const DenseBrick& brick = *block.content[at].brick;
     const unsigned chunk = places >> 8 & 63, voxel = places & 63;
@@ -247,8 +251,8 @@ class Caster {
     const auto key = [&](int i) {
       return static_cast<std::uint16_t>(std::min(lanes.cell[i][k], 0xffff) ^ of.mirror[i]);
     };
-    hits_[of.ray] = {{key(0), key(1), key(2)}, state,
-                     static_cast<float>(std::max(lanes.entered[k], 0.0))};
+    hits_[of.ray] = {
+        {key(0), key(1), key(2)}, state, static_cast<float>(std::max(lanes.entered[k], 0.0))};
     return -1;
   }
 
@@ -257,7 +261,8 @@ class Caster {
   __attribute__((always_inline)) static void leave_boxes(Lanes& lanes) {
     Four t[3];
     for (int i = 0; i < 3; ++i) {
-      const FourInt made = lanes.cell[i] - lanes.start[i] + (~lanes.cell[i] & (lanes.edges >> 8 * i & 63));
+      const FourInt made =
+          lanes.cell[i] - lanes.start[i] + (~lanes.cell[i] & (lanes.edges >> 8 * i & 63));
       t[i] = lanes.first[i] + __builtin_convertvector(made, Four) * lanes.spacing[i];
     }
     const FourLong xy = t[0] < t[1], xz = t[0] < t[2], yz = t[1] < t[2];
@@ -293,7 +298,8 @@ class Caster {
       const auto place = static_cast<int>(of.ray - beam_first_);
       const int descends = starts_.descends[place / 4][place % 4];
       for (int i = 0; i < 3; ++i) of.mirror[i] = descends >> i & 1 ? 0xffff : 0;
-      of.ahead = &kAhead[static_cast<std::size_t>(descends | starts_.along[place / 4][place % 4] << 3)];
+      of.ahead =
+          &kAhead[static_cast<std::size_t>(descends | starts_.along[place / 4][place % 4] << 3)];
       of.block_key = -1;
       fill(lane, place, descends, rays_[of.ray].range);
       const int edges = look(lanes_[lane / 4], lane, lane % 4);
@@ -308,8 +314,7 @@ class Caster {
   }
 
   // Whole vectors are written: parts of them could not be read back as one without a wait.
-  __attribute__((always_inline)) void fill(int lane, int place, int descends,
-                                           double range) {
+  __attribute__((always_inline)) void fill(int lane, int place, int descends, double range) {
     Lanes& lanes = lanes_[lane / 4];
     const FourLong here = kLane[lane % 4];
     const FourInt here_int = kIntLane[lane % 4];
@@ -347,7 +352,8 @@ class Caster {
     double range = lead.range;
     for (std::size_t k = next_ + 1; k < beam_end_; ++k) {
       const MapRay& ray = rays_[k];
-      if (ray.origin != lead.origin || (ray.direction - lead.direction).squaredNorm() > 0.02) return;
+      if (ray.origin != lead.origin || (ray.direction - lead.direction).squaredNorm() > 0.02)
+        return;
       least = least.cwiseMin(ray.direction);
       most = most.cwiseMax(ray.direction);
       range = std::min(range, ray.range);
@@ -357,8 +363,10 @@ class Caster {
     double step = 16 * settings_.resolution;
     while (step >= shortest) {
       const double to = std::min(beam_free_ + step, range);
-      if (beam_free(lead.origin, least, most, beam_free_, to)) beam_free_ = to;
-      else step /= 2;
+      if (beam_free(lead.origin, least, most, beam_free_, to))
+        beam_free_ = to;
+      else
+        step /= 2;
       if (beam_free_ >= range) break;
     }
   }
@@ -393,7 +401,9 @@ class Caster {
 };
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void run_avx2(Caster& caster) { caster.run(); }
+__attribute__((target("avx2"))) void run_avx2(Caster& caster) {
+  caster.run();
+}
 #endif
 
 }  // namespace

@@ -40,8 +40,7 @@ inline bool box_free(const BrickGrid& bricks, const int low[3], const int high[3
         const int corner[3] = {x, y, z};
         const Block* block = bricks.find(corner);
         if (!block) return false;
-        std::uint64_t in_block =
-            parts_within(corner, kBrickLevel, low, high) & ~block->all_free;
+        std::uint64_t in_block = parts_within(corner, kBrickLevel, low, high) & ~block->all_free;
         for (; in_block; in_block &= in_block - 1) {
           const int at = std::countr_zero(in_block);
           if (!block->has_brick(at)) return false;

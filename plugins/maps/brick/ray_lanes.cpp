@@ -86,8 +86,10 @@ __attribute__((always_inline)) inline void walk(const RayOrigin& origin,
 __attribute__((target("avx2"))) void walk_avx2(const RayOrigin& origin,
                                                std::span<const Eigen::Vector3f> ends_W,
                                                const MarkTarget& target) {
-  if (target.pages) walk<true>(origin, ends_W, target);
-  else walk<false>(origin, ends_W, target);
+  if (target.pages)
+    walk<true>(origin, ends_W, target);
+  else
+    walk<false>(origin, ends_W, target);
 }
 #endif
 
@@ -98,8 +100,10 @@ void mark_rays(const RayOrigin& origin, std::span<const Eigen::Vector3f> ends_W,
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2")) return walk_avx2(origin, ends_W, target);
 #endif
-  if (target.pages) walk<true>(origin, ends_W, target);
-  else walk<false>(origin, ends_W, target);
+  if (target.pages)
+    walk<true>(origin, ends_W, target);
+  else
+    walk<false>(origin, ends_W, target);
 }
 
 }  // namespace lapwing::brick_map

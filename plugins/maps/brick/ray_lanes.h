@@ -10,8 +10,8 @@ namespace lapwing::brick_map {
 
 inline constexpr std::uint8_t kPassed = 0x80, kHit = 0xc0;
 
-// A byte for every voxel of a box, and one for every 4096 of those that is set when one of them is; `pages`
-// may be null.
+// A byte for every voxel of a box, and one for every 4096 of those that is set when one of them is;
+// `pages` may be null.
 inline constexpr int kPageShift = 12;
 struct MarkTarget {
   std::uint8_t *marks, *pages;

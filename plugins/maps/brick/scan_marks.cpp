@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint8_t kSeen = 1;  // an end voxel that has its ray
 constexpr std::size_t kKept = 4u << 20, kSpare = 64;
-constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;
+constexpr std::size_t kMostBytes = std::size_t{1} << 29;
 constexpr std::size_t kRaysAPart = 512;
 
 // Bit k of the result is bit `which` of byte k.
@@ -46,6 +46,10 @@ std::span<const ScanMarks::Corner> ScanMarks::mark(std::span<const Eigen::Vector
     discretise(points_W);
     ends = ends_;
   }
+  if (is_sparse_) {
+    mark_sparse(ends, origin_W);
+    return found_;
+  }
   const RayOrigin origin(grid_, origin_W);
   const MarkTarget target{marks_.get(),
                           pages_.get(),
@@ -73,6 +77,25 @@ std::span<const ScanMarks::Corner> ScanMarks::mark(std::span<const Eigen::Vector
   mark_hits(ends, origin_W);
   find_bricks();
   return found_;
+}
+
+void ScanMarks::mark_sparse(std::span<const Eigen::Vector3f> ends_W,
+                            const Eigen::Vector3f& origin_W) {
+  const RayOrigin origin(grid_, origin_W);
+  sparse_.clear();
+  for (Eigen::Vector3f end : ends_W) {
+    const bool hits = clip(end, origin_W);
+    sparse_.mark_ray(origin, end);
+    const int cell[3] = {grid_.index(end.x()), grid_.index(end.y()), grid_.index(end.z())};
+    if (hits) sparse_.mark_hit(cell);
+  }
+  found_.clear();
+  for (const auto& [key, marks] : sparse_.bricks())
+    found_.push_back({{marks.cell[0], marks.cell[1], marks.cell[2]}});
+  // The order of a hash table is nobody's.
+  std::sort(found_.begin(), found_.end(), [](const Corner& a, const Corner& b) {
+    return std::lexicographical_compare(a.cell, a.cell + 3, b.cell, b.cell + 3);
+  });
 }
 
 void ScanMarks::mark_hits(std::span<const Eigen::Vector3f> ends_W,
@@ -108,7 +131,8 @@ void ScanMarks::find_box(std::span<const Eigen::Vector3f> points_W,
 
 void ScanMarks::make_room() {
   const std::size_t needed = static_cast<std::size_t>(stride_[2]) * size_[2] + kSpare;
-  if (needed <= room_) return;
+  is_sparse_ = needed > std::min(kMostBytes, settings_.memory_limit);
+  if (needed <= room_ || is_sparse_) return;
   room_ = 0;
   marks_.reset();
   // Zero, and where it is large only there once it is touched.
@@ -127,7 +151,7 @@ void ScanMarks::discretise(std::span<const Eigen::Vector3f> points_W) {
     const bool in_box = cell[0] >= base_[0] && cell[0] < base_[0] + size_[0] &&
                         cell[1] >= base_[1] && cell[1] < base_[1] + size_[1] &&
                         cell[2] >= base_[2] && cell[2] < base_[2] + size_[2];
-    if (in_box) {
+    if (in_box && !is_sparse_) {
       const std::int64_t at = offset(cell);
       if (marks_[at] == kSeen) continue;
       marks_[at] = kSeen;
@@ -189,7 +213,8 @@ bool ScanMarks::touch(int y, int z, std::vector<std::uint8_t>& touched) const {
 }
 
 BrickMarks ScanMarks::take(const Corner& corner, bool clear) {
-  BrickMarks marks{};
+  if (is_sparse_) return sparse_.at(corner.cell);
+  BrickMarks marks;
   std::copy_n(corner.cell, 3, marks.cell);
   std::uint8_t* const first = marks_.get() + offset(corner.cell);
   for (int z = 0; z < 16; ++z)
@@ -204,6 +229,7 @@ BrickMarks ScanMarks::take(const Corner& corner, bool clear) {
 }
 
 void ScanMarks::finish() {
+  sparse_.clear();
   if (room_ <= kKept) return;
   marks_.reset();
   pages_.reset();
@@ -211,8 +237,7 @@ void ScanMarks::finish() {
 }
 
 std::size_t ScanMarks::bytes() const {
-  return room_ + ends_.capacity() * sizeof(Eigen::Vector3f) +
-         found_.capacity() * sizeof(Corner);
+  return room_ + ends_.capacity() * sizeof(Eigen::Vector3f) + found_.capacity() * sizeof(Corner);
 }
 
 }  // namespace lapwing::brick_map

@@ -9,20 +9,14 @@
 
 #include "framework/map/map_settings.h"
 #include "plugins/maps/brick/ray_lanes.h"
+#include "plugins/maps/brick/sparse_marks.h"
 
 namespace lapwing::brick_map {
-
-// Of one brick: measured voxels and those among them that hold a point, by chunk.
-struct BrickMarks {
-  int cell[3];               // its lowest voxel
-  std::uint64_t chunks = 0;  // with a mark
-  std::uint64_t measured[64], hit[64];
-};
 
 class ScanMarks {
  public:
   explicit ScanMarks(const MapSettings& settings)
-      : settings_(settings), grid_(settings.resolution) {}
+      : settings_(settings), grid_(settings.resolution), sparse_(settings.memory_limit) {}
 
   // Marks a scan and returns the lowest voxels of the bricks with a mark; `take` them all before
   // the next scan. Rays are OctoMap's to the bit, as is what becomes of them; see README.md.
@@ -51,6 +45,7 @@ class ScanMarks {
   bool clip(Eigen::Vector3f& end_W, const Eigen::Vector3f& origin_W) const;
   void mark_hits(std::span<const Eigen::Vector3f> ends_W, const Eigen::Vector3f& origin_W);
   void find_bricks();
+  void mark_sparse(std::span<const Eigen::Vector3f> ends_W, const Eigen::Vector3f& origin_W);
   bool touch(int y, int z, std::vector<std::uint8_t>& touched) const;
   void note_page(std::int64_t at) {
     if (pages_) pages_[at >> kPageShift] = 1;
@@ -68,6 +63,8 @@ class ScanMarks {
   std::size_t room_ = 0;
   std::vector<Eigen::Vector3f> ends_;
   std::vector<Corner> found_;
+  bool is_sparse_ = false;  // for this scan
+  SparseMarks sparse_;
 };
 
 }  // namespace lapwing::brick_map

@@ -1,0 +1,198 @@
+// Maps broken on purpose, each of which must be caught.
+#include "framework/conformance/check.h"
+#include "framework/conformance/reference_map.h"
+#include "framework/map/swept_box.h"
+
+namespace lapwing {
+namespace {
+
+enum class Mistake {
+  none,
+  misses_win,
+  scans_add_up,
+  not_clamped,
+  forgets_observations,
+  range_ignored,
+  hit_too_far,
+  ends_as_free,
+  unknown_is_free,
+  touching_blocks,
+  leaf_twice,
+  counts_leaves,
+  wrong_bounds,
+  import_adds,
+  mean_of_known,
+  refuses
+};
+
+class BrokenMap final : public ReferenceMap {
+ public:
+  BrokenMap(const MapSettings& settings, Mistake mistake)
+      : ReferenceMap(settings), mistake_(mistake) {}
+
+  void for_each_leaf(const std::function<void(const VoxelLeaf&)>& visit) const override {
+    ReferenceMap::for_each_leaf(visit);
+    if (mistake_ == Mistake::leaf_twice && voxels_.size() > 3)
+      visit({voxels_.begin()->first, 0, 0, voxels_.begin()->second.log_odds});
+  }
+  VoxelCounts counts() const override {
+    VoxelCounts counts = ReferenceMap::counts();
+    if (mistake_ == Mistake::counts_leaves) counts.known /= 2;
+    return counts;
+  }
+  std::optional<VoxelBox> bounds() const override {
+    std::optional<VoxelBox> box = ReferenceMap::bounds();
+    if (box && mistake_ == Mistake::wrong_bounds) ++box->upper.z;
+    return box;
+  }
+
+ protected:
+  void insert(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& origin) override {
+    const auto before = voxels_;
+    ReferenceMap::insert(points, origin);
+    if (mistake_ == Mistake::misses_win)  // a voxel with a point is passed as well
+      for (const Eigen::Vector3f& p : points)
+        voxels_[grid().key(p.cast<double>())].log_odds += settings().miss;
+    if (mistake_ == Mistake::scans_add_up) ReferenceMap::insert(points.subspan(1, 1), origin);
+    for (auto& [key, voxel] : voxels_) {
+      const auto found = before.find(key);
+      const float old = found == before.end() ? 0 : found->second.log_odds;
+      if (mistake_ == Mistake::not_clamped && voxel.log_odds == settings().clamp_min)
+        voxel.log_odds = old + settings().miss;
+      if (mistake_ == Mistake::forgets_observations) voxel.observations = 0;
+    }
+    if (mistake_ == Mistake::range_ignored && std::isfinite(settings().maximum_range))
+      voxels_[grid().key(points.front().cast<double>())].log_odds = 1;
+  }
+  void assign(std::span<const VoxelLeaf> leaves) override {
+    const auto before = voxels_;
+    ReferenceMap::assign(leaves);
+    if (mistake_ != Mistake::import_adds) return;
+    for (const auto& [key, voxel] : before) voxels_[key].log_odds += 0.25f;
+  }
+  void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const override {
+    ReferenceMap::cast_checked(rays, hits);
+    for (MapRayHit& hit : hits) {
+      if (mistake_ == Mistake::hit_too_far && hit.distance > 3 * grid().resolution())
+        hit.distance += static_cast<float>(0.01 * grid().resolution());
+      if (mistake_ == Mistake::ends_as_free && hit.state == VoxelState::unknown)
+        hit.state = VoxelState::free;
+    }
+  }
+  bool sweep_checked(const SweptBox& box) const override {
+    for (int z = box.lower[2] - 1; z <= box.upper[2] + 1; ++z)
+      for (int y = box.lower[1] - 1; y <= box.upper[1] + 1; ++y)
+        for (int x = box.lower[0] - 1; x <= box.upper[0] + 1; ++x) {
+          const int cell[3] = {x, y, z};
+          const VoxelReading voxel =
+              read({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                    static_cast<std::uint16_t>(z)});
+          const bool close = mistake_ == Mistake::touching_blocks || box.meets(cell, 0);
+          const bool blocks = mistake_ == Mistake::unknown_is_free
+                                  ? voxel.state == VoxelState::occupied
+                                  : voxel.state != VoxelState::free;
+          if (close && blocks) return false;
+        }
+    return true;
+  }
+  void means_checked(int level, std::span<const VoxelKey> keys,
+                     std::span<MeanReading> means) const override {
+    ReferenceMap::means_checked(level, keys, means);
+    if (mistake_ == Mistake::mean_of_known)
+      for (MeanReading& mean : means) mean.occupancy = 2 * mean.occupancy - 0.5f;
+  }
+
+ private:
+  Mistake mistake_;
+};
+
+// Takes what it should refuse, a bit.
+class Greedy final : public Map {
+ public:
+  explicit Greedy(const MapSettings& settings) : Map(settings), inner_(settings) {}
+  VoxelReading read(const VoxelKey& key) const override { return inner_.read(key); }
+  void for_each_leaf(const std::function<void(const VoxelLeaf&)>& visit) const override {
+    inner_.for_each_leaf(visit);
+  }
+  std::optional<VoxelBox> bounds() const override { return inner_.bounds(); }
+  VoxelCounts counts() const override { return inner_.counts(); }
+  std::size_t bytes() const override { return 0; }
+
+ protected:
+  void insert(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& origin) override {
+    inner_.integrate(points, origin);
+  }
+  void assign(std::span<const VoxelLeaf> leaves) override { inner_.import(leaves); }
+  void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const override {
+    inner_.cast(rays, hits);
+  }
+  void means_checked(int level, std::span<const VoxelKey> keys,
+                     std::span<MeanReading> means) const override {
+    inner_.read_means(level, keys, means);
+  }
+  bool sweep_checked(const SweptBox&) const override { return true; }
+
+ private:
+  ReferenceMap inner_;
+};
+
+std::vector<std::string> failures(const std::vector<CheckResult>& results) {
+  std::vector<std::string> names;
+  for (const CheckResult& result : results)
+    if (result.outcome == Outcome::failed) names.push_back(result.name);
+  return names;
+}
+
+// Few parameters, so that many mistakes can be tried.
+ParameterTable few_parameters() {
+  return ParameterTable{}
+      .optional_number("maximum_range", "m", "", above(0))
+      .boolean("observations", false, "");
+}
+
+std::vector<std::string> failures_of(Mistake mistake) {
+  return failures(check_map({"broken", few_parameters(), [=](const Value& given) {
+                               if (mistake == Mistake::refuses) throw InputError("no");
+                               return std::make_unique<BrokenMap>(
+                                   map_settings(check(map_parameters(), given)), mistake);
+                             }}));
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+TEST(BrokenMap, TheSoundOnePasses) {
+  EXPECT_EQ(failures_of(Mistake::none), std::vector<std::string>{});
+}
+
+TEST(BrokenMap, IsCaught) {
+  for (const auto& [mistake, check] : {std::pair{Mistake::misses_win, "integration"},
+                                       {Mistake::scans_add_up, "integration"},
+                                       {Mistake::not_clamped, "integration"},
+                                       {Mistake::forgets_observations, "integration"},
+                                       {Mistake::range_ignored, "integration"},
+                                       {Mistake::hit_too_far, "ray casts"},
+                                       {Mistake::ends_as_free, "ray casts"},
+                                       {Mistake::unknown_is_free, "boxes"},
+                                       {Mistake::touching_blocks, "touching"},
+                                       {Mistake::leaf_twice, "integration"},
+                                       {Mistake::counts_leaves, "integration"},
+                                       {Mistake::wrong_bounds, "integration"},
+                                       {Mistake::import_adds, "import"},
+                                       {Mistake::mean_of_known, "means"},
+                                       {Mistake::refuses, "creation"}})
+    EXPECT_TRUE(contains(failures_of(mistake), check)) << check << " " << static_cast<int>(mistake);
+}
+
+TEST(BrokenMap, IsCaughtWithoutObstacles) {
+  const auto names = failures(check_map({"greedy", few_parameters(), [](const Value& given) {
+                                           return std::make_unique<Greedy>(
+                                               map_settings(check(map_parameters(), given)));
+                                         }}));
+  EXPECT_TRUE(contains(names, "boxes"));
+  EXPECT_TRUE(contains(names, "memory"));
+}
+
+}  // namespace
+}  // namespace lapwing

@@ -1,0 +1,20 @@
+// A map to test what needs only a map's reads.
+#pragma once
+
+#include "framework/conformance/reference_map.h"
+#include "framework/core/error.h"
+
+namespace lapwing {
+
+inline MapSettings settings_with(double resolution) {
+  Value value = Value::map();
+  value.set("resolution", resolution);
+  return map_settings(check(map_parameters(), value));
+}
+
+class SmallMap final : public ReferenceMap {
+ public:
+  explicit SmallMap(double resolution = 0.5) : ReferenceMap(settings_with(resolution)) {}
+};
+
+}  // namespace lapwing
