@@ -2,11 +2,18 @@
 // voxel by voxel. What other backends are compared with.
 #pragma once
 
-#include <map>
+#include <unordered_map>
 
 #include "framework/map/map.h"
 
 namespace lapwing {
+
+struct VoxelKeyHash {
+  std::size_t operator()(const VoxelKey& key) const {
+    return (std::size_t{key.x} << 32 | std::size_t{key.y} << 16 | key.z) * 0x9e3779b97f4a7c15u >>
+           20;
+  }
+};
 
 class ReferenceMap : public Map {
  public:
@@ -30,7 +37,7 @@ class ReferenceMap : public Map {
     float log_odds = 0;
     std::uint16_t observations = 0;
   };
-  std::map<VoxelKey, Voxel> voxels_;
+  std::unordered_map<VoxelKey, Voxel, VoxelKeyHash> voxels_;
 
  private:
   MapRayHit first_hit(const MapRay& ray) const;
