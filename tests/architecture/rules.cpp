@@ -41,7 +41,7 @@ const std::map<std::string, Names>& rooms() {
       {"view", {"geometry", "map", "path"}},
       {"explore", {"geometry", "map", "view", "path"}},
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
-      {"export", {"geometry", "trajectory", "vehicle", "verify"}},  // limits in reports
+      {"export", {"geometry", "trajectory", "vehicle", "verify", "map"}},  // limits, pictures
       {"config", {}},
       {"plugin", {}},
       {"conformance", without(kAllButApp, "mission")},
