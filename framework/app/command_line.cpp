@@ -186,6 +186,22 @@ void add_map_commands(CLI::App& app, Invocation& invocation, std::filesystem::pa
   view->callback([&] { command = [&] { return view_map(file, target, invocation); }; });
 }
 
+void add_scene_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& file,
+                        std::filesystem::path& target, Command& command) {
+  CLI::App* scene = app.add_subcommand("scene", "scenes: meshes, and scripts that make them");
+  scene->require_subcommand(1);
+  CLI::App* view = scene->add_subcommand("view", "write a report page with pictures");
+  add_text(*view, "file", "SCENE", "a mesh file, a Lua scene, or the name of a shipped one",
+           [&](const std::string& path) { file = path; })
+      ->required();
+  add_text(*view, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
+    target = path;
+  })->required();
+  add_count(*view, "--seed", 0, kLargestSeed, "of a Lua scene",
+            [&](std::uint64_t seed) { invocation.seed = seed; });
+  view->callback([&] { command = [&] { return view_scene(file, target, invocation); }; });
+}
+
 void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
                          Command& command) {
   CLI::App* plugins = app.add_subcommand("plugins", "what plugins there are");
@@ -268,6 +284,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_run(app, invocation, script, command);
   add_plan_commands(app, invocation, plan, conditions, format, target, command);
   add_map_commands(app, invocation, plan, target, command);
+  add_scene_commands(app, invocation, plan, target, command);
   add_plugin_commands(app, invocation, name, command);
   try {
     app.parse(argc, argv);

@@ -55,6 +55,9 @@ ExitStatus convert_map(const std::filesystem::path& file, const std::filesystem:
                        const Invocation& invocation);
 ExitStatus view_map(const std::filesystem::path& file, const std::filesystem::path& target,
                     const Invocation& invocation);
+// A mesh file, a Lua scene or the name of a shipped one.
+ExitStatus view_scene(const std::filesystem::path& file, const std::filesystem::path& target,
+                      const Invocation& invocation);
 ExitStatus list_plugins(const Invocation& invocation);
 ExitStatus show_plugin(const std::string& name, const Invocation& invocation);
 ExitStatus show_plugin_path(const Invocation& invocation);

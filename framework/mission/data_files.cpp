@@ -76,8 +76,9 @@ fs::path DataFiles::find_entry(const std::string& name, const std::string& insid
     }
     looked += (looked.empty() ? "" : ", ") + folder.string();
   }
-  throw InputError("data " + std::string(folder_wanted ? "folder" : "file") + " '" + name + "' not found in " +
-                   (looked.empty() ? "any folder" : looked) + "; name its folder with --data DIR");
+  throw InputError("data " + std::string(folder_wanted ? "folder" : "file") + " '" + name +
+                   "' not found in " + (looked.empty() ? "any folder" : looked) +
+                   "; name its folder with --data DIR");
 }
 
 std::string DataFiles::read_text(const std::string& name, const std::string& inside) const {

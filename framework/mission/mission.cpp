@@ -155,9 +155,10 @@ MissionResult Mission::plan() {
     }
     PlanObject* planned = test_object<PlanObject>(state, -1, kPlanType);
     if (!planned) {
-      throw InputError(impl.sandbox.script_position(state),
-                       std::string("plan: expected the function to return run:plan{...} or a map, got ") +
-                           luaL_typename(state, -1));
+      throw InputError(
+          impl.sandbox.script_position(state),
+          std::string("plan: expected the function to return run:plan{...} or a map, got ") +
+              luaL_typename(state, -1));
     }
     result.plan = planned->plan;
     result.report = planned->report;

@@ -135,7 +135,8 @@ local function painted(run)
     }
     local lights = {}
     for i, span in ipairs(lit) do
-      local light = { start = at_share(timed.times, span[1]), finish = at_share(timed.times, span[2]) }
+      local light = { start = at_share(timed.times, span[1]),
+                      finish = at_share(timed.times, span[2]) }
       local before = lights[#lights]
       if before and light.start <= before.finish then before.finish = light.finish
       else lights[#lights + 1] = light end

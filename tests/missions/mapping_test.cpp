@@ -57,6 +57,22 @@ TEST_F(Mapping, FilesAreShownConvertedAndReadAgain) {
   EXPECT_EQ(read_file(again.folder / "map.ot"), read_file(flown.folder / "map.ot"));
 }
 
+TEST_F(Mapping, ScenesAreShown) {
+  const std::string page = (folder_ / "scene.html").string();
+  ASSERT_EQ(command("scene view office --seed 3 -o '" + page + "'"), 0) << error();
+  EXPECT_NE(read_file(page).find("From above"), std::string::npos);
+  EXPECT_NE(read_file(page).find("is left out"), std::string::npos) << "a look under the roof";
+  write_file_atomically(folder_ / "one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  ASSERT_EQ(command("scene view '" + (folder_ / "one.obj").string() + "' -o '" + page + "'"), 0)
+      << error();
+  EXPECT_NE(read_file(page).find("a scene of 1 triangle"), std::string::npos);
+  write_file_atomically(folder_ / "none.obj", "v 0 0 0\nv 1 0 0\nv 0 1 nan\nf 1 2 3\n");
+  fs::remove(page);
+  EXPECT_EQ(command("scene view '" + (folder_ / "none.obj").string() + "' -o '" + page + "'"), 2);
+  EXPECT_NE(error().find("none.obj"), std::string::npos) << error();
+  EXPECT_FALSE(fs::exists(page));
+}
+
 TEST_F(Mapping, WhatIsMissingOrBrokenIsSaid) {
   const std::string examples = (kExamples / "../mapping/").string();
   EXPECT_EQ(command("run " + examples + "own_map.lua"), 2);

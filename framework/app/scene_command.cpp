@@ -1,0 +1,52 @@
+// lapwing scene view: a mesh file, or a scene that a Lua script makes.
+#include "framework/app/command_line.h"
+#include "framework/config/shipped.h"
+#include "framework/core/files.h"
+#include "framework/export/scene_report.h"
+#include "framework/geometry/mesh_file.h"
+#include "framework/mission/scene_script.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A script where it is, or by its name in scripts/scene.
+fs::path script_of(const fs::path& file) {
+  if (file.extension() == ".lua" && fs::exists(file)) return file;
+  fs::path shipped = shipped_folder("scripts") / "scene" / file;
+  shipped.replace_extension(".lua");
+  return !file.has_extension() && fs::exists(shipped) ? shipped : fs::path();
+}
+
+}  // namespace
+
+ExitStatus view_scene(const fs::path& file, const fs::path& target, const Invocation& invocation) {
+  SceneReport shown;
+  shown.threads = std::max(1, invocation.threads);
+  const fs::path script = script_of(file);
+  if (script.empty()) {
+    const MeshFile read = read_mesh(file);
+    shown.title = file.filename().string();
+    shown.origin = read.description();
+    const MeshScene scene(read.mesh, shown.title);
+    write_file_atomically(target, render_html(scene_report(scene, shown)));
+    return ExitStatus::done;
+  }
+  const Registry registry = invocation.registry();
+  MissionSettings settings;
+  settings.scripts = shipped_folder("scripts");
+  settings.configs = shipped_folder("configs");
+  settings.registry = &registry;
+  Value options = Value::map();
+  options.set("seed", static_cast<std::int64_t>(invocation.seed));
+  GeneratedScene made = generate_scene(script, options, settings);
+  shown.title = made.name;
+  shown.origin = "seed " + std::to_string(invocation.seed);
+  shown.region = made.region;
+  const MeshScene scene(std::move(made.mesh), made.name);
+  write_file_atomically(target, render_html(scene_report(scene, shown)));
+  return ExitStatus::done;
+}
+
+}  // namespace lapwing
