@@ -1,0 +1,73 @@
+// lapwing simulate on shipped films: followed in still air, robust in wind, honest when lost.
+#include "framework/core/units.h"
+#include "tests/missions/flown_film.h"
+
+namespace lapwing {
+namespace {
+
+class Simulation : public Filming {
+ protected:
+  int simulate(const fs::path& plan, const std::string& more = "") {
+    const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing simulate '" +
+                             plan.string() + "' --json " + more + " > '" +
+                             (folder_ / "simulated.json").string() + "' 2> '" +
+                             (folder_ / "stderr.txt").string() + "'";
+    return WEXITSTATUS(std::system(line.c_str()));
+  }
+  double figure(const char* name) const {
+    return from_json(read_file(folder_ / "simulated.json"), "stdout")
+        .at("simulation")
+        .at(name)
+        .as_number();
+  }
+  std::string error() const { return read_file(folder_ / "stderr.txt"); }
+};
+
+TEST_F(Simulation, EveryShippedFilmIsFollowed) {
+  std::vector<std::string> films(std::begin(kCameraFilms), std::end(kCameraFilms));
+  films.emplace_back("hello.lua");
+  for (const std::string& film : films) {
+    const Flown flown = fly(film);
+    ASSERT_EQ(simulate(flown.folder / "plan.json"), 0) << film << error();
+    EXPECT_LT(figure("position_error_worst"), 0.15) << film;
+    EXPECT_LT(figure("yaw_error_worst"), radians(3)) << film;
+    EXPECT_LT(figure("saturated_share"), 1e-3) << film;
+    EXPECT_GT(figure("rotor_speed_worst"), 0.3) << film;
+  }
+}
+
+TEST_F(Simulation, WindMassAndSeedCount) {
+  const fs::path plan = fly("hello.lua").folder / "plan.json";
+  ASSERT_EQ(simulate(plan), 0) << error();
+  const double still = figure("position_error_worst");
+  ASSERT_EQ(simulate(plan, "--wind 5,1"), 0) << error();
+  const double windy = figure("position_error_worst");
+  ASSERT_EQ(simulate(plan, "--wind 5,1 --seed 2"), 0) << error();
+  EXPECT_NE(figure("position_error_worst"), windy);
+  EXPECT_GT(windy, 2 * still);
+  EXPECT_LT(windy, 0.3);
+  ASSERT_EQ(simulate(plan, "--mass-error 20"), 0) << error();
+  EXPECT_GT(figure("position_error_worst"), 2 * still);
+  const std::string page = (folder_ / "page.html").string();
+  ASSERT_EQ(simulate(plan, "-o '" + page + "'"), 0) << error();
+  EXPECT_NE(read_file(page).find("Rotor thrusts"), std::string::npos);
+}
+
+TEST_F(Simulation, WhatMakesNoSenseIsRefused) {
+  const fs::path plan = fly("hello.lua").folder / "plan.json";
+  for (const char* more : {"--wind 5", "--wind a,b", "--wind 1,2,3,4", "--wind 5,-1",
+                           "--mass-error x", "--mass-error -95", "--seed -1"}) {
+    EXPECT_EQ(simulate(plan, more), 2) << more;
+    EXPECT_NE(error(), "") << more;
+  }
+  Value broken = from_json(read_file(plan), "plan.json");
+  broken.find("vehicle")->set("mass", -1.0);
+  write_file_atomically(folder_ / "broken.json", to_json(broken));
+  EXPECT_EQ(simulate(folder_ / "broken.json"), 2);
+  EXPECT_NE(error().find("mass"), std::string::npos) << error();
+  // Five times the mass cannot hover: lost, and status 1.
+  EXPECT_EQ(simulate(plan, "--mass-error 400"), 1);
+}
+
+}  // namespace
+}  // namespace lapwing
