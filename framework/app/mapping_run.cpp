@@ -29,6 +29,7 @@ Value json_of(const MappingOutcome& outcome, const Invocation& invocation,
   map.set("resolution", mapping.map->grid().resolution());
   map.set("free", static_cast<std::int64_t>(counts.free));
   map.set("occupied", static_cast<std::int64_t>(counts.occupied));
+  map.set("known", static_cast<std::int64_t>(counts.known));
   map.set("bytes", static_cast<std::int64_t>(mapping.map->bytes()));
   return object;
 }
@@ -38,14 +39,19 @@ void print_summary(const MappingOutcome& outcome, const std::string& status) {
   const VoxelCounts counts = mapping.map->counts();
   std::printf("%s: %s\n", outcome.result.plan.mission.c_str(),
               status == "ok" ? "complete" : status.c_str());
-  std::printf("  %s, voxels of %.4g m by %s: %llu free, %llu occupied, %.1f MiB\n",
-              mapping.source.c_str(), mapping.map->grid().resolution(), mapping.plugin.c_str(),
-              static_cast<unsigned long long>(counts.free),
-              static_cast<unsigned long long>(counts.occupied),
-              static_cast<double>(mapping.map->bytes()) / (1 << 20));
+  std::printf(
+      "  %s, voxels of %.4g m by %s: %llu free, %llu occupied, "
+      "%llu known but undecided, %.1f MiB\n",
+      mapping.source.c_str(), mapping.map->grid().resolution(), mapping.plugin.c_str(),
+      static_cast<unsigned long long>(counts.free),
+      static_cast<unsigned long long>(counts.occupied),
+      static_cast<unsigned long long>(counts.known - counts.free - counts.occupied),
+      static_cast<double>(mapping.map->bytes()) / (1 << 20));
   if (mapping.scans > 0)
     std::printf("  integrated in %.3g s, %.3g ms an image\n", mapping.seconds,
                 1e3 * mapping.seconds / static_cast<double>(mapping.scans));
+  if (counts.free + counts.occupied == 0)
+    std::printf("  nothing was measured often enough to be free or occupied\n");
   std::printf("  report: %s\n", (outcome.folder / "report.html").c_str());
 }
 
@@ -54,7 +60,9 @@ void print_summary(const MappingOutcome& outcome, const std::string& status) {
 ExitStatus finish_mapping(const MappingOutcome& outcome, const Invocation& invocation,
                           const log::Capture& capture) {
   const Mapping& mapping = *outcome.result.mapping;
-  const std::string status = mapping.cancelled ? "cancelled" : "ok";
+  const VoxelCounts counts = mapping.map->counts();
+  const bool empty = counts.free + counts.occupied == 0;
+  const std::string status = mapping.cancelled ? "cancelled" : empty ? "failed" : "ok";
   RunFiles files;
   files.map = map_file_bytes(".ot", *mapping.map);
   files.report = render_html(map_report({.title = outcome.result.plan.mission,
@@ -71,7 +79,8 @@ ExitStatus finish_mapping(const MappingOutcome& outcome, const Invocation& invoc
     print_json(json_of(outcome, invocation, status));
   else if (!invocation.quiet)
     print_summary(outcome, status);
-  return mapping.cancelled ? ExitStatus::interrupted : ExitStatus::done;
+  if (mapping.cancelled) return ExitStatus::interrupted;
+  return empty ? ExitStatus::not_certified : ExitStatus::done;
 }
 
 }  // namespace lapwing

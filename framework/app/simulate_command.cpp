@@ -4,8 +4,10 @@
 #include "framework/app/command_line.h"
 #include "framework/core/files.h"
 #include "framework/core/units.h"
+#include "framework/export/light_painting.h"
 #include "framework/export/simulation_report.h"
 #include "framework/vehicle/closed_loop.h"
+#include "framework/verify/tolerances.h"
 #include "framework/verify/verify.h"
 
 namespace lapwing {
@@ -24,8 +26,17 @@ Value to_value(const FlownPath& path) {
   return value;
 }
 
+// Within what the certificate asks of a flight in still air.
+bool kept(const FlownPath& path) {
+  return !path.lost && path.position_error_worst <= tolerances::kTracking &&
+         path.yaw_error_worst <= tolerances::kTrackingYaw;
+}
+
 void print(const Plan& plan, const FlownPath& path) {
-  std::printf("%s: %s\n", plan.mission.c_str(), path.lost ? "lost" : "flown");
+  std::printf("%s: %s\n", plan.mission.c_str(),
+              path.lost    ? "lost"
+              : kept(path) ? "flown"
+                           : "strays");
   std::printf("  distance from the plan  worst %.3f m at %.4g s, mean %.3f m\n",
               path.position_error_worst, path.position_error_at, path.position_error_mean);
   std::printf("  yaw against the plan    worst %.2f degrees at %.4g s\n",
@@ -33,6 +44,13 @@ void print(const Plan& plan, const FlownPath& path) {
   std::printf("  rotor speed             up to %.1f %% of the largest\n",
               100 * path.rotor_speed_worst);
   std::printf("  rotors saturated        %.3g %% of the time\n", 100 * path.saturated_share);
+  if (!plan.task.strokes.empty()) {
+    const DrawingError error = drawing_error(plan, path);
+    std::printf("  light from the drawing  worst %.3f m, mean %.4f m\n", error.worst, error.mean);
+  }
+  if (!path.lost && !kept(path))
+    std::printf("  beyond what a certificate allows: %.3g m and %.3g degrees\n",
+                tolerances::kTracking, degrees(tolerances::kTrackingYaw));
 }
 
 // What the verifier would refuse cannot be flown either.
@@ -56,12 +74,18 @@ ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditio
     Value object = Value::map();
     object.set("plan", file.string());
     object.set("mission", plan.mission);
-    object.set("simulation", to_value(path));
+    Value& simulation = object.set("simulation", to_value(path));
+    simulation.set("kept", kept(path));
+    if (!plan.task.strokes.empty()) {
+      const DrawingError error = drawing_error(plan, path);
+      simulation.set("drawing_error_worst", error.worst);
+      simulation.set("drawing_error_mean", error.mean);
+    }
     print_json(object);
   } else {
     print(plan, path);
   }
-  return path.lost ? ExitStatus::not_certified : ExitStatus::done;
+  return !kept(path) ? ExitStatus::not_certified : ExitStatus::done;
 }
 
 }  // namespace lapwing

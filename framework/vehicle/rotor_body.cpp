@@ -32,11 +32,9 @@ RotorBody::RotorBody(const Vehicle& vehicle, double mass_factor)
 // Time derivatives, those of the orientation as body rates.
 struct RotorBody::Rates {
   Vector3d position, velocity, turn, body_rates;
-  Vector4d rotor_thrusts;
 };
 
-RotorBody::Rates RotorBody::rates(const BodyState& state, const Vector4d& commanded,
-                                  const Vector3d& wind) const {
+RotorBody::Rates RotorBody::rates(const BodyState& state, const Vector3d& wind) const {
   const Vector4d u = wrench(state.rotor_thrusts);
   const Vector3d thrust = state.orientation * Vector3d(0, 0, u(0));
   const Vector3d moment = u.tail<3>();
@@ -46,8 +44,6 @@ RotorBody::Rates RotorBody::rates(const BodyState& state, const Vector4d& comman
   rates.velocity = (thrust - drag_ * (state.velocity - wind)) / mass_ - Vector3d(0, 0, kGravity);
   rates.turn = state.body_rates;
   rates.body_rates = (moment - state.body_rates.cross(spin)).cwiseQuotient(inertia_);
-  rates.rotor_thrusts =
-      lag_ > 0 ? Vector4d((commanded - state.rotor_thrusts) / lag_) : Vector4d::Zero().eval();
   return rates;
 }
 
@@ -70,30 +66,35 @@ Vector3d turn_rate(const Vector3d& turn, const Vector3d& body_rates) {
 
 BodyState RotorBody::after(const BodyState& state, const Vector4d& commanded, const Vector3d& wind,
                            double step) const {
-  BodyState from = state;
-  if (lag_ <= 0) from.rotor_thrusts = commanded;
+  const BodyState& from = state;
+  // The lag is solved in closed form: it may be far shorter than the step.
+  const auto thrusts_after = [&](double time) -> Vector4d {
+    const double left = lag_ > 0 ? std::exp(-time / lag_) : 0.0;
+    return commanded + left * (from.rotor_thrusts - commanded);
+  };
   BodyState sum = from;
   Vector3d sum_turn = Vector3d::Zero(), turn = Vector3d::Zero();
   BodyState at = from;
+  at.rotor_thrusts = lag_ > 0 ? from.rotor_thrusts : commanded;
   constexpr double kWeights[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
   constexpr double kNext[] = {0.5, 0.5, 1.0, 0.0};  // of the step, to the next stage
   for (int k = 0; k < 4; ++k) {
-    Rates r = rates(at, commanded, wind);
+    Rates r = rates(at, wind);
     r.turn = turn_rate(turn, r.turn);
     const double share = kWeights[k] * step;
     sum.position += share * r.position;
     sum.velocity += share * r.velocity;
     sum.body_rates += share * r.body_rates;
-    sum.rotor_thrusts += share * r.rotor_thrusts;
     sum_turn += share * r.turn;
     const double next = kNext[k] * step;
     turn = next * r.turn;
     at.position = from.position + next * r.position;
     at.velocity = from.velocity + next * r.velocity;
     at.body_rates = from.body_rates + next * r.body_rates;
-    at.rotor_thrusts = from.rotor_thrusts + next * r.rotor_thrusts;
+    at.rotor_thrusts = thrusts_after(next);
     at.orientation = turned(from.orientation, turn);
   }
+  sum.rotor_thrusts = thrusts_after(step);
   sum.orientation = turned(from.orientation, sum_turn);
   return sum;
 }

@@ -43,8 +43,7 @@ class RotorBody {
 
  private:
   struct Rates;
-  Rates rates(const BodyState& state, const Eigen::Vector4d& commanded,
-              const Eigen::Vector3d& wind) const;
+  Rates rates(const BodyState& state, const Eigen::Vector3d& wind) const;
 
   double mass_, drag_, lag_;
   Eigen::Vector3d inertia_;

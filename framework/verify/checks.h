@@ -4,9 +4,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "framework/trajectory/plan.h"
+#include "framework/vehicle/closed_loop.h"
 #include "framework/vehicle/vehicle.h"
 #include "framework/verify/certificate.h"
 #include "framework/verify/motion.h"
@@ -62,6 +64,7 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"line_of_sight", CheckGroup::task, false, ""},
     CheckKind{"gates", CheckGroup::task, true, ""},
     CheckKind{"drawing", CheckGroup::task, true, "m"},
+    CheckKind{"drawing_flown", CheckGroup::task, true, "m"},
     CheckKind{"coverage", CheckGroup::task, true, ""},
 };
 
@@ -111,10 +114,13 @@ void check_dynamics(const Flight& flight, Certificate& certificate);
 void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);
 void check_subject_distance(const Flight& flight, Certificate& certificate);
-void check_closed_loop(const Flight& flight, Certificate& certificate);
+// What was flown, where the motion model can be.
+std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& certificate);
 void check_time(const Flight& flight, Certificate& certificate);
-void check_task(const Flight& flight, Certificate& certificate);
-void check_drawing(const Flight& flight, Certificate& certificate);
+void check_task(const Flight& flight, const std::optional<FlownPath>& flown,
+                Certificate& certificate);
+void check_drawing(const Flight& flight, const std::optional<FlownPath>& flown,
+                   Certificate& certificate);
 void check_framing(const Flight& flight, Certificate& certificate);
 
 // What of the environment, the cuts and the framing does not hold together, in words. The spans are

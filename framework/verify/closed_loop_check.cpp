@@ -5,7 +5,7 @@
 
 namespace lapwing {
 
-void check_closed_loop(const Flight& flight, Certificate& certificate) {
+std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& certificate) {
   constexpr std::array kNames = {"closed_loop", "closed_loop_yaw", "rotors_saturated"};
   const Trajectory& trajectory = flight.plan.trajectory;
   std::string reason;
@@ -15,9 +15,9 @@ void check_closed_loop(const Flight& flight, Certificate& certificate) {
     reason = "a single sample is no flight";
   if (!reason.empty()) {
     for (const char* name : kNames) certificate.checks.push_back(skipped_check(name, reason));
-    return;
+    return std::nullopt;
   }
-  const FlownPath path = fly(trajectory, flight.vehicle);
+  FlownPath path = fly(trajectory, flight.vehicle);
   const double infinite = std::numeric_limits<double>::infinity();
   Check tracking =
       judged(make_check("closed_loop"), path.lost ? infinite : path.position_error_worst,
@@ -28,6 +28,7 @@ void check_closed_loop(const Flight& flight, Certificate& certificate) {
                                       tolerances::kTrackingYaw, 0, path.yaw_error_at));
   certificate.checks.push_back(judged(make_check("rotors_saturated"), path.saturated_share,
                                       tolerances::kSaturated, 0, trajectory.samples.front().time));
+  return path;
 }
 
 }  // namespace lapwing

@@ -1,8 +1,8 @@
 // How far the light is from the drawing, and the drawing from the light.
 //
-// Means over length: of the lit path to the nearest stroke, and of the strokes to the nearest lit
-// path. The worse counts, so that a light that is never on draws nothing. Light is on in the spans
-// that the plan states.
+// Means over length: of every span of light to the nearest stroke, and of every stroke to the
+// nearest lit path. The worst counts, so that no stroke is left out and no light drawn beside them.
+// Once as planned, once as flown under control.
 #include "framework/trajectory/polyline.h"
 #include "framework/verify/checks.h"
 
@@ -37,36 +37,62 @@ std::vector<Points> lit_paths(const Flight& flight) {
   return lit;
 }
 
-double mean_distance(const std::vector<Points>& from, const std::vector<Points>& to) {
-  double sum = 0, lengths = 0;
-  for (const Points& path : from) {
-    const double length = length_of(path);
-    if (!(length > 0)) continue;
-    const Points places = resampled(path, kSpacing);
-    double part = 0;
-    for (const Eigen::Vector3d& p : places) part += distance_to(to, p);
-    sum += length * part / static_cast<double>(places.size());
-    lengths += length;
+// Means over length, the largest of all parts and which it is.
+struct WorstPart {
+  double mean = 0;
+  std::size_t part = 0;
+};
+
+WorstPart worst_mean(const std::vector<Points>& parts, const std::vector<Points>& to) {
+  WorstPart worst;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Points places = resampled(parts[i], kSpacing);
+    double sum = 0;
+    for (const Eigen::Vector3d& p : places) sum += distance_to(to, p);
+    const double mean = sum / static_cast<double>(places.size());
+    if (!(mean <= worst.mean)) worst = {mean, i};
   }
-  return lengths > 0 ? sum / lengths : std::numeric_limits<double>::infinity();
+  return worst;
+}
+
+// The worse of the light against the strokes and the strokes against the light.
+Check drawn(const char* name, const std::vector<Points>& lit, const Task& task) {
+  const WorstPart light = worst_mean(lit, task.strokes), stroke = worst_mean(task.strokes, lit);
+  const bool by_light = light.mean >= stroke.mean;
+  Check check =
+      judged(make_check(name), std::max(light.mean, stroke.mean), task.drawing_tolerance, 0, 0);
+  if (!check.detail.empty()) check.detail += "; ";
+  check.detail += by_light ? "light " + std::to_string(light.part + 1) + " from the strokes"
+                           : "stroke " + std::to_string(stroke.part + 1) + " from the light";
+  return check;
+}
+
+std::vector<Points> lit_paths(const Plan& plan, const FlownPath& flown) {
+  std::vector<Points> lit;
+  for (const TimeSpan& light : plan.lights) {
+    Points path;
+    for (const FlownSample& sample : flown.samples)
+      if (light.start <= sample.time && sample.time <= light.finish)
+        path.push_back(sample.state.position);
+    if (!path.empty()) lit.push_back(std::move(path));
+  }
+  return lit;
 }
 
 }  // namespace
 
-void check_drawing(const Flight& flight, Certificate& certificate) {
-  const auto& strokes = flight.plan.task.strokes;
-  if (strokes.empty()) {
-    certificate.checks.push_back(skipped_check("drawing", "the task has no stroke"));
+void check_drawing(const Flight& flight, const std::optional<FlownPath>& flown,
+                   Certificate& certificate) {
+  auto& checks = certificate.checks;
+  if (flight.plan.task.strokes.empty()) {
+    for (const char* name : {"drawing", "drawing_flown"})
+      checks.push_back(skipped_check(name, "the task has no stroke"));
     return;
   }
-  const std::vector<Points> lit = lit_paths(flight);
-  const double light = mean_distance(lit, strokes), drawing = mean_distance(strokes, lit);
-  Check check = judged(make_check("drawing"), std::max(light, drawing),
-                       flight.plan.task.drawing_tolerance, 0, 0);
-  if (!check.detail.empty()) check.detail += "; ";
-  check.detail += light >= drawing ? "mean from the light to the strokes"
-                                   : "mean from the strokes to the light";
-  certificate.checks.push_back(check);
+  checks.push_back(drawn("drawing", lit_paths(flight), flight.plan.task));
+  checks.push_back(flown
+                       ? drawn("drawing_flown", lit_paths(flight.plan, *flown), flight.plan.task)
+                       : skipped_check("drawing_flown", "the plan is not flown by the controller"));
 }
 
 }  // namespace lapwing

@@ -103,7 +103,8 @@ class WorstKeyframe {
 
 }  // namespace
 
-void check_task(const Flight& flight, Certificate& certificate) {
+void check_task(const Flight& flight, const std::optional<FlownPath>& flown,
+                Certificate& certificate) {
   const auto& keyframes = flight.plan.task.keyframes;
   const std::vector<Meeting> meetings = meetings_of(flight);
   WorstKeyframe time("keyframe_time"), miss("keyframe_miss"), yaw("keyframe_yaw");
@@ -119,7 +120,7 @@ void check_task(const Flight& flight, Certificate& certificate) {
   checks.push_back(yaw.check("no keyframe states a yaw"));
   check_framing(flight, certificate);
   checks.push_back(skipped_check("gates", "the task has no gate"));
-  check_drawing(flight, certificate);
+  check_drawing(flight, flown, certificate);
   checks.push_back(skipped_check("coverage", "the task has no region to cover"));
 }
 

@@ -22,8 +22,8 @@ Certificate verify(const Plan& plan) {
   check_clearance(flight, certificate);
   check_subject_distance(flight, certificate);
   check_time(flight, certificate);
-  check_closed_loop(flight, certificate);
-  check_task(flight, certificate);
+  const std::optional<FlownPath> flown = check_closed_loop(flight, certificate);
+  check_task(flight, flown, certificate);
   return certificate;
 }
 

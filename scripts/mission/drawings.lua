@@ -78,7 +78,9 @@ function M.placed(strokes, unit, o)
       low, high = math.min(low, p[2]), math.max(high, p[2])
     end
   end
-  local scale = o.height / (unit or math.max(high - low, 1e-9))
+  -- A drawing without a height, a level line, is as wide as the height says.
+  local scale = o.height / (unit or (high - low > 1e-6 * (right - left) and high - low)
+                            or right - left)
   local yaw = math.rad(o.view_yaw_deg)
   local across = { math.sin(yaw), -math.cos(yaw) }  -- to the right of who looks that way
   local world = {}

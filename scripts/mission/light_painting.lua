@@ -34,13 +34,13 @@ local DECLARATIONS = {
     summary = "largest; the vehicle's own limits hold too" },
   { name = "acceleration", type = "number", unit = "m/s^2", default = 2, minimum = 0.01,
     summary = "largest, along and across the path together" },
-  { name = "rounding", type = "number", unit = "m", default = 0.015, minimum = 0,
+  { name = "rounding", type = "number", unit = "m", default = 0.015, minimum = 0, maximum = 1,
     summary = "of sharp corners" },
-  { name = "tolerance", type = "number", unit = "m", default = 0.02, minimum = 0.001,
-    summary = "mean distance of the light from the drawing, flown; slower until it is kept" },
+  { name = "tolerance", type = "number", unit = "m", minimum = 1e-4,
+    summary = "mean distance between light and any stroke; absent: 1 % of the height" },
   { name = "slowest", type = "number", default = 0.1, minimum = 0.01, maximum = 1,
     summary = "share of the speed below which no slower flight is tried" },
-  { name = "step", type = "number", unit = "s", default = 0.05, minimum = 0.005,
+  { name = "step", type = "number", unit = "s", default = 0.05, minimum = 0.005, maximum = 0.2,
     summary = "between stages" },
   { name = "weights", type = "table", summary = "of the cost", table = {
     weight("drawing", 1e4, "places along the strokes"),
@@ -83,8 +83,8 @@ local function solved(run, timed, vehicle)
   local duration = timed.times[#timed.times]
   local count = math.max(5, math.ceil(duration / o.step) + 1)
   if count > MOST_STAGES then
-    run:fail("step", string.format("%.4g s of flight are more than %d stages; draw faster, less, "
-                                   .. "or with a longer step", duration, MOST_STAGES))
+    return nil, string.format("%.4g s of flight are more than %d stages; draw faster, less, or "
+                              .. "with a longer step", duration, MOST_STAGES)
   end
   local places = places_of(timed, count, duration)
   local p = run:problem { vehicle = vehicle, duration = duration, step = duration / (count - 1),
@@ -107,12 +107,30 @@ local function solved(run, timed, vehicle)
   return run:solve(p, o.solver)
 end
 
-local function plan_of(run, strokes, lights, solution, figures)
+local function tolerance_of(o) return o.tolerance or 0.01 * o.height end
+
+local function plan_of(run, strokes, lights, solution, figures, notes)
   local yaw = math.rad(run.options.view_yaw_deg)
-  local task = { strokes = {}, drawing_view = { math.cos(yaw), math.sin(yaw), 0 } }
+  local task = { strokes = {}, drawing_view = { math.cos(yaw), math.sin(yaw), 0 },
+                 drawing_tolerance = tolerance_of(run.options) }
   for i, stroke in ipairs(strokes) do task.strokes[i] = { points = drawings.flat(stroke) } end
   return run:plan { solution = solution, task = task, lights = lights,
-                    figures = figures }
+                    figures = figures, notes = notes }
+end
+
+-- What a user should know of a flight that is not as asked.
+local function notes_of(best, o)
+  local notes = {}
+  if best.solution.status ~= "optimal" and best.solution.status ~= "feasible" then
+    notes[1] = "the solver ended " .. best.solution.status .. ": " .. best.solution.message
+  end
+  if not best.kept then
+    notes[#notes + 1] = string.format(
+      "no flight down to %.2g of the speed keeps all strokes within %.3g m; draw larger or allow "
+      .. "more (tolerance), or weigh the drawing more (weights.drawing)", best.share,
+      tolerance_of(o))
+  end
+  return notes
 end
 
 local function painted(run)
@@ -126,7 +144,7 @@ local function painted(run)
   local path, lit = drawings.joined(strokes)
   local fastest = 0.95 * math.min(vehicle.speed_across, vehicle.climb_speed, vehicle.descent_speed)
   local strongest = 0.9 * vehicle.acceleration_across
-  local share = 1
+  local share, best = 1, nil
   while true do
     local timed = run:time_path {
       points = drawings.flat(path), spacing = SPACING, rounding = o.rounding,
@@ -141,14 +159,22 @@ local function painted(run)
       if before and light.start <= before.finish then before.finish = light.finish
       else lights[#lights + 1] = light end
     end
-    local solution = solved(run, timed, vehicle)
-    local flown = run:fly(plan_of(run, strokes, lights, solution))
+    local solution, too_long = solved(run, timed, vehicle)
+    if not solution and not best then run:fail("step", too_long) end
+    if solution then
+      local plan = plan_of(run, strokes, lights, solution)
+      local flown = run:fly(plan)
+      local certificate = run:certify(plan)
+      best = { lights = lights, solution = solution, share = share, flown = flown }
+      best.kept = certificate.feasible
+                  and (solution.status == "optimal" or solution.status == "feasible")
+    end
     local slower = share * SLOWER
-    if flown.mean_drawing_error <= o.tolerance or slower < o.slowest or run:cancelled() then
-      return plan_of(run, strokes, lights, solution, {
-        mean_error = flown.mean_drawing_error, worst_error = flown.worst_drawing_error,
-        strokes = #strokes, speed_share = share,
-      })
+    if best.kept or not solution or slower < o.slowest or run:cancelled() then
+      return plan_of(run, strokes, best.lights, best.solution, {
+        mean_error = best.flown.mean_drawing_error, worst_error = best.flown.worst_drawing_error,
+        strokes = #strokes, speed_share = best.share,
+      }, notes_of(best, o))
     end
     share = slower
   end

@@ -14,10 +14,10 @@ local M = {}
 
 local SHARED = {  -- as the backends' own defaults
   { name = "resolution", type = "number", unit = "m", default = 0.2, minimum = 0.001,
-    maximum = 1000, summary = "edge of a voxel" },
+    maximum = 100, summary = "edge of a voxel" },
   { name = "mode", type = "choice", choices = { "discretised", "exact" }, default = "discretised",
     summary = "a ray for every voxel that holds a point, or for every point" },
-  { name = "pixel_step", type = "integer", default = 1, minimum = 1, maximum = 1000,
+  { name = "pixel_step", type = "integer", default = 1, minimum = 1, maximum = 64,
     summary = "every so many pixels and rows of an image are used" },
   { name = "observations", type = "boolean", default = false,
     summary = "count how often each voxel was measured, for its uncertainty" },
@@ -26,22 +26,28 @@ local MAP = { name = "map", type = "plugin", kind = "map", default = "brick",
               summary = "the map's backend, and its update rule" }
 local INPUT = { name = "input", type = "text", summary = "the user's own data" }
 
+local FOLDER = { INPUT, {
+  name = "range", type = "number", unit = "m", minimum = 0.01, maximum = 1000,
+  summary = "beyond it a ray clears and hits nothing; absent: none" } }
+
 local SENSOR = {
-  { name = "width", type = "integer", default = 160, minimum = 1, summary = "pixels" },
-  { name = "height", type = "integer", default = 120, minimum = 1, summary = "pixels" },
+  { name = "width", type = "integer", default = 160, minimum = 1, maximum = 10000,
+    summary = "pixels" },
+  { name = "height", type = "integer", default = 120, minimum = 1, maximum = 10000,
+    summary = "pixels" },
   { name = "view_deg", type = "number", unit = "deg", default = 90, minimum = 1, maximum = 170,
     summary = "angle across the image" },
-  { name = "range", type = "number", unit = "m", default = 20, minimum = 0.01,
+  { name = "range", type = "number", unit = "m", default = 20, minimum = 0.01, maximum = 1000,
     summary = "largest depth" },
   { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
     summary = "share of the pixels without a measurement" },
-  { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0,
+  { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
     summary = "noise of the depth" },
 }
 
-local function declarations(own)
+local function declarations(...)
   local all = { MAP }
-  for _, list in ipairs { SHARED, own } do
+  for _, list in ipairs { ... } do
     for _, declared in ipairs(list) do all[#all + 1] = declared end
   end
   return all
@@ -53,11 +59,12 @@ local function new_map(run, known)
   local made = type(o.map) == "table" and o.map or { type = o.map }
   for _, shared in ipairs(SHARED) do
     local own = made[shared.name]
-    if own ~= nil and own ~= shared.default and own ~= o[shared.name] then
+    if own ~= nil and own ~= shared.default and own ~= o[shared.name]
+       and o[shared.name] ~= nil then
       run:fail("map." .. shared.name, string.format("every backend takes it: set %s = %s instead",
                                                     shared.name, tostring(own)))
     end
-    made[shared.name] = o[shared.name]
+    if o[shared.name] ~= nil then made[shared.name] = o[shared.name] end
   end
   for key, value in pairs(known) do made[key] = value end
   return run:map(made)
@@ -71,7 +78,8 @@ end
 function M.of_scene(given)
   local own = {
     { name = "scene", type = "text", summary = "a scene of scripts/scene: street, suburb, ..." },
-    { name = "scene_seed", type = "integer", default = 1, summary = "of the scene" },
+    { name = "scene_seed", type = "integer", default = 1, minimum = 0, maximum = 9007199254740991,
+      summary = "of the scene" },
     { name = "sensor", type = "table", table = SENSOR, summary = "the depth camera" },
     { name = "views", type = "integer", default = 400, minimum = 1, maximum = 100000,
       summary = "how many images" },
@@ -79,7 +87,7 @@ function M.of_scene(given)
   local name = given.name
   given.name = nil
   return {
-    kind = "map", name = name, options = lapwing.options(declarations(own), given),
+    kind = "map", name = name, options = lapwing.options(declarations(SHARED, own), given),
     plan = function(run)
       local o = run.options
       local scene = require("scene." .. o.scene) { seed = o.scene_seed }
@@ -103,13 +111,13 @@ function M.of_folder(given)
   local name = given.name
   given.name = nil
   return {
-    kind = "map", name = name, options = lapwing.options(declarations { INPUT }, given),
+    kind = "map", name = name, options = lapwing.options(declarations(SHARED, FOLDER), given),
     plan = function(run)
       local o = run.options
       if not o.input then
         lapwing.fail(missing_input("a folder of depth images", "NAME.depth.png, NAME.pose.txt"))
       end
-      local made = new_map(run, {})
+      local made = new_map(run, { maximum_range = o.range })
       made:scan_folder(o.input)
       return made
     end,

@@ -39,7 +39,11 @@ local function transform_of(text)
     if not close then error("transform '" .. rest .. "' lacks its ')'") end
     local name = rest:sub(1, open - 1):match("%a+")
     local make = TRANSFORMS[name] or error("unknown transform '" .. tostring(name) .. "'")
-    matrix = times(matrix, make(numbers_of(rest:sub(open + 1, close - 1))))
+    local given = numbers_of(rest:sub(open + 1, close - 1))
+    if #given < (name == "matrix" and 6 or 1) then
+      error("transform " .. name .. " lacks numbers")
+    end
+    matrix = times(matrix, make(given))
     rest = rest:sub(close + 1)
   end
   return matrix
@@ -47,16 +51,24 @@ end
 
 -- Basic shapes as path data.
 local function shape_data(name, a)
-  local function n(key) return tonumber(a[key] or 0) or error(name .. ": " .. key) end
+  local function n(key)
+    return tonumber(a[key] or 0)
+      or error(("%s: %s is '%s', expected a plain number"):format(name, key, a[key]))
+  end
+  local function positive(key)
+    return n(key) > 0 and n(key) or error(("%s: %s must be above 0"):format(name, key))
+  end
   if name == "line" then
     return ("M%f,%f L%f,%f"):format(n "x1", n "y1", n "x2", n "y2")
   elseif name == "polyline" or name == "polygon" then
     return "M" .. (a.points or "") .. (name == "polygon" and "Z" or "")
   elseif name == "rect" then
-    return ("M%f,%f h%f v%f h%f Z"):format(n "x", n "y", n "width", n "height", -n "width")
+    if n "rx" ~= 0 or n "ry" ~= 0 then error("rect: rounded corners are not read; use a path") end
+    return ("M%f,%f h%f v%f h%f Z"):format(n "x", n "y", positive "width", positive "height",
+                                           -n "width")
   elseif name == "circle" or name == "ellipse" then
-    local rx = name == "circle" and n "r" or n "rx"
-    local ry = name == "circle" and rx or n "ry"
+    local rx = positive(name == "circle" and "r" or "rx")
+    local ry = name == "circle" and rx or positive "ry"
     return ("M%f,%f a%f,%f 0 1 1 %f,0 a%f,%f 0 1 1 %f,0"):format(n "cx" - rx, n "cy", rx, ry,
                                                                    2 * rx, rx, ry, -2 * rx)
   end
@@ -78,6 +90,17 @@ local function attributes_of(text)
   end
 end
 
+-- The '>' that ends the tag, outside of quotes.
+local function tag_end(text, at)
+  while true do
+    local found = text:find("[\"'>]", at)
+    if not found or text:sub(found, found) == ">" then return found end
+    local close = text:find(text:sub(found, found), found + 1, true)
+    if not close then return nil end
+    at = close + 1
+  end
+end
+
 -- Calls f(closing, name, attributes, empty) for every tag.
 local function for_each_tag(text, f)
   local at = 1
@@ -85,7 +108,7 @@ local function for_each_tag(text, f)
     local open = text:find("<", at, true)
     if not open then return end
     local comment = text:sub(open, open + 3) == "<!--"
-    local close = text:find(comment and "-->" or ">", open, true)
+    local close = comment and text:find("-->", open, true) or tag_end(text, open)
     if not close then error("the file ends within a tag") end
     if comment then
       close = close + 2
@@ -105,15 +128,20 @@ local HIDDEN = { defs = true, clipPath = true, mask = true, symbol = true }
 
 -- Strokes of a whole picture.
 function M.strokes(text)
-  local strokes, stack, hidden = {}, { IDENTITY }, 0
+  local strokes, stack, hides, hidden = {}, { IDENTITY }, {}, 0
   for_each_tag(text, function(closing, name, a, empty)
     if closing then
       if #stack > 1 then table.remove(stack) end
-      if HIDDEN[name] then hidden = hidden - 1 end
+      if table.remove(hides) then hidden = hidden - 1 end
       return
     end
     local matrix = times(stack[#stack], transform_of(a.transform))
-    local data = name == "path" and a.d or shape_data(name, a)
+    local hide = HIDDEN[name] or a.display == "none" or a.visibility == "hidden"
+                 or (a.style or ""):gsub("%s", ""):find("display:none", 1, true)
+    if name == "use" and hidden == 0 and not hide then
+      error("<use> is not read; write the path itself")
+    end
+    local data = not hide and (name == "path" and a.d or shape_data(name, a))
     for _, stroke in ipairs(data and hidden == 0 and path.strokes(data) or {}) do
       for i, p in ipairs(stroke) do
         stroke[i] = { matrix[1] * p[1] + matrix[3] * p[2] + matrix[5],
@@ -123,7 +151,8 @@ function M.strokes(text)
     end
     if not empty then
       stack[#stack + 1] = matrix
-      if HIDDEN[name] then hidden = hidden + 1 end
+      hides[#hides + 1] = hide and true or false
+      if hide then hidden = hidden + 1 end
     end
   end)
   return strokes

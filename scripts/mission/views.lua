@@ -7,7 +7,7 @@ local PASSES = {  -- m over the region's floor, rad
   { height = 20, pitch = -0.9 },
 }
 local HEADINGS = 4
-local CLEARANCE = 1.5  -- m, kept from every triangle
+local CLEARANCE, CLEARANCE_INDOORS = 1.5, 0.4  -- m, kept from every triangle
 local TRIES = 40       -- places drawn for each one that is found free
 
 -- `count` poses over the surface's region of interest: passes at three heights, at places that fill
@@ -18,6 +18,7 @@ function M.over(surface, count)
   local top = surface.upper[3]
   local middle = { (lower[1] + upper[1]) / 2, (lower[2] + upper[2]) / 2, lower[3] + 2 }
   local indoors = surface:covered(middle)
+  local clearance = indoors and CLEARANCE_INDOORS or CLEARANCE
   local poses, k = {}, 0
   while #poses < count and k < TRIES * count do
     local pass = PASSES[k % #PASSES + 1]
@@ -28,12 +29,14 @@ function M.over(surface, count)
                 lower[3] + pass.height }
     if indoors then p[3] = lower[3] + (upper[3] - lower[3]) * (0.3 + 0.4 * (k % 3) / 2) end
     local high = p[3] > top + CLEARANCE and p[3] > lower[3] + PASSES[1].height
-    if not high and surface:clearance(p) >= CLEARANCE and (indoors or not surface:covered(p)) then
+    if not high and surface:clearance(p) >= clearance and (indoors or not surface:covered(p)) then
       poses[#poses + 1] = { position = p, pitch = indoors and 0 or pass.pitch,
                             yaw = (#poses % HEADINGS) * 2 * math.pi / HEADINGS + 0.3 * u }
     end
   end
-  if #poses == 0 then error("no place in the region is free to look from") end
+  if #poses < count then
+    error(string.format("only %d of %d places in the region are free to look from", #poses, count))
+  end
   return poses
 end
 

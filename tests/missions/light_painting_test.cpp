@@ -52,8 +52,13 @@ TEST_F(LightPainting, TheHeartOfAPictureIsDrawn) {
 TEST_F(LightPainting, TooSmoothIsAMatterOfWeights) {
   const Flown smooth =
       fly("../light_painting/hello.lua", "--set weights.smoothness=1 --set tolerance=1");
-  EXPECT_EQ(smooth.status, 1);
+  EXPECT_EQ(smooth.status, 0);
   EXPECT_GT(mean_error(smooth), 0.03);
+  const Flown hurried = fly("../light_painting/hello.lua",
+                            "--set weights.smoothness=1 --set slowest=1", "hurried");
+  EXPECT_EQ(hurried.status, 1);
+  EXPECT_NE(hurried.result.at("notes").as_list().at(0).as_text().find("tolerance"),
+            std::string::npos);
   // With a tolerance to keep, it is flown slower until it is kept.
   const Flown kept = fly("../light_painting/hello.lua", "--set weights.smoothness=0.1", "kept");
   expect_certified(kept);

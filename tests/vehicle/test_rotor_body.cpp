@@ -60,6 +60,20 @@ TEST(RotorBody, ThrustFollowsItsCommandWithTheLag) {
   EXPECT_NEAR(state.rotor_thrusts(0), 2 * (1 - std::exp(-1)), 1e-9);
 }
 
+// However short the lag is against the step.
+TEST(RotorBody, QuickMotorsAreNoTrouble) {
+  Vehicle vehicle = reference_vehicle();
+  const Vector4d hover = Vector4d::Constant(vehicle.mass * kGravity / 4);
+  for (const double lag : {1e-12, 3e-4, 5e-4, 1e-3}) {
+    vehicle.rotors.lag = lag;
+    const RotorBody body(vehicle);
+    BodyState state;
+    for (int k = 0; k < 500; ++k) state = body.after(state, hover, Vector3d::Zero(), 0.002);
+    EXPECT_LT((state.rotor_thrusts - hover).norm(), 1e-12) << lag;
+    EXPECT_LT(state.position.norm(), 0.02) << lag;
+  }
+}
+
 // Without moments a tumbling body keeps its angular momentum and its energy of rotation.
 BodyState tumbled(const Vehicle& vehicle, int steps) {
   const RotorBody body(vehicle);

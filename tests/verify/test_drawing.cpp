@@ -41,14 +41,35 @@ TEST(Drawing, WhatIsNotLitIsNotDrawn) {
   EXPECT_FALSE(verify(plan).find("drawing")->pass);
   plan.lights = {{0, 1}};  // the second half is missing: a metre, at 0.5 m on the mean, of two
   EXPECT_NEAR(drawing_of(plan), 0.25, 0.01);
-  EXPECT_EQ(verify(plan).find("drawing")->detail, "mean from the strokes to the light");
+  EXPECT_EQ(verify(plan).find("drawing")->detail, "stroke 1 from the light");
 }
 
 TEST(Drawing, LightBesideTheStrokesCounts) {
   Plan plan = line();
   plan.task.strokes = {{{0, 0, 0}, {1, 0, 0}}};
   EXPECT_NEAR(drawing_of(plan), 0.25, 0.01);
-  EXPECT_EQ(verify(plan).find("drawing")->detail, "mean from the light to the strokes");
+  EXPECT_EQ(verify(plan).find("drawing")->detail, "light 1 from the strokes");
+}
+
+// Of many strokes each counts: one that is not lit is not lost in the mean of the others.
+TEST(Drawing, NoStrokeIsLostAmongOthers) {
+  Plan plan = line();
+  for (int i = 0; i < 50; ++i) plan.task.strokes.push_back({{0, 0, 0}, {2, 0, 0}});
+  EXPECT_TRUE(verify(plan).find("drawing")->pass);
+  plan.task.strokes.push_back({{0, 0, 1}, {0, 0, 1.1}});
+  EXPECT_NEAR(drawing_of(plan), 1.05, 0.01);
+  EXPECT_EQ(verify(plan).find("drawing")->detail, "stroke 52 from the light");
+}
+
+TEST(Drawing, TheFlightIsJudgedToo) {
+  Plan plan = line();
+  plan.task.drawing_tolerance = 0.001;
+  EXPECT_TRUE(verify(plan).find("drawing_flown")->pass);
+  Vehicle slow = vehicle_from_value(plan.vehicle);
+  slow.rotors.lag = 0.25;
+  plan.vehicle = to_value(slow);
+  EXPECT_TRUE(verify(plan).find("drawing")->pass);
+  EXPECT_FALSE(verify(plan).find("drawing_flown")->pass);
 }
 
 TEST(Drawing, ContradictionsAreRefused) {
