@@ -64,6 +64,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
   if (entry.kind == TrajectorySolver::kKind)
     return check_registered<TrajectorySolver>(registry, entry, options, check_trajectory_solver);
   if (entry.kind == Map::kKind) return check_registered<Map>(registry, entry, options, check_map);
+  if (entry.kind == PathPlanner::kKind)
+    return check_registered<PathPlanner>(registry, entry, options, check_path_planner);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
 }
 

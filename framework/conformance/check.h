@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "framework/map/map.h"
+#include "framework/path/path_planner.h"
 #include "framework/plugin/registry.h"
 #include "framework/problem/constraint.h"
 #include "framework/problem/cost_term.h"
@@ -52,7 +53,8 @@ std::vector<CheckResult> check_vehicle_model(const Specimen<VehicleModel>& subje
                                              const CheckOptions& options = {});
 std::vector<CheckResult> check_trajectory_solver(const Specimen<TrajectorySolver>& subject,
                                                  const CheckOptions& options = {});
-
+std::vector<CheckResult> check_path_planner(const Specimen<PathPlanner>& subject,
+                                            const CheckOptions& options = {});
 std::vector<CheckResult> check_map(const Specimen<Map>& subject, const CheckOptions& options = {});
 
 template <class Kind>

@@ -1,11 +1,13 @@
-# lapwing_add_plugin(KIND NAME [SOURCES file...] [LIBRARIES target...] [OUTPUT folder])
+# lapwing_add_plugin(KIND NAME [FAMILY name...] [SOURCES file...] [LIBRARIES target...]
+#                    [OUTPUT folder])
 #
 # Builds lib/plugins/KINDs/NAME.so (or folder/NAME.so) from NAME.cpp with one exported symbol,
-# undefined symbols as link errors, and the sidecar NAME.json beside it.
+# undefined symbols as link errors, and the sidecar NAME.json beside it. A family is one library with
+# several plugins, which are listed; NAME is then that of the library alone.
 set(LAPWING_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/plugin_exports.map)
 
 function(lapwing_add_plugin kind name)
-  cmake_parse_arguments(PLUGIN "" "OUTPUT" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(PLUGIN "" "OUTPUT" "FAMILY;SOURCES;LIBRARIES" ${ARGN})
   if(PLUGIN_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "lapwing_add_plugin(${kind} ${name}): unknown ${PLUGIN_UNPARSED_ARGUMENTS}")
   endif()

@@ -219,6 +219,15 @@ TEST(Rules, APluginHasOneName) {
   std::vector<SourceFile> renamed = good;
   renamed[0].path = folder + "low.cpp";
   EXPECT_EQ(check_tree(renamed).size(), 4u);  // the file, its kText, its class, its macro
+  // A family: the library's name is the folder's alone.
+  std::vector<SourceFile> family = good;
+  family[1].text =
+      "lapwing_add_plugin(cost_term keep_low FAMILY low lower\n SOURCES keep_low.cpp)\n";
+  EXPECT_EQ(check_tree(family).size(), 6u);  // of each its kText, its class, its place in the list
+  family[0].text =
+      "class Low { PluginText kText{\"low\"}; }; class Lower { PluginText kText{\"lower\"}; };\n"
+      "LAPWING_PLUGINS(lapwing::Low, lapwing::Lower)\n";
+  EXPECT_TRUE(check_tree(family).empty()) << listed(check_tree(family));
   EXPECT_EQ(check_tree({good[0], good[1]}).size(), 1u);  // no README
   EXPECT_EQ(check_tree({good[0], good[2]}).size(), 1u);  // no CMake line
 }

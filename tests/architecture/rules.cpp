@@ -104,9 +104,8 @@ constexpr Containment kContained[] = {
     {"torch/", "", true},
 };
 // Of these, one source file of the framework alone.
-constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/",   "png.h",
-                                         "octomap/",       "opencv2/",  "CGAL/",
-                                         "nanoflann",      "torch/"};
+constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/", "png.h",     "octomap/",
+                                         "opencv2/",       "CGAL/",   "nanoflann", "torch/"};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -292,6 +291,17 @@ Violations check_style(const SourceFile& file) {
 
 namespace {
 
+// The plugins that a library holds: those after FAMILY, or the one that bears its name.
+std::vector<std::string> names_in(const std::string& cmake, const std::string& name) {
+  static const std::regex kFamily(R"(\bFAMILY\s+([a-z0-9_\s]+))");
+  std::smatch match;
+  if (!std::regex_search(cmake, match, kFamily)) return {name};
+  std::istringstream words(match[1]);
+  std::vector<std::string> names;
+  for (std::string word; words >> word;) names.push_back(word);
+  return names;
+}
+
 // One plugin folder: its file, its CMake line, its kText, its class and its README.
 void check_plugin(const std::string& folder, const std::map<std::string, std::string>& texts,
                   Violations& found) {
@@ -316,13 +326,15 @@ void check_plugin(const std::string& folder, const std::map<std::string, std::st
   require(std::regex_search(text_of("CMakeLists.txt"), line),
           "CMakeLists.txt lacks lapwing_add_plugin(" + kind->second.name + " " + name + ")");
   const std::string code = text_of(name + ".h") + source;
-  require(std::regex_search(code, std::regex("kText\\s*\\{\\s*\"" + name + "\"")),
-          "no kText{\"" + name + "\"");
-  require(std::regex_search(code, std::regex("\\bclass\\s+" + pascal_case(name) + "\\b")),
-          "no class " + pascal_case(name));
-  require(
-      std::regex_search(code, std::regex("LAPWING_PLUGINS\\([^)]*\\b" + pascal_case(name) + "\\b")),
-      "no LAPWING_PLUGINS(" + pascal_case(name) + ")");
+  for (const std::string& one : names_in(text_of("CMakeLists.txt"), name)) {
+    require(std::regex_search(code, std::regex("kText\\s*\\{\\s*\"" + one + "\"")),
+            "no kText{\"" + one + "\"");
+    require(std::regex_search(code, std::regex("\\bclass\\s+" + pascal_case(one) + "\\b")),
+            "no class " + pascal_case(one));
+    require(std::regex_search(code,
+                              std::regex("LAPWING_PLUGINS\\([^)]*\\b" + pascal_case(one) + "\\b")),
+            "no LAPWING_PLUGINS(" + pascal_case(one) + ")");
+  }
 }
 
 }  // namespace

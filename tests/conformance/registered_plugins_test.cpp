@@ -19,7 +19,7 @@ std::vector<PluginEntry> checked_entries() {
   std::vector<PluginEntry> result;
   for (const PluginEntry& entry : plugins().entries())
     for (const char* kind :
-         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map"})
+         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }
@@ -69,7 +69,12 @@ TEST(EveryPlugin, IsThere) {
                                    {"map", "brick"},
                                    {"trajectory_solver", "iqp"},
                                    {"trajectory_solver", "ipopt"},
-                                   {"trajectory_solver", "nlopt"}})
+                                   {"trajectory_solver", "nlopt"},
+                                   {"path_planner", "rrt"},
+                                   {"path_planner", "rrt_star"},
+                                   {"path_planner", "rrt_connect"},
+                                   {"path_planner", "informed_rrt_star"},
+                                   {"path_planner", "bit_star"}})
     EXPECT_NO_THROW(plugins().find(kind, name)) << kind << " " << name;
 }
 

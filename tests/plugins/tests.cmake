@@ -15,3 +15,5 @@ add_test(NAME copied_term COMMAND ${CMAKE_COMMAND}
 set_tests_properties(copied_term PROPERTIES TIMEOUT 240)
 
 add_dependencies(test_maps lapwing_map_octomap lapwing_map_brick)
+add_dependencies(test_path_planners lapwing_path_planner_ompl)
+add_dependencies(test_path lapwing_map_brick)
