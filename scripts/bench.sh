@@ -6,6 +6,10 @@ cd "$(dirname "$0")/.."
 . scripts/packages.sh
 . scripts/build.sh
 scripts/setup.sh --yes --for build --for bench
+if [ -z "${LAPWING_DATA:-}" ] && [ -d ../shared/data ]; then
+  LAPWING_DATA=$(cd ../shared/data && pwd)
+  export LAPWING_DATA
+fi
 mkdir -p build
 cmake --preset release -DLAPWING_BENCH=ON >build/bench_configure.log 2>&1 ||
   { tail -n 30 build/bench_configure.log >&2; exit 1; }

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 constexpr const char* kImageEnd = ".depth.png";
 constexpr const char* kPoseEnd = ".pose.txt";
 constexpr const char* kCamera = "camera-intrinsics.txt";
-constexpr double kMillimetres = 1000;  // a metre
+constexpr double kMillimetres = 1000;   // a metre
+constexpr std::uint16_t kNone = 65535;  // what many sensors write beside 0
 
 [[noreturn]] void fail(const fs::path& file, const std::string& why) {
   throw InputError("'" + file.string() + "': " + why);
@@ -117,8 +118,9 @@ PosedDepthImage DepthFolder::read(std::size_t frame) const {
                                 std::to_string(pinhole_.height));
   }
   PosedDepthImage posed{poses_[frame], {pinhole_, std::vector<float>(image.pixels.size())}};
-  std::transform(image.pixels.begin(), image.pixels.end(), posed.image.depth.begin(),
-                 [](std::uint16_t v) { return static_cast<float>(v / kMillimetres); });
+  std::transform(
+      image.pixels.begin(), image.pixels.end(), posed.image.depth.begin(),
+      [](std::uint16_t v) { return v == kNone ? 0.0f : static_cast<float>(v / kMillimetres); });
   return posed;
 }
 
@@ -128,7 +130,7 @@ void write_depth_frame(const fs::path& folder, const std::string& name,
   Grey16 image{p.width, p.height, {}};
   for (const float depth : frame.image.depth) {
     const double v = std::round(kMillimetres * static_cast<double>(depth));
-    image.pixels.push_back(v > 0 && v <= 65535 ? static_cast<std::uint16_t>(v) : 0);
+    image.pixels.push_back(v > 0 && v < kNone ? static_cast<std::uint16_t>(v) : 0);
   }
   const Eigen::Matrix3d r = frame.camera.orientation.toRotationMatrix();
   std::string pose;

@@ -1,7 +1,8 @@
 // Depth images of a real sensor, from a folder:
 //
 //   camera-intrinsics.txt   3 x 3 numbers: focal lengths and principal point in pixels
-//   NAME.depth.png          16-bit grey, depth along the optical axis in millimetres, 0 is none
+//   NAME.depth.png          16-bit grey, depth along the optical axis in millimetres, 0
+//                           and 65535 are none
 //   NAME.pose.txt           4 x 4 numbers: camera (x right, y down, z forward) to world, metres
 //
 // Frames are in the order of their names. Their world need not have z up.
@@ -41,7 +42,7 @@ class DepthFolder {
 };
 
 // Writes one frame so that DepthFolder reads it back, depth to the nearest millimetre: infinite and
-// larger depths than 65.535 m become 0. Files appear whole or not at all.
+// larger depths than 65.534 m become 0. Files appear whole or not at all.
 void write_depth_frame(const std::filesystem::path& folder, const std::string& name,
                        const PosedDepthImage& frame);
 

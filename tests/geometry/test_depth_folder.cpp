@@ -67,6 +67,16 @@ TEST_F(DepthFolders, ReadsWhatWasWritten) {
   EXPECT_EQ(frame.image.depth[47], 2.5f);
 }
 
+TEST_F(DepthFolders, TheGreatestNumberIsNoMeasurement) {
+  Grey16 image = decode_grey16_png(read_file(folder_ / "frame-2.depth.png"), "x");
+  image.pixels[5] = 65535;
+  image.pixels[6] = 65534;
+  write("frame-2.depth.png", encode_grey16_png(image));
+  const PosedDepthImage frame = DepthFolder(folder_).read(1);
+  EXPECT_EQ(frame.image.depth[5], 0);
+  EXPECT_EQ(frame.image.depth[6], 65.534f);
+}
+
 TEST_F(DepthFolders, PosesMustBeRotations) {
   const struct {
     const char* pose;

@@ -1,4 +1,4 @@
-// Depth images to build maps from: real ones, where they are, and of a made-up street.
+// Depth images to build maps from: real ones, where they are, and of a street.
 #pragma once
 
 #include <filesystem>
@@ -15,9 +15,8 @@ std::optional<std::filesystem::path> data_folder();
 // The first `count` frames of depth/, at most 50.
 std::vector<PosedDepthImage> real_frames(int count);
 
-// Two rows of houses of different heights, trees and cars, along x from -60 m to 60 m, seen by
-// cameras that fly along it at several heights and look all around. What no ray hits within 60 m
-// is infinite.
+// The shipped scene `street`, about 100 m long, seen by cameras that fly along it at several
+// heights and look all around. What no ray hits within 60 m is infinite.
 std::vector<PosedDepthImage> street_frames(int count, int width, int height);
 
 }  // namespace lapwing
