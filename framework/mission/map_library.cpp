@@ -105,19 +105,11 @@ int surface_field(lua_State* state) {
 // run:map(plugin): "brick" or {type = "brick", resolution = 0.2, ...}
 int map(lua_State* state) {
   MissionRun& run = run_of(state);
-  const Value given = value_from_lua(state, 2, Sandbox::of(state).script_position(state), "map");
-  const Value* type = given.is_map() ? given.find("type") : &given;
-  if (!type || !type->is_text())
-    throw InputError(given.origin(), "map: expected a map's name or a table with its `type`");
-  Value parameters = Value::map();
-  parameters.with_origin(given.origin());
-  if (given.is_map())
-    for (const auto& [key, value] : given.as_map())
-      if (key != "type") parameters.set(key, value);
+  const PluginChoice chosen = plugin_choice(state, 2, "map");
   MapObject object;
   object.mapping = std::make_shared<Mapping>();
-  object.mapping->plugin = type->as_text();
-  object.mapping->map = run.settings.registry->create<Map>(type->as_text(), parameters, "map");
+  object.mapping->plugin = chosen.type;
+  object.mapping->map = run.settings.registry->create<Map>(chosen.type, chosen.parameters, "map");
   new_object(state, kMapType, std::move(object));
   return 1;
 }

@@ -14,6 +14,21 @@
 
 namespace lapwing {
 
+PluginChoice plugin_choice(lua_State* state, int index, const std::string& what) {
+  const Value given = value_from_lua(state, index, Sandbox::of(state).script_position(state), what);
+  PluginChoice choice;
+  const Value* type = given.is_map() ? given.find("type") : &given;
+  if (!type || !type->is_text())
+    throw InputError(given.origin(),
+                     what + ": expected a plugin's name or a table with its `type`");
+  choice.type = type->as_text();
+  choice.parameters.with_origin(given.origin());
+  if (given.is_map())
+    for (const auto& [key, value] : given.as_map())
+      if (key != "type") choice.parameters.set(key, value);
+  return choice;
+}
+
 void refuse_field(const std::string& what, const std::string& field, const Value& fields) {
   std::vector<std::string> known;
   for (const auto& [key, value] : fields.as_map()) known.push_back(key);
@@ -26,30 +41,6 @@ namespace {
 
 // -- run:solve
 // -------------------------------------------------------------------------------------
-
-// "iqp" or {type = "iqp", ...}
-struct SolverArgument {
-  std::string type;
-  Value parameters = Value::map();
-};
-
-SolverArgument solver_argument(lua_State* state, int index) {
-  const Value given =
-      value_from_lua(state, index, Sandbox::of(state).script_position(state), "solver");
-  SolverArgument argument;
-  const Value* type = given.is_map() ? given.find("type") : &given;
-  if (!type || !type->is_text()) {
-    throw InputError(given.origin(), "solver: expected a solver's name or a table with its `type`");
-  }
-  argument.type = type->as_text();
-  argument.parameters.with_origin(given.origin());
-  if (given.is_map()) {
-    for (const auto& [key, value] : given.as_map()) {
-      if (key != "type") argument.parameters.set(key, value);
-    }
-  }
-  return argument;
-}
 
 // {warm_start = solution}
 std::optional<WarmStart> warm_start_argument(lua_State* state, int index,
@@ -75,7 +66,7 @@ int solve(lua_State* state) {
   const ProblemObject& object = object_argument<ProblemObject>(state, 2, kProblemType);
   if (!object.finished)
     throw InputError("solve: the problem is not finished; call problem:finish()");
-  const SolverArgument argument = solver_argument(state, 3);
+  const PluginChoice argument = plugin_choice(state, 3, "solver");
   SolveRequest request;
   request.warm_start = warm_start_argument(state, 4, *object.problem);
   request.cancellation = run.settings.cancellation;

@@ -2,10 +2,12 @@
 #include <lua.hpp>
 
 #include "framework/mission/environment_source.h"
+#include "framework/mission/environment_space.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
 #include "framework/mission/vehicle_source.h"
+#include "framework/path/path_planner.h"
 #include "framework/problem/constraint.h"
 #include "framework/problem/cost_term.h"
 #include "framework/problem/vehicle_model.h"
@@ -172,6 +174,72 @@ int nearest(lua_State* state) {
   return 2;
 }
 
+// Around both places and everything in the way, not below the lower one.
+Eigen::AlignedBox3d planning_bounds(const Environment& environment, const Eigen::Vector3d& from,
+                                    const Eigen::Vector3d& to) {
+  constexpr double kRoom = 10;  // m
+  Eigen::AlignedBox3d box(from);
+  box.extend(to);
+  const double floor = box.min().z();
+  for (const Sphere& sphere : environment.spheres) {
+    box.extend(sphere.center + Eigen::Vector3d::Constant(sphere.radius));
+    box.extend(sphere.center - Eigen::Vector3d::Constant(sphere.radius));
+  }
+  for (const Box& other : environment.boxes) {
+    box.extend(other.lower);
+    box.extend(other.upper);
+  }
+  for (const Zone& zone : environment.zones)
+    for (const Eigen::Vector2d& corner : zone.corners)
+      box.extend(Eigen::Vector3d(corner.x(), corner.y(), floor));
+  Eigen::Vector3d lower = box.min() - Eigen::Vector3d::Constant(kRoom);
+  lower.z() = floor - environment.margin;
+  return {lower, box.max() + Eigen::Vector3d::Constant(kRoom)};
+}
+
+// problem:plan_way{from =, to =, planner =, more =}: {{x, y, z}, ...}, a free way that keeps the
+// margin and `more` metres; or nothing and why there is none.
+int plan_way(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  static constexpr std::string_view kPlanner[] = {"planner"};
+  ParameterTable table;
+  table.required_numbers("from", 3, "m", "world")
+      .required_numbers("to", 3, "m", "world")
+      .number("more", 0, "m", "kept beside the margin", at_least(0));
+  const Parameters given = table_argument(state, 2, table, "plan_way", kPlanner);
+  lua_getfield(state, 2, "planner");
+  const PluginChoice chosen = plugin_choice(state, -1, "planner");
+  const auto planner =
+      run.settings.registry->create<PathPlanner>(chosen.type, chosen.parameters, "planner");
+  const Environment& environment = object.problem->environment();
+  const auto space = free_space_of(environment, given.number("more"));
+  PathProblem problem;
+  problem.space = space.get();
+  problem.start = Eigen::Vector3d(given.numbers("from").data());
+  problem.goal = Eigen::Vector3d(given.numbers("to").data());
+  problem.bounds = planning_bounds(environment, problem.start, problem.goal);
+  PathRequest request;
+  request.seed = run.settings.seed;
+  request.cancellation = run.settings.cancellation;
+  PathResult result;
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    result = planner->plan(problem, request);
+  }
+  if (result.report.status != PathStatus::found) {
+    lua_pushnil(state);
+    push_text(state, std::string(to_string(result.report.status)) +
+                         (result.report.message.empty() ? "" : ": " + result.report.message));
+    return 2;
+  }
+  Value points = Value::list();
+  for (const Eigen::Vector3d& p : result.points)
+    points.push_back(Value(Value::List{p.x(), p.y(), p.z()}));
+  push_value(state, points);
+  return 1;
+}
+
 }  // namespace
 
 // run:problem{vehicle = v, duration = 20, step = 0.1, environment = {...}, step_mode = "fixed"}:
@@ -219,6 +287,7 @@ void open_problem_library(lua_State* state) {
                               {"guess_path", &guarded<guess_path>},
                               {"guess_block", &guarded<guess_block>},
                               {"nearest_obstacle", &guarded<nearest>},
+                              {"plan_way", &guarded<plan_way>},
                               {"finish", &guarded<finish>},
                               {nullptr, nullptr}};
   define_type<ProblemObject>(state, kProblemType, methods);

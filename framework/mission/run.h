@@ -87,6 +87,13 @@ void push_run(lua_State* state);
 int problem_of_run(lua_State* state);
 int vehicle_of_run(lua_State* state);
 
+// "iqp" or {type = "iqp", ...}, as options that choose a plugin are given.
+struct PluginChoice {
+  std::string type;
+  Value parameters = Value::map();
+};
+PluginChoice plugin_choice(lua_State* state, int index, const std::string& what);
+
 // InputError: "a plan has no field 'tme'; did you mean 'time'?"
 [[noreturn]] void refuse_field(const std::string& what, const std::string& field,
                                const Value& fields);

@@ -63,6 +63,8 @@ local common = {
     summary = "share of the time that a subject must be in the image" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
     summary = "trajectory solver" },
+  { name = "planner", type = "plugin", kind = "path_planner", default = "bit_star",
+    summary = "finds a way round obstacles to begin with" },
 }
 local of_shot = {
   { name = "duration", type = "number", unit = "s", above = 0, maximum = 1e5,

@@ -3,6 +3,7 @@
 local input = require "mission.film_input"
 local subjects = require "mission.subjects"
 local tracks = require "mission.tracks"
+local ways = require "mission.ways"
 
 local problem = {}
 
@@ -144,16 +145,20 @@ local function add_camera(p, weights, camera, environment)
   end
 end
 
--- The straight path through the keyframes, with the yaw that looks at the target.
-local function guess(keyframes, camera)
+-- The way through the keyframes, with the yaw that looks at the target.
+local function guess(p, keyframes, camera, environment, planner)
+  local obstructed = #environment.spheres + #environment.boxes + #environment.zones > 0
+  local path = ways.path(p, keyframes.times, keyframes.positions, planner, obstructed)
+  local times, positions, yaws = {}, {}, {}
   if not camera or #keyframes.yaws > 0 then
-    return { times = keyframes.times, positions = keyframes.positions, yaws = keyframes.headings }
+    for i, place in ipairs(path) do times[i], positions[i] = place.time, place.position end
+    local headings = {}
+    for i, time in ipairs(keyframes.times) do
+      headings[i] = { time = time, position = { keyframes.headings[i], 0, 0 } }
+    end
+    for i, time in ipairs(times) do yaws[i] = tracks.at(headings, time)[1] end
+    return { times = times, positions = positions, yaws = yaws }
   end
-  local path = {}
-  for i, time in ipairs(keyframes.times) do
-    path[i] = { time = time, position = keyframes.positions[i] }
-  end
-  local positions = {}
   for i, time in ipairs(camera.guess.times) do positions[i] = tracks.at(path, time) end
   return { times = camera.guess.times, positions = positions, yaws = camera.guess.yaws }
 end
@@ -204,7 +209,7 @@ function problem.state(run, shot, stretch, only)
     end
     task.framing_share = #task.framing > 0 and o.framing or nil
   end
-  p:guess_path(guess(keyframes, camera))
+  p:guess_path(guess(p, keyframes, camera, environment, o.planner))
   p:finish()
   return p, task, camera
 end

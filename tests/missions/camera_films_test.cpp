@@ -84,5 +84,23 @@ TEST_F(Filming, AGimbalThatCannotSeeIsReported) {
   EXPECT_NE(note.find("gimbal_pitch"), std::string::npos) << note;
 }
 
+// The straight way leads through the middle of a zone without floor or ceiling: what solvers begin
+// with goes round it.
+TEST_F(Filming, AWayRoundIsPlannedToBeginWith) {
+  write_file_atomically(folder_ / "round.lua", R"(return require "mission.film".shot {
+    name = "round", duration = 8, vehicle = "vehicles/solo",
+    subject = { position = {0, -6, 1}, height = 2 },
+    keyframes = { { time = 0, position = {-6, -6, 3} }, { time = 8, position = {6, -6, 4} } },
+    obstacles = { { type = "no_fly_zone", corners = {{-2,-8},{2,-8},{2,-4},{-2,-4}} } } })");
+  for (const char* planner : {"bit_star", "rrt_connect", "rrt_star"})
+    expect_certified(fly((folder_ / "round.lua").string(),
+                         std::string("--set planner.iterations=2000 --set planner.type=") + planner,
+                         planner));
+}
+
+TEST_F(Filming, ThroughTheForestBetweenSixtyTrunks) {
+  expect_certified(fly("through_the_forest.lua", "--set solver.iterations=12"));
+}
+
 }  // namespace
 }  // namespace lapwing

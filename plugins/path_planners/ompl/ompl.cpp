@@ -102,7 +102,7 @@ class BitStar final : public OmplPlanner {
   static constexpr PluginText kText{"bit_star", "1.0.0",
                                     "batches of samples, searched in the order of possible length",
                                     "Gammell and others 2015; OMPL"};
-  static ParameterTable parameters() { return table_of(kTakes, 50'000); }
+  static ParameterTable parameters() { return table_of(kTakes, 3'000); }
   explicit BitStar(const Parameters& p) : OmplPlanner(settings_of(p, kTakes), make_bit_star) {}
 };
 

@@ -30,5 +30,14 @@ TEST_F(Filming, NloptAgreesWithinFivePercent) {
   }
 }
 
+TEST_F(Filming, NineteenOfTwentyForestsAreCrossed) {
+  int certified = 0;
+  for (int seed = 1; seed <= 20; ++seed)
+    certified += fly("through_the_forest.lua",
+                     "--set solver.iterations=20 --seed " + std::to_string(seed))
+                     .status == 0;
+  EXPECT_GE(certified, 19);
+}
+
 }  // namespace
 }  // namespace lapwing

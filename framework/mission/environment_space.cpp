@@ -1,0 +1,56 @@
+#include "framework/mission/environment_space.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lapwing {
+namespace {
+
+using Eigen::Vector3d;
+
+class EnvironmentSpace final : public FreeSpace {
+ public:
+  EnvironmentSpace(const Environment& environment, double more)
+      : environment_(environment), margin_(environment.margin + more) {}
+
+  bool point_free(const Vector3d& p) const override { return distance(p) >= margin_; }
+  bool segment_free(const Vector3d& from, const Vector3d& to) const override {
+    return clear(from, to, margin_);
+  }
+  bool swept_box_free(const Vector3d& from, const Vector3d& to,
+                      const Vector3d& half) const override {
+    return clear(from, to, margin_ + half.norm());
+  }
+  Eigen::AlignedBox3d bounds() const override {
+    constexpr double kFar = std::numeric_limits<double>::max();
+    return {Vector3d::Constant(-kFar), Vector3d::Constant(kFar)};
+  }
+
+ private:
+  double distance(const Vector3d& p) const { return nearest_obstacle(environment_, p).distance; }
+
+  // Distances change by no more than the way travelled: from each place as far as it is sure to be
+  // free, in steps of a millimetre at least.
+  bool clear(const Vector3d& from, const Vector3d& to, double kept) const {
+    constexpr double kLeast = 1e-3;  // m
+    const double length = (to - from).norm();
+    for (double at = 0;;) {
+      const Vector3d p = length > 0 ? Vector3d(from + at / length * (to - from)) : from;
+      const double room = distance(p) - kept;
+      if (room < 0) return false;
+      if (at >= length) return true;
+      at = std::min(length, at + std::max(room, kLeast));
+    }
+  }
+
+  Environment environment_;
+  double margin_;
+};
+
+}  // namespace
+
+std::unique_ptr<FreeSpace> free_space_of(const Environment& environment, double more) {
+  return std::make_unique<EnvironmentSpace>(environment, more);
+}
+
+}  // namespace lapwing
