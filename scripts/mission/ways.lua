@@ -1,5 +1,5 @@
--- Where solvers begin: straight from keyframe to keyframe, and round what stands between (thesis 2.1:
--- a path planner first, then the trajectory).
+-- Where solvers begin: straight from keyframe to keyframe, and round what stands between (thesis
+-- 2.1: a path planner first, then the trajectory).
 local M = {}
 
 local MORE = 0.3  -- m, that a planned way keeps beside the margin
