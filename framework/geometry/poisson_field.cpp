@@ -1,0 +1,49 @@
+#include "framework/geometry/poisson_field.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Poisson_reconstruction_function.h>
+#include <CGAL/property_map.h>
+
+#include "framework/core/error.h"
+#include "framework/geometry/poisson_equations.h"
+
+namespace lapwing {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using PointWithNormal = std::pair<Kernel::Point_3, Kernel::Vector_3>;
+using Poisson = CGAL::Poisson_reconstruction_function<Kernel>;
+
+std::vector<PointWithNormal> pairs_of(const std::vector<PoissonField::Sample>& samples) {
+  std::vector<PointWithNormal> pairs;
+  for (const auto& [p, n] : samples) {
+    pairs.emplace_back(Kernel::Point_3(p[0], p[1], p[2]), Kernel::Vector_3(n[0], n[1], n[2]));
+  }
+  return pairs;
+}
+
+}  // namespace
+
+struct PoissonField::Function {
+  explicit Function(std::vector<PointWithNormal> given)
+      : pairs(std::move(given)),
+        poisson(pairs.begin(), pairs.end(), CGAL::First_of_pair_property_map<PointWithNormal>(),
+                CGAL::Second_of_pair_property_map<PointWithNormal>()) {}
+  std::vector<PointWithNormal> pairs;
+  Poisson poisson;
+};
+
+PoissonField::PoissonField(const std::vector<Sample>& samples)
+    : function_(std::make_unique<Function>(pairs_of(samples))) {
+  if (!function_->poisson.compute_implicit_function(PoissonSolver())) {
+    throw InputError("surface from points: the equations of the reconstruction have no solution");
+  }
+}
+
+PoissonField::~PoissonField() = default;
+
+double PoissonField::value(double x, double y, double z) const {
+  return function_->poisson(Kernel::Point_3(x, y, z));
+}
+
+}  // namespace lapwing
