@@ -18,9 +18,10 @@ class Mapping : public Filming {
 };
 
 TEST_F(Mapping, AStreetIsMappedTheSameByBothBackends) {
-  const Flown brick = fly("../mapping/street.lua", "--config mapping/small", "brick");
+  const std::string few = "--config mapping/small --set views=9";
+  const Flown brick = fly("../mapping/street.lua", few, "brick");
   const Flown octomap =
-      fly("../mapping/street.lua", "--config mapping/small --set map=octomap --threads 1", "oct");
+      fly("../mapping/street.lua", few + " --set map=octomap --threads 1", "octomap");
   EXPECT_EQ(brick.status, 0);
   EXPECT_EQ(brick.result.at("status").as_text(), "ok");
   EXPECT_EQ(brick.result.at("map").at("resolution").as_number(), 0.2);
@@ -34,13 +35,13 @@ TEST_F(Mapping, AStreetIsMappedTheSameByBothBackends) {
 }
 
 TEST_F(Mapping, ASuburbCountsItsObservations) {
-  const Flown flown = fly("../mapping/suburb.lua", "--config mapping/small");
+  const Flown flown = fly("../mapping/suburb.lua", "--config mapping/small --set views=9");
   EXPECT_EQ(flown.status, 0);
   EXPECT_NE(read_file(flown.folder / "report.html").find("Certainty"), std::string::npos);
 }
 
 TEST_F(Mapping, FilesAreShownConvertedAndReadAgain) {
-  const Flown flown = fly("../mapping/street.lua", "--config mapping/small");
+  const Flown flown = fly("../mapping/street.lua", "--config mapping/small --set scene=office");
   const std::string map = "'" + (flown.folder / "map.ot").string() + "'";
   ASSERT_EQ(command("map info --json " + map), 0) << error();
   EXPECT_EQ(answer().at("occupied"), flown.result.at("map").at("occupied"));
