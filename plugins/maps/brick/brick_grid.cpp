@@ -29,7 +29,17 @@ Block& BrickGrid::make_block(const int cell[3]) {
   while (table_[at].block) at = (at + 1) & (table_.size() - 1);
   table_[at] = {key, made.get()};
   blocks_.push_back(std::move(made));
-  return *blocks_.back();
+  Block& block = *blocks_.back();
+  for (int i = 0; i < 3; ++i)
+    for (const int side : {0, 1}) {
+      int beyond[3] = {cell[0], cell[1], cell[2]};
+      beyond[i] += side ? 64 : -64;
+      if (beyond[i] < 0 || beyond[i] >= kKeyCount) continue;
+      Block* neighbour = const_cast<Block*>(find(beyond));
+      block.next[side][i] = neighbour;
+      if (neighbour) neighbour->next[1 - side][i] = &block;
+    }
+  return block;
 }
 
 DenseBrick& BrickGrid::make_brick(Block& block, int place) {

@@ -62,6 +62,7 @@ struct Block {
     DenseBrick* brick;
     float log_odds;
   } content[64] = {};
+  const Block* next[2][3] = {};  // blocks at its faces, towards lower and higher keys
   VoxelKey corner;
 
   bool has_brick(int place) const { return bricked >> place & 1; }

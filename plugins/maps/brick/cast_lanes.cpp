@@ -67,8 +67,23 @@ constexpr std::array<Ahead, 32> all_parts_ahead() {
 }
 constexpr std::array<Ahead, 32> kAhead = all_parts_ahead();
 
+__attribute__((always_inline)) inline FourInt spread(FourInt x) {
+  x &= 63;
+  return (x | x << 6 | x << 12) & 0x030303;
+}
+// Of mirrored cells: the block, and voxel, chunk and brick in it, a byte each.
+__attribute__((always_inline)) inline FourInt key_of(const FourInt& x, const FourInt& y,
+                                                     const FourInt& z) {
+  return x >> 6 | (y >> 6) << 10 | (z >> 6) << 20;
+}
+__attribute__((always_inline)) inline FourInt places_of(const FourInt& x, const FourInt& y,
+                                                        const FourInt& z) {
+  return spread(x) | spread(y) << 2 | spread(z) << 4;
+}
+
 // Rays before they start.
 struct Starts {
+  FourInt key[kBeam / 4], places[kBeam / 4], mirrored[kBeam / 4];  // as in Lanes
   FourInt cell[3][kBeam / 4],
       start[3][kBeam / 4];  // mirrored; counted from `start`, going on at `cell`
   FourInt descends[kBeam / 4], along[kBeam / 4];  // axes, as bits; an axis or kAlongNone
@@ -97,6 +112,10 @@ struct Starts {
                      y = (by_y > size[0]) & (by_y > size[2]),
                      z = (by_z > size[0]) & (by_z > size[1]);
       along[g] = 3 + __builtin_convertvector(3 * x + 2 * y + z, FourInt);
+      mirrored[g] =
+          ((descends[g] & 1) * 3 | (descends[g] & 2) * 6 | (descends[g] & 4) * 12) * 0x010101;
+      key[g] = key_of(cell[0][g], cell[1][g], cell[2][g]);
+      places[g] = places_of(cell[0][g], cell[1][g], cell[2][g]) ^ mirrored[g];
     }
   }
 
@@ -132,22 +151,12 @@ struct Lane {
   const Ahead* ahead = nullptr;
   std::int32_t block_key = 0;  // of the block at hand
   int mirror[3] = {};          // 0 or 65535
+  int side[3] = {1, 1, 1};     // of a block through which the ray leaves: 0 lower, 1 higher
   std::size_t ray = 0;
 };
 
 constexpr FourLong kLane[4] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, -1}};
 constexpr FourInt kIntLane[4] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, -1}};
-
-__attribute__((always_inline)) inline FourInt spread(FourInt x) {
-  x &= 63;
-  return (x | x << 6 | x << 12) & 0x030303;
-}
-
-__attribute__((always_inline)) inline void find_places(Lanes& lanes) {
-  const FourInt x = lanes.cell[0], y = lanes.cell[1], z = lanes.cell[2];
-  lanes.key = x >> 6 | (y >> 6) << 10 | (z >> 6) << 20;
-  lanes.places = (spread(x) | spread(y) << 2 | spread(z) << 4) ^ lanes.mirrored;
-}
 
 class Caster {
  public:
@@ -162,7 +171,9 @@ class Caster {
   __attribute__((always_inline)) void run() {
     for (int lane = 0; lane < kLanes; ++lane) next_ray(lane);
     while (busy_) {
+#pragma GCC unroll 1
       for (Lanes& lanes : lanes_) leave_boxes(lanes);
+#pragma GCC unroll 1
       for (int group = 0; group < kGroups; ++group) visit(group);
       for (unsigned done = done_; done; done &= done - 1) next_ray(std::countr_zero(done));
       done_ = 0;
@@ -200,11 +211,10 @@ class Caster {
     const Block& block = *of.block;
     const Ahead& ahead = *of.ahead;
     const unsigned at = places >> 16;
-    if (!(block.bricked >> at & 1)) {
-      if (!(block.all_free >> at & 1)) return hit(lanes, of, k, state_of_brick(block, at));
+    if (block.all_free >> at & 1)  // most often, and then the brick itself need not be fetched
       return ahead
           .edges[4 + all(block.all_free, ahead.some[at]) + all(block.all_free, ahead.all[at])];
-    }
+    if (!(block.bricked >> at & 1)) return hit(lanes, of, k, state_of_brick(block, at));
     const DenseBrick& brick = *block.content[at].brick;
     const unsigned chunk = places >> 8 & 63, voxel = places & 63;
     const std::uint64_t free = brick.free[chunk];
@@ -225,15 +235,29 @@ class Caster {
   static int all(std::uint64_t word, std::uint64_t parts) { return (~word & parts) == 0; }
 
   // False, and the hit noted, where there is none.
-  bool enter_block(const Lanes& lanes, Lane& of, int k) {
-    const int x = lanes.cell[0][k], y = lanes.cell[1][k], z = lanes.cell[2][k];
-    const int cell[3] = {x ^ of.mirror[0], y ^ of.mirror[1], z ^ of.mirror[2]};
-    of.block_key = lanes.key[k];
-    of.block = ((x | y | z) & ~0xffff) ? nullptr : bricks_.find(cell);
+  __attribute__((always_inline)) bool enter_block(const Lanes& lanes, Lane& of, int k) {
+    const std::int32_t key = lanes.key[k], ahead = key - of.block_key;
+    of.block_key = key;
+    // Rays ascend, and mostly leave a block through one face.
+    if (of.block && ahead == 1)
+      of.block = of.block->next[of.side[0]][0];
+    else if (of.block && ahead == 1 << 10)
+      of.block = of.block->next[of.side[1]][1];
+    else if (of.block && ahead == 1 << 20)
+      of.block = of.block->next[of.side[2]][2];
+    else
+      of.block = find_block(lanes, of, k);
     if (of.block) return true;
     hit(lanes, of, k, VoxelState::unknown);
     of.block_key = -1;
     return false;
+  }
+
+  const Block* find_block(const Lanes& lanes, const Lane& of, int k) const {
+    const int x = lanes.cell[0][k], y = lanes.cell[1][k], z = lanes.cell[2][k];
+    if ((x | y | z) & ~0xffff) return nullptr;
+    const int cell[3] = {x ^ of.mirror[0], y ^ of.mirror[1], z ^ of.mirror[2]};
+    return bricks_.find(cell);
   }
 
   VoxelState state_of_brick(const Block& block, unsigned at) const {
@@ -282,7 +306,8 @@ class Caster {
       lanes.cell[i] = lanes.start[i] + __builtin_convertvector(count, FourInt);
     }
     lanes.entered = at;
-    find_places(lanes);
+    lanes.key = key_of(lanes.cell[0], lanes.cell[1], lanes.cell[2]);
+    lanes.places = places_of(lanes.cell[0], lanes.cell[1], lanes.cell[2]) ^ lanes.mirrored;
   }
 
   // Fills a lane with the next ray that gets anywhere; without one the lane stays where it is.
@@ -297,11 +322,15 @@ class Caster {
       of.ray = next_++;
       const auto place = static_cast<int>(of.ray - beam_first_);
       const int descends = starts_.descends[place / 4][place % 4];
-      for (int i = 0; i < 3; ++i) of.mirror[i] = descends >> i & 1 ? 0xffff : 0;
+      for (int i = 0; i < 3; ++i) {
+        of.side[i] = ~descends >> i & 1;
+        of.mirror[i] = (descends >> i & 1) * 0xffff;
+      }
+      of.block = nullptr;
       of.ahead =
           &kAhead[static_cast<std::size_t>(descends | starts_.along[place / 4][place % 4] << 3)];
       of.block_key = -1;
-      fill(lane, place, descends, rays_[of.ray].range);
+      fill(lane, place, rays_[of.ray].range);
       const int edges = look(lanes_[lane / 4], lane, lane % 4);
       if (edges < 0) continue;
       const FourInt four = {edges, edges, edges, edges};
@@ -314,7 +343,7 @@ class Caster {
   }
 
   // Whole vectors are written: parts of them could not be read back as one without a wait.
-  __attribute__((always_inline)) void fill(int lane, int place, int descends, double range) {
+  __attribute__((always_inline)) void fill(int lane, int place, double range) {
     Lanes& lanes = lanes_[lane / 4];
     const FourLong here = kLane[lane % 4];
     const FourInt here_int = kIntLane[lane % 4];
@@ -336,10 +365,9 @@ class Caster {
     }
     set(lanes.entered, 0);
     set(lanes.range, range);
-    set_int(lanes.edges, 0);
-    const int mirrored = (descends & 1) * 3 | (descends >> 1 & 1) * 12 | (descends >> 2) * 48;
-    set_int(lanes.mirrored, mirrored * 0x010101);
-    find_places(lanes);
+    set_int(lanes.mirrored, starts_.mirrored[place / 4][place % 4]);
+    set_int(lanes.key, starts_.key[place / 4][place % 4]);
+    set_int(lanes.places, starts_.places[place / 4][place % 4]);
   }
 
   // Rays next to each other from one place, as of a view, go through the same free space: how far
