@@ -14,6 +14,8 @@ add_test(NAME copied_term COMMAND ${CMAKE_COMMAND}
   -P ${CMAKE_CURRENT_LIST_DIR}/copied_term/copied_term.cmake)
 set_tests_properties(copied_term PROPERTIES TIMEOUT 240)
 
+find_package(octomap REQUIRED)
+target_link_libraries(test_maps PRIVATE octomap octomath)
 add_dependencies(test_maps lapwing_map_octomap lapwing_map_brick)
 add_dependencies(test_path_planners lapwing_path_planner_ompl)
 add_dependencies(test_path lapwing_map_brick)
