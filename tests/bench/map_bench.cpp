@@ -1,10 +1,13 @@
 // Maps: brick against octomap on the same scans, rays and boxes.
 #include <benchmark/benchmark.h>
+#include <octomap/OcTree.h>
+
+#include <sstream>
 
 #include "framework/core/error.h"
 #include "framework/core/random.h"
 #include "framework/geometry/depth_camera.h"
-#include "framework/map/map.h"
+#include "framework/map/map_file.h"
 #include "framework/map/scan.h"
 #include "tests/bench/bench_registry.h"
 #include "tests/plugins/maps/depth_frames.h"
@@ -33,7 +36,7 @@ std::unique_ptr<Map> new_map(const char* name, double resolution, const char* mo
   Value value = Value::map();
   value.set("resolution", resolution);
   value.set("mode", mode);
-  value.set("maximum_range", resolution > 0.1 ? 60.0 : 100.0);
+  value.set("maximum_range", 30.0);
   return bench_registry().create<Map>(name, value);
 }
 
@@ -51,25 +54,24 @@ void map_insert(benchmark::State& state, const char* name, const char* mode, int
   }
 }
 
-// The room of the real frames and the street, in both backends: brick integrates, octomap takes
-// its leaves.
+// The room of the real frames and the street, in both backends, scan by scan as a flight makes
+// them: a tree whose nodes came one after the other lies otherwise in memory than one that was
+// read.
 struct Maps {
   std::unique_ptr<Map> brick, octomap;
   const Map& of(const std::string& name) const { return name == "brick" ? *brick : *octomap; }
 };
 
-void share(Maps& maps, double resolution) {
-  maps.octomap = new_map("octomap", resolution, "discretised");
-  std::vector<VoxelLeaf> leaves;
-  maps.brick->for_each_leaf([&](const VoxelLeaf& leaf) { leaves.push_back(leaf); });
-  maps.octomap->import(leaves);
+Maps two_maps(double resolution) {
+  return {new_map("brick", resolution, "discretised"),
+          new_map("octomap", resolution, "discretised")};
 }
 
 const Maps& room() {
   static const Maps maps = [] {
-    Maps made{new_map("brick", 0.05, "discretised"), nullptr};
-    for (const Scan& scan : real_scans(2)) made.brick->integrate(scan.points, scan.origin);
-    share(made, 0.05);
+    Maps made = two_maps(0.05);
+    for (Map* map : {made.brick.get(), made.octomap.get()})
+      for (const Scan& scan : real_scans(2)) map->integrate(scan.points, scan.origin);
     return made;
   }();
   return maps;
@@ -77,9 +79,10 @@ const Maps& room() {
 
 const Maps& street() {
   static const Maps maps = [] {
-    Maps made{new_map("brick", 0.2, "discretised"), nullptr};
-    for (const PosedDepthImage& frame : street_frames(240, 320, 240)) made.brick->integrate(frame);
-    share(made, 0.2);
+    Maps made = two_maps(0.2);
+    const std::vector<PosedDepthImage> frames = street_frames(100, 160, 120);
+    for (Map* map : {made.brick.get(), made.octomap.get()})
+      for (const PosedDepthImage& frame : frames) map->integrate(frame);
     return made;
   }();
   return maps;
@@ -100,14 +103,35 @@ std::vector<MapRay> room_rays() {
   return rays;
 }
 
-// 60 m through the street, mostly along it, from either end.
+// 60 m rays through the street: pixel by pixel of views of 600 x 450 from within it (thesis 4.9),
+// ...
+std::vector<MapRay> view_rays(int view) {
+  std::vector<MapRay> rays;
+  const Pinhole pinhole{600, 450, 345, 345, 299.5, 224.5};
+  const Pose camera =
+      camera_pose({-36 + 8.0 * view, 1.5 * std::sin(view), 2.0 + view % 4 * 3}, 1.1 * view, -0.2);
+  for (int y = 0; y < pinhole.height; ++y)
+    for (int x = 0; x < pinhole.width; ++x)
+      rays.push_back(
+          {camera.position, (camera.orientation * pixel_ray(pinhole, x, y)).normalized(), 60});
+  return rays;
+}
+
 std::vector<MapRay> street_rays() {
+  std::vector<MapRay> rays;
+  for (const int view : {1, 4, 7})
+    for (const MapRay& ray : view_rays(view)) rays.push_back(ray);
+  return rays;
+}
+
+// ... and one by one, no two from one place, along the street from either end.
+std::vector<MapRay> single_rays() {
   std::vector<MapRay> rays;
   Random random(3);
   for (int k = 0; k < 20000; ++k) {
     const double side = k % 2 ? 1 : -1;
-    rays.push_back({{-40 * side, random.uniform(-2, 2), random.uniform(2, 14)},
-                    Eigen::Vector3d(side, random.uniform(-0.03, 0.03), random.uniform(-0.05, 0.1))
+    rays.push_back({{-38 * side, random.uniform(-1.5, 1.5), random.uniform(2, 12)},
+                    Eigen::Vector3d(side, random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.05))
                         .normalized(),
                     60});
   }
@@ -132,6 +156,29 @@ void cast(benchmark::State& state, const Maps& maps, const std::string& name,
       return state.SkipWithError("a ray meets another voxel than in octomap");
 }
 
+// The same with OctoMap's own castRay, which takes a voxel for free unless it is more likely
+// occupied than not.
+void cast_by_octomap(benchmark::State& state, const Maps& maps, const std::vector<MapRay>& rays) {
+  std::istringstream bytes(map_file_bytes(".ot", *maps.octomap));
+  const std::unique_ptr<octomap::AbstractOcTree> read(octomap::AbstractOcTree::read(bytes));
+  const auto& tree = dynamic_cast<const octomap::OcTree&>(*read);
+  const auto point = [](const Eigen::Vector3d& p) {
+    const Eigen::Vector3f f = p.cast<float>();
+    return octomap::point3d(f.x(), f.y(), f.z());
+  };
+  double length = 0;
+  for (auto _ : state) {
+    length = 0;
+    for (const MapRay& ray : rays) {
+      octomap::point3d end;
+      const octomap::point3d origin = point(ray.origin);
+      tree.castRay(origin, point(ray.direction), end, false, ray.range);
+      length += (end - origin).norm() / static_cast<double>(rays.size());
+    }
+  }
+  state.counters["mean_m"] = length;
+}
+
 void map_cast_room(benchmark::State& state, const char* name) {
   if (!data_folder()) return state.SkipWithError("no ../shared/data (LAPWING_DATA)");
   cast(state, room(), name, room_rays());
@@ -141,19 +188,23 @@ void map_cast_street(benchmark::State& state, const char* name) {
   cast(state, street(), name, street_rays());
 }
 
-// 600 x 450 views of thesis 4.9 into the street, on two threads.
+void map_cast_singly(benchmark::State& state, const char* name) {
+  cast(state, street(), name, single_rays());
+}
+
+void map_castRay_room(benchmark::State& state) {
+  if (!data_folder()) return state.SkipWithError("no ../shared/data (LAPWING_DATA)");
+  cast_by_octomap(state, room(), room_rays());
+}
+
+void map_castRay_street(benchmark::State& state) {
+  cast_by_octomap(state, street(), street_rays());
+}
+
+// Whole views, on two threads.
 void map_view(benchmark::State& state) {
   std::vector<std::vector<MapRay>> views;
-  const Pinhole pinhole{600, 450, 345, 345, 299.5, 224.5};
-  for (int k = 0; k < 10; ++k) {
-    const Pose camera =
-        camera_pose({-36 + 8.0 * k, 1.5 * std::sin(k), 2.0 + k % 4 * 3}, 1.1 * k, -0.2);
-    views.emplace_back();
-    for (int y = 0; y < pinhole.height; ++y)
-      for (int x = 0; x < pinhole.width; ++x)
-        views.back().push_back(
-            {camera.position, (camera.orientation * pixel_ray(pinhole, x, y)).normalized(), 60});
-  }
+  for (int k = 0; k < 10; ++k) views.push_back(view_rays(k));
   Map& map = *street().brick;
   map.set_threads(2);
   std::vector<MapRayHit> hits(views.front().size());
@@ -199,6 +250,10 @@ BENCHMARK_CAPTURE(map_cast_room, brick, "brick")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(map_cast_room, octomap, "octomap")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(map_cast_street, brick, "brick")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(map_cast_street, octomap, "octomap")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(map_cast_singly, brick, "brick")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(map_cast_singly, octomap, "octomap")->Unit(benchmark::kMillisecond);
+BENCHMARK(map_castRay_room)->Unit(benchmark::kMillisecond);
+BENCHMARK(map_castRay_street)->Unit(benchmark::kMillisecond);
 BENCHMARK(map_view)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(map_sweep, brick_10000, "brick", 10000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(map_sweep, octomap_100, "octomap", 100)->Unit(benchmark::kMillisecond);
