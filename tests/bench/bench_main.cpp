@@ -119,7 +119,7 @@ bool maps_hold(const Medians& medians) {
     if (!exact) held &= at_most(medians, brick.c_str(), 50, 3, false);
   }
   return held & map_ratio(medians, "map_cast_room/brick", "map_cast_room/octomap", 5) &
-         map_ratio(medians, "map_cast_street/brick", "map_cast_street/octomap", 50) &
+         map_ratio(medians, "map_cast_singly/brick", "map_cast_singly/octomap", 50) &
          at_most(medians, "map_view/real_time", 1, 25, true) &
          at_most(medians, "map_sweep/brick_10000", 1, 200, false);
 }

@@ -80,7 +80,7 @@ const Maps& room() {
 const Maps& street() {
   static const Maps maps = [] {
     Maps made = two_maps(0.2);
-    const std::vector<PosedDepthImage> frames = street_frames(100, 160, 120);
+    const std::vector<PosedDepthImage> frames = street_frames(160, 160, 120);
     for (Map* map : {made.brick.get(), made.octomap.get()})
       for (const PosedDepthImage& frame : frames) map->integrate(frame);
     return made;
