@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <set>
 #include <thread>
 
@@ -205,10 +208,14 @@ TEST(MeshScene, LeavesTheOtherThreadsToOthers) {
   if (available_threads() < 2) GTEST_SKIP() << "one core";
   std::set<std::thread::id> seen;
   std::mutex mutex;
+  std::condition_variable both;
+  // Whoever comes first waits for the other: a busy machine wakes threads late.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
   parallel_for(64, 2, [&](std::size_t) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    const std::lock_guard lock(mutex);
+    std::unique_lock lock(mutex);
     seen.insert(std::this_thread::get_id());
+    both.notify_all();
+    both.wait_until(lock, deadline, [&] { return seen.size() >= 2; });
   });
   EXPECT_EQ(seen.size(), 2u);
 }
