@@ -40,7 +40,7 @@ void warn_of_another_verdict(const Plan& plan, const Certificate& now) {
 
 ExitStatus verify_plan(const std::filesystem::path& file, const Invocation& invocation) {
   const Plan plan = read_plan(file);
-  const Certificate certificate = verify(plan);
+  const Certificate certificate = verify(plan, file.parent_path());
   warn_of_another_verdict(plan, certificate);
   if (invocation.json) {
     Value object = Value::map();

@@ -4,6 +4,7 @@
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
@@ -15,8 +16,8 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/geometry/mesh_builder.h"
-#include "framework/geometry/mesh_header.h"
+#include "framework/core/own_process.h"
+#include "framework/geometry/mesh_readers.h"
 
 namespace lapwing {
 namespace {
@@ -123,40 +124,7 @@ class Gatherer {
         const bool known = face.mIndices[k] < part.mNumVertices;
         corners.push_back(known ? static_cast<std::int32_t>(first + face.mIndices[k]) : -1);
       }
-      add_face(corners, color);
-    }
-  }
-
-  // A fan where it does, as it does for all convex polygons; points and lines are left aside.
-  void add_face(const std::vector<std::int32_t>& corners, const Rgb& color) {
-    if (corners.size() < 3) return;
-    std::vector<std::array<std::int32_t, 3>> pieces;
-    if (corners.size() > 3) pieces = cut(corners);
-    if (pieces.empty()) {
-      for (std::size_t k = 2; k < corners.size(); ++k) {
-        pieces.push_back({corners[0], corners[k - 1], corners[k]});
-      }
-    }
-    mesh_.triangles.insert(mesh_.triangles.end(), pieces.begin(), pieces.end());
-    mesh_.colors.insert(mesh_.colors.end(), pieces.size(), color);
-  }
-
-  // By ears, seen along the normal; empty where the polygon does not allow it.
-  std::vector<std::array<std::int32_t, 3>> cut(const std::vector<std::int32_t>& corners) const {
-    constexpr std::size_t kMostCorners = 1000;  // beyond, ears take too long
-    if (corners.size() > kMostCorners || *std::ranges::min_element(corners) < 0) return {};
-    std::vector<Eigen::Vector3d> points;
-    for (const std::int32_t i : corners) {
-      points.push_back(mesh_.vertices[static_cast<std::size_t>(i)]);
-    }
-    try {
-      auto pieces = triangulate_face(points);
-      for (auto& piece : pieces) {
-        for (std::int32_t& i : piece) i = corners[static_cast<std::size_t>(i)];
-      }
-      return pieces;
-    } catch (const InputError&) {
-      return {};
+      append_polygon(corners, color, mesh_);
     }
   }
 
@@ -200,17 +168,9 @@ std::string MeshFile::description() const {
          words(up_from) + "), " + std::to_string(mesh.triangles.size()) + " triangles";
 }
 
-MeshFile read_mesh(const fs::path& path, const MeshFileOptions& options) {
-  MeshFile file;
-  file.format = format_of(path);
-  if (options.unit && !(*options.unit > 0 && std::isfinite(*options.unit))) {
-    throw InputError("'" + path.string() + "': the unit must be above 0 m");
-  }
-  const std::string bytes = read_file(path, kLargestFile);
-  const std::string name = path.string();
-  check_mesh_header(bytes, file.format, name);
-  settle_frame(bytes, options, file);
+namespace {
 
+TriangleMesh gathered(const MeshFile& file, const std::string& bytes, const std::string& name) {
   Assimp::Importer importer;
   configure(importer);
   const aiScene* scene = importer.ReadFile(name, aiProcess_RemoveComponent);
@@ -219,10 +179,72 @@ MeshFile read_mesh(const fs::path& path, const MeshFileOptions& options) {
     throw InputError("'" + name + "' cannot be read as " + file.format +
                      (why.empty() ? ": it holds no mesh" : ": " + why));
   }
-  MeshFile frame = file;
+  MeshFile frame;
+  frame.unit = file.unit;
+  frame.up = file.up;
   // The Collada reader has applied the unit that the file states.
   if (file.format == "Collada") frame.unit /= collada_frame(bytes).unit.value_or(1.0);
-  file.mesh = Gatherer(*scene, frame, name).gather();
+  return Gatherer(*scene, frame, name).gather();
+}
+
+template <class Number>
+void append(const std::vector<Number>& numbers, std::string& bytes) {
+  const std::uint64_t count = numbers.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), count * sizeof(Number));
+}
+
+template <class Number>
+void take(std::string_view& bytes, std::vector<Number>& numbers) {
+  std::uint64_t count = 0;
+  std::memcpy(&count, bytes.data(), sizeof count);
+  bytes.remove_prefix(sizeof count);
+  numbers.resize(count);
+  std::memcpy(static_cast<void*>(numbers.data()), bytes.data(), count * sizeof(Number));
+  bytes.remove_prefix(count * sizeof(Number));
+}
+
+// In a process of its own: files that are wrong in the right way end assimp by its own assertions,
+// by a crash, or not at all.
+TriangleMesh read_by_assimp(const MeshFile& file, const std::string& bytes,
+                            const std::string& name) {
+  const std::string result = in_own_process("'" + name + "' as " + file.format, {}, [&] {
+    ::close(STDERR_FILENO);  // what assimp prints as it ends
+    const TriangleMesh mesh = gathered(file, bytes, name);
+    std::string packed;
+    append(mesh.vertices, packed);
+    append(mesh.triangles, packed);
+    append(mesh.colors, packed);
+    return packed;
+  });
+  TriangleMesh mesh;
+  std::string_view rest = result;
+  take(rest, mesh.vertices);
+  take(rest, mesh.triangles);
+  take(rest, mesh.colors);
+  return mesh;
+}
+
+}  // namespace
+
+MeshFile read_mesh(const fs::path& path, const MeshFileOptions& options) {
+  const std::string name = path.string();
+  MeshFile file;
+  file.format = format_of(path);
+  if (options.unit && !(*options.unit > 0 && std::isfinite(*options.unit))) {
+    throw InputError("'" + name + "': the unit must be above 0 m");
+  }
+  const std::string bytes = read_file(path, kLargestFile);
+  if (bytes.empty()) throw InputError("'" + name + "': it is empty");
+  settle_frame(bytes, options, file);
+  if (file.format == "PLY") {
+    file.mesh = read_ply(bytes, name);
+    for (Eigen::Vector3d& v : file.mesh.vertices) v = file.unit * z_up(v, file.up);
+  } else {
+    if (file.format == "STL") check_stl(bytes, name);
+    if (file.format == "Collada") check_collada(bytes, name);
+    file.mesh = read_by_assimp(file, bytes, name);
+  }
   check_mesh(file.mesh, "'" + name + "'");
   const std::size_t before = file.mesh.triangles.size();
   weld(file.mesh, 0);

@@ -31,6 +31,14 @@ struct Zone {
   double ceiling = std::numeric_limits<double>::infinity();
 };
 
+// A mesh in a file beside the plan (PLY and the like, in metres with z up). It has no inside: the
+// flight keeps away from its triangles.
+struct MeshObstacle {
+  std::string name;
+  std::string file;    // relative to the plan's folder, and below it
+  std::string sha256;  // of the file, 64 hexadecimal digits
+};
+
 // What is filmed: an upright cylinder around a middle that may move. Straight and even motion
 // between the times of its track, at rest before and after.
 struct Subject {
@@ -48,6 +56,7 @@ struct Environment {
   std::vector<Sphere> spheres;
   std::vector<Box> boxes;
   std::vector<Zone> zones;
+  std::vector<MeshObstacle> meshes;
   std::vector<Subject> subjects;  // filmed
   double margin = 0;              // m kept from every surface, vehicle radius included
 };
@@ -61,8 +70,8 @@ double signed_distance(const Sphere& sphere, const Eigen::Vector3d& p);
 double signed_distance(const Box& box, const Eigen::Vector3d& p);
 double signed_distance(const Zone& zone, const Eigen::Vector3d& p);
 
-// The nearest of all spheres, boxes and zones: its distance (infinite where there is none) and its
-// name, or its kind and number where it has none ("sphere 2").
+// The nearest of all spheres, boxes and zones (meshes are not read here): its distance (infinite
+// where there is none) and its name, or its kind and number where it has none ("sphere 2").
 struct NearestObstacle {
   double distance = std::numeric_limits<double>::infinity();
   std::string name;

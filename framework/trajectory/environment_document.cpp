@@ -37,6 +37,14 @@ Value to_value(const Zone& zone) {
   return value;
 }
 
+Value to_value(const MeshObstacle& mesh) {
+  Value value = Value::map();
+  value.set("name", mesh.name);
+  value.set("file", mesh.file);
+  value.set("sha256", mesh.sha256);
+  return value;
+}
+
 Value to_value(const Subject& subject) {
   Value positions = Value::list(), value = Value::map();
   for (const Eigen::Vector3d& position : subject.positions) positions.push_back(list_of(position));
@@ -98,6 +106,7 @@ Value environment_to_value(const Environment& environment) {
   value.set("spheres", list_of(environment.spheres));
   value.set("boxes", list_of(environment.boxes));
   if (!environment.zones.empty()) value.set("zones", list_of(environment.zones));
+  if (!environment.meshes.empty()) value.set("meshes", list_of(environment.meshes));
   if (!environment.subjects.empty()) value.set("subjects", list_of(environment.subjects));
   return value;
 }
@@ -112,6 +121,9 @@ Environment environment_from(Fields fields) {
     return Box{f.text("name"), f.vector3("lower"), f.vector3("upper")};
   });
   environment.zones = read_all(fields.optional_tables("zones"), zone_from);
+  environment.meshes = read_all(fields.optional_tables("meshes"), [](Fields& f) {
+    return MeshObstacle{f.text("name"), f.text("file"), f.text("sha256")};
+  });
   environment.subjects = read_all(fields.optional_tables("subjects"), subject_from);
   fields.finish();
   return environment;

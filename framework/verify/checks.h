@@ -4,9 +4,11 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 
+#include "framework/geometry/mesh_scene.h"
 #include "framework/trajectory/plan.h"
 #include "framework/vehicle/closed_loop.h"
 #include "framework/vehicle/vehicle.h"
@@ -102,14 +104,16 @@ struct Flight {
   const Plan& plan;
   const Vehicle& vehicle;
   Motion& motion;
+  std::span<const MeshScene> meshes;  // of the environment, in its order
 };
 
 // The families. Each appends its checks; `document` also yields the vehicle that it read.
 struct Document {
   Check check;
   Vehicle vehicle;
+  std::vector<MeshScene> meshes;  // of the environment, in its order
 };
-Document check_document(const Plan& plan);
+Document check_document(const Plan& plan, const std::filesystem::path& folder);
 void check_dynamics(const Flight& flight, Certificate& certificate);
 void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);

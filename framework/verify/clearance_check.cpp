@@ -7,6 +7,8 @@
 namespace lapwing {
 namespace {
 
+constexpr double kReach = 50;  // m beyond the margin; farther meshes are far
+
 struct Chord {
   Eigen::Vector3d from, to;
   double bulge;
@@ -50,6 +52,18 @@ double distance(const Zone& zone, const Eigen::Vector3d& p) {
   return std::hypot(std::max(across, 0.0), std::max(up, 0.0));
 }
 
+// A mesh with the name that the environment gives it. Distances are told apart up to `reach`.
+struct MeshBody {
+  const std::string& name;
+  const MeshScene& scene;
+  double reach;
+};
+
+double distance(const MeshBody& mesh, const Eigen::Vector3d& p) {
+  const auto nearest = mesh.scene.nearest(p, mesh.reach);
+  return nearest ? nearest->distance : mesh.reach;
+}
+
 // The smallest distance on a chord and its share of it; never above the true one.
 struct Nearest {
   double distance, share;
@@ -79,18 +93,19 @@ Nearest nearest(const Obstacle& obstacle, const Chord& chord) {
   return best;
 }
 
-// A zone need not be convex: halves of the chord that may hold less than the best so far are
-// halved again, down to a length that is taken off the distance.
-Nearest nearest(const Zone& zone, const Chord& chord) {
+// What need not be convex: halves of the chord that may hold less than the best so far are halved
+// again, down to a length that is taken off the distance.
+template <class Obstacle>
+Nearest nearest_by_halves(const Obstacle& obstacle, const Chord& chord) {
   const double length = (chord.to - chord.from).norm();
   const double resolution = std::max(tolerances::kBulge, length / 2048);
-  Nearest best{distance(zone, chord.from), 0};
+  Nearest best{distance(obstacle, chord.from), 0};
   std::vector<std::pair<double, double>> parts{{0.0, 1.0}};
   while (!parts.empty()) {
     const auto [from, to] = parts.back();
     parts.pop_back();
     const double middle = (from + to) / 2, half = (to - from) / 2 * length;
-    const double value = distance(zone, chord.at(middle));
+    const double value = distance(obstacle, chord.at(middle));
     if (value - half >= best.distance) continue;
     if (half <= resolution) {
       best = {value - half, middle};
@@ -101,6 +116,14 @@ Nearest nearest(const Zone& zone, const Chord& chord) {
     }
   }
   return best;
+}
+
+Nearest nearest(const Zone& zone, const Chord& chord) {
+  return nearest_by_halves(zone, chord);
+}
+
+Nearest nearest(const MeshBody& mesh, const Chord& chord) {
+  return nearest_by_halves(mesh, chord);
 }
 
 class Clearance {
@@ -134,8 +157,9 @@ class Clearance {
   std::string nearest_;
 };
 
-void see_all(const Environment& environment, const Chord& chord, double time, double duration,
+void see_all(const Flight& flight, const Chord& chord, double time, double duration,
              Clearance& clearance) {
+  const Environment& environment = flight.plan.environment;
   for (std::size_t i = 0; i < environment.spheres.size(); ++i) {
     clearance.see(environment.spheres[i], "sphere", i, chord, time, duration);
   }
@@ -145,13 +169,18 @@ void see_all(const Environment& environment, const Chord& chord, double time, do
   for (std::size_t i = 0; i < environment.zones.size(); ++i) {
     clearance.see(environment.zones[i], "zone", i, chord, time, duration);
   }
+  for (std::size_t i = 0; i < flight.meshes.size(); ++i) {
+    const MeshBody mesh{environment.meshes[i].name, flight.meshes[i], kReach + environment.margin};
+    clearance.see(mesh, "mesh", i, chord, time, duration);
+  }
 }
 
 }  // namespace
 
 void check_clearance(const Flight& flight, Certificate& certificate) {
   const Environment& environment = flight.plan.environment;
-  if (environment.spheres.empty() && environment.boxes.empty() && environment.zones.empty()) {
+  if (environment.spheres.empty() && environment.boxes.empty() && environment.zones.empty() &&
+      environment.meshes.empty()) {
     certificate.checks.push_back(skipped_check("clearance", "the environment has no obstacle"));
     return;
   }
@@ -159,7 +188,7 @@ void check_clearance(const Flight& flight, Certificate& certificate) {
   Clearance clearance(environment.margin);
   for (std::size_t i = 0; i <= motion.intervals(); ++i) {
     const MotionPoint p = motion.stated(i);
-    see_all(environment, {p.position, p.position, 0}, p.time, 0, clearance);
+    see_all(flight, {p.position, p.position, 0}, p.time, 0, clearance);
   }
   for (std::size_t i = 0; i < motion.intervals(); ++i) {
     const auto points = motion.integrate(i);
@@ -168,7 +197,7 @@ void check_clearance(const Flight& flight, Certificate& certificate) {
       const MotionPoint& b = points[k];
       const double h = b.time - a.time;
       const double bulge = std::max(a.acceleration.norm(), b.acceleration.norm()) * h * h / 8;
-      see_all(environment, {a.position, b.position, bulge}, a.time, h, clearance);
+      see_all(flight, {a.position, b.position, bulge}, a.time, h, clearance);
     }
   }
   certificate.checks.push_back(clearance.check());

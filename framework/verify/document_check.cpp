@@ -1,6 +1,9 @@
 // Whether the plan holds together at all: everything that the other checks take for granted.
 #include <cstdio>
 
+#include "framework/core/checksum.h"
+#include "framework/core/files.h"
+#include "framework/geometry/mesh_file.h"
 #include "framework/verify/checks.h"
 
 namespace lapwing {
@@ -10,7 +13,8 @@ constexpr std::size_t kListed = 5;  // problems named in the certificate
 
 class Reader {
  public:
-  explicit Reader(const Plan& plan) : plan_(plan) {}
+  explicit Reader(const Plan& plan, const std::filesystem::path& folder)
+      : plan_(plan), folder_(folder) {}
 
   Document read() {
     Document document;
@@ -22,6 +26,7 @@ class Reader {
       list_problems(plan_, plan_.trajectory.samples.back().time, problems_);
     }
     if (problems_.empty()) steps(document.vehicle);
+    if (problems_.empty()) read_meshes(document.meshes);
     const auto count = static_cast<double>(problems_.size());
     document.check = judged(make_check("document"), count, 0, 0, at_);
     document.check.detail = listed();
@@ -54,6 +59,22 @@ class Reader {
     }
   }
 
+  // The plan says what its files held when it was made.
+  void read_meshes(std::vector<MeshScene>& meshes) {
+    for (const MeshObstacle& mesh : plan_.environment.meshes) {
+      const std::filesystem::path file = folder_ / mesh.file;
+      try {
+        if (sha256(read_file(file, std::size_t{1} << 30)) != mesh.sha256) {
+          add("mesh '" + mesh.name + "': '" + mesh.file + "' has changed since the plan was made");
+          continue;
+        }
+        meshes.emplace_back(read_mesh(file).mesh, mesh.name);
+      } catch (const std::exception& error) {
+        add("mesh '" + mesh.name + "': " + error.what());
+      }
+    }
+  }
+
   static bool all_sound(const Sample& s) {
     return sound(s.time) && sound(s.position) && sound(s.velocity) && sound(s.acceleration) &&
            sound(s.yaw) && sound(s.yaw_rate) && sound(s.force) && sound(s.yaw_torque) &&
@@ -63,8 +84,8 @@ class Reader {
 
   void samples() {
     const auto& samples = plan_.trajectory.samples;
-    if (plan_.trajectory.model != MotionModel::force) {
-      add("this version verifies the motion model 'force' alone");
+    if (plan_.trajectory.model == MotionModel::rotors) {
+      add("this version does not verify the motion model 'rotors'");
     }
     if (samples.empty()) return add("the plan has no sample");
     if (!(std::abs(samples[0].time) <= tolerances::kStartTime)) {
@@ -110,14 +131,15 @@ class Reader {
   }
 
   const Plan& plan_;
+  const std::filesystem::path& folder_;
   std::vector<std::string> problems_;
   double at_ = 0;
 };
 
 }  // namespace
 
-Document check_document(const Plan& plan) {
-  return Reader(plan).read();
+Document check_document(const Plan& plan, const std::filesystem::path& folder) {
+  return Reader(plan, folder).read();
 }
 
 }  // namespace lapwing

@@ -60,6 +60,14 @@ void check_stated_acceleration(const Flight& flight, Certificate& certificate) {
 }  // namespace
 
 void check_dynamics(const Flight& flight, Certificate& certificate) {
+  if (flight.plan.trajectory.model == MotionModel::path) {
+    for (const char* name : {"defect_position", "defect_velocity", "defect_yaw", "defect_yaw_rate",
+                             "defect_gimbal", "drift", "stated_acceleration"}) {
+      certificate.checks.push_back(
+          skipped_check(name, "a path is its samples joined by straight lines"));
+    }
+    return;
+  }
   Motion& motion = flight.motion;
   const bool has_gimbal = flight.plan.trajectory.has_gimbal;
   std::vector<Worst> worst;

@@ -70,6 +70,13 @@ void list_problems(const Environment& environment, std::vector<std::string>& pro
     const std::string problem = problem_of(zone);
     if (!problem.empty()) problems.push_back("zone '" + zone.name + "'" + problem);
   }
+  for (const MeshObstacle& mesh : environment.meshes) {
+    const std::filesystem::path file(mesh.file);
+    const bool up = std::find(file.begin(), file.end(), "..") != file.end();
+    if (mesh.file.empty() || file.is_absolute() || up) {
+      problems.push_back("mesh '" + mesh.name + "' must name a file below the plan's folder");
+    }
+  }
   std::set<std::string> names;
   for (const Subject& subject : environment.subjects) {
     if (subject.name.empty()) problems.push_back("a subject has no name");

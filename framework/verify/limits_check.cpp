@@ -20,8 +20,9 @@ Check nearer(const Worst& low, const Worst& high) {
 
 class Limits {
  public:
-  explicit Limits(const Vehicle& v)
+  Limits(const Vehicle& v, MotionModel model)
       : v_(v),
+        path_(model == MotionModel::path),
         thrust_max_("thrust_max", v.thrust_max()),
         thrust_min_("thrust_min", v.thrust_min(), tolerance_of(v.thrust_min()), true),
         force_up_("force_up", 0, tolerances::kLimitFloor, true),
@@ -55,6 +56,7 @@ class Limits {
 
   void append_to(Certificate& certificate) const {
     auto& checks = certificate.checks;
+    if (path_) return append_speeds_to(checks);
     for (const Worst* worst : {&thrust_max_, &thrust_min_, &force_up_, &yaw_torque_}) {
       checks.push_back(worst->check());
     }
@@ -72,7 +74,22 @@ class Limits {
   }
 
  private:
+  // A path has no inputs, and turns on the spot where its lines meet.
+  void append_speeds_to(std::vector<Check>& checks) const {
+    const auto skip = [&](std::initializer_list<const char*> names) {
+      for (const char* name : names) {
+        checks.push_back(skipped_check(name, "the motion model 'path' has no inputs"));
+      }
+    };
+    skip({"thrust_max", "thrust_min", "force_up", "yaw_torque", "rotor_thrust"});
+    for (const Worst* worst : {&speed_across_, &climb_, &descent_})
+      checks.push_back(worst->check());
+    skip({"acceleration_across", "acceleration_up", "acceleration_down"});
+    checks.push_back(yaw_rate_.check());
+  }
+
   const Vehicle& v_;
+  bool path_;
   Worst thrust_max_, thrust_min_, force_up_, yaw_torque_;
   Worst speed_across_, climb_, descent_;
   Worst acceleration_across_, acceleration_up_, acceleration_down_;
@@ -124,7 +141,7 @@ void walk(const Flight& flight, See see, SeeBetween see_between) {
 }  // namespace
 
 void check_limits(const Flight& flight, Certificate& certificate) {
-  Limits limits(flight.vehicle);
+  Limits limits(flight.vehicle, flight.plan.trajectory.model);
   walk(
       flight, [&](const MotionPoint& p) { limits.see(p); },
       [&](const MotionPoint& a, const MotionPoint& b) { limits.see_between(a, b); });

@@ -46,6 +46,9 @@ double Motion::steps(std::size_t interval) const {
   const Sample& a = trajectory_.samples[interval];
   const Sample& b = trajectory_.samples[interval + 1];
   const double h = b.time - a.time;
+  if (trajectory_.model == MotionModel::path) {
+    return std::ceil(std::max(1.0, h / tol::kStepMaximum));
+  }
   const Eigen::Vector3d gravity(0, 0, -kGravity);
   const double acceleration =
       std::max((a.force / mass_ + gravity).norm(), (b.force / mass_ + gravity).norm());
@@ -72,6 +75,13 @@ double Motion::total_steps() const {
 
 MotionPoint Motion::stated(std::size_t index) const {
   const Sample& s = trajectory_.samples[index];
+  if (trajectory_.model == MotionModel::path) {
+    return {.time = s.time,
+            .position = s.position,
+            .yaw = s.yaw,
+            .gimbal_yaw = s.gimbal_yaw,
+            .gimbal_pitch = s.gimbal_pitch};
+  }
   const Eigen::Vector3d gravity(0, 0, -kGravity);
   return {.time = s.time,
           .position = s.position,
@@ -87,7 +97,28 @@ MotionPoint Motion::stated(std::size_t index) const {
           .gimbal_pitch_rate = s.gimbal_pitch_rate};
 }
 
+std::span<const MotionPoint> Motion::follow_line(std::size_t interval) {
+  const MotionPoint a = stated(interval), b = stated(interval + 1);
+  const auto count = static_cast<std::size_t>(steps(interval));
+  const double h = b.time - a.time;
+  points_.clear();
+  for (std::size_t k = 0; k <= count; ++k) {
+    const double s = static_cast<double>(k) / static_cast<double>(count);
+    points_.push_back({.time = k == count ? b.time : a.time + s * h,
+                       .position = a.position + s * (b.position - a.position),
+                       .velocity = (b.position - a.position) / h,
+                       .yaw = a.yaw + s * (b.yaw - a.yaw),
+                       .yaw_rate = (b.yaw - a.yaw) / h,
+                       .gimbal_yaw = a.gimbal_yaw + s * (b.gimbal_yaw - a.gimbal_yaw),
+                       .gimbal_pitch = a.gimbal_pitch + s * (b.gimbal_pitch - a.gimbal_pitch),
+                       .gimbal_yaw_rate = (b.gimbal_yaw - a.gimbal_yaw) / h,
+                       .gimbal_pitch_rate = (b.gimbal_pitch - a.gimbal_pitch) / h});
+  }
+  return points_;
+}
+
 std::span<const MotionPoint> Motion::integrate(std::size_t interval) {
+  if (trajectory_.model == MotionModel::path) return follow_line(interval);
   const Sample& a = trajectory_.samples[interval];
   const Sample& b = trajectory_.samples[interval + 1];
   const Inputs first = inputs_of(a), last = trajectory_.inputs_held ? first : inputs_of(b);

@@ -4,7 +4,8 @@
 //   m r'' = F + m g,   I_psi psi'' = M_psi,   gimbal angle' = gimbal rate
 //
 // Between two samples the inputs F, M_psi and the gimbal rates are held or linear. Each interval
-// starts from what its first sample states.
+// starts from what its first sample states. Of the model `path`: straight lines at even speed from
+// sample to sample, yaw and gimbal likewise.
 #pragma once
 
 #include <span>
@@ -47,6 +48,7 @@ class Motion {
 
  private:
   double steps(std::size_t interval) const;
+  std::span<const MotionPoint> follow_line(std::size_t interval);
 
   const Trajectory& trajectory_;
   double mass_, yaw_inertia_;

@@ -4,9 +4,9 @@
 
 namespace lapwing {
 
-Certificate verify(const Plan& plan) {
+Certificate verify(const Plan& plan, const std::filesystem::path& folder) {
   Certificate certificate;
-  const Document document = check_document(plan);
+  const Document document = check_document(plan, folder);
   certificate.checks.push_back(document.check);
   if (!document.check.pass) {
     for (std::size_t i = 1; i < kCheckKinds.size(); ++i) {
@@ -16,7 +16,7 @@ Certificate verify(const Plan& plan) {
     return certificate;
   }
   Motion motion(plan.trajectory, document.vehicle);
-  const Flight flight{plan, document.vehicle, motion};
+  const Flight flight{plan, document.vehicle, motion, document.meshes};
   check_dynamics(flight, certificate);
   check_limits(flight, certificate);
   check_clearance(flight, certificate);

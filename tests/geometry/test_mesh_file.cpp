@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
@@ -25,7 +27,7 @@ class MeshFiles : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   fs::path write(const std::string& name, const std::string& text) const {
-    write_file_atomically(folder_ / name, text);
+    std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
   }
   // What is said of a file that cannot be read; "" if it can.
@@ -189,6 +191,21 @@ TEST_F(MeshFiles, HostileFilesAreRefusedByName) {
   EXPECT_NE(refusal("claim3.ply", ply("-1")), "");
   EXPECT_NE(refusal("claim.stl", stl_binary(0xfffffff0u)).find("claims 4294967280 triangles"),
             std::string::npos);
+  // Documents that crash assimp itself.
+  for (const auto& [good, bad] : {std::pair{"count=\"12\"", "bount=\"12\""},
+                                  {"stride=\"3\"", "stride=\"0\""},
+                                  {"semantic=\"VERTEX\"", "semantic=\"ERTEX\""}}) {
+    std::string text = collada("", "Y");
+    text.replace(text.find(good), std::strlen(good), bad);
+    EXPECT_NE(refusal("crash.dae", text), "") << bad;
+  }
+  // Numbers that are none, where assimp would wait for ever.
+  std::string bad_list = collada("", "Y");
+  bad_list.replace(bad_list.find("0 1 2 0 2 3"), 11, "0 1 2 u 2 3");
+  EXPECT_NE(refusal("list.dae", bad_list).find("<p> holds 'u'"), std::string::npos);
+  std::string bad_count = collada("", "Y");
+  bad_count.replace(bad_count.find("count=\"12\""), 10, "count=\"4000000000\"");
+  EXPECT_NE(refusal("count.dae", bad_count).find("cannot hold"), std::string::npos);
   std::string bad_index = ply();
   bad_index.replace(bad_index.find("3 0 2 3"), 7, "3 0 2 9");
   EXPECT_NE(refusal("index.ply", bad_index), "");
@@ -214,7 +231,7 @@ TEST_F(MeshFiles, TruncatedFilesNeverCrashAndBinaryOnesAreRefused) {
   }
   // A text format without an end cannot tell; it must not crash.
   for (const std::string& whole : {std::string(kObj), ply(), stl_text()}) {
-    for (std::size_t size = 0; size < whole.size(); ++size) {
+    for (std::size_t size = 0; size < whole.size(); size += 3) {
       const std::string name = whole[0] == '#' ? "cut.obj" : whole[0] == 'p' ? "t.ply" : "t.stl";
       refusal(name, whole.substr(0, size));
     }
@@ -238,6 +255,8 @@ TEST_F(MeshFiles, WhatIsWrittenIsReadBack) {
       EXPECT_LT((back.mesh.corner(i, k) - mesh.corner(i, k)).norm(), 1e-5);
     }
   }
+  ASSERT_EQ(back.mesh.colors.size(), mesh.triangles.size());
+  EXPECT_EQ(back.mesh.colors[0], (Rgb{200, 10, 20}));
   // Single precision is exact the second time.
   TriangleMesh plain = back.mesh;
   plain.colors.clear();
@@ -246,6 +265,42 @@ TEST_F(MeshFiles, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(twice.mesh.vertices, back.mesh.vertices);
   EXPECT_THROW(write_ply({}, folder_ / "none.ply"), InputError);
   EXPECT_FALSE(fs::exists(folder_ / "none.ply"));
+}
+
+TEST_F(MeshFiles, PlyInAllItsKinds) {
+  // Big-endian, with numbers and lists that mean nothing here, and a face of four corners.
+  std::string big =
+      "ply\r\nformat binary_big_endian 1.0\r\ncomment of the sea\r\nelement vertex 4\r\n"
+      "property double x\r\nproperty double y\r\nproperty double z\r\nproperty ushort age\r\n"
+      "element tag 1\r\nproperty list uchar short words\r\nelement face 1\r\n"
+      "property list uint uchar vertex_index\r\nproperty char odd\r\nend_header\r\n";
+  const auto append = [&](auto number) {
+    char raw[sizeof number];
+    std::memcpy(raw, &number, sizeof number);
+    std::reverse(raw, raw + sizeof number);
+    big.append(raw, sizeof number);
+  };
+  const double corners[4][3] = {{0, 0, 0}, {4, 0, 0}, {4, 0, 3}, {0, 0, 3}};
+  for (const auto& corner : corners) {
+    for (const double v : corner) append(v);
+    append(std::uint16_t{7});
+  }
+  append(std::uint8_t{2}), append(std::int16_t{-1}), append(std::int16_t{300});
+  append(std::uint32_t{4});
+  for (std::uint8_t i = 0; i < 4; ++i) append(i);
+  append(std::int8_t{-3});
+  expect_wall(read_mesh(write("big.ply", big)), 4, 3);
+  for (std::size_t size = 0; size < big.size(); ++size) {
+    EXPECT_NE(refusal("big.ply", big.substr(0, size)), "") << size;
+  }
+  std::string words = ply();
+  EXPECT_NE(refusal("words.ply", words.replace(words.find("4 0 3"), 5, "4 x 3")).find("'x'"),
+            std::string::npos);
+  EXPECT_NE(refusal("format.ply", "ply\nformat morse 1.0\nend_header\n").find("'morse'"),
+            std::string::npos);
+  std::string no_z = ply();
+  no_z.replace(no_z.find("float z"), 7, "float w");
+  EXPECT_NE(refusal("no_z.ply", no_z).find("lack x, y or z"), std::string::npos);
 }
 
 TEST(RealMeshes, AreReadInMetresWithZUp) {
