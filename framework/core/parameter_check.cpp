@@ -13,7 +13,7 @@ namespace lapwing {
 
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   return "'" + std::string(text) + "'";
 }
 
@@ -43,7 +43,7 @@ std::string shown(const Value& value) {
       std::snprintf(buffer, sizeof buffer, "%.12g", value.as_number());
       return buffer;
     case Value::Type::text:
-      return quoted(value.as_text());
+      return in_quotes(value.as_text());
     default:
       return value.describe_type();
   }
@@ -95,7 +95,7 @@ class ParameterChecker {
       const std::string nearest = nearest_name(key, known);
       std::string message = "unknown key";
       if (!nearest.empty())
-        message += "; did you mean " + quoted(nearest) + "?";
+        message += "; did you mean " + in_quotes(nearest) + "?";
       else if (known.empty())
         message += "; no key is accepted here";
       else
@@ -246,7 +246,7 @@ class ParameterChecker {
     const std::string nearest = nearest_name(value.as_text(), spec.choices);
     errors_.add(value.origin(), path,
                 "expected " + expected(spec) + ", got " + shown(value) +
-                    (nearest.empty() ? "" : "; did you mean " + quoted(nearest) + "?"));
+                    (nearest.empty() ? "" : "; did you mean " + in_quotes(nearest) + "?"));
     return std::nullopt;
   }
 
