@@ -7,6 +7,7 @@ namespace lapwing {
 namespace {
 
 constexpr double kOnStage = 1e-9;  // s, nearer to a stage than this is on it
+constexpr double kOnLeg = 1e-6;    // s, nearer to a leg's end than this names it
 
 std::string seconds_text(double seconds) {
   char text[32];
@@ -35,8 +36,6 @@ BoundFunction::BoundFunction(std::string name, StageFunction& function, const St
                 std::to_string(shape_.rows) + " rows");
   if (!shape_.times.empty() && (shape_.window != 1 || !shape_.stages.empty()))
     throw Error(name_ + ": a function at given times reads one stage and lists no others");
-  if (!shape_.times.empty() && columns.horizon.step_free)
-    throw InputError(name_ + ": given times need a fixed step");
   for (int w = 0; w < shape_.window; ++w)
     for (const int block : shape_.blocks) inputs_ += columns.layout.block(block).size;
   row_names_ = shape_.row_names;
@@ -55,13 +54,13 @@ BoundFunction::BoundFunction(std::string name, StageFunction& function, const St
   bool lines = true;
   for (const int block : shape_.blocks)
     lines &= columns.layout.block(block).topology == Topology::line;
-  const bool constant =
-      shape_.affine && lines && !columns.horizon.step_free && (!sampled_ || models_affine);
+  const bool weighted = shape_.integral && columns.horizon.step_free;  // by a step that may change
+  const bool constant = shape_.affine && lines && !weighted && (!sampled_ || models_affine);
   if (constant) {
     Stages at = Stages::Zero(columns.layout.size(), columns.horizon.stages);
     for (int i = 0; i < columns.horizon.stages; ++i) {
-      at(columns.layout.offset(columns.time_block), i) = i * columns.horizon.step;
-      at(columns.layout.offset(columns.step_block), i) = columns.horizon.step;
+      at(columns.layout.offset(columns.time_block), i) = columns.horizon.time(i);
+      at(columns.layout.offset(columns.step_block), i) = columns.horizon.step_after(i);
     }
     std::vector<double> values(instances() * rows()), jacobian(values.size() * width_);
     Workspace workspace;
@@ -70,17 +69,34 @@ BoundFunction::BoundFunction(std::string name, StageFunction& function, const St
   }
 }
 
+// Where steps are free a time names the end of a leg by its first guess.
+int BoundFunction::end_of_leg(const Horizon& horizon, double time) const {
+  for (int leg = 0; leg <= horizon.leg_count(); ++leg) {
+    const int stage = horizon.end_of_leg(leg);
+    if (std::abs(horizon.time(stage) - time) <= kOnLeg) return stage;
+  }
+  throw InputError(name_ + ": given times need a fixed step, or to be the end of a leg; " +
+                   seconds_text(time) + " is neither");
+}
+
 void BoundFunction::list_instances(const StageColumns& columns) {
-  const int last = columns.horizon.stages - shape_.window;
+  const Horizon& horizon = columns.horizon;
+  const int last = horizon.stages - shape_.window;
   if (!shape_.times.empty()) {
-    const double step = columns.horizon.step, end = columns.horizon.duration();
+    const double end = horizon.duration();
     for (const double time : shape_.times) {
+      if (horizon.step_free) {
+        stage_.push_back(end_of_leg(horizon, time));
+        offset_.push_back(0.0);
+        nominal_.push_back(horizon.time(stage_.back()));
+        continue;
+      }
       if (!(time >= -kOnStage && time <= end + kOnStage))
         throw InputError(name_ + ": time " + seconds_text(time) + " lies outside the duration of " +
                          seconds_text(end));
-      int stage = std::min(static_cast<int>(time / step), last);
-      double offset = time - stage * step;
-      if (step - offset < kOnStage && stage < last) ++stage, offset = 0;
+      int stage = std::min(horizon.stage_at(time), last);
+      double offset = time - horizon.time(stage);
+      if (horizon.step_after(stage) - offset < kOnStage && stage < last) ++stage, offset = 0;
       if (std::abs(offset) < kOnStage || stage == last) offset = 0;
       sampled_ |= offset > 0;
       stage_.push_back(stage);
@@ -96,7 +112,7 @@ void BoundFunction::list_instances(const StageColumns& columns) {
     if (stage < 0 || stage > last) throw Error(name_ + ": asks for a stage outside the horizon");
     stage_.push_back(stage);
     offset_.push_back(0.0);
-    nominal_.push_back(stage * columns.horizon.step);
+    nominal_.push_back(horizon.time(stage));
   }
 }
 
@@ -163,7 +179,7 @@ void BoundFunction::gather_sampled(const StageColumns& columns, const Stages& at
   const StageLayout& layout = columns.layout;
   const int stage = stage_[instance];
   const int next = std::min(stage + 1, columns.horizon.stages - 1);
-  const double fraction = offset_[instance] / columns.horizon.step;
+  const double fraction = offset_[instance] / columns.horizon.step_after(stage);
   // The whole stage between the two, and its derivative with respect to both.
   Eigen::VectorXd between = at.col(stage);
   RowMajor derivative;

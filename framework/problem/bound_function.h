@@ -49,6 +49,7 @@ class BoundFunction {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   void list_instances(const StageColumns& columns);
+  int end_of_leg(const Horizon& horizon, double time) const;
   void list_columns(const StageColumns& columns);
   // Inputs of one instance; with `chain`, also d inputs / d columns: inputs_ x width.
   void gather(const StageColumns& columns, const Stages& at, int instance, double* inputs,

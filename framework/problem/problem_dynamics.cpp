@@ -121,7 +121,7 @@ Stages TrajectoryProblem::simulate(const Stages& at) const {
   Workspace workspace;
   for (int i = 0; i < last; ++i) {
     if (columns.horizon.step_free) {
-      flown(step, i + 1) = flown(step, i);
+      if (columns.horizon.chained(i)) flown(step, i + 1) = flown(step, i);
       flown(time, i + 1) = flown(time, i) + flown(step, i);
     }
     for (const BoundModel& model : columns.models) {
@@ -160,12 +160,14 @@ void TrajectoryProblem::Impl::dynamics_values(const Stages& at, double* values) 
         *out++ = at(row, stages - 1) - at(row, stages - 2);
       }
   }
+  closure_values(at, values + closure_row);
   if (!columns.horizon.step_free) return;
   const int time = columns.layout.offset(columns.time_block);
   const int length = columns.layout.offset(columns.step_block);
-  for (int i = 0; i + 1 < stages; ++i) {
-    *out++ = at(time, i + 1) - at(time, i) - at(length, i);
-    *out++ = at(length, i + 1) - at(length, i);
+  for (const ClockRow& row : clock) {
+    const int i = row.stage;
+    *out++ = row.step ? at(length, i + 1) - at(length, i)
+                      : at(time, i + 1) - at(time, i) - at(length, i);
   }
 }
 
@@ -179,7 +181,8 @@ void TrajectoryProblem::Impl::dynamics_jacobian(const Stages& at, double* values
     // One Jacobian serves all stages where it is constant.
     const bool constant = constant_flow(model);
     for (int i = 0; i + 1 < stages; ++i) {
-      if (i == 0 || !constant) evaluate_model_step(columns, model, at, i, true, step);
+      if (i == 0 || !constant || columns.step(at, i) != columns.step(at, i - 1))
+        evaluate_model_step(columns, model, at, i, true, step);
       for (Eigen::Index k = 0; k < step.jacobian.size(); ++k, ++slot)
         if (*slot >= 0) jacobian[*slot] = step.jacobian.data()[k];
     }
@@ -190,15 +193,19 @@ void TrajectoryProblem::Impl::dynamics_jacobian(const Stages& at, double* values
       jacobian[*fixed++] = -1.0;
       jacobian[*fixed++] = 1.0;
     }
-  if (!columns.horizon.step_free) return;
-  for (int i = 0; i + 1 < stages; ++i)
-    for (const double entry : {-1.0, 1.0, -1.0, -1.0, 1.0}) jacobian[*fixed++] = entry;
+  closure_jacobian(at, jacobian);
+  for (const ClockRow& row : clock) {
+    jacobian[*fixed++] = -1.0;
+    jacobian[*fixed++] = 1.0;
+    if (!row.step) jacobian[*fixed++] = -1.0;
+  }
 }
 
 void TrajectoryProblem::Impl::dynamics_curvature(const Stages& at, const double* multipliers,
                                                  double* hessian) const {
   const StageLayout& layout = columns.layout;
   const int* slot = model_hessian_slots.data();
+  closure_curvature(at, multipliers, hessian);
   Workspace workspace;
   for (const BoundModel& model : columns.models) {
     if (model.model->affine() && !columns.horizon.step_free) continue;

@@ -49,7 +49,7 @@ std::string TrajectoryProblem::column_name(int column) const {
   for (int b = 0; b < c.layout.count(); ++b)
     for (int i = 0; i < c.layout.block(b).tangent_size(); ++i)
       if (c.column_in_stage[c.layout.tangent_offset(b) + i] == inside)
-        return component_name(c.layout.block(b), i) + at_time(stage * c.horizon.step);
+        return component_name(c.layout.block(b), i) + at_time(c.horizon.time(stage));
   throw Error("no such column");
 }
 
@@ -71,14 +71,13 @@ std::string TrajectoryProblem::row_name(int row) const {
 }
 
 std::string TrajectoryProblem::Impl::dynamics_row_name(int row) const {
-  const double step = columns.horizon.step;
   const int intervals = columns.horizon.stages - 1;
   for (const BoundModel& model : columns.models) {
     int inside = row - model.first_row;
     const int flow_rows = model.state_tangents * intervals;
     if (inside < 0 || inside >= flow_rows + model.inputs) continue;
     const bool flow = inside < flow_rows;
-    const double time = flow ? (inside / model.state_tangents) * step : intervals * step;
+    const double time = columns.horizon.time(flow ? inside / model.state_tangents : intervals);
     inside = flow ? inside % model.state_tangents : inside - flow_rows;
     for (const int b : flow ? model.state_blocks : model.input_blocks) {
       const BlockSpec& block = columns.layout.block(b);
@@ -88,8 +87,10 @@ std::string TrajectoryProblem::Impl::dynamics_row_name(int row) const {
       inside -= block.tangent_size();
     }
   }
-  const int clock_row = dynamics_rows - 2 * intervals, inside = row - clock_row;
-  return std::string("clock.") + (inside % 2 ? "step" : "time") + at_time(inside / 2 * step);
+  if (row >= closure_row) return closure_row_name(row - closure_row);
+  const ClockRow& entry = clock[row - (closure_row - static_cast<int>(clock.size()))];
+  return std::string("clock.") + (entry.step ? "step" : "time") +
+         at_time(columns.horizon.time(entry.stage));
 }
 
 std::vector<Violation> TrajectoryProblem::violations(const Stages& at) const {
@@ -99,8 +100,10 @@ std::vector<Violation> TrajectoryProblem::violations(const Stages& at) const {
   for (int row = 0; row < p.dynamics_rows; ++row) {
     const auto name = [&] { return p.dynamics_row_name(row); };
     const int intervals = p.columns.horizon.stages - 1;
-    std::string owner = "clock";
-    double time = this->time(at, std::clamp((row - p.dynamics_rows) / 2 + intervals, 0, intervals));
+    const int tick = row - (p.closure_row - static_cast<int>(p.clock.size()));
+    std::string owner = row >= p.closure_row ? "closure" : "clock";
+    const bool ticks = tick >= 0 && row < p.closure_row;
+    double time = this->time(at, ticks ? p.clock[tick].stage : intervals);
     for (const BoundModel& model : p.columns.models) {
       const int inside = row - model.first_row;
       const int flow_rows = model.state_tangents * (p.columns.horizon.stages - 1);

@@ -29,7 +29,8 @@ void visit_pairs(const BoundFunction& bound, const std::vector<double>& jacobian
 // Any point serves where Jacobians are constant, as long as its step is the step.
 Stages constant_stages(const StageColumns& columns) {
   Stages at = Stages::Zero(columns.layout.size(), columns.horizon.stages);
-  at.row(columns.layout.offset(columns.step_block)).setConstant(columns.horizon.step);
+  for (int i = 0; i < columns.horizon.stages; ++i)
+    at(columns.layout.offset(columns.step_block), i) = columns.horizon.step_after(i);
   return at;
 }
 
@@ -82,7 +83,13 @@ void TrajectoryProblem::Impl::build_patterns() {
     rows += model.state_tangents * (stages - 1) + model.inputs;
   }
   const int clock_row = rows;
-  if (columns.horizon.step_free) rows += 2 * (stages - 1);
+  for (int i = 0; columns.horizon.step_free && i + 1 < stages; ++i) {
+    clock.push_back({i, false});
+    if (columns.horizon.chained(i)) clock.push_back({i, true});
+  }
+  rows += static_cast<int>(clock.size());
+  closure_row = rows;
+  rows += closure_rows();
   dynamics_rows = rows;
   for (ConstraintEntry& entry : constraints) {
     if (entry.is_bounds) continue;
@@ -127,12 +134,12 @@ void TrajectoryProblem::Impl::build_patterns() {
     if (!columns.horizon.step_free) return;
     const int time = columns.layout.tangent_offset(columns.time_block);
     const int step = columns.layout.tangent_offset(columns.step_block);
-    for (int i = 0; i + 1 < stages; ++i) {
-      const int row = clock_row + 2 * i;
-      for (const int c :
-           {columns.column(i, time), columns.column(i + 1, time), columns.column(i, step)})
-        visit(row, c);
-      for (const int c : {columns.column(i, step), columns.column(i + 1, step)}) visit(row + 1, c);
+    for (std::size_t k = 0; k < clock.size(); ++k) {
+      const int row = clock_row + static_cast<int>(k), i = clock[k].stage;
+      const int number = clock[k].step ? step : time;
+      visit(row, columns.column(i, number));
+      visit(row, columns.column(i + 1, number));
+      if (!clock[k].step) visit(row, columns.column(i, step));
     }
   };
   const auto each_constraint_entry = [&](auto visit) {  // visit(entry, row, column or -1)
@@ -168,13 +175,17 @@ void TrajectoryProblem::Impl::build_patterns() {
   };
   each_model_entry(add_to(j));
   each_fixed_entry(add_to(j));
+  each_closure_entry(add_to(j));
   each_constraint_entry([&](ConstraintEntry&, int row, int c) { add_to(j)(row, c); });
   curved_models(add_to(h));
+  each_closure_pair(add_to(h));
   jacobian_pattern = j.finish();
   hessian_pattern = h.finish();
 
   each_model_entry([&](int row, int c) { model_slots.push_back(c < 0 ? -1 : j.slot(row, c)); });
   each_fixed_entry([&](int row, int c) { fixed_slots.push_back(j.slot(row, c)); });
+  each_closure_entry([&](int row, int c) { closure_slots.push_back(j.slot(row, c)); });
+  each_closure_pair([&](int row, int c) { closure_hessian_slots.push_back(h.slot(row, c)); });
   each_constraint_entry([&](ConstraintEntry& entry, int row, int c) {
     entry.jacobian_slots.push_back(c < 0 ? -1 : j.slot(row, c));
   });

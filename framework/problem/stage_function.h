@@ -17,19 +17,11 @@
 #include <vector>
 
 #include "framework/problem/block.h"
+#include "framework/problem/horizon.h"
 #include "framework/trajectory/environment.h"
 #include "framework/vehicle/vehicle.h"
 
 namespace lapwing {
-
-// Stages in time, one step apart. A free step is a variable, equal for all stages; `step` is then
-// its guess.
-struct Horizon {
-  int stages = 0;   // at least 2
-  double step = 0;  // s
-  bool step_free = false;
-  double duration() const { return (stages - 1) * step; }
-};
 
 // What a function may look at when it is bound.
 struct ProblemSetting {
@@ -45,7 +37,8 @@ struct FunctionShape {
   int rows = 0;                  // results of one instance; 0: it has nothing to say here at all
   // Which instances there are. Both empty: one for every window inside the horizon. `stages`: the
   // first stage of each. `times` (window 1 only): one at each time, in s; between two stages the
-  // kernel reads states off the vehicle model's flow, inputs as held, free blocks linearly.
+  // kernel reads states off the vehicle model's flow, inputs as held, free blocks linearly. Where
+  // steps are free each must be the end of a leg by its first guess, and stays on that stage.
   std::vector<int> stages = {};
   std::vector<double> times = {};
   // A cost that stands for an integral over time: the kernel weights each instance by its step, so

@@ -42,7 +42,7 @@ void ask_within(FunctionShape& shape, const Horizon& horizon, const std::vector<
   if (only.empty() && except.empty()) return;
   shape.stages.clear();
   for (int i = 0; i + shape.window <= horizon.stages; ++i) {
-    const double first = i * horizon.step, last = (i + shape.window - 1) * horizon.step;
+    const double first = horizon.time(i), last = horizon.time(i + shape.window - 1);
     const auto holds = [&](const TimeSpan& span) {
       return span.start <= first + kOnStage && last - kOnStage <= span.finish;
     };

@@ -47,6 +47,10 @@ TrajectoryProblem::TrajectoryProblem(Vehicle vehicle, Horizon horizon, Environme
     : impl_(std::make_unique<Impl>()) {
   if (horizon.stages < 2 || !(horizon.step > 0) || !std::isfinite(horizon.duration()))
     throw InputError("a trajectory needs at least 2 stages and a positive step");
+  int intervals = 0;
+  for (const Leg& leg : horizon.legs) intervals += leg.intervals;
+  if (!horizon.legs.empty() && intervals != horizon.stages - 1)
+    throw Error("a horizon's legs do not make its stages: use Horizon::of_legs");
   impl_->vehicle = std::move(vehicle);
   impl_->environment = std::move(environment);
   impl_->columns.horizon = horizon;
@@ -124,6 +128,7 @@ void TrajectoryProblem::finish() {
   impl_->expect_unfinished();
   if (impl_->columns.models.empty()) throw InputError("a trajectory problem needs a vehicle model");
   impl_->add_clock();
+  impl_->list_closure();
   impl_->bind_terms();
   impl_->build_patterns();
   impl_->finished = true;
@@ -151,9 +156,16 @@ void TrajectoryProblem::Impl::add_clock() {
   bound_owners.push_back("clock");
   const int owner = static_cast<int>(bound_owners.size()) - 1;
   tighten(columns.column(0, layout.tangent_offset(columns.time_block)), 0.0, 0.0, owner);
-  for (int i = 0; i < columns.horizon.stages; ++i)
-    tighten(columns.column(i, layout.tangent_offset(columns.step_block)), kShortestStep, kInfinity,
-            owner);
+  for (int i = 0; i < columns.horizon.stages; ++i) {
+    const int column = columns.column(i, layout.tangent_offset(columns.step_block));
+    tighten(column, kShortestStep, kInfinity, owner);
+    if (columns.horizon.legs.empty()) continue;
+    const Leg& leg = columns.horizon.legs[columns.horizon.leg_of(i)];
+    if (leg.free)
+      tighten(column, leg.shortest / leg.intervals, leg.longest / leg.intervals, owner);
+    else
+      tighten(column, leg.step, leg.step, owner);
+  }
 }
 
 void TrajectoryProblem::Impl::model_bounds() {
@@ -189,6 +201,8 @@ void TrajectoryProblem::Impl::bind_terms() {
   }
   for (const BoundModel& model : columns.models)
     affine_rows &= model.model->affine() && !columns.horizon.step_free;
+  for (const int b : closed_blocks)
+    affine_rows &= columns.layout.block(b).topology == Topology::line;
   for (ConstraintEntry& entry : constraints) {
     entry.bound = std::make_unique<BoundFunction>(entry.name, *entry.constraint, columns, setting);
     const BoundFunction& bound = *entry.bound;
@@ -261,16 +275,17 @@ double TrajectoryProblem::time(const Stages& at, int stage) const {
 Stages TrajectoryProblem::initial_guess() const {
   const StageColumns& columns = impl_->columns;
   const int count = columns.horizon.stages;
-  const double step = columns.horizon.step;
+  const Horizon& horizon = columns.horizon;
   Stages at = Stages::Zero(columns.layout.size(), count);
   std::vector<Sample> samples(count);
   for (int i = 0; i < count; ++i) {
-    samples[i].time = i * step;
+    samples[i].time = horizon.time(i);
     if (impl_->path_positions.times.empty()) continue;
     samples[i].position = interpolate(kPathPosition, impl_->path_positions, samples[i].time);
     samples[i].yaw = interpolate(kPathYaw, impl_->path_yaws, samples[i].time)(0);
   }
   for (int i = 0; i + 1 < count; ++i) {
+    const double step = horizon.step_after(i);
     samples[i].velocity = (samples[i + 1].position - samples[i].position) / step;
     samples[i].yaw_rate = (samples[i + 1].yaw - samples[i].yaw) / step;
   }
@@ -288,7 +303,7 @@ Stages TrajectoryProblem::initial_guess() const {
         }
     }
     at(columns.layout.offset(columns.time_block), i) = samples[i].time;
-    at(columns.layout.offset(columns.step_block), i) = step;
+    at(columns.layout.offset(columns.step_block), i) = horizon.step_after(i);
     for (int b = 0; b < columns.layout.count(); ++b)
       if (columns.layout.block(b).role == BlockRole::free &&
           columns.layout.block(b).topology == Topology::quaternion)

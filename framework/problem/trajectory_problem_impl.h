@@ -1,6 +1,8 @@
 // What a TrajectoryProblem holds. Internal to the room.
 #pragma once
 
+#include <functional>
+
 #include "framework/problem/bound_function.h"
 #include "framework/problem/sparse_pattern.h"
 #include "framework/problem/trajectory_problem.h"
@@ -57,6 +59,9 @@ struct TrajectoryProblem::Impl {
   int rows = 0;
   std::vector<int> model_slots;          // ModelStep::jacobian entries, [model][stage][row][column]
   std::vector<int> fixed_slots;          // held last inputs, then the clock
+  std::vector<int> closed_blocks;        // states that the last stage of a periodic flight repeats
+  std::vector<int> closure_slots, closure_hessian_slots;  // problem_closure.cpp
+  int closure_row = 0;
   std::vector<int> model_hessian_slots;  // lower triangles over curvature_columns, [model][stage]
   SparseMatrix hessian_pattern, jacobian_pattern;
   std::vector<double> constant_hessian;  // values of costs whose Jacobian never changes
@@ -80,6 +85,22 @@ struct TrajectoryProblem::Impl {
                       Workspace& workspace) const;
   void constraint_values(const Stages& at, double* values, Workspace& workspace) const;
   double stage_number(const Stages& at, int column) const;
+  // problem_closure.cpp
+  void list_closure();
+  int closure_rows() const;
+  // visit(row, column): rows are differences of the last stage from the first.
+  void each_closure_entry(const std::function<void(int, int)>& visit) const;
+  void each_closure_pair(const std::function<void(int, int)>& visit) const;  // of orientations
+  void closure_values(const Stages& at, double* values) const;
+  void closure_jacobian(const Stages& at, double* jacobian) const;
+  void closure_curvature(const Stages& at, const double* multipliers, double* hessian) const;
+  std::string closure_row_name(int inside) const;
+  // The clock's rows: t_{i+1} = t_i + h_i for every interval, h_{i+1} = h_i inside a free leg.
+  struct ClockRow {
+    int stage = 0;
+    bool step = false;
+  };
+  std::vector<ClockRow> clock;
   // problem_names.cpp
   std::string dynamics_row_name(int row) const;
 };

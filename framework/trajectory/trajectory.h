@@ -28,6 +28,7 @@ struct Sample {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // R_WB; model rotors
   Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();             // rad/s, body; model rotors
   Eigen::Vector4d rotor_thrusts = Eigen::Vector4d::Zero();          // N; model rotors
+  Eigen::Vector4d rotor_thrust_rates = Eigen::Vector4d::Zero();     // N/s; not in plans
   double gimbal_yaw = 0, gimbal_pitch = 0;                          // rad; where has_gimbal
   double gimbal_yaw_rate = 0, gimbal_pitch_rate = 0;                // rad/s; where has_gimbal
   Eigen::Vector3d target = Eigen::Vector3d::Zero();                 // m, W; where has_target

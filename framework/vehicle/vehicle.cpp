@@ -46,6 +46,7 @@ Value limits_to_value(const Vehicle& vehicle) {
   if (vehicle.acceleration_up_max) value.set("acceleration_up", *vehicle.acceleration_up_max);
   if (vehicle.acceleration_down_max) value.set("acceleration_down", *vehicle.acceleration_down_max);
   value.set("yaw_rate", vehicle.yaw_rate_max);
+  if (vehicle.tilt_rate_max) value.set("tilt_rate", *vehicle.tilt_rate_max);
   return value;
 }
 
@@ -97,6 +98,7 @@ void read_limits(Fields fields, Vehicle& vehicle) {
   vehicle.acceleration_up_max = fields.optional_number("acceleration_up");
   vehicle.acceleration_down_max = fields.optional_number("acceleration_down");
   vehicle.yaw_rate_max = fields.number("yaw_rate");
+  vehicle.tilt_rate_max = fields.optional_number("tilt_rate");
   fields.finish();
 }
 

@@ -53,6 +53,7 @@ struct Vehicle {
   std::optional<double> acceleration_up_max;    // m/s^2; absent: the rotors alone limit it
   std::optional<double> acceleration_down_max;  // m/s^2
   double yaw_rate_max = 0;                      // rad/s
+  std::optional<double> tilt_rate_max;          // rad/s, about x and y; absent: rotors limit it
   double flight_time = 0;                       // s on one battery
   std::optional<GimbalLimits> gimbal;
   Camera camera;

@@ -81,6 +81,7 @@ class Checker {
     if (v_.acceleration_up_max) positive(*v_.acceleration_up_max, "limits.acceleration_up");
     if (v_.acceleration_down_max) positive(*v_.acceleration_down_max, "limits.acceleration_down");
     positive(v_.yaw_rate_max, "limits.yaw_rate_deg");
+    if (v_.tilt_rate_max) positive(*v_.tilt_rate_max, "limits.tilt_rate_deg");
     positive(v_.flight_time, "flight_time");
   }
 

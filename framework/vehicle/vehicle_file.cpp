@@ -26,7 +26,10 @@ ParameterTable limits_table() {
       .required_number("acceleration_across", "m/s^2", "largest horizontal acceleration", above(0))
       .optional_number("acceleration_up", "m/s^2", "absent: the rotors alone limit it", above(0))
       .optional_number("acceleration_down", "m/s^2", "absent: the rotors alone limit it", above(0))
-      .required_number("yaw_rate_deg", "deg/s", "largest yaw rate", above(0));
+      .required_number("yaw_rate_deg", "deg/s", "largest yaw rate", above(0))
+      .optional_number("tilt_rate_deg", "deg/s",
+                       "largest body rate about x and about y; absent: the rotors alone limit it",
+                       above(0));
   return table;
 }
 
@@ -92,6 +95,7 @@ void read_limits(const Parameters& limits, Vehicle& vehicle) {
     vehicle.acceleration_down_max = limits.number("acceleration_down");
   }
   vehicle.yaw_rate_max = radians(limits.number("yaw_rate_deg"));
+  if (limits.has("tilt_rate_deg")) vehicle.tilt_rate_max = radians(limits.number("tilt_rate_deg"));
 }
 
 // Where the value of a dotted key was written, in the vehicle's file or the camera's.

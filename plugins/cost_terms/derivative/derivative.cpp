@@ -3,7 +3,8 @@
 //   E^d = sum_i h || D^q [x_i ... x_{i+q}] / h^q ||^2
 //
 // Divided by h^q and weighted by h, so that a weight means the same for any number of stages
-// (reading 3.3).
+// (reading 3.3). Where legs have steps of their own, divided differences take the place of finite
+// ones: q! x[t_i, ..., t_{i+q}], inputs standing in the middle of the intervals they are held over.
 //
 //   p:add_cost { type = "derivative", block = "position", order = 4, weight = 1e-3 }
 #include <sstream>
@@ -56,10 +57,13 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
   FunctionShape declare(const ProblemSetting& setting) {
     FunctionShape shape{
         .blocks = {}, .window = order_ + 1, .integral = true, .affine = !setting.horizon.step_free};
+    even_ = setting.horizon.uniform();
     sizes_.clear();
+    held_.clear();
     for (const std::string& name : names_) {
       shape.blocks.push_back(setting.layout.index(name));
       sizes_.push_back(setting.layout.block(shape.blocks.back()).size);
+      held_.push_back(setting.layout.block(shape.blocks.back()).role == BlockRole::input);
       shape.rows += sizes_.back();
     }
     shape.blocks.push_back(setting.layout.index("step"));
@@ -71,6 +75,7 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
     static constexpr double kBinomial[5][5] = {
         {}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}, {1, -4, 6, -4, 1}};
+    if (!even_) return divided(stage, rows);
     const int blocks = static_cast<int>(sizes_.size());
     T scale = 1.0;
     for (int q = 0; q < order_; ++q) scale = scale / stage.scalar(blocks);
@@ -83,8 +88,32 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
   }
 
  private:
+  template <class T>
+  void divided(const Stage<T>& stage, Rows<T>& rows) const {
+    const int blocks = static_cast<int>(sizes_.size());
+    for (int b = 0, row = 0; b < blocks; ++b) {
+      T times[5];
+      times[0] = 0.0;
+      for (int q = 0; q < order_; ++q) {
+        const T& step = stage[q].scalar(blocks);
+        times[q + 1] = times[q] + (held_[b] ? 0.5 * (step + stage[q + 1].scalar(blocks)) : step);
+      }
+      for (int i = 0; i < sizes_[b]; ++i, ++row) {
+        T table[5];
+        for (int q = 0; q <= order_; ++q) table[q] = stage[q].data(b)[i];
+        for (int level = 1; level <= order_; ++level)
+          for (int q = 0; q + level <= order_; ++q)
+            table[q] =
+                double(level) * (table[q + 1] - table[q]) / (times[q + level] - times[q]);
+        rows[row] = table[0];
+      }
+    }
+  }
+
   std::vector<std::string> names_;
-  std::vector<int> sizes_;  // of the blocks
+  std::vector<int> sizes_;   // of the blocks
+  std::vector<bool> held_;   // inputs
+  bool even_ = true;         // one step for all
   int order_;
   std::vector<TimeSpan> except_;
 };

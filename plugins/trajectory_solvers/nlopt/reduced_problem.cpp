@@ -13,6 +13,7 @@ std::string ReducedProblem::unsupported(const TrajectoryProblem& problem) {
       return "nlopt does not take orientations: block '" + layout.block(b).name + "'";
   if (problem.horizon().step_free)
     return "nlopt does not take free steps: give the film a duration";
+  if (problem.horizon().periodic) return "nlopt does not take periodic flights";
   return "";
 }
 

@@ -1,0 +1,350 @@
+// The whole quadrotor (thesis 3.8.1, (3.11) to (3.13)), thrusts of the rotors linear in time.
+//
+//   r' = v,  m v' = u_1 z_B + m g - d v,  q' = q (0, w) / 2,  I w' = u_234 - w x I w,  F' = rate
+//
+// One Runge-Kutta 4 step from stage to stage, the quaternion made a unit after it. The second
+// derivatives are those of the gradient of lambda . f, which is written out backwards through the
+// step and differentiated once by dual numbers: an eighth of the work of differentiating twice.
+//
+//   p:add_model { type = "quadrotor_full" }
+#include "framework/core/units.h"
+#include "framework/plugin/plugin.h"
+#include "framework/problem/dual.h"
+#include "framework/problem/vehicle_model.h"
+#include "framework/vehicle/rotor_body.h"
+
+namespace lapwing {
+namespace {
+
+constexpr int kStates = 17, kInputs = 4, kArguments = kStates + kInputs + 1;
+constexpr int kMoving = 3;                          // the position moves nothing: no column for it
+constexpr int kActive = kArguments - kMoving;       // numbers that the flow bends in
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Velocity, orientation, body rates: what the equations of motion are about.
+template <class T>
+struct Body {
+  T v[3], q[4], w[3];
+};
+template <class T>
+Body<T> moved(const Body<T>& from, const T& by, const Body<T>& along) {
+  Body<T> result = from;
+  for (int i = 0; i < 3; ++i) result.v[i] += by * along.v[i];
+  for (int i = 0; i < 4; ++i) result.q[i] += by * along.q[i];
+  for (int i = 0; i < 3; ++i) result.w[i] += by * along.w[i];
+  return result;
+}
+template <class T>
+void add(Body<T>& to, const T& by, const Body<T>& what) {
+  to = moved(to, by, what);
+}
+template <class T>
+T dot(const Body<T>& a, const Body<T>& b) {
+  T sum = 0.0;
+  for (int i = 0; i < 3; ++i) sum += a.v[i] * b.v[i] + a.w[i] * b.w[i];
+  for (int i = 0; i < 4; ++i) sum += a.q[i] * b.q[i];
+  return sum;
+}
+
+class QuadrotorFull final : public VehicleModel {
+ public:
+  static constexpr PluginText kText{"quadrotor_full", "1.0.0",
+                                    "rigid body with four rotors, thrusts linear between stages",
+                                    "thesis 3.8.1, (3.11) to (3.13)"};
+  static ParameterTable parameters() {
+    ParameterTable table;
+    for (const auto& [name, value, summary] :
+         {std::tuple{"thrust_share", 1.0, "share of the rotors' largest thrust that is used"},
+          std::tuple{"rate_share", 1.0, "share of the limits of body rates that is used"}})
+      table.number(name, value, "", summary, {.minimum = 0, .maximum = 1, .minimum_excluded = true});
+    return table;
+  }
+  explicit QuadrotorFull(const Parameters& parameters)
+      : thrust_share_(parameters.number("thrust_share")),
+        rate_share_(parameters.number("rate_share")) {}
+
+  void bind(const Vehicle& vehicle) override {
+    mass_ = vehicle.mass;
+    drag_ = vehicle.drag / vehicle.mass;
+    for (int i = 0; i < 3; ++i) inertia_[i] = vehicle.inertia[i];
+    const Eigen::Matrix4d mixer = mixer_of(vehicle.rotors);
+    for (int r = 0; r < 3; ++r)
+      for (int i = 0; i < 4; ++i) moment_[r][i] = mixer(r + 1, i) / inertia_[r];
+    thrust_min_ = vehicle.rotors.thrust_min;
+    thrust_max_ = thrust_share_ * vehicle.rotors.thrust_max;
+    if (!(4 * thrust_max_ > vehicle.mass * kGravity))
+      throw InputError("thrust_share leaves vehicle '" + vehicle.name + "' too weak to hover");
+    tilt_rate_ = rate_share_ * vehicle.tilt_rate_max.value_or(kInfinity);
+    yaw_rate_ = rate_share_ * vehicle.yaw_rate_max;
+    climb_ = vehicle.climb_speed_max;
+    descent_ = vehicle.descent_speed_max;
+  }
+
+  std::vector<BlockSpec> blocks() const override {
+    return {{.name = "position", .size = 3, .unit = "m"},
+            {.name = "velocity", .size = 3, .unit = "m/s"},
+            {.name = "orientation", .size = 4, .topology = Topology::quaternion},
+            {.name = "body_rates", .size = 3, .unit = "rad/s"},
+            {.name = "rotor_thrusts", .size = 4, .unit = "N"},
+            {.name = "thrust_rates", .size = 4, .unit = "N/s", .role = BlockRole::input}};
+  }
+
+  bool affine() const override { return false; }
+
+  void flow(InstanceRange range, const double* inputs, double* next, double* jacobian,
+            Workspace&) const override {
+    using T = Dual<double, kActive>;
+    for (int k = 0; k < range.count; ++k) {
+      const double* at = inputs + k * kArguments;
+      step(at, next + k * kStates);
+      if (!jacobian) continue;
+      T x[kArguments], y[kStates];
+      seed(at, x);
+      step(x, y);
+      double* j = jacobian + k * kStates * kArguments;
+      for (int r = 0; r < kStates; ++r, j += kArguments) {
+        for (int i = 0; i < kMoving; ++i) j[i] = r == i ? 1.0 : 0.0;
+        std::copy(y[r].d.begin(), y[r].d.end(), j + kMoving);
+      }
+    }
+  }
+
+  void curvature(InstanceRange range, const double* inputs, const double* multipliers,
+                 double* hessian, Workspace&) const override {
+    using T = Dual<double, kActive>;
+    for (int k = 0; k < range.count; ++k) {
+      T x[kArguments], gradient[kArguments];
+      seed(inputs + k * kArguments, x);
+      pull_back(x, multipliers + k * kStates, gradient);
+      double* h = hessian + k * kArguments * kArguments;
+      for (int r = kMoving; r < kArguments; ++r)
+        for (int i = 0; i < kActive; ++i) h[r * kArguments + kMoving + i] += gradient[r].d[i];
+    }
+  }
+
+  void to_sample(const double* x, Sample& sample) const override {
+    sample.position = Eigen::Vector3d(x);
+    sample.velocity = Eigen::Vector3d(x + 3);
+    sample.orientation = Eigen::Quaterniond(x[6], x[7], x[8], x[9]);
+    sample.body_rates = Eigen::Vector3d(x + 10);
+    sample.rotor_thrusts = Eigen::Vector4d(x + 13);
+    sample.rotor_thrust_rates = Eigen::Vector4d(x + 17);
+    const Eigen::Vector3d axis = sample.orientation * Eigen::Vector3d::UnitZ();
+    sample.acceleration = sample.rotor_thrusts.sum() / mass_ * axis - drag_ * sample.velocity -
+                          kGravity * Eigen::Vector3d::UnitZ();
+    set_yaw(sample);
+  }
+
+  // Without thrusts of its own, a sample hovers.
+  void from_sample(const Sample& sample, double* x) const override {
+    Eigen::Map<Eigen::Vector3d>(x + 0) = sample.position;
+    Eigen::Map<Eigen::Vector3d>(x + 3) = sample.velocity;
+    const Eigen::Quaterniond& q = sample.orientation;
+    Eigen::Map<Eigen::Vector4d>(x + 6) = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
+    Eigen::Map<Eigen::Vector3d>(x + 10) = sample.body_rates;
+    const bool hover = sample.rotor_thrusts.isZero(0);
+    Eigen::Map<Eigen::Vector4d>(x + 13) =
+        hover ? Eigen::Vector4d::Constant(mass_ * kGravity / 4) : sample.rotor_thrusts;
+    Eigen::Map<Eigen::Vector4d>(x + 17) = sample.rotor_thrust_rates;
+  }
+
+  void bounds(double* lower, double* upper) const override {
+    std::fill_n(lower, kStates + kInputs, -kInfinity);
+    std::fill_n(upper, kStates + kInputs, kInfinity);
+    lower[5] = -descent_;
+    upper[5] = climb_;
+    const double rates[] = {tilt_rate_, tilt_rate_, yaw_rate_};
+    for (int i = 0; i < 3; ++i) lower[10 + i] = -rates[i], upper[10 + i] = rates[i];
+    std::fill_n(lower + 13, 4, thrust_min_);
+    std::fill_n(upper + 13, 4, thrust_max_);
+  }
+
+  void describe(Trajectory& trajectory) const override {
+    trajectory.model = MotionModel::rotors;
+    trajectory.inputs_held = false;
+  }
+
+ private:
+  // Where the nose points, and how fast that turns; the trajectory makes turns of it.
+  static void set_yaw(Sample& sample) {
+    const Eigen::Vector3d nose = sample.orientation * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d spin =
+        (sample.orientation * sample.body_rates).cross(nose);
+    const double squared = nose.head<2>().squaredNorm();
+    sample.yaw = squared > 0 ? std::atan2(nose.y(), nose.x()) : 0.0;
+    sample.yaw_rate = squared > 1e-12 ? (nose.x() * spin.y() - nose.y() * spin.x()) / squared : 0.0;
+  }
+
+  template <class T>
+  static void seed(const double* at, T* x) {
+    for (int i = 0; i < kArguments; ++i) x[i] = T(at[i]);
+    for (int i = 0; i < kActive; ++i) x[kMoving + i].d[i] = 1.0;
+  }
+
+  template <class T>
+  Body<T> rates(const Body<T>& b, const T* f) const {
+    Body<T> r;
+    const T &qw = b.q[0], &qx = b.q[1], &qy = b.q[2], &qz = b.q[3];
+    const T &wx = b.w[0], &wy = b.w[1], &wz = b.w[2];
+    const T u = (f[0] + f[1] + f[2] + f[3]) * (1.0 / mass_);
+    r.v[0] = 2.0 * (qx * qz + qw * qy) * u - drag_ * b.v[0];
+    r.v[1] = 2.0 * (qy * qz - qw * qx) * u - drag_ * b.v[1];
+    r.v[2] = (qw * qw - qx * qx - qy * qy + qz * qz) * u - drag_ * b.v[2] - kGravity;
+    r.q[0] = -0.5 * (qx * wx + qy * wy + qz * wz);
+    r.q[1] = 0.5 * (qw * wx + qy * wz - qz * wy);
+    r.q[2] = 0.5 * (qw * wy + qz * wx - qx * wz);
+    r.q[3] = 0.5 * (qw * wz + qx * wy - qy * wx);
+    const T pairs[] = {wy * wz, wz * wx, wx * wy};
+    for (int i = 0; i < 3; ++i) {
+      r.w[i] = -gyration(i) * pairs[i];
+      for (int k = 0; k < 4; ++k) r.w[i] += moment_[i][k] * f[k];
+    }
+    return r;
+  }
+  double gyration(int axis) const {
+    return (inertia_[(axis + 2) % 3] - inertia_[(axis + 1) % 3]) / inertia_[axis];
+  }
+
+  // What multipliers `m` of the rates say of their arguments; that of the thrusts is added.
+  template <class T>
+  Body<T> rates_back(const Body<T>& b, const T* f, const Body<T>& m, T* thrusts) const {
+    Body<T> r;
+    const T &qw = b.q[0], &qx = b.q[1], &qy = b.q[2], &qz = b.q[3];
+    const T &wx = b.w[0], &wy = b.w[1], &wz = b.w[2];
+    const T u = (f[0] + f[1] + f[2] + f[3]) * (1.0 / mass_);
+    const T up = (2.0 * (qx * qz + qw * qy) * m.v[0] + 2.0 * (qy * qz - qw * qx) * m.v[1] +
+                  (qw * qw - qx * qx - qy * qy + qz * qz) * m.v[2]) *
+                 (1.0 / mass_);
+    const T s0 = 2.0 * u * m.v[0], s1 = 2.0 * u * m.v[1], s2 = 2.0 * u * m.v[2];
+    for (int i = 0; i < 3; ++i) r.v[i] = -drag_ * m.v[i];
+    const T &bw = m.q[0], &bx = m.q[1], &by = m.q[2], &bz = m.q[3];
+    r.q[0] = qy * s0 - qx * s1 + qw * s2 + 0.5 * (bx * wx + by * wy + bz * wz);
+    r.q[1] = qz * s0 - qw * s1 - qx * s2 + 0.5 * (bz * wy - bw * wx - by * wz);
+    r.q[2] = qw * s0 + qz * s1 - qy * s2 + 0.5 * (bx * wz - bw * wy - bz * wx);
+    r.q[3] = qx * s0 + qy * s1 + qz * s2 + 0.5 * (by * wx - bw * wz - bx * wy);
+    r.w[0] = 0.5 * (bx * qw - bw * qx + by * qz - bz * qy);
+    r.w[1] = 0.5 * (by * qw - bw * qy - bx * qz + bz * qx);
+    r.w[2] = 0.5 * (bz * qw - bw * qz + bx * qy - by * qx);
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      r.w[j] -= gyration(i) * b.w[k] * m.w[i];
+      r.w[k] -= gyration(i) * b.w[j] * m.w[i];
+    }
+    for (int k = 0; k < 4; ++k) {
+      thrusts[k] += up;
+      for (int i = 0; i < 3; ++i) thrusts[k] += moment_[i][k] * m.w[i];
+    }
+    return r;
+  }
+
+  // The four places where a step asks for rates, and the rates.
+  template <class T>
+  struct Quarters {
+    Body<T> at[4], rate[4];
+    T thrusts[3][4];  // at the start, in the middle, at the end
+    Body<T> sum;      // of the weighted rates
+    Body<T> reached;  // before the orientation is made a unit
+  };
+  static constexpr int kWhen[4] = {0, 1, 1, 2};
+
+  template <class T>
+  void quarters(const T* x, Quarters<T>& s) const {
+    const T& h = x[21];
+    for (int k = 0; k < 4; ++k) {
+      s.thrusts[0][k] = x[13 + k];
+      s.thrusts[1][k] = x[13 + k] + 0.5 * h * x[17 + k];
+      s.thrusts[2][k] = x[13 + k] + h * x[17 + k];
+    }
+    Body<T>& start = s.at[0];
+    std::copy_n(x + 3, 3, start.v);
+    std::copy_n(x + 6, 4, start.q);
+    std::copy_n(x + 10, 3, start.w);
+    const T half = 0.5 * h;
+    for (int k = 0; k < 4; ++k) {
+      if (k > 0) s.at[k] = moved(start, k == 3 ? h : half, s.rate[k - 1]);
+      s.rate[k] = rates(s.at[k], s.thrusts[kWhen[k]]);
+    }
+    s.sum = s.rate[0];
+    add(s.sum, T(2.0), s.rate[1]);
+    add(s.sum, T(2.0), s.rate[2]);
+    add(s.sum, T(1.0), s.rate[3]);
+    s.reached = moved(start, h * (1.0 / 6), s.sum);
+  }
+
+  template <class T>
+  static T length(const T* q) {
+    using std::sqrt;
+    return sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  }
+
+  template <class T>
+  void step(const T* x, T* next) const {
+    Quarters<T> s;
+    quarters(x, s);
+    const T sixth = x[21] * (1.0 / 6);
+    for (int i = 0; i < 3; ++i) {
+      next[i] = x[i] + sixth * (s.at[0].v[i] + 2.0 * (s.at[1].v[i] + s.at[2].v[i]) + s.at[3].v[i]);
+      next[3 + i] = s.reached.v[i];
+      next[10 + i] = s.reached.w[i];
+    }
+    const T inverse = 1.0 / length(s.reached.q);
+    for (int i = 0; i < 4; ++i) {
+      next[6 + i] = s.reached.q[i] * inverse;
+      next[13 + i] = s.thrusts[2][i];
+    }
+  }
+
+  // The gradient of lambda . step with respect to x.
+  template <class T>
+  void pull_back(const T* x, const double* lambda, T* gradient) const {
+    Quarters<T> s;
+    quarters(x, s);
+    const T &h = x[21], sixth = h * (1.0 / 6);
+    T& of_h = gradient[21];
+    Body<T> end;
+    T unit[4], along = 0.0;
+    const T inverse = 1.0 / length(s.reached.q);
+    for (int i = 0; i < 4; ++i) unit[i] = s.reached.q[i] * inverse, along += unit[i] * lambda[6 + i];
+    for (int i = 0; i < 4; ++i) end.q[i] = (lambda[6 + i] - unit[i] * along) * inverse;
+    for (int i = 0; i < 3; ++i) end.v[i] = lambda[3 + i], end.w[i] = lambda[10 + i];
+    of_h = dot(end, s.sum) * (1.0 / 6);
+    T thrusts[3][4];
+    for (auto& when : thrusts) std::fill_n(when, 4, T(0.0));
+    for (int k = 0; k < 4; ++k) thrusts[2][k] = lambda[13 + k];
+    Body<T> start = end;  // the start moves the end one to one
+    Body<T> later;        // what the next place says of this one's rate
+    for (int k = 3; k >= 0; --k) {
+      const double share = k == 1 || k == 2 ? 2.0 : 1.0;
+      Body<T> of_rate{};
+      add(of_rate, share * sixth, end);
+      if (k < 3) add(of_rate, k == 2 ? h : 0.5 * h, later);
+      Body<T> of_place = rates_back(s.at[k], s.thrusts[kWhen[k]], of_rate, thrusts[kWhen[k]]);
+      for (int i = 0; i < 3; ++i) {
+        of_place.v[i] += share * sixth * lambda[i];
+        of_h += (share / 6) * lambda[i] * s.at[k].v[i];
+      }
+      add(start, T(1.0), of_place);
+      if (k > 0) of_h += (k == 3 ? 1.0 : 0.5) * dot(of_place, s.rate[k - 1]);
+      later = of_place;
+    }
+    for (int i = 0; i < 3; ++i) gradient[i] = lambda[i];
+    std::copy_n(start.v, 3, gradient + 3);
+    std::copy_n(start.q, 4, gradient + 6);
+    std::copy_n(start.w, 3, gradient + 10);
+    for (int k = 0; k < 4; ++k) {
+      gradient[13 + k] = thrusts[0][k] + thrusts[1][k] + thrusts[2][k];
+      const T moving = 0.5 * thrusts[1][k] + thrusts[2][k];
+      gradient[17 + k] = h * moving;
+      of_h += x[17 + k] * moving;
+    }
+  }
+
+  double thrust_share_, rate_share_;
+  double mass_ = 1, drag_ = 0, inertia_[3] = {1, 1, 1}, moment_[3][4] = {};
+  double thrust_min_ = 0, thrust_max_ = 1, tilt_rate_ = 1, yaw_rate_ = 1, climb_ = 1, descent_ = 1;
+};
+
+}  // namespace
+}  // namespace lapwing
+
+LAPWING_PLUGINS(lapwing::QuadrotorFull)
