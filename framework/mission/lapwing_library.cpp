@@ -1,6 +1,7 @@
 // The table `lapwing`: what a script needs before there is a run.
 #include <lua.hpp>
 
+#include "framework/config/yaml.h"
 #include "framework/geometry/geodetic.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -27,6 +28,15 @@ int read_text(lua_State* state) {
   const std::string folder =
       lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, "lapwing.read_text");
   push_text(state, run_of(state).files.read_text(name, folder));
+  return 1;
+}
+
+// lapwing.read_yaml(name [, folder]): a table from a YAML file, found as read_json finds it.
+int read_yaml_data(lua_State* state) {
+  const std::string name = text_argument(state, 1, "lapwing.read_yaml");
+  const std::string folder =
+      lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, "lapwing.read_yaml");
+  push_value(state, from_yaml(run_of(state).files.read_text(name, folder), name));
   return 1;
 }
 
@@ -94,6 +104,7 @@ void open_lapwing_library(lua_State* state, MissionRun& run) {
   lua_setfield(state, LUA_REGISTRYINDEX, "lapwing.run");
   define_type<MissionOptions>(state, kOptionsType, nullptr, nullptr);
   const luaL_Reg functions[] = {{"read_json", &guarded<read_json>},
+                                {"read_yaml", &guarded<read_yaml_data>},
                                 {"read_text", &guarded<read_text>},
                                 {"local_from_geodetic", &guarded<local_from_geodetic>},
                                 {"options", &guarded<options>},

@@ -90,7 +90,8 @@ int solve(lua_State* state) {
   return 1;
 }
 
-// Fields of a solution: status, message, solver, cost, iterations, violations.
+// Fields of a solution: status, message, solver, cost, iterations, violations, legs (durations, s),
+// duration, defects (of each leg, as shares of what a certificate allows).
 int solution_field(lua_State* state) {
   const SolutionObject& solution = object_argument<SolutionObject>(state, 1, kSolutionType);
   const SolveReport& report = solution.result.report;
@@ -111,6 +112,18 @@ int solution_field(lua_State* state) {
   fields.set("cost", report.cost);
   fields.set("iterations", report.iterations);
   fields.set("violations", std::move(violations));
+  const Horizon& horizon = solution.problem->horizon();
+  Value legs = Value::list();
+  const Stages& at = solution.result.point.stages;
+  for (int leg = 0; leg < horizon.leg_count(); ++leg)
+    legs.push_back(solution.problem->time(at, horizon.end_of_leg(leg + 1)) -
+                   solution.problem->time(at, horizon.end_of_leg(leg)));
+  fields.set("legs", std::move(legs));
+  if (field == "defects") {
+    const std::vector<double> defects = solution.problem->leg_defects(at);
+    fields.set("defects", Value(Value::List(defects.begin(), defects.end())));
+  }
+  fields.set("duration", solution.problem->time(at, horizon.stages - 1));
   const Value* found = fields.find(field);
   if (!found) refuse_field("a solution", field, fields);
   push_value(state, *found);
@@ -151,7 +164,12 @@ int vehicle_field(lua_State* state) {
   fields.set("descent_speed", vehicle.descent_speed_max);
   fields.set("acceleration_across", vehicle.acceleration_across_max);
   fields.set("yaw_rate", vehicle.yaw_rate_max);
+  fields.set("thrust_max", vehicle.thrust_max());
+  fields.set("rotor_thrust_max", vehicle.rotors.thrust_max);
   fields.set("flight_time", vehicle.flight_time);
+  const double infinite = std::numeric_limits<double>::infinity();
+  fields.set("acceleration_up", vehicle.acceleration_up_max.value_or(infinite));
+  fields.set("acceleration_down", vehicle.acceleration_down_max.value_or(infinite));
   fields.set("gimbal", gimbal_value(vehicle));
   fields.set("half_view", half_view_value(vehicle.camera));
   const Value* found = fields.find(field);
@@ -185,10 +203,21 @@ ParameterTable task_table() {
       .number("yaw_tolerance", standard.yaw_tolerance, "rad", "largest miss of yaw", above(0));
   ParameterTable stroke;
   stroke.required_numbers("points", 0, "m", "x, y, z of each point in turn, world");
+  ParameterTable gate;
+  gate.text("name", "", "in messages")
+      .choice("shape", "ball", {"ball", "rectangle", "triangle", "pentagon", "hexagon"}, "opening")
+      .required_numbers("position", 3, "m", "middle, world")
+      .numbers("direction", {1, 0, 0}, "", "of flight")
+      .numbers("up", {0, 0, 1}, "", "which way it stands")
+      .number("tunnel_length", 0, "m", "half before, half behind", at_least(0));
+  for (const char* size : {"width", "height", "radius", "side"})
+    gate.optional_number(size, "m", "as the shape needs it", above(0));
   ParameterTable framing = span_table();
   framing.required_text("subject", "which is in the image");
   ParameterTable table;
   table.tables("keyframes", keyframe, "to fly through")
+      .tables("gates", gate, "to fly through in this order")
+      .boolean("closed_loop_required", true, "else tracking under control is reported only")
       .tables("framing", framing, "which subject is in the image, and when")
       .tables("strokes", stroke, "to draw with light")
       .number("drawing_tolerance", Task{}.drawing_tolerance, "m",
@@ -196,6 +225,22 @@ ParameterTable task_table() {
       .numbers("drawing_view", {0, 1, 0}, "", "the way that spectators look")
       .number("framing_share", Task{}.framing_share, "", "of that time", {0, 1, true});
   return table;
+}
+
+GateTask gate_of(const Parameters& given) {
+  const auto size = [&](const char* name) { return given.has(name) ? given.number(name) : 0.0; };
+  GateTask gate;
+  gate.name = given.text("name");
+  gate.position = vector_of(given.numbers("position"));
+  gate.corners = gate_corners(
+      {given.text("shape"), size("width"), size("height"), size("radius"), size("side")});
+  if (gate.ball()) {
+    gate.radius = given.number("radius");
+    return gate;
+  }
+  gate.tunnel_length = given.number("tunnel_length");
+  set_direction(gate, vector_of(given.numbers("direction")), vector_of(given.numbers("up")));
+  return gate;
 }
 
 Task task_of(const Parameters& given) {
@@ -210,6 +255,8 @@ Task task_of(const Parameters& given) {
     keyframe.yaw_tolerance = entry.number("yaw_tolerance");
     task.keyframes.push_back(keyframe);
   }
+  for (const Parameters& entry : given.tables("gates")) task.gates.push_back(gate_of(entry));
+  task.closed_loop_required = given.boolean("closed_loop_required");
   for (const Parameters& entry : given.tables("framing"))
     task.framing.push_back(
         {entry.text("subject"), {entry.number("start"), entry.number("finish")}});

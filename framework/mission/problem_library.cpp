@@ -130,6 +130,16 @@ int guess_path(lua_State* state) {
   return 0;
 }
 
+// problem:guess_solution(solution): leg by leg the motion of another problem's solution, which has
+// the same legs, of the same lengths in time or not, in any number of stages.
+int guess_solution(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const SolutionObject& solution = object_argument<SolutionObject>(state, 2, kSolutionType);
+  problem.set_motion_guess(solution.problem->trajectory(solution.result.point.stages),
+                           solution.problem->horizon());
+  return 0;
+}
+
 int finish(lua_State* state) {
   open_problem(state).finish();
   object_argument<ProblemObject>(state, 1, kProblemType).finished = true;
@@ -242,28 +252,78 @@ int plan_way(lua_State* state) {
 
 }  // namespace
 
+namespace {
+
+constexpr double kMostIntervals = 100'000;
+
+// {{duration = 2, intervals = 20, mode = "free", shortest = 0, longest = 10}, ...}
+Horizon horizon_of_legs(const Parameters& given) {
+  std::vector<Leg> legs;
+  double total = 0;
+  for (const Parameters& entry : given.tables("legs")) {
+    Leg leg;
+    leg.intervals = static_cast<int>(entry.integer("intervals"));
+    leg.step = entry.number("duration") / leg.intervals;
+    leg.free = entry.text("mode") == "free";
+    leg.shortest = entry.number("shortest");
+    if (entry.has("longest")) leg.longest = entry.number("longest");
+    total += leg.intervals;
+    legs.push_back(leg);
+  }
+  if (total > kMostIntervals)
+    throw InputError(given.origin("legs"), "problem: more than 100000 stages in all legs");
+  Horizon horizon = Horizon::of_legs(std::move(legs));
+  horizon.periodic = given.boolean("periodic");
+  horizon.turns = static_cast<int>(given.integer("turns"));
+  return horizon;
+}
+
+ParameterTable leg_table() {
+  ParameterTable leg;
+  leg.required_number("duration", "s", "of the leg; where it is free, the first guess", above(0))
+      .integer("intervals", 20, "between stages", between(1, 100000))
+      .choice("mode", "free", {"free", "fixed"}, "free: the leg chooses its duration")
+      .number("shortest", 0, "s", "bound on a free duration", at_least(0))
+      .optional_number("longest", "s", "bound on a free duration", above(0));
+  return leg;
+}
+
+}  // namespace
+
 // run:problem{vehicle = v, duration = 20, step = 0.1, environment = {...}, step_mode = "fixed"}:
-// as many stages as keep the step at or below `step`, evenly over the duration.
+// as many stages as keep the step at or below `step`, evenly over the duration; or with
+// legs = {{duration = 2, intervals = 20}, ...} a step for each leg.
 int problem_of_run(lua_State* state) {
   static constexpr std::string_view kVehicle[] = {"vehicle"};
   ParameterTable table;
-  table.required_number("duration", "s", "of the flight", above(0))
+  table.optional_number("duration", "s", "of the flight; needed without legs", above(0))
+      .tables("legs", leg_table(), "parts with steps of their own")
+      .boolean("periodic", false, "the last state closes onto the first")
+      .integer("turns", 0, "of yaw, counter-clockwise, in one period", between(-1000, 1000))
       .number("step", 0.1, "s", "longest time between two stages", above(0))
       .choice("step_mode", "fixed", {"fixed", "free"}, "free: the step is a variable")
       .table("environment", environment_table(), "what surrounds the flight");
   const Parameters given = table_argument(state, 2, table, "problem", kVehicle);
   lua_getfield(state, 2, "vehicle");
   const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
-  constexpr double kMostIntervals = 100'000;
   constexpr double kRounding = 1e-9;  // of an interval
-  const double intervals = given.number("duration") / given.number("step");
+  const bool legs = !given.tables("legs").empty();
+  if (legs == given.has("duration"))
+    throw InputError(given.origin(), "problem: expected either a duration or legs");
+  const double intervals = legs ? 1 : given.number("duration") / given.number("step");
   if (intervals > kMostIntervals) {
     throw InputError(given.origin(), "problem: more than 100000 stages; raise the step");
   }
   Horizon horizon;
-  horizon.stages = std::max(1, static_cast<int>(std::ceil(intervals - kRounding))) + 1;
-  horizon.step = given.number("duration") / (horizon.stages - 1);
-  horizon.step_free = given.text("step_mode") == "free";
+  if (legs) {
+    horizon = horizon_of_legs(given);
+  } else {
+    horizon.stages = std::max(1, static_cast<int>(std::ceil(intervals - kRounding))) + 1;
+    horizon.step = given.number("duration") / (horizon.stages - 1);
+    horizon.step_free = given.text("step_mode") == "free";
+    horizon.periodic = given.boolean("periodic");
+    horizon.turns = static_cast<int>(given.integer("turns"));
+  }
   ProblemObject object;
   object.problem = std::make_shared<TrajectoryProblem>(vehicle, horizon,
                                                        environment_of(given.table("environment")));
@@ -286,6 +346,7 @@ void open_problem_library(lua_State* state) {
                               {"add_constraint", &guarded<add_constraint>},
                               {"guess_path", &guarded<guess_path>},
                               {"guess_block", &guarded<guess_block>},
+                              {"guess_solution", &guarded<guess_solution>},
                               {"nearest_obstacle", &guarded<nearest>},
                               {"plan_way", &guarded<plan_way>},
                               {"finish", &guarded<finish>},

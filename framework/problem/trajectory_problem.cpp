@@ -4,6 +4,7 @@
 
 #include "framework/core/units.h"
 #include "framework/problem/trajectory_problem_impl.h"
+#include "framework/trajectory/interpolate.h"
 
 namespace lapwing {
 namespace {
@@ -122,6 +123,24 @@ void TrajectoryProblem::set_block_guess(const std::string& block, std::vector<do
     value.normalize();
   }
   impl_->guesses.push_back({block, std::move(times), std::move(values)});
+}
+
+void TrajectoryProblem::set_motion_guess(Trajectory motion, Horizon legs) {
+  if (legs.leg_count() != impl_->columns.horizon.leg_count() ||
+      static_cast<int>(motion.samples.size()) != legs.stages)
+    throw Error("the motion to begin from has other legs");
+  impl_->motion = std::move(motion);
+  impl_->motion_legs = std::move(legs);
+}
+
+Sample TrajectoryProblem::Impl::motion_sample(int stage) const {
+  const Horizon& here = columns.horizon;
+  const int leg = here.leg_of(stage), first = here.end_of_leg(leg),
+            after = here.end_of_leg(leg + 1);
+  const double share = static_cast<double>(stage - first) / (after - first);
+  const double begin = motion.samples[motion_legs.end_of_leg(leg)].time;
+  const double end = motion.samples[motion_legs.end_of_leg(leg + 1)].time;
+  return sample_at(motion, begin + share * (end - begin));
 }
 
 void TrajectoryProblem::finish() {
@@ -280,17 +299,20 @@ Stages TrajectoryProblem::initial_guess() const {
   std::vector<Sample> samples(count);
   for (int i = 0; i < count; ++i) {
     samples[i].time = horizon.time(i);
+    if (!impl_->motion.samples.empty()) samples[i] = impl_->motion_sample(i);
+    samples[i].time = horizon.time(i);
     if (impl_->path_positions.times.empty()) continue;
     samples[i].position = interpolate(kPathPosition, impl_->path_positions, samples[i].time);
     samples[i].yaw = interpolate(kPathYaw, impl_->path_yaws, samples[i].time)(0);
   }
-  for (int i = 0; i + 1 < count; ++i) {
+  for (int i = 0; i + 1 < count && impl_->motion.samples.empty(); ++i) {
     const double step = horizon.step_after(i);
     samples[i].velocity = (samples[i + 1].position - samples[i].position) / step;
     samples[i].yaw_rate = (samples[i + 1].yaw - samples[i].yaw) / step;
   }
   for (int i = 0; i < count; ++i) {
-    samples[i].force = impl_->vehicle.mass * kGravity * Eigen::Vector3d::UnitZ();
+    if (impl_->motion.samples.empty())
+      samples[i].force = impl_->vehicle.mass * kGravity * Eigen::Vector3d::UnitZ();
     for (const BoundModel& model : columns.models) {
       std::vector<double> numbers(model.states + model.inputs);
       model.model->from_sample(samples[i], numbers.data());

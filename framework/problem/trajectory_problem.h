@@ -80,6 +80,9 @@ class TrajectoryProblem {
   // and inputs follow from it through the models' from_sample.
   void set_path_guess(std::vector<double> times, std::vector<Eigen::Vector3d> positions,
                       std::vector<double> yaws);
+  // The motion of a solution, leg by leg: what stands at a share of a leg there stands at the same
+  // share of it here. `legs` is that solution's horizon, with as many legs as this one; Error else.
+  void set_motion_guess(Trajectory motion, Horizon legs);
   void set_block_guess(const std::string& block, std::vector<double> times,
                        std::vector<Eigen::VectorXd> values);
   // Binds all terms. InputError naming the term when one does not fit.
@@ -123,6 +126,10 @@ class TrajectoryProblem {
   // weigh the curvature of rows: H += sum multipliers_r d2 c_r; without them there is none.
   void linearise(const Stages& at, LocalModel& model, Curvature curvature = Curvature::gauss_newton,
                  const Eigen::VectorXd* multipliers = nullptr) const;
+  // Per leg, the worst over its intervals of the distance between the next stage and where many
+  // small steps of the models lead, as a share of what a certificate allows: 1 mm, 1 cm/s, 0.2
+  // degrees, 2 degrees/s. What has another unit does not count.
+  std::vector<double> leg_defects(const Stages& at) const;
   // Worst violation of every constraint, model and bound by name; largest first.
   std::vector<Violation> violations(const Stages& at) const;
 

@@ -52,14 +52,17 @@ struct TrajectoryProblem::Impl {
   std::vector<std::string> bound_owners;
   std::vector<BlockGuess> guesses;
   BlockGuess path_positions, path_yaws;
+  Trajectory motion;  // to begin from; empty: the path
+  Horizon motion_legs;
+  Sample motion_sample(int stage) const;
   bool finished = false;
   bool affine_rows = true;  // all rows affine
   bool quadratic = true;    // and all residuals too
   int dynamics_rows = 0;    // model rows, held last inputs, clock
   int rows = 0;
-  std::vector<int> model_slots;          // ModelStep::jacobian entries, [model][stage][row][column]
-  std::vector<int> fixed_slots;          // held last inputs, then the clock
-  std::vector<int> closed_blocks;        // states that the last stage of a periodic flight repeats
+  std::vector<int> model_slots;    // ModelStep::jacobian entries, [model][stage][row][column]
+  std::vector<int> fixed_slots;    // held last inputs, then the clock
+  std::vector<int> closed_blocks;  // states that the last stage of a periodic flight repeats
   std::vector<int> closure_slots, closure_hessian_slots;  // problem_closure.cpp
   int closure_row = 0;
   std::vector<int> model_hessian_slots;  // lower triangles over curvature_columns, [model][stage]

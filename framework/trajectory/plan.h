@@ -12,6 +12,7 @@
 #include "framework/core/value.h"
 #include "framework/geometry/geodetic.h"
 #include "framework/trajectory/environment.h"
+#include "framework/trajectory/gate.h"
 #include "framework/trajectory/polyline.h"
 #include "framework/trajectory/time_span.h"
 #include "framework/trajectory/trajectory.h"
@@ -36,10 +37,12 @@ struct FramingTask {
 struct Task {
   std::vector<KeyframeTask> keyframes;
   std::vector<FramingTask> framing;
-  double framing_share = 0.95;      // of the time asked for, cuts excepted, that the middle of the
-                                    // subject is inside the image
-  std::vector<Points> strokes;      // to draw with light, world
-  double drawing_tolerance = 0.05;  // m, of the mean distance between light and strokes
+  double framing_share = 0.95;       // of the time asked for, cuts excepted, that the middle of the
+                                     // subject is inside the image
+  std::vector<GateTask> gates;       // flown through in this order, laps written out
+  bool closed_loop_required = true;  // else what the controller makes of it is reported
+  std::vector<Points> strokes;       // to draw with light, world
+  double drawing_tolerance = 0.05;   // m, of the mean distance between light and strokes
   Eigen::Vector3d drawing_view =
       Eigen::Vector3d::UnitY();  // the way that its spectators look, world
 };

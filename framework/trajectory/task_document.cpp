@@ -27,6 +27,42 @@ KeyframeTask keyframe_from(Fields& fields) {
   return keyframe;
 }
 
+Value list_of(const Eigen::Vector3d& v) {
+  return Value(Value::List{v.x(), v.y(), v.z()});
+}
+
+Value to_value(const GateTask& gate) {
+  Value value = Value::map();
+  value.set("name", gate.name);
+  value.set("position", list_of(gate.position));
+  if (gate.ball()) {
+    value.set("radius", gate.radius);
+    return value;
+  }
+  value.set("direction", list_of(gate.direction));
+  value.set("up", list_of(gate.up));
+  Value corners = Value::list();
+  for (const Eigen::Vector2d& c : gate.corners) corners.push_back(Value(Value::List{c.x(), c.y()}));
+  value.set("corners", std::move(corners));
+  value.set("tunnel_length", gate.tunnel_length);
+  return value;
+}
+
+GateTask gate_from(Fields& fields) {
+  GateTask gate;
+  gate.name = fields.text("name");
+  gate.position = fields.vector3("position");
+  if (fields.has("radius")) {
+    gate.radius = fields.number("radius");
+    return gate;
+  }
+  gate.direction = fields.vector3("direction");
+  gate.up = fields.vector3("up");
+  for (const auto& c : fields.rows("corners", 2)) gate.corners.emplace_back(c[0], c[1]);
+  gate.tunnel_length = fields.number("tunnel_length");
+  return gate;
+}
+
 void set_span(Value& value, const TimeSpan& span) {
   value.set("start", span.start);
   value.set("finish", span.finish);
@@ -64,6 +100,12 @@ Value task_to_value(const Task& task) {
   Value keyframes = Value::list(), framing = Value::list(), value = Value::map();
   for (const KeyframeTask& keyframe : task.keyframes) keyframes.push_back(to_value(keyframe));
   value.set("keyframes", std::move(keyframes));
+  if (!task.closed_loop_required) value.set("closed_loop_required", false);
+  if (!task.gates.empty()) {
+    Value gates = Value::list();
+    for (const GateTask& gate : task.gates) gates.push_back(to_value(gate));
+    value.set("gates", std::move(gates));
+  }
   if (!task.strokes.empty()) {
     Value strokes = Value::list();
     for (const Points& stroke : task.strokes) {
@@ -97,6 +139,13 @@ Task task_from(Fields fields) {
     task.keyframes.push_back(keyframe_from(entry));
     entry.finish();
   }
+  if (fields.has("closed_loop_required"))
+    task.closed_loop_required = fields.boolean("closed_loop_required");
+  if (fields.has("gates"))
+    for (Fields& entry : fields.tables("gates")) {
+      task.gates.push_back(gate_from(entry));
+      entry.finish();
+    }
   if (fields.has("strokes") || fields.has("drawing_tolerance")) {
     for (Fields& entry : fields.tables("strokes")) {
       Points stroke;

@@ -47,6 +47,7 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"acceleration_up", CheckGroup::safety, true, "m/s^2"},
     CheckKind{"acceleration_down", CheckGroup::safety, true, "m/s^2"},
     CheckKind{"yaw_rate", CheckGroup::safety, true, "rad/s"},
+    CheckKind{"tilt_rate", CheckGroup::safety, true, "rad/s"},
     CheckKind{"gimbal_yaw", CheckGroup::safety, true, "rad"},
     CheckKind{"gimbal_pitch", CheckGroup::safety, true, "rad"},
     CheckKind{"gimbal_yaw_rate", CheckGroup::safety, true, "rad/s"},
@@ -64,7 +65,7 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"framing", CheckGroup::task, true, ""},
     CheckKind{"whole_subject", CheckGroup::task, false, ""},
     CheckKind{"line_of_sight", CheckGroup::task, false, ""},
-    CheckKind{"gates", CheckGroup::task, true, ""},
+    CheckKind{"gates", CheckGroup::task, true, "m"},
     CheckKind{"drawing", CheckGroup::task, true, "m"},
     CheckKind{"drawing_flown", CheckGroup::task, true, "m"},
     CheckKind{"coverage", CheckGroup::task, true, ""},
@@ -126,10 +127,12 @@ void check_task(const Flight& flight, const std::optional<FlownPath>& flown,
 void check_drawing(const Flight& flight, const std::optional<FlownPath>& flown,
                    Certificate& certificate);
 void check_framing(const Flight& flight, Certificate& certificate);
+void check_gates(const Flight& flight, Certificate& certificate);
 
 // What of the environment, the cuts and the framing does not hold together, in words. The spans are
 // judged against a flight that ends at `finish`.
 void list_problems(const Environment& environment, std::vector<std::string>& problems);
+void list_gate_problems(const Task& task, std::vector<std::string>& problems);
 void list_problems(const Plan& film, double finish, std::vector<std::string>& problems);
 
 // Whether a figure is one that a plan may hold.

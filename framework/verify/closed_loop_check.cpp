@@ -3,29 +3,56 @@
 
 #include "framework/verify/checks.h"
 
+#include "framework/core/units.h"
+
 namespace lapwing {
+namespace {
+
+// A plan of rotors as what the controller follows: places and the forces that they need.
+Trajectory as_forces(const Flight& flight) {
+  Trajectory forces = flight.plan.trajectory;
+  forces.model = MotionModel::force;
+  double before = 0;
+  for (std::size_t i = 0; i < forces.samples.size(); ++i) {
+    Sample& s = forces.samples[i];
+    const MotionPoint stated = flight.motion.stated(i);
+    s.force = flight.vehicle.mass * (stated.acceleration + Eigen::Vector3d(0, 0, kGravity));
+    const double turns = std::round((before - stated.yaw) / (2 * std::numbers::pi));
+    s.yaw = before = stated.yaw + 2 * std::numbers::pi * turns;
+    s.yaw_torque = 0;
+  }
+  for (std::size_t i = 0; i + 1 < forces.samples.size(); ++i)
+    forces.samples[i].yaw_rate = (forces.samples[i + 1].yaw - forces.samples[i].yaw) /
+                                 (forces.samples[i + 1].time - forces.samples[i].time);
+  return forces;
+}
+
+}  // namespace
 
 std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& certificate) {
   constexpr std::array kNames = {"closed_loop", "closed_loop_yaw", "rotors_saturated"};
   const Trajectory& trajectory = flight.plan.trajectory;
   std::string reason;
-  if (trajectory.model != MotionModel::force)
-    reason = "only plans of the motion model 'force' are flown by the controller";
+  if (trajectory.model == MotionModel::path)
+    reason = "a path has no inputs that the controller could follow";
   else if (trajectory.samples.size() < 2)
     reason = "a single sample is no flight";
   if (!reason.empty()) {
     for (const char* name : kNames) certificate.checks.push_back(skipped_check(name, reason));
     return std::nullopt;
   }
-  FlownPath path = fly(trajectory, flight.vehicle);
+  const bool rotors = trajectory.model == MotionModel::rotors;
+  FlownPath path = fly(rotors ? as_forces(flight) : trajectory, flight.vehicle);
   const double infinite = std::numeric_limits<double>::infinity();
   Check tracking =
       judged(make_check("closed_loop"), path.lost ? infinite : path.position_error_worst,
              tolerances::kTracking, 0, path.position_error_at);
   if (path.lost) tracking.detail = "the vehicle is lost: it turns over or strays beyond 100 m";
+  Check yaw = judged(make_check("closed_loop_yaw"), path.yaw_error_worst, tolerances::kTrackingYaw,
+                     0, path.yaw_error_at);
+  tracking.required = yaw.required = flight.plan.task.closed_loop_required;
   certificate.checks.push_back(tracking);
-  certificate.checks.push_back(judged(make_check("closed_loop_yaw"), path.yaw_error_worst,
-                                      tolerances::kTrackingYaw, 0, path.yaw_error_at));
+  certificate.checks.push_back(yaw);
   certificate.checks.push_back(judged(make_check("rotors_saturated"), path.saturated_share,
                                       tolerances::kSaturated, 0, trajectory.samples.front().time));
   return path;

@@ -75,6 +75,11 @@ class Reader {
     }
   }
 
+  static bool rotors_sound(const Sample& s) {
+    return sound(s.body_rates) && sound(s.rotor_thrusts[0]) && sound(s.rotor_thrusts[1]) &&
+           sound(s.rotor_thrusts[2]) && sound(s.rotor_thrusts[3]);
+  }
+
   static bool all_sound(const Sample& s) {
     return sound(s.time) && sound(s.position) && sound(s.velocity) && sound(s.acceleration) &&
            sound(s.yaw) && sound(s.yaw_rate) && sound(s.force) && sound(s.yaw_torque) &&
@@ -84,17 +89,16 @@ class Reader {
 
   void samples() {
     const auto& samples = plan_.trajectory.samples;
-    if (plan_.trajectory.model == MotionModel::rotors) {
-      add("this version does not verify the motion model 'rotors'");
-    }
     if (samples.empty()) return add("the plan has no sample");
     if (!(std::abs(samples[0].time) <= tolerances::kStartTime)) {
       add("the first sample is not at time 0");
     }
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::string name = "sample " + std::to_string(i + 1);
-      if (!all_sound(samples[i])) {
+      if (!all_sound(samples[i]) || !rotors_sound(samples[i])) {
         add(name + " holds a number that is not finite or beyond 1e7");
+      } else if (!(std::abs(samples[i].orientation.norm() - 1) < tolerances::kUnitLength)) {
+        add(name + " has an orientation that is no unit quaternion");
       } else if (i > 0 && !(samples[i].time > samples[i - 1].time)) {
         at_ = samples[i].time;
         add(name + " is not later than the one before it");
@@ -106,6 +110,7 @@ class Reader {
     if (plan_.budget && !(*plan_.budget > 0 && sound(*plan_.budget))) {
       add("the budget must be above 0");
     }
+    list_gate_problems(plan_.task, problems_);
     for (std::size_t i = 0; i < plan_.task.keyframes.size(); ++i) {
       const KeyframeTask& k = plan_.task.keyframes[i];
       const std::string name = "keyframe " + std::to_string(i + 1);

@@ -26,6 +26,15 @@ Defects defects_of(const MotionPoint& reached, const MotionPoint& stated, bool h
   return d;
 }
 
+// Of the model `rotors`: the angle between both orientations, the difference of body rates.
+Defects rotor_defects_of(const MotionPoint& reached, const MotionPoint& stated) {
+  Defects d;
+  d << (reached.position - stated.position).norm(), (reached.velocity - stated.velocity).norm(),
+      reached.orientation.angularDistance(stated.orientation),
+      (reached.body_rates - stated.body_rates).norm(), 0;
+  return d;
+}
+
 // The sum of defects over a sliding window, as a share of what a window may hold.
 class Drift {
  public:
@@ -70,12 +79,15 @@ void check_dynamics(const Flight& flight, Certificate& certificate) {
   }
   Motion& motion = flight.motion;
   const bool has_gimbal = flight.plan.trajectory.has_gimbal;
+  const bool rotors = flight.plan.trajectory.model == MotionModel::rotors;
   std::vector<Worst> worst;
   for (int k = 0; k < kDefects; ++k) worst.emplace_back(kNames[k], kLimits[k], 0.0);
   Drift drift;
   for (std::size_t i = 0; i < motion.intervals(); ++i) {
     const MotionPoint reached = motion.integrate(i).back();
-    const Defects defects = defects_of(reached, motion.stated(i + 1), has_gimbal);
+    const MotionPoint stated = motion.stated(i + 1);
+    const Defects defects =
+        rotors ? rotor_defects_of(reached, stated) : defects_of(reached, stated, has_gimbal);
     for (int k = 0; k < kDefects; ++k)
       worst[static_cast<std::size_t>(k)].see(defects[k], reached.time);
     drift.add(reached.time, defects);

@@ -23,6 +23,7 @@ class Limits {
   Limits(const Vehicle& v, MotionModel model)
       : v_(v),
         path_(model == MotionModel::path),
+        rotors_(model == MotionModel::rotors),
         thrust_max_("thrust_max", v.thrust_max()),
         thrust_min_("thrust_min", v.thrust_min(), tolerance_of(v.thrust_min()), true),
         force_up_("force_up", 0, tolerances::kLimitFloor, true),
@@ -33,7 +34,10 @@ class Limits {
         acceleration_across_("acceleration_across", v.acceleration_across_max),
         acceleration_up_("acceleration_up", v.acceleration_up_max.value_or(0)),
         acceleration_down_("acceleration_down", v.acceleration_down_max.value_or(0)),
-        yaw_rate_("yaw_rate", v.yaw_rate_max) {}
+        yaw_rate_("yaw_rate", v.yaw_rate_max),
+        tilt_rate_("tilt_rate", v.tilt_rate_max.value_or(0)),
+        rotor_high_("rotor_thrust", v.rotors.thrust_max),
+        rotor_low_("rotor_thrust", v.rotors.thrust_min, tolerance_of(v.rotors.thrust_max), true) {}
 
   void see(const MotionPoint& p) {
     const double t = p.time;
@@ -48,6 +52,9 @@ class Limits {
     acceleration_up_.see(std::max(p.acceleration.z(), 0.0), t);
     acceleration_down_.see(std::max(-p.acceleration.z(), 0.0), t);
     yaw_rate_.see(std::abs(p.yaw_rate), t);
+    tilt_rate_.see(p.body_rates.head<2>().cwiseAbs().maxCoeff(), t);
+    rotor_high_.see(p.rotor_thrusts.maxCoeff(), t);
+    rotor_low_.see(p.rotor_thrusts.minCoeff(), t);
   }
 
   void see_between(const MotionPoint& a, const MotionPoint& b) {
@@ -57,11 +64,16 @@ class Limits {
   void append_to(Certificate& certificate) const {
     auto& checks = certificate.checks;
     if (path_) return append_speeds_to(checks);
-    for (const Worst* worst : {&thrust_max_, &thrust_min_, &force_up_, &yaw_torque_}) {
-      checks.push_back(worst->check());
+    if (rotors_) {
+      for (const char* name : {"thrust_max", "thrust_min", "force_up", "yaw_torque"})
+        checks.push_back(skipped_check(name, "for the model 'rotors' each rotor is judged"));
+      checks.push_back(nearer(rotor_low_, rotor_high_));
+    } else {
+      for (const Worst* worst : {&thrust_max_, &thrust_min_, &force_up_, &yaw_torque_})
+        checks.push_back(worst->check());
+      checks.push_back(skipped_check(
+          "rotor_thrust", "for the model 'force' the bounds of thrust and yaw torque imply it"));
     }
-    checks.push_back(skipped_check(
-        "rotor_thrust", "for the model 'force' the bounds of thrust and yaw torque imply it"));
     for (const Worst* worst : {&speed_across_, &climb_, &descent_, &acceleration_across_}) {
       checks.push_back(worst->check());
     }
@@ -71,6 +83,12 @@ class Limits {
     checks.push_back(v_.acceleration_down_max ? acceleration_down_.check()
                                               : skipped_check("acceleration_down", reason));
     checks.push_back(yaw_rate_.check());
+    if (!rotors_)
+      checks.push_back(skipped_check("tilt_rate", "only the model 'rotors' has body rates"));
+    else
+      checks.push_back(v_.tilt_rate_max
+                           ? tilt_rate_.check()
+                           : skipped_check("tilt_rate", "the vehicle states no such limit"));
   }
 
  private:
@@ -86,14 +104,15 @@ class Limits {
       checks.push_back(worst->check());
     skip({"acceleration_across", "acceleration_up", "acceleration_down"});
     checks.push_back(yaw_rate_.check());
+    skip({"tilt_rate"});
   }
 
   const Vehicle& v_;
-  bool path_;
+  bool path_, rotors_;
   Worst thrust_max_, thrust_min_, force_up_, yaw_torque_;
   Worst speed_across_, climb_, descent_;
   Worst acceleration_across_, acceleration_up_, acceleration_down_;
-  Worst yaw_rate_;
+  Worst yaw_rate_, tilt_rate_, rotor_high_, rotor_low_;
 };
 
 class Gimbal {

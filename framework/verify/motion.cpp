@@ -1,6 +1,7 @@
 #include "framework/verify/motion.h"
 
 #include "framework/core/units.h"
+#include "framework/vehicle/rotor_body.h"
 #include "framework/verify/tolerances.h"
 
 namespace lapwing {
@@ -39,7 +40,12 @@ State advanced(const State& x, const State& rate, double h) {
 }  // namespace
 
 Motion::Motion(const Trajectory& trajectory, const Vehicle& vehicle)
-    : trajectory_(trajectory), mass_(vehicle.mass), yaw_inertia_(vehicle.inertia.z()) {}
+    : trajectory_(trajectory),
+      mass_(vehicle.mass),
+      yaw_inertia_(vehicle.inertia.z()),
+      drag_(vehicle.drag),
+      inertia_(vehicle.inertia),
+      mixer_(mixer_of(vehicle.rotors)) {}
 
 double Motion::steps(std::size_t interval) const {
   namespace tol = tolerances;
@@ -49,6 +55,8 @@ double Motion::steps(std::size_t interval) const {
   if (trajectory_.model == MotionModel::path) {
     return std::ceil(std::max(1.0, h / tol::kStepMaximum));
   }
+  if (trajectory_.model == MotionModel::rotors)
+    return std::ceil(std::max(1.0, h / tol::kRotorStep));
   const Eigen::Vector3d gravity(0, 0, -kGravity);
   const double acceleration =
       std::max((a.force / mass_ + gravity).norm(), (b.force / mass_ + gravity).norm());
@@ -82,6 +90,7 @@ MotionPoint Motion::stated(std::size_t index) const {
             .gimbal_yaw = s.gimbal_yaw,
             .gimbal_pitch = s.gimbal_pitch};
   }
+  if (trajectory_.model == MotionModel::rotors) return stated_rotors(index);
   const Eigen::Vector3d gravity(0, 0, -kGravity);
   return {.time = s.time,
           .position = s.position,
@@ -119,6 +128,7 @@ std::span<const MotionPoint> Motion::follow_line(std::size_t interval) {
 
 std::span<const MotionPoint> Motion::integrate(std::size_t interval) {
   if (trajectory_.model == MotionModel::path) return follow_line(interval);
+  if (trajectory_.model == MotionModel::rotors) return turn_rotors(interval);
   const Sample& a = trajectory_.samples[interval];
   const Sample& b = trajectory_.samples[interval + 1];
   const Inputs first = inputs_of(a), last = trajectory_.inputs_held ? first : inputs_of(b);

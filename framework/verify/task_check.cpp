@@ -119,7 +119,7 @@ void check_task(const Flight& flight, const std::optional<FlownPath>& flown,
   checks.push_back(miss.check("the task has no keyframe"));
   checks.push_back(yaw.check("no keyframe states a yaw"));
   check_framing(flight, certificate);
-  checks.push_back(skipped_check("gates", "the task has no gate"));
+  check_gates(flight, certificate);
   check_drawing(flight, flown, certificate);
   checks.push_back(skipped_check("coverage", "the task has no region to cover"));
 }

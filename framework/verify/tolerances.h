@@ -34,6 +34,7 @@ inline constexpr double kSaturated = 0.01;
 // Resolution of the integrated motion: steps are short enough that between two of them the true
 // motion leaves the straight line, or passes what both ends show, by no more than this.
 inline constexpr double kStepMaximum = 0.02;    // s
+inline constexpr double kRotorStep = 0.002;     // s, of the motion model `rotors`
 inline constexpr double kBulge = 1e-4;          // m
 inline constexpr double kHiddenSpeed = 2e-5;    // m/s, across, up or down
 inline constexpr double kHiddenYawRate = 2e-5;  // rad/s
@@ -42,6 +43,7 @@ inline constexpr double kHiddenGimbal = 1e-6;   // rad
 // What a plan may hold at all.
 inline constexpr double kLargestNumber = 1e7;  // any figure of a sample or of the task, SI
 inline constexpr double kLargestSteps = 5e6;   // steps of integration
+inline constexpr double kUnitLength = 1e-6;    // of quaternions and directions
 inline constexpr double kStartTime = 1e-9;     // s, the first sample is at time 0
 inline constexpr double kSpanTime = 1e-6;      // s, that a span may pass the ends of the flight
 inline constexpr int kMostCorners = 1000;      // of a zone

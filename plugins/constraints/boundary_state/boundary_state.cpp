@@ -5,7 +5,8 @@
 //   one is given
 //
 // All of it is bounds on the first and the last stage. A model without forces is at rest when its
-// velocities are zero.
+// velocities are zero; one with an orientation is level then, with any heading, and its body rates
+// are zero: rows, because the components of an orientation are no columns.
 //
 //   p:add_constraint { type = "boundary_state", start = "rest", finish = "free" }
 #include "framework/core/units.h"
@@ -38,16 +39,24 @@ class BoundaryState final : public DifferentiableConstraint<BoundaryState> {
 
   FunctionShape declare(const ProblemSetting& setting) {
     const StageLayout& layout = setting.layout;
-    std::vector<int> blocks = layout.indices({"position", "yaw", "velocity"});
-    for (const char* name : {"yaw_rate", "force", "yaw_torque"})
-      if (layout.find(name) >= 0) blocks.push_back(layout.find(name));
+    const bool whole = layout.find("yaw") < 0;
+    std::vector<int> blocks = whole ? layout.indices({"position", "velocity", "orientation"})
+                                    : layout.indices({"position", "yaw", "velocity"});
+    for (const End& end : ends_)
+      if (whole && !end.yaw.empty())
+        throw InputError(end.name + "_yaw: this model has an orientation, no yaw");
+    for (const char* name : {"yaw_rate", "force", "yaw_torque", "body_rates"})
+      if (layout.find(name) >= 0 && (whole || std::string(name) != "body_rates"))
+        blocks.push_back(layout.find(name));
     FunctionShape shape{.blocks = blocks,
                         .stages = {0, setting.horizon.stages - 1},
                         .affine = true,
                         .identity = true};
     for (const int b : blocks) {
       const BlockSpec& block = layout.block(b);
-      for (int i = 0; i < block.size; ++i) shape.row_names.push_back(component_name(block, i));
+      for (int i = 0; i < block.size; ++i)
+        shape.row_names.push_back(block.topology == Topology::line ? component_name(block, i)
+                                                                   : block.name + "." + "wxyz"[i]);
     }
     shape.rows = rows_ = static_cast<int>(shape.row_names.size());
     for (End& end : ends_) fix_numbers(setting, blocks, end);
@@ -100,6 +109,10 @@ class BoundaryState final : public DifferentiableConstraint<BoundaryState> {
       std::vector<double> value(block.size, std::numeric_limits<double>::quiet_NaN());
       if (end.kind == "rest" && block.name != "position" && block.name != "yaw")
         value.assign(block.size, 0.0);
+      if (end.kind == "rest" && block.name == "orientation") {
+        value.assign(block.size, std::numeric_limits<double>::quiet_NaN());
+        value[1] = value[2] = 0.0;  // level, with any heading
+      }
       if (end.kind == "rest" && block.name == "force") value[2] = setting.vehicle.mass * kGravity;
       if (block.name == "velocity" && !end.velocity.empty()) value = checked(setting.vehicle, end);
       if (block.name == "position" && !end.position.empty()) value = end.position;

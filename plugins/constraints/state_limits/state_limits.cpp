@@ -56,37 +56,51 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
     inside_ = given_.has("lower") || given_.has("upper");
     lower_.clear(), upper_.clear(), names_.clear();
     const double inscribed = std::cos(std::numbers::pi / sides_);
+    std::vector<int> blocks = setting.layout.indices({"velocity"});
+    const auto read = [&](const char* name, bool wanted) {
+      if (!wanted || setting.layout.find(name) < 0) return -1;
+      blocks.push_back(setting.layout.find(name));
+      return static_cast<int>(blocks.size()) - 1;
+    };
+    yaw_rate_ = read("yaw_rate", true);
+    force_ = read("force", true);
+    if (inside_) setting.layout.index("position");
+    position_ = read("position", inside_);
     polygon("speed_across", inscribed * limit("speed_across", vehicle.speed_across_max));
     row("climb", -limit("descent_speed", vehicle.descent_speed_max),
         limit("climb_speed", vehicle.climb_speed_max));
     const double yaw_rate = limit("yaw_rate", vehicle.yaw_rate_max);
-    row("yaw_rate", -yaw_rate, yaw_rate);
-    polygon("acceleration_across",
-            inscribed * limit("acceleration_across", vehicle.acceleration_across_max));
-    row("acceleration_up", -vehicle.acceleration_down_max.value_or(kInfinity),
-        vehicle.acceleration_up_max.value_or(kInfinity));
+    if (yaw_rate_ >= 0) row("yaw_rate", -yaw_rate, yaw_rate);
+    if (force_ >= 0) {
+      polygon("acceleration_across",
+              inscribed * limit("acceleration_across", vehicle.acceleration_across_max));
+      row("acceleration_up", -vehicle.acceleration_down_max.value_or(kInfinity),
+          vehicle.acceleration_up_max.value_or(kInfinity));
+    }
     if (inside_) place();
-    FunctionShape shape{.blocks = setting.layout.indices({"velocity", "yaw_rate", "force"}),
+    FunctionShape shape{.blocks = blocks,
                         .rows = static_cast<int>(names_.size()),
                         .affine = true,
                         .row_names = names_};
-    if (inside_) shape.blocks.push_back(setting.layout.index("position"));
     return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const auto velocity = stage.template vector<3>(0), force = stage.template vector<3>(2);
+    const auto velocity = stage.template vector<3>(0);
     int r = 0;
     for (const Eigen::Vector2d& d : directions_)
       rows[r++] = d.x() * velocity.x() + d.y() * velocity.y();
     rows[r++] = velocity.z();
-    rows[r++] = stage.scalar(1);
-    for (const Eigen::Vector2d& d : directions_)
-      rows[r++] = (d.x() * force.x() + d.y() * force.y()) / mass_;
-    rows[r++] = force.z() / mass_ - kGravity;
+    if (yaw_rate_ >= 0) rows[r++] = stage.scalar(yaw_rate_);
+    if (force_ >= 0) {
+      const auto force = stage.template vector<3>(force_);
+      for (const Eigen::Vector2d& d : directions_)
+        rows[r++] = (d.x() * force.x() + d.y() * force.y()) / mass_;
+      rows[r++] = force.z() / mass_ - kGravity;
+    }
     if (!inside_) return;
-    for (int i = 0; i < 3; ++i) rows[r++] = stage.data(3)[i];
+    for (int i = 0; i < 3; ++i) rows[r++] = stage.data(position_)[i];
   }
 
   void bounds(InstanceRange range, double* lower, double* upper) const override {
@@ -129,6 +143,7 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
   int sides_;
   double mass_ = 1;
   bool inside_ = false;
+  int yaw_rate_ = -1, force_ = -1, position_ = -1;  // places among the blocks read; -1: not read
   std::vector<Eigen::Vector2d> directions_;
   std::vector<std::string> names_;
   std::vector<double> lower_, upper_;

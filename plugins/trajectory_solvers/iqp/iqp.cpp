@@ -22,6 +22,7 @@
 #include "framework/plugin/plugin.h"
 #include "framework/solve/elastic.h"
 #include "framework/solve/interior_point.h"
+#include "framework/solve/solve_record.h"
 #include "framework/solve/trajectory_solver.h"
 
 namespace lapwing {
@@ -344,6 +345,15 @@ std::string Solve::explain(const Step& step) const {
 }
 
 SolveResult Iqp::solve(const TrajectoryProblem& problem, const SolveRequest& request) const {
+  const StageLayout& layout = problem.layout();
+  for (int b = 0; b < layout.count(); ++b) {
+    if (layout.block(b).topology == Topology::line) continue;
+    const SolveRecord record(problem, request);
+    return record.finish(SolveStatus::unsupported,
+                         "iqp does not take orientations, such as block '" + layout.block(b).name +
+                             "': take the solver ipopt",
+                         0, {record.start(), {}, {}});
+  }
   return Solve(problem, request, iterations_, tolerance_, feasibility_).run();
 }
 

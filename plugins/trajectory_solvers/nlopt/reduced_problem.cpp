@@ -10,10 +10,12 @@ std::string ReducedProblem::unsupported(const TrajectoryProblem& problem) {
   const StageLayout& layout = problem.layout();
   for (int b = 0; b < layout.count(); ++b)
     if (layout.block(b).topology == Topology::quaternion)
-      return "nlopt does not take orientations: block '" + layout.block(b).name + "'";
+      return "nlopt does not take orientations, such as block '" + layout.block(b).name +
+             "': take the solver ipopt";
   if (problem.horizon().step_free)
-    return "nlopt does not take free steps: give the film a duration";
-  if (problem.horizon().periodic) return "nlopt does not take periodic flights";
+    return "nlopt does not take free steps: give the film a duration, or take the solver ipopt";
+  if (problem.horizon().periodic)
+    return "nlopt does not take periodic flights: take the solver ipopt";
   return "";
 }
 

@@ -1,0 +1,173 @@
+-- Races (thesis 3.7.2): gates flown through in order, in their direction, as fast as the vehicle
+-- can; or in a given time, as smoothly as that allows.
+--
+--   local race = require "mission.race"
+--   return race.course { start = {0, 0, 1}, finish = {12, 0, 1},
+--                        gates = { { shape = "ball", position = {6, 3, 2}, radius = 0.3 } } }
+--
+-- Every leg from gate to gate has a step of its own, which is a variable. Where the steps of a
+-- leg are too coarse for the motion they stand for, it gets twice as many and is solved again.
+local courses = require "mission.race_course"
+local problem = require "mission.race_problem"
+
+local M = {}
+
+local function number(name, default, unit, summary, more)
+  local entry = { name = name, type = "number", default = default, unit = unit, summary = summary }
+  for key, value in pairs(more or {}) do entry[key] = value end
+  return entry
+end
+
+local GATE = {
+  { name = "name", type = "text", summary = "in messages" },
+  { name = "shape", type = "text", required = true,
+    summary = "ball, rectangle, triangle, pentagon or hexagon" },
+  { name = "position", type = "numbers", size = 3, unit = "m", required = true,
+    summary = "middle, world" },
+  number("normal_yaw", nil, "", "direction of flight, degrees; a ball has none"),
+  number("normal_pitch", nil, "", "the same, degrees upwards"),
+  number("width", nil, "m", "of a rectangle or a triangle"),
+  number("height", nil, "m", "of a rectangle or a triangle"),
+  number("radius", nil, "m", "of a ball; of a pentagon or hexagon to its corners"),
+  number("side", nil, "m", "of a pentagon or hexagon"),
+  number("tunnel_length", nil, "m", "half before, half behind the gate"),
+}
+
+local DECLARATIONS = {
+  { name = "gates", type = "tables", table = GATE, summary = "in the order of flight" },
+  { name = "keyframes", type = "tables", summary = "places to pass, as balls of `tolerance`",
+    table = { { name = "position", type = "numbers", size = 3, unit = "m", required = true,
+                summary = "world" } } },
+  { name = "input", type = "text", summary = "a course from a YAML or JSON file" },
+  { name = "free_form", type = "table", summary = "a random course of a length and a curvature",
+    table = { number("length", nil, "m", "absent: none", { above = 0, maximum = 1e5 }),
+              number("curvature", 0.1, "", "largest, 1/m", { minimum = 0, maximum = 10 }),
+              number("spacing", 8, "m", "between its keyframes", { above = 0 }),
+              number("height", 3, "m", "of flight, within half of itself", { above = 0 }) } },
+  { name = "start", type = "numbers", size = 3, unit = "m", summary = "at rest; absent: the first" },
+  { name = "finish", type = "numbers", size = 3, unit = "m", summary = "at rest; absent: the last" },
+  { name = "closed", type = "boolean", default = false,
+    summary = "flown round and round: the end closes onto the start" },
+  { name = "laps", type = "integer", default = 1, minimum = 1, maximum = 1000, summary = "rounds" },
+  number("tolerance", 0.3, "m", "radius of keyframes", { above = 0, maximum = 100 }),
+  number("floor", nil, "m", "least height of flight", { minimum = -1e4, maximum = 1e4 }),
+  number("time", nil, "s", "overall; absent: as short as can be", { above = 0, maximum = 1e4 }),
+  { name = "timing", type = "choice", default = "optimal", choices = { "optimal", "profile" },
+    summary = "profile: legs take what a straight flight with stops needs; one convex problem" },
+  { name = "model", type = "choice", default = "quadrotor",
+    choices = { "quadrotor", "quadrotor_full" }, summary = "vehicle model" },
+  { name = "vehicle", type = "vehicle", default = "vehicles/racer", summary = "file or table" },
+  number("thrust", 0.9, "", "share of the thrust that is used", { above = 0, maximum = 1 }),
+  number("rate_share", 0.97, "", "share of body rates that is used", { above = 0, maximum = 1 }),
+  number("margin", 0.02, "m", "kept from rims and floor", { minimum = 0, maximum = 10 }),
+  { name = "closed_loop", type = "choice", default = "required",
+    choices = { "required", "reported" }, summary = "whether tracking under control must hold" },
+  number("step", 0.06, "s", "between stages of the first guess", { above = 0, maximum = 1 }),
+  { name = "refinements", type = "integer", default = 4, minimum = 0, maximum = 10,
+    summary = "times that coarse legs get twice the stages" },
+  { name = "weights", type = "table", summary = "of the cost, beside the time in s", table = {
+    number("smoothness", 1e-7, "", "change of forces or thrusts", { minimum = 0 }) } },
+  { name = "solver", type = "plugin", kind = "trajectory_solver",
+    default = "ipopt", summary = "trajectory solver; iqp suits timing = profile" },
+}
+
+local COARSE = 0.7      -- share of the allowed defect beyond which a leg gets twice the stages
+
+local function solved(solution)
+  return solution.status == "optimal" or solution.status == "feasible"
+end
+
+local function plan_of(run, course, solution, notes)
+  return run:plan {
+    solution = solution, notes = notes, figures = { time = solution.duration },
+    task = { gates = course.task, closed_loop_required = run.options.closed_loop == "required" },
+  }
+end
+
+-- Legs on which a check fails that more stages would mend: what passes its limit between stages.
+local function failing_legs(certificate, legs)
+  local found = {}
+  for _, check in ipairs(certificate.checks) do
+    if check.pass == false and not check.skipped and check.required ~= false and check.at then
+      local clock = 0
+      for i, time in ipairs(legs) do
+        if check.at >= clock - 1e-6 and check.at <= clock + time + 1e-6 then found[i] = true end
+        clock = clock + time
+      end
+    end
+  end
+  return found
+end
+
+-- Twice the stages where they are too coarse; false when that is nowhere.
+local function refine(made, solution, certificate)
+  local finer, failing = false, certificate and failing_legs(certificate, solution.legs) or {}
+  local defects = solution.defects
+  for i, time in ipairs(solution.legs) do
+    made.durations[i] = time
+    if defects[i] > COARSE or failing[i] then
+      made.intervals[i] = 2 * made.intervals[i]
+      finer = true
+    end
+  end
+  made.total = solution.duration
+  return finer
+end
+
+-- Gates as the certificate asks for them: on a closed course the first one ends the lap.
+local function task_of(course)
+  local list = {}
+  for i, gate in ipairs(course.gates) do list[i] = gate end
+  if course.closed then list[#list + 1] = table.remove(list, 1) end
+  return list
+end
+
+local function check_battery(run, made, vehicle)
+  local length = 0
+  for i = 2, #made.points do
+    length = length + courses.distance(made.points[i - 1], made.points[i])
+  end
+  local speed = math.sqrt(vehicle.speed_across ^ 2
+                          + math.max(vehicle.climb_speed, vehicle.descent_speed) ^ 2)
+  if length / speed > vehicle.flight_time then
+    run:fail("vehicle", string.format(
+      "a course of %.4g m takes at least %.4g s at %.4g m/s; the battery lasts %.4g s", length,
+      length / speed, speed, vehicle.flight_time))
+  end
+end
+
+local function flown(run)
+  local o = run.options
+  if o.timing == "profile" and o.model == "quadrotor_full" then
+    run:fail("timing", "'profile' is for the model 'quadrotor'; 'quadrotor_full' needs 'optimal'")
+  end
+  local vehicle = run:vehicle(o.vehicle)
+  local course = courses.read(run)
+  local made = problem.legs(course, vehicle, o)
+  check_battery(run, made, vehicle)
+  course.task = task_of(course)
+  local solution, plan
+  for round = 0, o.refinements do
+    run:progress(round / (o.refinements + 1), "solving")
+    local p = problem.make(run, course, vehicle, made, solution)
+    local finer = run:solve(p, o.solver)
+    if solution and not solved(finer) then break end  -- the coarser one stands
+    solution = finer
+    plan = plan_of(run, course, solution)
+    if not solved(solution) or run:cancelled() or o.timing == "profile" then break end
+    local certificate = run:certify(plan)
+    if certificate.feasible or not refine(made, solution, certificate) then break end
+  end
+  if solved(solution) then return plan end
+  return plan_of(run, course, solution, { string.format("the solver ended %s: %s",
+                                                        solution.status, solution.message) })
+end
+
+function M.course(given)
+  local name = given.name
+  given.name = nil
+  return { kind = "race", name = name, options = lapwing.options(DECLARATIONS, given),
+           plan = flown }
+end
+
+return M
