@@ -1,5 +1,7 @@
 #include "framework/export/flight_charts.h"
 
+#include <set>
+
 #include "framework/core/units.h"
 
 namespace lapwing {
@@ -26,6 +28,30 @@ void add_track(const Plan& plan, const Subject& subject, Drawing& drawing) {
     track.points.push_back(subject.position(track.along.back()));
   }
   drawing.lines.push_back(std::move(track));
+}
+
+// The outline of an opening at both ends of its tunnel; a ball is a body.
+void add_gate(const GateTask& gate, Drawing& drawing) {
+  if (gate.ball()) {
+    drawing.spheres.push_back({gate.name, gate.position, gate.radius});
+    return;
+  }
+  Polyline outline{gate.name, {}, {}, {}};
+  const double half = 0.5 * gate.tunnel_length;
+  for (const double place : {-half, half}) {
+    for (std::size_t k = 0; k <= gate.corners.size(); ++k) {
+      const Eigen::Vector2d& corner = gate.corners[k % gate.corners.size()];
+      outline.points.push_back(gate.position + place * gate.direction + corner.x() * gate.left() +
+                               corner.y() * gate.up);
+    }
+    if (half == 0) break;
+  }
+  drawing.lines.push_back(std::move(outline));
+}
+
+// What surrounds the whole flight says nothing in a picture.
+bool all_around(const Zone& zone) {
+  return zone.name == "floor";
 }
 
 Projection better_side(const Trajectory& trajectory) {
@@ -57,6 +83,10 @@ Section path_section(const Plan& plan) {
   drawing.spheres = plan.environment.spheres;
   drawing.boxes = plan.environment.boxes;
   drawing.zones = plan.environment.zones;
+  std::erase_if(drawing.zones, all_around);
+  std::set<std::string> drawn;  // once, however many laps there are
+  for (const GateTask& gate : plan.task.gates)
+    if (drawn.insert(gate.name).second) add_gate(gate, drawing);
   for (const Subject& subject : plan.environment.subjects) add_track(plan, subject, drawing);
   const Projection side = better_side(plan.trajectory);
   const std::string from = side == Projection::from_south ? "south" : "east";

@@ -27,8 +27,7 @@ int TrajectoryProblem::Impl::closure_rows() const {
   return rows_needed;
 }
 
-void TrajectoryProblem::Impl::each_closure_entry(
-    const std::function<void(int, int)>& visit) const {
+void TrajectoryProblem::Impl::each_closure_entry(const std::function<void(int, int)>& visit) const {
   int row = closure_row;
   for (const int b : closed_blocks) {
     const BlockSpec& block = columns.layout.block(b);
@@ -72,8 +71,7 @@ void TrajectoryProblem::Impl::closure_jacobian(const Stages& at, double* jacobia
     for (int r = 0; r < t; ++r)
       for (const auto* side : {&d.from, &d.to})
         for (int i = 0; i < t; ++i)
-          if (block.topology == Topology::quaternion || i == r)
-            jacobian[*slot++] = (*side)(r, i);
+          if (block.topology == Topology::quaternion || i == r) jacobian[*slot++] = (*side)(r, i);
   }
 }
 

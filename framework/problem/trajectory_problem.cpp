@@ -1,6 +1,7 @@
 #include "framework/problem/trajectory_problem.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "framework/core/units.h"
 #include "framework/problem/trajectory_problem_impl.h"
@@ -373,6 +374,10 @@ Trajectory TrajectoryProblem::trajectory(const Stages& at) const {
       model.model->to_sample(numbers.data(), sample);
     }
     if (result.has_target) sample.target = at.col(i).segment<3>(columns.layout.offset(target));
+    // A heading read off an orientation, on the turn of the sample before.
+    constexpr double kTurn = 2 * std::numbers::pi;
+    if (result.model == MotionModel::rotors && i > 0)
+      sample.yaw += kTurn * std::round((result.samples[i - 1].yaw - sample.yaw) / kTurn);
   }
   return result;
 }

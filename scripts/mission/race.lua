@@ -118,7 +118,10 @@ end
 local function task_of(course)
   local list = {}
   for i, gate in ipairs(course.gates) do list[i] = gate end
-  if course.closed then list[#list + 1] = table.remove(list, 1) end
+  if course.closed then
+    local first = table.remove(list, 1)
+    list[#list + 1] = first
+  end
   return list
 end
 

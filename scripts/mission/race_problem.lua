@@ -11,6 +11,7 @@ local FAR = 1e4             -- m
 local AROUND = 100          -- m, of floor around the course
 local GUESS = 0.5           -- share of the acceleration that the first guess uses
 local PROFILE = 0.8         -- share of speed and acceleration that a timing by profile uses
+local IN_TIME = 1e4         -- times the weight of smoothness where the time is given
 local MARGIN_SHARE = 0.1    -- of a small opening, where the margin would take more
 
 -- What the vehicle may use, by the model: speeds up, down and across, acceleration.
@@ -100,17 +101,18 @@ local function floor_of(made, floor)
                          high[1] + AROUND, high[2] + AROUND, low[1] - AROUND, high[2] + AROUND } } }
 end
 
-local function add_model(p, vehicle, o)
+local function add_model(p, o)
   local profile = o.timing == "profile"
+  local smoothness = o.weights.smoothness * (o.time and IN_TIME or 1)
   if o.model == "quadrotor_full" then
     p:add_model { type = "quadrotor_full", thrust_share = o.thrust, rate_share = o.rate_share }
     p:add_cost { type = "derivative", name = "smoothness", block = "rotor_thrusts", order = 1,
-                 weight = o.weights.smoothness }
+                 weight = smoothness }
   else
     p:add_model { type = "quadrotor" }
     p:add_constraint { type = "input_limits", norm = not profile, share = o.thrust }
     p:add_cost { type = "derivative", name = "smoothness", block = "force", order = 1,
-                 weight = o.weights.smoothness }
+                 weight = smoothness }
     p:add_cost { type = "yaw_derivative", name = "yaw", order = 1, weight = 1e-3 }
   end
   local limits = { type = "state_limits" }
@@ -140,6 +142,19 @@ local function add_gates(p, course, made, o)
   end
 end
 
+-- At rest a point mass has no speed; hovering too is asked for where a controller must follow.
+local function ends_of(course, made, o)
+  local state = { type = "boundary_state", start_position = made.points[1],
+                  finish_position = course.finish }
+  local hovers = o.closed_loop == "required" or o.model == "quadrotor_full"
+  for _, name in ipairs { "start", "finish" } do
+    local rests = name == "start" or made.rests
+    state[name] = not rests and "free" or hovers and "rest" or "moving"
+    if state[name] == "moving" then state[name .. "_velocity"] = { 0, 0, 0 } end
+  end
+  return state
+end
+
 -- The problem of these legs; `coarse` is the solution on fewer stages to begin from.
 function problem.make(run, course, vehicle, made, coarse)
   local o = run.options
@@ -150,7 +165,7 @@ function problem.make(run, course, vehicle, made, coarse)
   end
   local p = run:problem { vehicle = vehicle, legs = legs, periodic = course.closed,
                           environment = { zones = floor_of(made, o.floor) } }
-  add_model(p, vehicle, o)
+  add_model(p, o)
   if free then p:add_cost { type = "flight_time", weight = 1 } end
   if free and o.time then
     p:add_constraint { type = "hard_keyframe", name = "time", block = "time",
@@ -158,9 +173,7 @@ function problem.make(run, course, vehicle, made, coarse)
   end
   add_gates(p, course, made, o)
   if not course.closed then
-    p:add_constraint { type = "boundary_state", start = "rest", start_position = made.points[1],
-                       finish = made.rests and "rest" or "free",
-                       finish_position = course.finish }
+    p:add_constraint(ends_of(course, made, o))
   end
   if coarse then
     p:guess_solution(coarse)

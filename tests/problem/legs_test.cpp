@@ -58,7 +58,7 @@ TEST(Legs, AHorizonKnowsItsTimes) {
   EXPECT_EQ(horizon.end_of_leg(0), 0);
   EXPECT_EQ(horizon.end_of_leg(2), 5);
   EXPECT_EQ(horizon.stage_at(1.05), 3);
-  EXPECT_EQ(horizon.stage_at(2.4), 7);
+  EXPECT_EQ(horizon.stage_at(2.5), 7);
   EXPECT_THROW(horizon.end_of_leg(4), InputError);
   EXPECT_THROW(Horizon::of_legs({}), InputError);
   EXPECT_THROW(Horizon::of_legs({{.intervals = 0, .step = 1}}), InputError);

@@ -10,9 +10,9 @@
 //
 //   p:add_constraint { type = "gate", leg = 3, shape = "rectangle", position = {9, 6, 1},
 //                      direction = {1, 0, 0}, width = 2.4, height = 2.4, margin = 0.02 }
+#include "framework/trajectory/gate.h"
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
-#include "framework/trajectory/gate.h"
 
 namespace lapwing {
 namespace {
@@ -54,8 +54,8 @@ class Gate final : public DifferentiableConstraint<Gate> {
       return Eigen::Vector3d(given.numbers(name).data());
     };
     GateShape shape{given.text("shape"), size("width"), size("height"), 0, size("side")};
-    const bool round = shape.shape == "ball" || shape.shape == "pentagon" ||
-                       shape.shape == "hexagon";
+    const bool round =
+        shape.shape == "ball" || shape.shape == "pentagon" || shape.shape == "hexagon";
     if (round && shape.side == 0) shape.radius = given.number("radius");
     gate_.corners = gate_corners(shape);
     gate_.radius = shape.radius;

@@ -17,8 +17,8 @@ namespace lapwing {
 namespace {
 
 constexpr int kStates = 17, kInputs = 4, kArguments = kStates + kInputs + 1;
-constexpr int kMoving = 3;                          // the position moves nothing: no column for it
-constexpr int kActive = kArguments - kMoving;       // numbers that the flow bends in
+constexpr int kMoving = 3;                     // the position moves nothing: no column for it
+constexpr int kActive = kArguments - kMoving;  // numbers that the flow bends in
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Velocity, orientation, body rates: what the equations of motion are about.
@@ -56,7 +56,8 @@ class QuadrotorFull final : public VehicleModel {
     for (const auto& [name, value, summary] :
          {std::tuple{"thrust_share", 1.0, "share of the rotors' largest thrust that is used"},
           std::tuple{"rate_share", 1.0, "share of the limits of body rates that is used"}})
-      table.number(name, value, "", summary, {.minimum = 0, .maximum = 1, .minimum_excluded = true});
+      table.number(name, value, "", summary,
+                   {.minimum = 0, .maximum = 1, .minimum_excluded = true});
     return table;
   }
   explicit QuadrotorFull(const Parameters& parameters)
@@ -168,8 +169,7 @@ class QuadrotorFull final : public VehicleModel {
   // Where the nose points, and how fast that turns; the trajectory makes turns of it.
   static void set_yaw(Sample& sample) {
     const Eigen::Vector3d nose = sample.orientation * Eigen::Vector3d::UnitX();
-    const Eigen::Vector3d spin =
-        (sample.orientation * sample.body_rates).cross(nose);
+    const Eigen::Vector3d spin = (sample.orientation * sample.body_rates).cross(nose);
     const double squared = nose.head<2>().squaredNorm();
     sample.yaw = squared > 0 ? std::atan2(nose.y(), nose.x()) : 0.0;
     sample.yaw_rate = squared > 1e-12 ? (nose.x() * spin.y() - nose.y() * spin.x()) / squared : 0.0;
@@ -304,7 +304,8 @@ class QuadrotorFull final : public VehicleModel {
     Body<T> end;
     T unit[4], along = 0.0;
     const T inverse = 1.0 / length(s.reached.q);
-    for (int i = 0; i < 4; ++i) unit[i] = s.reached.q[i] * inverse, along += unit[i] * lambda[6 + i];
+    for (int i = 0; i < 4; ++i)
+      unit[i] = s.reached.q[i] * inverse, along += unit[i] * lambda[6 + i];
     for (int i = 0; i < 4; ++i) end.q[i] = (lambda[6 + i] - unit[i] * along) * inverse;
     for (int i = 0; i < 3; ++i) end.v[i] = lambda[3 + i], end.w[i] = lambda[10 + i];
     of_h = dot(end, s.sum) * (1.0 / 6);
