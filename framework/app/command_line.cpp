@@ -187,7 +187,7 @@ void add_map_commands(CLI::App& app, Invocation& invocation, std::filesystem::pa
 }
 
 void add_scene_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& file,
-                        std::filesystem::path& target, Command& command) {
+                        SceneStatement& stated, std::filesystem::path& target, Command& command) {
   CLI::App* scene = app.add_subcommand("scene", "scenes: meshes, and scripts that make them");
   scene->require_subcommand(1);
   CLI::App* view = scene->add_subcommand("view", "write a report page with pictures");
@@ -198,8 +198,33 @@ void add_scene_commands(CLI::App& app, Invocation& invocation, std::filesystem::
     target = path;
   })->required();
   add_count(*view, "--seed", 0, kLargestSeed, "of a Lua scene",
-            [&](std::uint64_t seed) { invocation.seed = seed; });
-  view->callback([&] { command = [&] { return view_scene(file, target, invocation); }; });
+            [&](std::uint64_t seed) { stated.seed = seed; });
+  add_text(*view, "--unit", "M", "metres that one unit of a mesh file is, in place of what it says",
+           [&](const std::string& text) { stated.unit = read_number("--unit", text); });
+  add_text(*view, "--up", "x|y|z", "the axis of a mesh file that points up, in place of its own",
+           [&](const std::string& axis) { stated.up = axis; });
+  view->callback([&] { command = [&] { return view_scene(file, stated, target, invocation); }; });
+}
+
+void add_race_command(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
+                      std::vector<std::string>& pilots, RaceRules& rules,
+                      std::filesystem::path& target, Command& command) {
+  CLI::App* race = app.add_subcommand("race", "fly a course by hand, from logs of pilots' sticks");
+  add_plan(*race, plan);
+  add_repeated(*race, "--pilot", "LOG[:KEY=VALUE,...]", pilots,
+               "a stick log (CSV: time,forward,left), and of its pilot: name, weight, strength, "
+               "reach, speed, handicap; one or more");
+  add_text(*race, "--deviation-price", "S", "s per metre of mean distance from the course",
+           [&](const std::string& text) {
+             rules.deviation_price = read_number("--deviation-price", text);
+           });
+  add_text(*race, "--gate-price", "S", "s per gate that is missed",
+           [&](const std::string& text) { rules.gate_price = read_number("--gate-price", text); });
+  add_text(*race, "-o,--output", "PATH", "write a report page",
+           [&](const std::string& path) { target = path; });
+  add_json(*race, invocation);
+  race->callback(
+      [&] { command = [&] { return race_plan(plan, pilots, rules, target, invocation); }; });
 }
 
 void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
@@ -277,6 +302,9 @@ int run_command_line(int argc, const char* const* argv) {
   std::filesystem::path script, plan, target;
   std::string format, name;
   FlightConditions conditions;
+  SceneStatement stated;
+  std::vector<std::string> pilots;
+  RaceRules rules;
   Command command;
   add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
                "a folder of plugins, searched first");
@@ -284,7 +312,8 @@ int run_command_line(int argc, const char* const* argv) {
   add_run(app, invocation, script, command);
   add_plan_commands(app, invocation, plan, conditions, format, target, command);
   add_map_commands(app, invocation, plan, target, command);
-  add_scene_commands(app, invocation, plan, target, command);
+  add_scene_commands(app, invocation, plan, stated, target, command);
+  add_race_command(app, invocation, plan, pilots, rules, target, command);
   add_plugin_commands(app, invocation, name, command);
   try {
     app.parse(argc, argv);

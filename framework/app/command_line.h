@@ -9,6 +9,7 @@
 
 #include "framework/core/value.h"
 #include "framework/plugin/registry.h"
+#include "framework/vehicle/race_score.h"
 
 namespace lapwing {
 
@@ -55,9 +56,21 @@ ExitStatus convert_map(const std::filesystem::path& file, const std::filesystem:
                        const Invocation& invocation);
 ExitStatus view_map(const std::filesystem::path& file, const std::filesystem::path& target,
                     const Invocation& invocation);
+// Each pilot: LOG[:key=value,...].
+ExitStatus race_plan(const std::filesystem::path& plan, const std::vector<std::string>& pilots,
+                     const RaceRules& rules, const std::filesystem::path& target,
+                     const Invocation& invocation);
+
+// What is said of a scene beside its name.
+struct SceneStatement {
+  std::optional<std::uint64_t> seed;  // of a script
+  std::optional<double> unit;         // m that one unit of a mesh file is
+  std::string up;                     // of a mesh file: "x", "y", "z"; "": as the file says
+};
+
 // A mesh file, a Lua scene or the name of a shipped one.
-ExitStatus view_scene(const std::filesystem::path& file, const std::filesystem::path& target,
-                      const Invocation& invocation);
+ExitStatus view_scene(const std::filesystem::path& file, const SceneStatement& stated,
+                      const std::filesystem::path& target, const Invocation& invocation);
 ExitStatus list_plugins(const Invocation& invocation);
 ExitStatus show_plugin(const std::string& name, const Invocation& invocation);
 ExitStatus show_plugin_path(const Invocation& invocation);

@@ -11,13 +11,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Cubes from this level on, 128 voxels wide, are many bricks but one node of an octree.
+constexpr int kWideLevel = 7;
+
 // The file in a map of its own resolution.
 std::unique_ptr<Map> loaded(const fs::path& file, const Registry& registry) {
   const MapFile read = read_map_file(file);
   Value parameters = Value::map();
   parameters.set("resolution", read.resolution);
-  std::unique_ptr<Map> map = registry.create<Map>("brick", parameters);
-  map->import(read.leaves);
+  const bool wide = std::any_of(read.leaves.begin(), read.leaves.end(),
+                                [](const VoxelLeaf& leaf) { return leaf.level >= kWideLevel; });
+  std::unique_ptr<Map> map = registry.create<Map>(wide ? "octomap" : "brick", parameters);
+  try {
+    map->import(read.leaves);
+  } catch (const InputError& error) {
+    throw InputError("'" + file.string() + "': " + error.what());
+  }
   return map;
 }
 
@@ -77,6 +86,7 @@ ExitStatus show_map(const fs::path& file, const Invocation& invocation) {
 ExitStatus convert_map(const fs::path& file, const fs::path& target, const Invocation& invocation) {
   const Registry registry = invocation.registry();
   write_map_file(target, *loaded(file, registry));
+  if (!invocation.quiet) std::printf("%s\n", target.c_str());
   return ExitStatus::done;
 }
 

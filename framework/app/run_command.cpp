@@ -13,6 +13,7 @@
 #include "framework/export/exporter.h"
 #include "framework/export/flight_report.h"
 #include "framework/export/light_painting.h"
+#include "framework/export/race_report.h"
 #include "framework/export/run_folder.h"
 #include "framework/geometry/png.h"
 #include "framework/verify/verify.h"
@@ -28,6 +29,7 @@ struct Outcome {
   std::filesystem::path folder;
   double seconds = 0;                        // wall clock, all of it
   std::optional<std::string> long_exposure;  // PNG
+  std::vector<RacedPilot> raced;
 };
 
 std::string status_of(const MissionResult& result, const Certificate& certificate, bool cancelled) {
@@ -79,6 +81,7 @@ Value json_of(const Outcome& outcome, const Invocation& invocation) {
     for (const std::string& note : result.notes) notes.push_back(note);
   }
   if (result.block.is_map()) object.set(result.plan.kind, result.block);
+  if (!outcome.raced.empty()) object.set("game", to_value(outcome.raced));
   return object;
 }
 
@@ -114,6 +117,7 @@ void print_summary(const Outcome& outcome) {
     std::cout << "  " << result.report.message << "\n";
   }
   for (const std::string& note : result.notes) std::cout << "  " << note << "\n";
+  std::cout << race_result(outcome.raced);
   std::cout << "  report: " << (outcome.folder / "report.html").string() << std::endl;
 }
 
@@ -133,6 +137,10 @@ std::string report_page(const Outcome& outcome) {
   if (outcome.long_exposure) {
     Image image{*outcome.long_exposure, "What a camera with an open shutter sees of the flight"};
     report.sections.insert(report.sections.begin() + 1, Section{"Long exposure", {image}});
+  }
+  if (!outcome.raced.empty()) {
+    std::vector<Section> race = race_sections(outcome.result.plan, outcome.raced, {});
+    report.sections.insert(report.sections.begin() + 1, race.begin(), race.end());
   }
   return render_html(report);
 }
@@ -156,6 +164,19 @@ std::string photograph(const Plan& plan) {
   constexpr int kWidth = 1000;  // pixels
   const FlownPath flown = fly(plan.trajectory, vehicle_from_value(plan.vehicle));
   return encode_png(long_exposure(plan, flown, kWidth));
+}
+
+std::vector<RacedPilot> fly_pilots(const Outcome& outcome, const CancellationToken& token) {
+  const Plan& plan = outcome.result.plan;
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  std::vector<RacedPilot> raced;
+  if (token.cancelled()) return raced;
+  for (const Pilot& pilot : outcome.result.pilots) {
+    RaceFlight flight = fly_race(plan.trajectory, vehicle, pilot, {}, &token);
+    RaceScore score = score_of(flight, plan.task.gates, pilot.handicap);
+    raced.push_back({pilot, std::move(flight), std::move(score)});
+  }
+  return raced;
 }
 
 void complete_plan(Outcome& outcome) {
@@ -194,6 +215,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome);
   if (!outcome.result.plan.lights.empty()) outcome.long_exposure = photograph(outcome.result.plan);
+  if (!outcome.result.pilots.empty()) outcome.raced = fly_pilots(outcome, interruption.token());
   write_files(outcome, registry, capture);
   outcome.seconds = steady_seconds() - begin;
   if (invocation.json) {

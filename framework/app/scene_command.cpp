@@ -19,30 +19,55 @@ fs::path script_of(const fs::path& file) {
   return !file.has_extension() && fs::exists(shipped) ? shipped : fs::path();
 }
 
+MeshFileOptions mesh_options(const SceneStatement& stated) {
+  if (stated.seed) throw InputError("--seed is of scenes that a script makes, not of a mesh file");
+  MeshFileOptions options;
+  options.unit = stated.unit;
+  if (stated.up.empty()) return options;
+  if (stated.up != "x" && stated.up != "y" && stated.up != "z")
+    throw InputError("--up: expected x, y or z, got '" + stated.up + "'");
+  options.up = stated.up == "x" ? UpAxis::x : stated.up == "y" ? UpAxis::y : UpAxis::z;
+  return options;
+}
+
+// Neither a script nor a file with an ending: a name that is none of the shipped scenes.
+void require_an_ending(const fs::path& file) {
+  if (file.extension() == ".lua") throw InputError("'" + file.string() + "' not found");
+  if (file.has_extension()) return;
+  throw InputError("'" + file.string() +
+                   "' is no scene of scripts/scene (street, church, courtyard, suburb, downtown, "
+                   "office), no script and no mesh file");
+}
+
 }  // namespace
 
-ExitStatus view_scene(const fs::path& file, const fs::path& target, const Invocation& invocation) {
+ExitStatus view_scene(const fs::path& file, const SceneStatement& stated, const fs::path& target,
+                      const Invocation& invocation) {
   SceneReport shown;
   shown.threads = std::max(1, invocation.threads);
   const fs::path script = script_of(file);
   if (script.empty()) {
-    const MeshFile read = read_mesh(file);
+    require_an_ending(file);
+    const MeshFile read = read_mesh(file, mesh_options(stated));
     shown.title = file.filename().string();
     shown.origin = read.description();
     const MeshScene scene(read.mesh, shown.title);
     write_file_atomically(target, render_html(scene_report(scene, shown)));
     return ExitStatus::done;
   }
+  if (stated.unit || !stated.up.empty())
+    throw InputError("--unit and --up are of mesh files; a script's scene is in metres, z up");
+  const std::uint64_t seed = stated.seed.value_or(invocation.seed);
   const Registry registry = invocation.registry();
   MissionSettings settings;
   settings.scripts = shipped_folder("scripts");
   settings.configs = shipped_folder("configs");
   settings.registry = &registry;
   Value options = Value::map();
-  options.set("seed", static_cast<std::int64_t>(invocation.seed));
+  options.set("seed", static_cast<std::int64_t>(seed));
   GeneratedScene made = generate_scene(script, options, settings);
   shown.title = made.name;
-  shown.origin = "seed " + std::to_string(invocation.seed);
+  shown.origin = "seed " + std::to_string(seed);
   shown.region = made.region;
   const MeshScene scene(std::move(made.mesh), made.name);
   write_file_atomically(target, render_html(scene_report(scene, shown)));

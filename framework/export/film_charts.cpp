@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<LimitLine> both_ways(double limit) {
-  return {{"maximum", limit}, {"minimum", -limit}};
-}
-
 Chart gimbal_angles(const TimeCharts& charts, const Vehicle& vehicle) {
   Chart chart = charts.chart(
       "Gimbal angles", "angle", "\u00b0",

@@ -11,10 +11,6 @@ double across(const Eigen::Vector3d& v) {
   return v.head<2>().norm();
 }
 
-std::vector<LimitLine> both_ways(double limit) {
-  return {{"maximum", limit}, {"minimum", -limit}};
-}
-
 // A subject that stands is a point; one that moves, its track while the flight lasts.
 void add_track(const Plan& plan, const Subject& subject, Drawing& drawing) {
   constexpr int kMost = 200;

@@ -2,6 +2,10 @@
 
 namespace lapwing {
 
+std::vector<LimitLine> both_ways(double limit) {
+  return {{"maximum", limit}, {"minimum", -limit}};
+}
+
 Axis time_axis() {
   return {"time", "s"};
 }

@@ -12,6 +12,8 @@ namespace lapwing {
 
 // The axis that all charts and drawings of a flight share.
 Axis time_axis();
+// Lines at a limit in both directions.
+std::vector<LimitLine> both_ways(double limit);
 
 class TimeCharts {
  public:

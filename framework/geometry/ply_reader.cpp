@@ -211,9 +211,9 @@ struct Item {
   std::vector<std::int32_t> corners;
 };
 
-class Body {
+class PlyBody {
  public:
-  Body(const Header& header, std::string_view bytes, const std::string& name)
+  PlyBody(const Header& header, std::string_view bytes, const std::string& name)
       : header_(header), name_(name), numbers_(bytes.substr(header.size), header.encoding, name) {}
 
   TriangleMesh read() {
@@ -305,7 +305,7 @@ class Body {
 TriangleMesh read_ply(std::string_view bytes, const std::string& name) {
   const Header header = read_header(bytes, name);
   check_counts(header, bytes.size(), name);
-  return Body(header, bytes, name).read();
+  return PlyBody(header, bytes, name).read();
 }
 
 }  // namespace lapwing

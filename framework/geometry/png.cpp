@@ -53,12 +53,12 @@ void take_bytes(png_structp png, png_bytep out, std::size_t count) {
 
 void stay_silent(png_structp, png_const_charp) {}
 
-struct Header {
+struct PngHeader {
   png_uint_32 width, height;
   int depth, color;
 };
 
-bool read_header(png_structp png, png_infop info, Source* source, Header* header) {
+bool read_header(png_structp png, png_infop info, Source* source, PngHeader* header) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_read_fn(png, source, take_bytes);
   png_set_user_limits(png, 1'000'000, 1'000'000);
@@ -93,7 +93,7 @@ class Reader {
   Reader& operator=(const Reader&) = delete;
 
   Grey16 read() {
-    Header header{};
+    PngHeader header{};
     if (!read_header(png_, info_, &source_, &header)) fail(source_.message);
     if (header.depth != 16 || header.color != PNG_COLOR_TYPE_GRAY) {
       fail("expected one channel of 16 bits (depth in millimetres), got " +

@@ -9,7 +9,7 @@
 namespace lapwing {
 namespace {
 
-constexpr double kLargestCoordinate = 1e5;          // m
+constexpr double kFarthestVertex = 1e5;          // m
 constexpr std::size_t kLargestCount = 100'000'000;  // of vertices or triangles
 
 struct Cell {
@@ -57,7 +57,7 @@ void check_mesh(const TriangleMesh& mesh, const std::string& what) {
          std::to_string(mesh.triangles.size()) + " triangles; at most 100 million are read");
   }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    if (!(mesh.vertices[i].cwiseAbs().maxCoeff() <= kLargestCoordinate) ||
+    if (!(mesh.vertices[i].cwiseAbs().maxCoeff() <= kFarthestVertex) ||
         !mesh.vertices[i].allFinite()) {
       fail("vertex " + std::to_string(i + 1) +
            " has a coordinate that is not finite or beyond 1e5 m");

@@ -134,6 +134,12 @@ ParameterTable scan_table() {
   return table;
 }
 
+// "300 views", or "76 of 300 views" of a run that was stopped.
+std::string scanned(const Mapping& mapping, std::size_t asked, const std::string& what) {
+  const auto count = static_cast<std::size_t>(mapping.scans);
+  return (count < asked ? std::to_string(count) + " of " : "") + std::to_string(asked) + " " + what;
+}
+
 // map:scan{surface =, poses = {{position =, yaw =, pitch =}}, camera =, range =, noise =}
 int scan(lua_State* state) {
   MissionRun& run = run_of(state);
@@ -159,7 +165,7 @@ int scan(lua_State* state) {
   if (poses.empty()) throw InputError(given.origin("poses"), "scan: no pose to look from");
   const Sandbox::ClockPause pause(Sandbox::of(state));
   map_surface(mapping, *surface.scene, poses, sensor, run.settings.seed, work_of(run));
-  mapping.source = std::to_string(poses.size()) + " views of '" + surface.name + "'";
+  mapping.source = scanned(mapping, poses.size(), "views") + " of '" + surface.name + "'";
   return 0;
 }
 
@@ -171,7 +177,7 @@ int scan_folder(lua_State* state) {
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const DepthFolder folder(run.files.find_folder(name));
   map_folder(mapping, folder, work_of(run));
-  mapping.source = std::to_string(folder.size()) + " depth images of '" + name + "'";
+  mapping.source = scanned(mapping, folder.size(), "depth images") + " of '" + name + "'";
   return 0;
 }
 
@@ -194,7 +200,11 @@ int load(lua_State* state) {
   if (std::abs(file.resolution - resolution) > 1e-9 * resolution)
     throw InputError("'" + name + "' has voxels of " + std::to_string(file.resolution) +
                      " m, the map has voxels of " + std::to_string(resolution) + " m");
-  mapping.map->import(file.leaves);
+  try {
+    mapping.map->import(file.leaves);
+  } catch (const InputError& error) {
+    throw InputError("'" + name + "': " + error.what());
+  }
   mapping.source = "file '" + name + "'";
   return 0;
 }

@@ -164,6 +164,7 @@ MissionResult Mission::plan() {
     result.report = planned->report;
     result.solver = planned->solver;
     result.notes = planned->notes;
+    result.pilots = planned->pilots;
     result.block = planned->block;
   });
   result.solve_seconds = impl.run.solve_seconds;

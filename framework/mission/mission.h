@@ -28,6 +28,7 @@ struct MissionResult {
   double solve_seconds = 0;        // wall clock, all solves together
   std::vector<std::string> notes;  // sentences for the user
   Value block;                     // the kind's own figures, null or a map
+  std::vector<Pilot> pilots;       // who fly it by hand, in simulation
 };
 
 class Mission {

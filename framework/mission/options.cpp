@@ -10,8 +10,8 @@ namespace {
 
 const std::vector<std::string>& known_declaration_keys() {
   static const std::vector<std::string> keys = {
-      "name",  "type",    "summary", "unit", "default", "required", "minimum",
-      "above", "maximum", "choices", "size", "table",   "kind",     "words"};
+      "name",    "type",    "summary", "unit",  "default", "required", "minimum", "above",
+      "maximum", "choices", "size",    "table", "kind",    "words",    "settled"};
   return keys;
 }
 
@@ -94,7 +94,8 @@ OptionDeclarations OptionDeclarations::from_value(const Value& list) {
       for (const Value& word : words->as_list()) option.words.push_back(word.as_text());
     }
     if (!declaration.find("summary")) declaration.set("summary", "");
-    option.declaration = without(declaration, {"kind", "words"});
+    if (const Value* settled = declaration.find("settled")) option.settled = *settled;
+    option.declaration = without(declaration, {"kind", "words", "settled"});
     plain.push_back(option.declaration);
     declarations.options_.push_back(std::move(option));
   }
@@ -129,7 +130,16 @@ Value OptionDeclarations::plugin_entry(const Option& option, Value& given,
 
   Value table = ParameterTable{}.text("type", type.as_text(), "which plugin").to_value();
   const Value own = plugin.parameters.to_value();
-  for (const Value& parameter : own.as_list()) table.push_back(parameter);
+  for (const Value& parameter : own.as_list()) {
+    const std::string& name = parameter.at("name").as_text();
+    const Value* why = option.settled.is_map() ? option.settled.find(name) : nullptr;
+    if (!why) {
+      table.push_back(parameter);
+      continue;
+    }
+    const Value* set = value && value->is_map() ? value->find(name) : nullptr;
+    if (set) throw InputError(set->origin(), option.name + "." + name + ": " + why->as_text());
+  }
   Value entry = without(option.declaration, {"default"});
   entry.set("type", "table");
   entry.set("table", std::move(table));

@@ -4,6 +4,8 @@
 // unit, default, required, minimum, above, maximum, choices, size, table), with three more forms:
 //   type = "plugin", kind = "trajectory_solver", default = "iqp"
 //       a plugin's name, or a table with `type` and the plugin's own parameters
+//       settled = { name = "why" }: parameters that the mission itself settles; who sets one is
+//       told why not
 //   type = "vehicle"               a vehicle file's name, or a table as in such a file
 //   words = {"auto"}               on a number: these texts are allowed as well
 #pragma once
@@ -32,6 +34,7 @@ class OptionDeclarations {
     std::string name;
     Value declaration;        // an entry of a parameter table as data
     std::string plugin_kind;  // not empty: a plugin's name or table
+    Value settled;            // of a plugin: parameters that cannot be set, and why
     bool vehicle = false;
     std::vector<std::string> words;
   };

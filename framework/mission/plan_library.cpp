@@ -8,6 +8,7 @@
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
+#include "framework/mission/players.h"
 #include "framework/mission/map_objects.h"
 #include "framework/mission/run.h"
 #include "framework/verify/verify.h"
@@ -278,7 +279,8 @@ ParameterTable plan_table() {
       .tables("cuts", span_table(), "footage that is thrown away")
       .optional_number("budget", "s", "of flight", above(0))
       .tables("lights", span_table(), "when the light is on")
-      .table("geodetic_origin", origin, "where the world frame lies");
+      .table("geodetic_origin", origin, "where the world frame lies")
+      .tables("players", player_table(), "who fly the course by hand, in simulation");
   return table;
 }
 
@@ -293,7 +295,7 @@ std::vector<std::string> notes_argument(lua_State* state, int index, const Origi
 }
 
 // run:plan{problem =, solution =, task = {keyframes = ...}, budget =, geodetic_origin =,
-//          notes = {"sentence", ...}, figures = {...}}
+//          notes = {"sentence", ...}, figures = {...}, players = {{log =, ...}, ...}}
 int plan(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -307,6 +309,7 @@ int plan(lua_State* state) {
   made.notes = notes_argument(state, 2, origin);
   lua_getfield(state, 2, "figures");
   made.block = value_from_lua(state, -1, origin, "plan.figures");
+  made.pilots = pilots_of(given.tables("players"), run.files);
 
   Plan& document = made.plan;
   document.mission = run.name;

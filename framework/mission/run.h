@@ -17,6 +17,7 @@
 #include "framework/problem/trajectory_problem.h"
 #include "framework/solve/trajectory_solver.h"
 #include "framework/trajectory/plan.h"
+#include "framework/vehicle/race_flight.h"
 
 struct lua_State;
 
@@ -56,6 +57,7 @@ struct PlanObject {
   std::string solver;
   std::vector<std::string> notes;  // sentences for the user
   Value block;                     // the kind's own figures; null or a map
+  std::vector<Pilot> pilots;       // who fly it by hand
 };
 
 struct MissionRun {

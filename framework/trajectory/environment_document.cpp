@@ -4,10 +4,6 @@
 namespace lapwing {
 namespace {
 
-Value list_of(const Eigen::Vector3d& v) {
-  return Value(Value::List{v.x(), v.y(), v.z()});
-}
-
 Value to_value(const Sphere& sphere) {
   Value value = Value::map();
   value.set("name", sphere.name);

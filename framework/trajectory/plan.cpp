@@ -12,13 +12,6 @@ const std::vector<std::string> kModels{"force", "rotors", "path"};
 const std::vector<std::string> kInputs{"held", "linear"};
 const std::vector<std::string> kAxes{"east north up"};
 
-Value list_of(std::initializer_list<double> numbers) {
-  return Value(Value::List(numbers.begin(), numbers.end()));
-}
-Value list_of(const Eigen::Vector3d& v) {
-  return list_of({v.x(), v.y(), v.z()});
-}
-
 Value sample_to_value(const Trajectory& trajectory, const Sample& s) {
   Value value = Value::map();
   value.set("time", s.time);

@@ -6,6 +6,13 @@
 
 namespace lapwing {
 
+inline Value list_of(std::initializer_list<double> numbers) {
+  return Value(Value::List(numbers.begin(), numbers.end()));
+}
+inline Value list_of(const Eigen::Vector3d& v) {
+  return list_of({v.x(), v.y(), v.z()});
+}
+
 // Infinite bounds of a zone have no key; nor have lists of zones and subjects that are empty.
 Value environment_to_value(const Environment& environment);
 Environment environment_from(Fields fields);

@@ -27,10 +27,6 @@ KeyframeTask keyframe_from(Fields& fields) {
   return keyframe;
 }
 
-Value list_of(const Eigen::Vector3d& v) {
-  return Value(Value::List{v.x(), v.y(), v.z()});
-}
-
 Value to_value(const GateTask& gate) {
   Value value = Value::map();
   value.set("name", gate.name);

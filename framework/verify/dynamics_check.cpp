@@ -10,7 +10,7 @@ namespace {
 namespace tol = tolerances;
 
 constexpr int kDefects = 5;
-constexpr const char* kNames[kDefects] = {"defect_position", "defect_velocity", "defect_yaw",
+constexpr const char* kDefectNames[kDefects] = {"defect_position", "defect_velocity", "defect_yaw",
                                           "defect_yaw_rate", "defect_gimbal"};
 constexpr double kLimits[kDefects] = {tol::kPositionDefect, tol::kVelocityDefect, tol::kYawDefect,
                                       tol::kYawRateDefect, tol::kGimbalDefect};
@@ -81,7 +81,7 @@ void check_dynamics(const Flight& flight, Certificate& certificate) {
   const bool has_gimbal = flight.plan.trajectory.has_gimbal;
   const bool rotors = flight.plan.trajectory.model == MotionModel::rotors;
   std::vector<Worst> worst;
-  for (int k = 0; k < kDefects; ++k) worst.emplace_back(kNames[k], kLimits[k], 0.0);
+  for (int k = 0; k < kDefects; ++k) worst.emplace_back(kDefectNames[k], kLimits[k], 0.0);
   Drift drift;
   for (std::size_t i = 0; i < motion.intervals(); ++i) {
     const MotionPoint reached = motion.integrate(i).back();
@@ -96,7 +96,7 @@ void check_dynamics(const Flight& flight, Certificate& certificate) {
     const bool made = motion.intervals() > 0 && (k < 4 || has_gimbal);
     certificate.checks.push_back(
         made ? worst[static_cast<std::size_t>(k)].check()
-             : skipped_check(kNames[k], motion.intervals() == 0 ? "a single sample has no interval"
+             : skipped_check(kDefectNames[k], motion.intervals() == 0 ? "a single sample has no interval"
                                                                 : "the plan moves no gimbal"));
   }
   certificate.checks.push_back(motion.intervals() > 0

@@ -62,7 +62,7 @@ bool any_blocks(const std::vector<Obstacle>& obstacles, const Eigen::Vector3d& c
 // The ways of seeing a subject that are judged.
 enum class Sight { middle, whole, free };
 constexpr std::array kSights{Sight::middle, Sight::whole, Sight::free};
-constexpr std::array kNames{"framing", "whole_subject", "line_of_sight"};
+constexpr std::array kFramingNames{"framing", "whole_subject", "line_of_sight"};
 
 bool seen(Sight sight, const CameraView& view, const Subject& subject, double time,
           const Environment& environment) {
@@ -180,7 +180,7 @@ class Framing {
 };
 
 void skip(const char* reason, Certificate& certificate) {
-  for (const char* name : kNames) certificate.checks.push_back(skipped_check(name, reason));
+  for (const char* name : kFramingNames) certificate.checks.push_back(skipped_check(name, reason));
 }
 
 }  // namespace
@@ -201,10 +201,10 @@ void check_framing(const Flight& flight, Certificate& certificate) {
   if (!(framing.asked_seconds() > 0)) {
     return skip("all the time that is asked for lies in cuts", certificate);
   }
-  for (std::size_t k = 0; k < kNames.size(); ++k) {
+  for (std::size_t k = 0; k < kFramingNames.size(); ++k) {
     const Lasting& lasting = framing.lasting(k);
     const double share = lasting.seconds / framing.asked_seconds();
-    Check check = judged(make_check(kNames[k]), share, task.framing_share,
+    Check check = judged(make_check(kFramingNames[k]), share, task.framing_share,
                          tolerance_of(task.framing_share), lasting.lost_at, true);
     if (lasting.lost) {
       check.detail += (check.detail.empty() ? "" : "; ") + ("subject '" + lasting.lost->name + "'");

@@ -22,8 +22,22 @@ local SHARED = {  -- as the backends' own defaults
   { name = "observations", type = "boolean", default = false,
     summary = "count how often each voxel was measured, for its uncertainty" },
 }
-local MAP = { name = "map", type = "plugin", kind = "map", default = "brick",
-              summary = "the map's backend, and its update rule" }
+-- What the mission settles for every backend: who sets `map.resolution` learns where it belongs.
+local SCANS = { resolution = "every map takes it: set resolution instead",
+                mode = "every map takes it: set mode instead",
+                pixel_step = "every map takes it: set pixel_step instead",
+                observations = "every map takes it: set observations instead" }
+
+local function settled_with(list, key, why)
+  local all = { [key] = why }
+  for name, reason in pairs(list) do all[name] = reason end
+  return all
+end
+
+local function map_with(settled)
+  return { name = "map", type = "plugin", kind = "map", default = "brick", settled = settled,
+           summary = "the map's backend, and its update rule" }
+end
 local INPUT = { name = "input", type = "text", summary = "the user's own data" }
 
 local FOLDER = { INPUT, {
@@ -45,8 +59,8 @@ local SENSOR = {
     summary = "noise of the depth" },
 }
 
-local function declarations(...)
-  local all = { MAP }
+local function declarations(map, ...)
+  local all = { map }
   for _, list in ipairs { ... } do
     for _, declared in ipairs(list) do all[#all + 1] = declared end
   end
@@ -58,12 +72,6 @@ local function new_map(run, known)
   local o = run.options
   local made = type(o.map) == "table" and o.map or { type = o.map }
   for _, shared in ipairs(SHARED) do
-    local own = made[shared.name]
-    if own ~= nil and own ~= shared.default and own ~= o[shared.name]
-       and o[shared.name] ~= nil then
-      run:fail("map." .. shared.name, string.format("every backend takes it: set %s = %s instead",
-                                                    shared.name, tostring(own)))
-    end
     if o[shared.name] ~= nil then made[shared.name] = o[shared.name] end
   end
   for key, value in pairs(known) do made[key] = value end
@@ -87,10 +95,18 @@ function M.of_scene(given)
   local name = given.name
   given.name = nil
   return {
-    kind = "map", name = name, options = lapwing.options(declarations(SHARED, own), given),
+    kind = "map", name = name,
+    options = lapwing.options(declarations(
+      map_with(settled_with(SCANS, "maximum_range",
+                            "it is the sensor's: set sensor.range instead")), SHARED, own), given),
     plan = function(run)
       local o = run.options
-      local scene = require("scene." .. o.scene) { seed = o.scene_seed }
+      local make = require("scene." .. o.scene)
+      if type(make) ~= "function" then
+        run:fail("scene", string.format("'%s' is a part of scenes, no scene: expected street, "
+                                        .. "church, courtyard, suburb, downtown or office", o.scene))
+      end
+      local scene = make { seed = o.scene_seed }
       local surface = run:surface(scene)
       local made = new_map(run, { maximum_range = o.sensor.range })
       made:scan {
@@ -111,7 +127,9 @@ function M.of_folder(given)
   local name = given.name
   given.name = nil
   return {
-    kind = "map", name = name, options = lapwing.options(declarations(SHARED, FOLDER), given),
+    kind = "map", name = name,
+    options = lapwing.options(declarations(
+      map_with(settled_with(SCANS, "maximum_range", "set range instead")), SHARED, FOLDER), given),
     plan = function(run)
       local o = run.options
       if not o.input then
@@ -129,7 +147,11 @@ function M.of_file(given)
   local name = given.name
   given.name = nil
   return {
-    kind = "map", name = name, options = lapwing.options(declarations { INPUT }, given),
+    kind = "map", name = name,
+    options = lapwing.options(declarations(map_with {
+      resolution = "it is the file's",
+      mode = "a file is read, not scanned", pixel_step = "a file is read, not scanned",
+      maximum_range = "a file is read, not scanned" }, { INPUT }), given),
     plan = function(run)
       local o = run.options
       if not o.input then lapwing.fail(missing_input("a map", ".bt or .ot")) end

@@ -67,6 +67,15 @@ local DECLARATIONS = {
     summary = "times that coarse legs get twice the stages" },
   { name = "weights", type = "table", summary = "of the cost, beside the time in s", table = {
     number("smoothness", 1e-7, "", "change of forces or thrusts", { minimum = 0 }) } },
+  { name = "players", type = "tables", summary = "who fly the course by hand, from stick logs",
+    table = {
+      { name = "log", type = "text", required = true, summary = "CSV: time,forward,left" },
+      { name = "name", type = "text", default = "", summary = "absent: the log's" },
+      number("weight", 0.5, "", "of the stick", { minimum = 0, maximum = 1 }),
+      number("strength", 4, "m/s^2", "of a full deflection", { above = 0, maximum = 100 }),
+      number("reach", 3, "m", "off the course that it ends", { above = 0, maximum = 1000 }),
+      number("speed", 1, "", "of the reference", { minimum = 0.1, maximum = 3 }),
+      number("handicap", 0, "s", "added to the score", { minimum = -3600, maximum = 3600 }) } },
   { name = "solver", type = "plugin", kind = "trajectory_solver",
     default = "ipopt", summary = "trajectory solver; iqp suits timing = profile" },
 }
@@ -80,6 +89,7 @@ end
 local function plan_of(run, course, solution, notes)
   return run:plan {
     solution = solution, notes = notes, figures = { time = solution.duration },
+    players = run.options.players,
     task = { gates = course.task, closed_loop_required = run.options.closed_loop == "required" },
   }
 end

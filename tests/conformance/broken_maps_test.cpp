@@ -143,15 +143,18 @@ std::vector<std::string> failures(const std::vector<CheckResult>& results) {
   return names;
 }
 
-// Few parameters, so that many mistakes can be tried.
-ParameterTable few_parameters() {
-  return ParameterTable{}
-      .optional_number("maximum_range", "m", "", above(0))
-      .boolean("observations", false, "");
+// The parameters that a mistake needs to show, and no others, so that many can be tried.
+ParameterTable few_parameters(Mistake mistake) {
+  ParameterTable table;
+  const bool sound = mistake == Mistake::none;
+  if (sound || mistake == Mistake::range_ignored)
+    table.optional_number("maximum_range", "m", "", above(0));
+  if (sound || mistake == Mistake::forgets_observations) table.boolean("observations", false, "");
+  return table;
 }
 
 std::vector<std::string> failures_of(Mistake mistake) {
-  return failures(check_map({"broken", few_parameters(), [=](const Value& given) {
+  return failures(check_map({"broken", few_parameters(mistake), [=](const Value& given) {
                                if (mistake == Mistake::refuses) throw InputError("no");
                                return std::make_unique<BrokenMap>(
                                    map_settings(check(map_parameters(), given)), mistake);
@@ -186,10 +189,10 @@ TEST(BrokenMap, IsCaught) {
 }
 
 TEST(BrokenMap, IsCaughtWithoutObstacles) {
-  const auto names = failures(check_map({"greedy", few_parameters(), [](const Value& given) {
-                                           return std::make_unique<Greedy>(
-                                               map_settings(check(map_parameters(), given)));
-                                         }}));
+  const auto names = failures(
+      check_map({"greedy", few_parameters(Mistake::none), [](const Value& given) {
+                   return std::make_unique<Greedy>(map_settings(check(map_parameters(), given)));
+                 }}));
   EXPECT_TRUE(contains(names, "boxes"));
   EXPECT_TRUE(contains(names, "memory"));
 }

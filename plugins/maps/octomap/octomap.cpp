@@ -129,9 +129,7 @@ class Octomap final : public Map {
   }
 
   // OctoMap's own count, without what the allocator adds to each of its small pieces.
-  std::size_t bytes() const override {
-    return tree_.memoryUsage() + (settings().observations ? counts_.memoryUsage() : 0);
-  }
+  std::size_t bytes() const override { return bytes_of(tree_, counts_); }
 
  protected:
   void insert(std::span<const Eigen::Vector3f> points_W, const Eigen::Vector3f& origin_W) override {
@@ -140,27 +138,27 @@ class Octomap final : public Map {
     for (const Eigen::Vector3f& p : points_W) cloud.push_back(p.x(), p.y(), p.z());
     const octomap::point3d origin(origin_W.x(), origin_W.y(), origin_W.z());
     const double range = std::isfinite(settings().maximum_range) ? settings().maximum_range : -1;
-    const bool discretise = settings().mode == IntegrationMode::discretised;
-    require_memory(bytes());
-    if (!settings().observations)
-      return tree_.insertPointCloud(cloud, origin, range, false, discretise);
-    octomap::KeySet free, occupied;
-    if (discretise)
+    octomap::KeySet free, occupied;  // as insertPointCloud does
+    if (settings().mode == IntegrationMode::discretised)
       tree_.computeDiscreteUpdate(cloud, origin, free, occupied, range);
     else
       tree_.computeUpdate(cloud, origin, free, occupied, range);
-    for (const octomap::OcTreeKey& key : free) tree_.updateNode(key, false);
-    for (const octomap::OcTreeKey& key : occupied) tree_.updateNode(key, true);
-    for (const octomap::KeySet* keys : {&free, &occupied})
-      for (const octomap::OcTreeKey& key : *keys) counts_.updateNode(key, 1.0f);
+    change(free.size() + occupied.size(), [&](octomap::OcTree& tree, CountTree& counts) {
+      for (const octomap::OcTreeKey& key : free) tree.updateNode(key, false);
+      for (const octomap::OcTreeKey& key : occupied) tree.updateNode(key, true);
+      if (!settings().observations) return;
+      for (const octomap::KeySet* keys : {&free, &occupied})
+        for (const octomap::OcTreeKey& key : *keys) counts.updateNode(key, 1.0f);
+    });
   }
 
   void assign(std::span<const VoxelLeaf> leaves) override {
-    require_memory(bytes() + leaves.size() * sizeof(octomap::OcTreeNode));
-    for (const VoxelLeaf& leaf : leaves) {
-      set_cube(tree_, leaf, leaf.log_odds);
-      if (settings().observations) set_cube(counts_, leaf, leaf.observations);
-    }
+    change(leaves.size(), [&](octomap::OcTree& tree, CountTree& counts) {
+      for (const VoxelLeaf& leaf : leaves) {
+        set_cube(tree, leaf, leaf.log_odds);
+        if (settings().observations) set_cube(counts, leaf, leaf.observations);
+      }
+    });
   }
 
   void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const override {
@@ -183,6 +181,26 @@ class Octomap final : public Map {
   }
 
  private:
+  // Bytes that one more leaf takes at most: a branch of its own, down from the root.
+  static constexpr std::size_t kBranch = kTreeDepth * 8 * (sizeof(octomap::OcTreeNode) + 8);
+
+  std::size_t bytes_of(const octomap::OcTree& tree, const CountTree& counts) const {
+    return tree.memoryUsage() + (settings().observations ? counts.memoryUsage() : 0);
+  }
+
+  // Nothing is changed where the result would not fit: what comes near the limit is tried on a
+  // copy.
+  template <class Change>
+  void change(std::size_t leaves, const Change& apply) {
+    if (bytes() + 2 * leaves * kBranch <= settings().memory_limit) return apply(tree_, counts_);
+    octomap::OcTree tree(tree_);
+    CountTree counts(counts_);
+    apply(tree, counts);
+    require_memory(bytes_of(tree, counts));
+    tree_.swapContent(tree);
+    counts_.swapContent(counts);
+  }
+
   VoxelState state(int x, int y, int z) const {
     const octomap::OcTreeNode* node = tree_.search(
         octomap::OcTreeKey(static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),

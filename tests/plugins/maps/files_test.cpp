@@ -77,10 +77,13 @@ TEST(Files, AreOctomapsToTheByte) {
   EXPECT_TRUE(written_by_octomap(bytes) == bytes);
 }
 
-TEST(Memory, ALimitRefusesAndChangesNothing) {
+class Memory : public testing::TestWithParam<const char*> {};
+
+TEST_P(Memory, ALimitRefusesAndChangesNothing) {
   Value value = with_resolution(0.05);
   value.set("memory_limit", 16);
-  const auto map = make_map("brick", value);
+  value.set("observations", true);
+  const auto map = make_map(GetParam(), value);
   std::vector<Eigen::Vector3f> points;
   Random random(3);
   for (int k = 0; k < 4000; ++k)
@@ -102,11 +105,24 @@ TEST(Memory, ALimitRefusesAndChangesNothing) {
     EXPECT_LT(map->bytes(), std::size_t{16} << 20);
   };
   refused([&] { map->integrate(points, {0, 0, 0}); });
-  refused([&] { map->import(std::vector<VoxelLeaf>{{{0, 0, 0}, 12, 0, -1.0f}}); });
+  // What is one node of a tree is many bricks.
+  if (GetParam() == std::string("brick"))
+    refused([&] { map->import(std::vector<VoxelLeaf>{{{0, 0, 0}, 12, 0, -1.0f}}); });
+  std::vector<VoxelLeaf> many;
+  for (int k = 0; k < 300000; ++k)
+    many.push_back({{static_cast<std::uint16_t>(random.integer(0, 65535)),
+                     static_cast<std::uint16_t>(random.integer(0, 65535)),
+                     static_cast<std::uint16_t>(random.integer(0, 65535))},
+                    0,
+                    1,
+                    -1.0f});
+  refused([&] { map->import(many); });
   // The map still works.
   map->integrate(few, {0, 0, 0});
   EXPECT_GT(voxels_of(*map).size(), 0u);
 }
+
+INSTANTIATE_TEST_SUITE_P(Backends, Memory, testing::Values("brick", "octomap"));
 
 }  // namespace
 }  // namespace lapwing

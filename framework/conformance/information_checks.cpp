@@ -1,0 +1,74 @@
+// What every plugin of kind `information` must pass.
+#include <cmath>
+
+#include "framework/conformance/findings.h"
+#include "framework/conformance/sample_parameters.h"
+#include "framework/conformance/standard_setting.h"
+#include "framework/core/random.h"
+
+namespace lapwing {
+namespace {
+
+// Near and far, square and grazing, from behind, and without a normal.
+std::vector<VoxelSight> sights_to_ask(std::uint64_t seed) {
+  std::vector<VoxelSight> sights;
+  for (const float distance : {0.0f, 0.01f, 1.0f, 60.0f, 1e4f})
+    for (const float degrees : {-1.0f, 0.0f, 45.0f, 90.0f, 180.0f}) {
+      VoxelSight sight{distance, distance > 0 ? 69 / distance : 0, std::nullopt};
+      if (degrees >= 0) sight.incidence = degrees * 0.0174533f;
+      sights.push_back(sight);
+    }
+  Random random(seed);
+  for (int k = 0; k < 200; ++k) {
+    const auto distance = static_cast<float>(random.uniform(0.1, 80));
+    sights.push_back({distance, 69 / distance, static_cast<float>(random.uniform(0, 3.14159))});
+  }
+  return sights;
+}
+
+void check_one(const ViewInformation& information, const std::vector<VoxelSight>& sights,
+               Findings& findings) {
+  std::vector<float> values(sights.size(), std::nanf("")), again(values), one(1);
+  information.contributions(sights, values);
+  information.contributions(sights, again);
+  for (std::size_t k = 0; k < sights.size(); ++k) {
+    const auto says = [&](const std::string& what) {
+      return [&, what] {
+        return "of a voxel at " + std::to_string(sights[k].distance) + " m it tells " + what;
+      };
+    };
+    findings.expect("finite", std::isfinite(values[k]), says(std::to_string(values[k])));
+    findings.expect("at least 0", !(values[k] < 0), says(std::to_string(values[k])));
+    findings.expect("repeats", values[k] == again[k], says("something else when asked again"));
+    information.contributions({&sights[k], 1}, one);
+    findings.expect("alone", values[k] == one[0], says("something else when asked alone"));
+  }
+}
+
+}  // namespace
+
+std::vector<CheckResult> check_information(const Specimen<ViewInformation>& subject,
+                                           const CheckOptions& options) {
+  Findings findings;
+  const StandardSetting standard(false);
+  const std::vector<VoxelSight> sights = sights_to_ask(options.seed);
+  for (const ParameterCase& parameter_case : parameter_cases(subject.parameters, standard)) {
+    findings.set_case(parameter_case.description);
+    try {
+      const std::unique_ptr<ViewInformation> information =
+          subject.create(parameter_case.parameters);
+      findings.expect("creation", true, {});
+      findings.survives("exceptions", "its contributions",
+                        [&] { check_one(*information, sights, findings); });
+    } catch (const InputError& error) {
+      findings.expect("creation", !parameter_case.must_work,
+                      [&] { return std::string("refused: ") + error.what(); });
+    } catch (const std::exception& error) {
+      findings.fail("creation", std::string("throws: ") + error.what());
+    }
+  }
+  findings.set_case("");
+  return std::move(findings).results();
+}
+
+}  // namespace lapwing

@@ -1,0 +1,34 @@
+#include "framework/mission/players.h"
+
+namespace lapwing {
+
+ParameterTable player_table() {
+  ParameterTable table;
+  table.required_text("log", "stick log: CSV, time,forward,left")
+      .text("name", "", "absent: the log's")
+      .number("weight", 0.5, "", "of the stick against the automatic control", between(0, 1))
+      .number("strength", 4, "m/s^2", "of a full deflection", above(0))
+      .number("reach", 3, "m", "off the course that a full deflection ends", above(0))
+      .number("speed", 1, "", "of the reference, times the planned one", between(0.1, 3))
+      .number("handicap", 0, "s", "added to the score", between(-3600, 3600));
+  return table;
+}
+
+std::vector<Pilot> pilots_of(const std::vector<Parameters>& given, const DataFiles& files) {
+  std::vector<Pilot> pilots;
+  for (const Parameters& player : given) {
+    const std::string& log = player.text("log");
+    const std::filesystem::path file = files.find(log, "pilots");
+    Pilot pilot{.name = player.text("name"), .log = read_stick_log(file)};
+    if (pilot.name.empty()) pilot.name = file.stem().string();
+    pilot.weight = player.number("weight");
+    pilot.strength = player.number("strength");
+    pilot.reach = player.number("reach");
+    pilot.speed = player.number("speed");
+    pilot.handicap = player.number("handicap");
+    pilots.push_back(std::move(pilot));
+  }
+  return pilots;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,199 @@
+#include "framework/vehicle/race_flight.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/core/units.h"
+#include "framework/vehicle/flight_controller.h"
+
+namespace lapwing {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kBehind = 0.3, kAhead = 0.6;  // s of the plan, where progress is looked for
+constexpr double kProgressStep = 0.005;        // s of the plan
+constexpr double kFollow = 5;                  // 1/s, of the reference after the pilot's progress
+constexpr double kLastLeg = 1;                 // s of the plan, in which the finish counts
+
+void check(const Pilot& pilot) {
+  const auto refuse = [&](const std::string& text) {
+    throw InputError("pilot '" + pilot.name + "': " + text);
+  };
+  if (!(pilot.weight >= 0 && pilot.weight <= 1)) refuse("weight must lie between 0 and 1");
+  if (!(pilot.strength > 0) || !std::isfinite(pilot.strength))
+    refuse("strength must be above 0 m/s^2");
+  if (!(pilot.reach > 0) || !std::isfinite(pilot.reach)) refuse("reach must be above 0 m");
+  if (!(pilot.speed >= 0.1 && pilot.speed <= 3)) refuse("speed must lie between 0.1 and 3");
+  if (!std::isfinite(pilot.handicap)) refuse("handicap must be a number of seconds");
+}
+
+// Where the course leads, seen from above, and left of it; east where it stands still.
+struct CourseAxes {
+  Vector3d along, left;
+};
+CourseAxes axes_of(const Vector3d& velocity) {
+  Vector3d along(velocity.x(), velocity.y(), 0);
+  along = along.norm() > 1e-3 ? Vector3d(along.normalized()) : Vector3d::UnitX();
+  return {along, {-along.y(), along.x(), 0}};
+}
+
+class RaceController {
+ public:
+  RaceController(const Vehicle& vehicle, const ReferenceMotion& reference, const Pilot& pilot)
+      : reference_(reference),
+        pilot_(pilot),
+        mass_(vehicle.mass),
+        drag_(vehicle.drag),
+        inertia_(vehicle.inertia),
+        gains_(gains_of(vehicle)),
+        allocation_(vehicle),
+        progress_(reference.start()),
+        clock_(reference.start()) {}
+
+  double progress() const { return progress_; }
+
+  // Moves the place on the course that is nearest, and the reference that follows it.
+  void advance(const Vector3d& position, double step) {
+    const double from = std::max(reference_.start(), progress_ - kBehind);
+    const double to = std::min(reference_.finish(), progress_ + kAhead);
+    double nearest = 1e300, best = progress_;
+    for (double t = from; t < to + kProgressStep; t += kProgressStep) {
+      const double at = std::min(t, to);
+      const double distance = (reference_.at(at).position - position).squaredNorm();
+      if (distance < nearest) nearest = distance, best = at;
+    }
+    progress_ = best;
+    const double rate = std::max(0.0, pilot_.speed + kFollow * (progress_ - clock_));
+    clock_ = std::min(reference_.finish(), clock_ + rate * step);
+  }
+
+  RotorCommand command(const BodyState& state, const Eigen::Vector2d& stick, double step) {
+    const ReferencePoint wanted = reference_.at(clock_);
+    const Vector3d velocity = pilot_.speed * wanted.velocity;
+    const CourseAxes axes = axes_of(wanted.velocity);
+    Vector3d error = state.position - wanted.position;
+    error -= error.dot(axes.along) * axes.along;
+    if (!saturated_) integral_ += step * error.z();
+    const Vector3d drift = state.velocity - velocity;
+    const double stiffness = pilot_.strength / pilot_.reach;
+    Vector3d feedback = stiffness * error + 2 * std::sqrt(stiffness) * drift;
+    feedback.z() =
+        gains_.integral * integral_ + gains_.position * error.z() + gains_.velocity * drift.z();
+    const Vector3d planned = pilot_.speed * pilot_.speed * wanted.acceleration;
+    const Vector3d flown = pilot_.strength * (stick.x() * axes.along + stick.y() * axes.left);
+    const Vector3d acceleration = (1 - pilot_.weight) * planned + pilot_.weight * flown - feedback;
+    const Vector3d force = mass_ * (acceleration + Vector3d(0, 0, kGravity)) + drag_ * velocity;
+
+    const Matrix3d r = state.orientation.toRotationMatrix();
+    const Matrix3d rd = attitude_of(force, wanted.yaw).toRotationMatrix();
+    const Matrix3d skew = rd.transpose() * r - r.transpose() * rd;
+    const Vector3d error_r = 0.5 * Vector3d(skew(2, 1), skew(0, 2), skew(1, 0));
+    const Vector3d& omega = state.body_rates;
+    Eigen::Vector4d wrench;
+    wrench << force.dot(r.col(2)), -gains_.attitude.cwiseProduct(error_r) -
+                                       gains_.rates.cwiseProduct(omega) +
+                                       omega.cross(inertia_.cwiseProduct(omega));
+    const RotorCommand command = allocation_(wrench);
+    saturated_ = command.saturated;
+    return command;
+  }
+
+ private:
+  const ReferenceMotion& reference_;
+  const Pilot& pilot_;
+  double mass_, drag_;
+  Vector3d inertia_;
+  ControllerGains gains_;
+  RotorAllocation allocation_;
+  double progress_, clock_;  // s of the plan: of the pilot, and of the reference that follows
+  double integral_ = 0;      // m s, of the height
+  bool saturated_ = false;
+};
+
+BodyState starting_state(const ReferenceMotion& reference, const Vehicle& vehicle, double speed) {
+  const ReferencePoint start = reference.at(reference.start());
+  BodyState state;
+  state.position = start.position;
+  state.velocity = speed * start.velocity;
+  state.orientation = attitude_of(reference.force(start), start.yaw);
+  state.rotor_thrusts.setConstant(vehicle.mass * kGravity / 4);
+  return state;
+}
+
+}  // namespace
+
+const char* to_string(RaceEnd end) {
+  switch (end) {
+    case RaceEnd::finished:
+      return "finished";
+    case RaceEnd::off_course:
+      return "left the course";
+    case RaceEnd::turned_over:
+      return "turned over";
+    case RaceEnd::time_up:
+      break;
+  }
+  return "ran out of time";
+}
+
+RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilot& pilot,
+                    const RaceFlightLimits& limits, const CancellationToken* cancellation) {
+  const auto logged = [&](double time, const BodyState&, double) { return pilot.log.at(time); };
+  return fly_race(course, vehicle, pilot, logged, limits, cancellation);
+}
+
+RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilot& pilot,
+                    const StickSource& source, const RaceFlightLimits& limits,
+                    const CancellationToken* cancellation) {
+  check(pilot);
+  const ReferenceMotion reference(course, vehicle);
+  RaceController controller(vehicle, reference, pilot);
+  const RotorBody body(vehicle);
+  BodyState state = starting_state(reference, vehicle, pilot.speed);
+  const Vector3d finish = reference.at(reference.finish()).position;
+  const double most = limits.time_factor * (reference.finish() - reference.start()) / pilot.speed;
+  const auto every = std::max<std::int64_t>(1, std::llround(limits.sample_step / limits.step));
+
+  RaceFlight flight;
+  double sum = 0;
+  std::int64_t saturated = 0, flown = 0;
+  for (std::int64_t k = 0;; ++k) {
+    if (cancellation && k % 1024 == 0 && cancellation->cancelled()) throw Cancelled();
+    const double time = static_cast<double>(k) * limits.step;
+    controller.advance(state.position, limits.step);
+    const Vector3d place = reference.at(controller.progress()).position;
+    const double deviation = (state.position - place).norm();
+    const Eigen::Vector2d stick = source(time, state, controller.progress());
+    const bool there = controller.progress() >= reference.finish() - kLastLeg &&
+                       (state.position - finish).norm() <= limits.finish_radius;
+    const bool over = (state.orientation * Vector3d::UnitZ()).z() < 0;
+    const bool lost = !(deviation <= limits.off_course);
+    const bool ended = there || over || lost || time >= most;
+    if (ended)
+      flight.end = there  ? RaceEnd::finished
+                   : lost ? RaceEnd::off_course
+                   : over ? RaceEnd::turned_over
+                          : RaceEnd::time_up;
+    if (!(deviation <= flight.deviation_worst))
+      flight.deviation_worst = deviation, flight.deviation_at = time;
+    sum += deviation;
+    ++flown;
+    flight.time = time;
+    if (k % every == 0 || ended)
+      flight.samples.push_back({time, state, place, controller.progress(), deviation, stick});
+    if (ended) break;
+    const RotorCommand command = controller.command(state, stick, limits.step);
+    saturated += command.saturated;
+    state = body.after(state, command.thrusts, Vector3d::Zero(), limits.step);
+  }
+  flight.deviation_mean = sum / static_cast<double>(flown);
+  flight.saturated_share =
+      static_cast<double>(saturated) / static_cast<double>(std::max<std::int64_t>(1, flown - 1));
+  return flight;
+}
+
+}  // namespace lapwing

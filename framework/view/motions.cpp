@@ -1,0 +1,106 @@
+#include "framework/view/motions.h"
+
+#include <algorithm>
+
+#include "framework/core/error.h"
+#include "framework/core/parallel.h"
+#include "framework/core/random.h"
+
+namespace lapwing {
+namespace {
+
+using Pair = std::pair<int, int>;
+
+// Every viewpoint with its nearest neighbours, each pair once, ascending.
+std::vector<Pair> neighbour_pairs(const std::vector<Viewpoint>& viewpoints, int neighbours,
+                                  int threads) {
+  const std::size_t count = viewpoints.size();
+  std::vector<std::vector<Pair>> found(count);
+  parallel_for(count, threads, [&](std::size_t k) {
+    std::vector<std::pair<double, int>> by_distance;
+    by_distance.reserve(count);
+    for (std::size_t j = 0; j < count; ++j)
+      if (j != k)
+        by_distance.emplace_back((viewpoints[j].position - viewpoints[k].position).squaredNorm(),
+                                 static_cast<int>(j));
+    const auto most = std::min<std::size_t>(static_cast<std::size_t>(neighbours), count - 1);
+    std::partial_sort(by_distance.begin(), by_distance.begin() + static_cast<std::ptrdiff_t>(most),
+                      by_distance.end());
+    for (std::size_t i = 0; i < most; ++i)
+      found[k].push_back(std::minmax(static_cast<int>(k), by_distance[i].second));
+  });
+  std::vector<Pair> pairs;
+  for (const auto& list : found) pairs.insert(pairs.end(), list.begin(), list.end());
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+enum class Outcome { unmatched, blocked, straight, planned, cancelled };
+
+}  // namespace
+
+MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& viewpoints,
+                         const std::vector<std::vector<VoxelKey>>& seen,
+                         const MotionSettings& settings, std::uint64_t seed, int threads,
+                         const CancellationToken* cancellation) {
+  if (settings.alpha > 0 && seen.size() != viewpoints.size())
+    throw Error("find_motions: what is seen belongs to other viewpoints");
+  if (settings.neighbours < 1) throw InputError("motions: at least 1 neighbour must be tried");
+  if (!(settings.alpha >= 0 && settings.alpha <= 1))
+    throw InputError("motions: alpha must lie between 0 and 1");
+  if (!(settings.longest_detour >= 1))
+    throw InputError("motions: the longest detour must be at least 1");
+  MotionGraph graph;
+  if (viewpoints.size() < 2) return graph;
+  const std::vector<Pair> pairs = neighbour_pairs(viewpoints, settings.neighbours, threads);
+  std::vector<Outcome> outcomes(pairs.size(), Outcome::blocked);
+  std::vector<ViewMotion> motions(pairs.size());
+  const Random seeds(seed);
+  parallel_for(pairs.size(), threads, [&](std::size_t k) {
+    if (cancellation && cancellation->cancelled()) {
+      outcomes[k] = Outcome::cancelled;
+      return;
+    }
+    const auto [a, b] = pairs[k];
+    const auto at = [&](int i) -> const Viewpoint& {
+      return viewpoints[static_cast<std::size_t>(i)];
+    };
+    if (settings.alpha > 0 && !matchable(seen[static_cast<std::size_t>(a)],
+                                         seen[static_cast<std::size_t>(b)], settings.alpha)) {
+      outcomes[k] = Outcome::unmatched;
+      return;
+    }
+    const Eigen::Vector3d& from = at(a).position;
+    const Eigen::Vector3d& to = at(b).position;
+    const double straight = (to - from).norm();
+    if (space.swept_box_free(from, to, settings.half)) {
+      outcomes[k] = Outcome::straight;
+      motions[k] = {a, b, {from, to}, straight};
+      return;
+    }
+    if (!settings.planner) return;
+    PathProblem problem{&space, from, to, settings.half, settings.allowed};
+    PathRequest request;
+    request.seed = seeds.split(k).bits();
+    request.cancellation = cancellation;
+    PathResult path = settings.planner->plan(problem, request);
+    if (path.report.status != PathStatus::found ||
+        path.report.length > settings.longest_detour * straight)
+      return;
+    outcomes[k] = Outcome::planned;
+    motions[k] = {a, b, std::move(path.points), path.report.length};
+  });
+  graph.tried = static_cast<std::int64_t>(pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (outcomes[k] == Outcome::cancelled) throw Cancelled();
+    graph.unmatched += outcomes[k] == Outcome::unmatched;
+    graph.blocked += outcomes[k] == Outcome::blocked;
+    graph.planned += outcomes[k] == Outcome::planned;
+    if (outcomes[k] == Outcome::straight || outcomes[k] == Outcome::planned)
+      graph.motions.push_back(std::move(motions[k]));
+  }
+  return graph;
+}
+
+}  // namespace lapwing

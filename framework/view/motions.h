@@ -1,0 +1,50 @@
+// Ways between viewpoints that a vehicle can fly and whose pictures can be matched (thesis 4.4.4,
+// algorithm 4; reading 4.5).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "framework/core/progress.h"
+#include "framework/path/path_planner.h"
+#include "framework/view/viewpoint.h"
+#include "framework/view/visible_voxels.h"
+
+namespace lapwing {
+
+struct MotionSettings {
+  Eigen::AlignedBox3d allowed;
+  Eigen::Vector3d half = {1, 1, 0.5};  // m, half edges of the vehicle's box
+  int neighbours = 12;                 // that each viewpoint is tried with (reading 4.11)
+  double alpha = 0.4;                  // of (4.8); 0: every pair can be matched
+  // Where the straight line is blocked; null: such neighbours stay apart.
+  const PathPlanner* planner = nullptr;
+  // A way round that is longer than this many straight lines is none.
+  double longest_detour = 4;
+};
+
+// Between two viewpoints, both ways.
+struct ViewMotion {
+  int a = 0, b = 0;                     // a < b
+  std::vector<Eigen::Vector3d> points;  // from a to b, both included
+  double length = 0;                    // m
+};
+
+struct MotionGraph {
+  std::vector<ViewMotion> motions;  // by a, then b
+  std::int64_t tried = 0;           // pairs of neighbours
+  std::int64_t unmatched = 0;       // of them: their pictures share too little
+  std::int64_t blocked = 0;         // no way was found
+  std::int64_t planned = 0;         // motions that are not straight
+};
+
+// `seen`: what every viewpoint sees at the common low resolution, in the order of keys. Pairs are
+// shared among threads; the graph is the same for any number. Throws InputError for numbers of
+// neighbours and settings that make no sense, Error when the sizes differ.
+MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& viewpoints,
+                         const std::vector<std::vector<VoxelKey>>& seen,
+                         const MotionSettings& settings, std::uint64_t seed, int threads,
+                         const CancellationToken* cancellation = nullptr);
+
+}  // namespace lapwing

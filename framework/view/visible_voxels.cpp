@@ -1,0 +1,126 @@
+#include "framework/view/visible_voxels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::Vector3d;
+
+// The voxels whose centres lie in a box.
+VoxelBox voxels_within(const Eigen::AlignedBox3d& box, const VoxelGrid& grid) {
+  std::array<int, 3> lower, upper;
+  for (int axis = 0; axis < 3; ++axis) {
+    lower[axis] = grid.index(box.min()[axis]);
+    if (grid.center(lower[axis]) < box.min()[axis]) ++lower[axis];
+    upper[axis] = grid.index(box.max()[axis]);
+    if (grid.center(upper[axis]) > box.max()[axis]) --upper[axis];
+    if (lower[axis] > upper[axis])
+      throw InputError("the region of interest is thinner than a voxel of the map");
+  }
+  const auto key = [](const std::array<int, 3>& i) {
+    return VoxelKey{static_cast<std::uint16_t>(i[0]), static_cast<std::uint16_t>(i[1]),
+                    static_cast<std::uint16_t>(i[2])};
+  };
+  return {key(lower), key(upper)};
+}
+
+// The same view with `across` pixels a row.
+Pinhole coarser(const Pinhole& fine, int across) {
+  const double share = static_cast<double>(across) / fine.width;
+  const int down = std::max(1, static_cast<int>(std::lround(fine.height * share)));
+  return {across,
+          down,
+          fine.focal_x * share,
+          fine.focal_y * share,
+          (fine.principal_x + 0.5) * share - 0.5,
+          (fine.principal_y + 0.5) * share - 0.5};
+}
+
+}  // namespace
+
+VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<const MeshScene> prior,
+                             SightSettings settings)
+    : map_(std::move(map)), prior_(std::move(prior)), settings_(std::move(settings)) {
+  if (!map_) throw Error("VisibleVoxels: no map");
+  check_camera(settings_.pinhole, settings_.range);
+  if (settings_.region.isEmpty() || !settings_.region.min().allFinite() ||
+      !settings_.region.max().allFinite())
+    throw InputError("the region of interest is empty");
+  const Vector3d reach = Vector3d::Constant(settings_.range);
+  if (!map_->grid().contains(settings_.region.min() - reach) ||
+      !map_->grid().contains(settings_.region.max() + reach))
+    throw InputError("the region of interest lies too far out for a map of this resolution");
+  region_ = voxels_within(settings_.region, map_->grid());
+}
+
+std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
+                                               const Pinhole& pinhole) const {
+  const Pose camera = viewpoint.camera();
+  const Eigen::Matrix3d r = camera.orientation.toRotationMatrix();
+  std::vector<MapRay> rays(static_cast<std::size_t>(pinhole.width));
+  std::vector<MapRayHit> hits(rays.size());
+  std::vector<VoxelKey> keys;
+  for (int y = 0; y < pinhole.height; ++y) {
+    for (int x = 0; x < pinhole.width; ++x)
+      rays[static_cast<std::size_t>(x)] = {
+          camera.position, (r * pixel_ray(pinhole, x, y)).normalized(), settings_.range};
+    map_->cast(rays, hits);
+    for (const MapRayHit& hit : hits) {
+      if (hit.state == VoxelState::free || !region_.contains(hit.voxel)) continue;
+      if (keys.empty() || keys.back() != hit.voxel) keys.push_back(hit.voxel);
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
+std::vector<SeenVoxel> VisibleVoxels::seen_from(const Viewpoint& viewpoint) const {
+  const double edge = map_->grid().resolution();
+  std::vector<SeenVoxel> seen;
+  for (const VoxelKey& key : keys_from(viewpoint, settings_.pinhole)) {
+    const Vector3d towards = map_->grid().center(key) - viewpoint.position;
+    const double distance = towards.norm();
+    VoxelSight sight{static_cast<float>(distance), 0, std::nullopt};
+    if (distance > 0) {
+      sight.pixels = static_cast<float>(settings_.pinhole.focal_x * edge / distance);
+      const Vector3d direction = towards / distance;
+      if (prior_) {
+        const MeshHit hit =
+            prior_->cast({viewpoint.position, direction, distance + settings_.normal_tolerance});
+        if (hit.triangle >= 0 && std::abs(hit.distance - distance) < settings_.normal_tolerance)
+          sight.incidence = static_cast<float>(
+              std::atan2(direction.cross(hit.normal).norm(), -direction.dot(hit.normal)));
+      }
+    }
+    seen.push_back({key, sight});
+  }
+  return seen;
+}
+
+std::vector<VoxelKey> VisibleVoxels::seen_coarsely_from(const Viewpoint& viewpoint,
+                                                        int across) const {
+  if (across < 1 || across > settings_.pinhole.width)
+    throw InputError("a coarse view must have from 1 to as many pixels across as the camera");
+  return keys_from(viewpoint, coarser(settings_.pinhole, across));
+}
+
+bool matchable(const std::vector<VoxelKey>& a, const std::vector<VoxelKey>& b, double alpha) {
+  if (a.empty() || b.empty()) return false;
+  std::size_t shared = 0;
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (*i == *j)
+      ++shared, ++i, ++j;
+    else if (*i < *j)
+      ++i;
+    else
+      ++j;
+  }
+  return static_cast<double>(shared) >= alpha * static_cast<double>(a.size() + b.size()) / 2;
+}
+
+}  // namespace lapwing

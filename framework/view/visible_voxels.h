@@ -1,0 +1,60 @@
+// Which voxels a viewpoint sees in a map, and how (thesis 4.4.4).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "framework/geometry/mesh_scene.h"
+#include "framework/map/map.h"
+#include "framework/view/view_information.h"
+#include "framework/view/viewpoint.h"
+
+namespace lapwing {
+
+struct SightSettings {
+  Pinhole pinhole{600, 450, 345, 345, 299.5, 224.5};  // thesis 4.4.4
+  double range = 60;                                  // m, of the rays (reading 4.11)
+  // Only voxels with their centre inside count (reading 4.1).
+  Eigen::AlignedBox3d region;
+  // m: where camera to surface and camera to voxel differ by as much or more, the surface that the
+  // ray meets is not the voxel's, and its normal is not known (reading 4.3).
+  double normal_tolerance = 0.5;
+};
+
+struct SeenVoxel {
+  VoxelKey voxel;
+  VoxelSight sight;
+};
+
+// Asks the map for the first voxel that is not free on a ray through every pixel, and the prior
+// surface, which may be missing, for the normal on the way to each voxel's centre. Both are kept,
+// and nobody may change them meanwhile. Thread-safe.
+class VisibleVoxels {
+ public:
+  // InputError for a camera without pixels or focal length, a range that is not above 0, an empty
+  // region, or a range that reaches out of the largest map from the region.
+  VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<const MeshScene> prior,
+                SightSettings settings);
+
+  const SightSettings& settings() const { return settings_; }
+  const Map& map() const { return *map_; }
+
+  // In the order of keys, each once: occupied and unknown voxels of the region.
+  std::vector<SeenVoxel> seen_from(const Viewpoint& viewpoint) const;
+  // The keys alone, with a smaller image of the same view: `across` pixels wide.
+  std::vector<VoxelKey> seen_coarsely_from(const Viewpoint& viewpoint, int across) const;
+
+ private:
+  std::vector<VoxelKey> keys_from(const Viewpoint& viewpoint, const Pinhole& pinhole) const;
+
+  std::shared_ptr<const Map> map_;
+  std::shared_ptr<const MeshScene> prior_;
+  SightSettings settings_;
+  VoxelBox region_;
+};
+
+// Whether two views can be matched: they share at least `alpha` of the mean of what they see (4.8).
+// Two views that see nothing are not. Both lists in order, each key once.
+bool matchable(const std::vector<VoxelKey>& a, const std::vector<VoxelKey>& b, double alpha);
+
+}  // namespace lapwing

@@ -1,0 +1,159 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "framework/core/units.h"
+#include "framework/path/free_space.h"
+#include "framework/view/candidates.h"
+#include "framework/view/motions.h"
+#include "tests/view/view_world.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+CandidateSettings settings() {
+  CandidateSettings s;
+  s.region = AlignedBox3d(Vector3d(4, -4, 0), Vector3d(6, 4, 9));
+  s.allowed = AlignedBox3d(Vector3d(-10, -10, 0), Vector3d(10, 10, 10));
+  s.half = {0.5, 0.5, 0.25};
+  return s;
+}
+
+const std::vector<Viewpoint> kStart{{{-5, 0, 5}, 0, 0}};
+
+Candidates generate(const CandidateSettings& s, std::uint64_t seed = 1) {
+  const auto space = free_space_of(std::shared_ptr<const Map>(walled_room()));
+  return generate_candidates(*space, kStart, s, seed);
+}
+
+TEST(Candidates, AreFreeAllowedApartAndLookDown) {
+  const auto space = free_space_of(std::shared_ptr<const Map>(walled_room()));
+  const CandidateSettings s = settings();
+  const Candidates made = generate(s);
+  ASSERT_GT(made.viewpoints.size(), 200u);
+  for (std::size_t k = 0; k < made.viewpoints.size(); ++k) {
+    const Viewpoint& v = made.viewpoints[k];
+    EXPECT_TRUE(s.allowed.contains(v.position));
+    EXPECT_TRUE(space->swept_box_free(v.position, v.position, s.half));
+    EXPECT_LE(v.pitch, s.pitch_max);
+    EXPECT_GE(v.pitch, s.pitch_min);
+    for (std::size_t j = 0; j < k; ++j) {
+      const Viewpoint& w = made.viewpoints[j];
+      EXPECT_TRUE((v.position - w.position).norm() >= s.distance_apart ||
+                  angle_between(v, w) >= s.angle_apart);
+    }
+  }
+}
+
+TEST(Candidates, BehindTheWallAreReachedRoundIt) {
+  int behind = 0;
+  for (const Viewpoint& v : generate(settings()).viewpoints) behind += v.position.x() > 6;
+  EXPECT_GT(behind, 20);
+}
+
+TEST(Candidates, AreDenserNearTheRegion) {
+  CandidateSettings s = settings();
+  s.step = 1.2;
+  s.step_growth = 0.4;
+  int near = 0, far = 0;
+  for (const Viewpoint& v : generate(s).viewpoints) {
+    const double x = v.position.x();
+    near += x > 1 && x < 5;
+    far += x > -9 && x < -5;
+  }
+  EXPECT_GT(near, 2 * far);
+}
+
+TEST(Candidates, LookMostlyTowardsTheRegion) {
+  int towards = 0, all = 0;
+  for (const Viewpoint& v : generate(settings()).viewpoints) {
+    if (v.position.x() > 0) continue;
+    ++all;
+    towards += v.direction().x() > 0;
+  }
+  EXPECT_GT(towards, 0.95 * all);
+}
+
+TEST(Candidates, AreTheSameForASeedAndOthersForAnother) {
+  const auto at = [](const Candidates& made) {
+    std::vector<double> numbers;
+    for (const Viewpoint& v : made.viewpoints) {
+      numbers.push_back(v.position.sum());
+      numbers.push_back(v.yaw);
+    }
+    return numbers;
+  };
+  EXPECT_EQ(at(generate(settings(), 4)), at(generate(settings(), 4)));
+  EXPECT_NE(at(generate(settings(), 4)), at(generate(settings(), 5)));
+}
+
+TEST(Candidates, StopAtTheMostAndDrawUpToTheLeast) {
+  CandidateSettings s = settings();
+  s.most = 50;
+  EXPECT_EQ(generate(s).viewpoints.size(), 50u);
+  s.most = 1000;
+  s.step = 100;  // nothing to grow to
+  EXPECT_EQ(generate(s).viewpoints.size(), 1u);
+  s.least = 30;
+  EXPECT_EQ(generate(s).viewpoints.size(), 30u);
+}
+
+std::string refusal(const std::vector<Viewpoint>& given, const CandidateSettings& s) {
+  const auto space = free_space_of(std::shared_ptr<const Map>(walled_room()));
+  try {
+    generate_candidates(*space, given, s, 1);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Candidates, NoFreeStartIsSaid) {
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal({}, settings()), HasSubstr("no viewpoint to begin with"));
+  EXPECT_THAT(refusal({kStart[0], {{5.2, 0, 5}, 0, 0}}, settings()),
+              HasSubstr("viewpoint 2 to begin with is not in free space"));
+  EXPECT_THAT(refusal({{{0, 0, 50}, 0, 0}}, settings()), HasSubstr("outside the room"));
+  CandidateSettings s = settings();
+  s.region = AlignedBox3d();
+  EXPECT_THAT(refusal(kStart, s), HasSubstr("region of interest is empty"));
+}
+
+TEST(Motions, JoinNeighboursThatAreFreeAndMatch) {
+  const auto map = walled_room();
+  const auto space = free_space_of(std::shared_ptr<const Map>(map));
+  const std::vector<Viewpoint> viewpoints = generate(settings()).viewpoints;
+  SightSettings sight;
+  sight.pinhole = {120, 90, 69, 69, 59.5, 44.5};
+  sight.region = AlignedBox3d(Vector3d(4, -4, 0), Vector3d(6, 4, 9));
+  const VisibleVoxels visible(map, nullptr, sight);
+  std::vector<std::vector<VoxelKey>> seen;
+  for (const Viewpoint& v : viewpoints) seen.push_back(visible.seen_coarsely_from(v, 60));
+  MotionSettings s;
+  s.allowed = settings().allowed;
+  s.half = settings().half;
+  const MotionGraph graph = find_motions(*space, viewpoints, seen, s, 1, 2);
+  ASSERT_GT(graph.motions.size(), viewpoints.size());
+  EXPECT_EQ(graph.tried,
+            graph.unmatched + graph.blocked + static_cast<std::int64_t>(graph.motions.size()));
+  EXPECT_GT(graph.unmatched, 0);
+  EXPECT_GT(graph.blocked, 0);
+  for (const ViewMotion& m : graph.motions) {
+    EXPECT_LT(m.a, m.b);
+    EXPECT_TRUE(space->swept_box_free(m.points.front(), m.points.back(), s.half));
+    EXPECT_TRUE(matchable(seen[static_cast<std::size_t>(m.a)], seen[static_cast<std::size_t>(m.b)],
+                          s.alpha));
+    EXPECT_NEAR(m.length, (m.points.back() - m.points.front()).norm(), 1e-12);
+  }
+  const MotionGraph alone = find_motions(*space, viewpoints, seen, s, 1, 1);
+  ASSERT_EQ(alone.motions.size(), graph.motions.size());
+  for (std::size_t k = 0; k < alone.motions.size(); ++k) {
+    EXPECT_EQ(alone.motions[k].a, graph.motions[k].a);
+    EXPECT_EQ(alone.motions[k].b, graph.motions[k].b);
+  }
+}
+
+}  // namespace
+}  // namespace lapwing
