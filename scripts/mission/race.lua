@@ -62,7 +62,7 @@ local DECLARATIONS = {
   number("margin", 0.02, "m", "kept from rims and floor", { minimum = 0, maximum = 10 }),
   { name = "closed_loop", type = "choice", default = "required",
     choices = { "required", "reported" }, summary = "whether tracking under control must hold" },
-  number("step", 0.06, "s", "between stages of the first guess", { above = 0, maximum = 1 }),
+  number("step", 0.05, "s", "between stages of the first guess", { above = 0, maximum = 1 }),
   { name = "refinements", type = "integer", default = 4, minimum = 0, maximum = 10,
     summary = "times that coarse legs get twice the stages" },
   { name = "weights", type = "table", summary = "of the cost, beside the time in s", table = {
@@ -71,6 +71,7 @@ local DECLARATIONS = {
     default = "ipopt", summary = "trajectory solver; iqp suits timing = profile" },
 }
 
+local NEARLY = 1e-4     -- first barrier parameter from there
 local COARSE = 0.7      -- share of the allowed defect beyond which a leg gets twice the stages
 
 local function solved(solution)
@@ -139,6 +140,15 @@ local function check_battery(run, made, vehicle)
   end
 end
 
+-- For a problem that begins from a solution of its own on fewer stages.
+local function finishing(solver)
+  if solver.type ~= "ipopt" then return solver end
+  local copy = {}
+  for key, value in pairs(solver) do copy[key] = value end
+  copy.first_barrier = math.min(copy.first_barrier, NEARLY)
+  return copy
+end
+
 local function flown(run)
   local o = run.options
   if o.timing == "profile" and o.model == "quadrotor_full" then
@@ -150,11 +160,20 @@ local function flown(run)
   check_battery(run, made, vehicle)
   course.task = task_of(course)
   local solution, plan
+  if o.model == "quadrotor_full" then
+    -- A point mass finds the way and the times from straight lines in a few iterations; the whole
+    -- quadrotor begins from there.
+    local point = run:solve(problem.make(run, course, vehicle, made, "quadrotor"), o.solver)
+    if solved(point) then
+      problem.take_times(made, point, o)
+      solution = point
+    end
+  end
   for round = 0, o.refinements do
     run:progress(round / (o.refinements + 1), "solving")
-    local p = problem.make(run, course, vehicle, made, solution)
-    local finer = run:solve(p, o.solver)
-    if solution and not solved(finer) then break end  -- the coarser one stands
+    local p = problem.make(run, course, vehicle, made, o.model, solution)
+    local finer = run:solve(p, plan and finishing(o.solver) or o.solver)
+    if plan and not solved(finer) then break end  -- the coarser one stands
     solution = finer
     plan = plan_of(run, course, solution)
     if not solved(solution) or run:cancelled() or o.timing == "profile" then break end
@@ -169,6 +188,8 @@ end
 function M.course(given)
   local name = given.name
   given.name = nil
+  -- From a good first guess the barrier had better not rise again.
+  given.solver = given.solver or { type = "ipopt", mu_strategy = "monotone" }
   return { kind = "race", name = name, options = lapwing.options(DECLARATIONS, given),
            plan = flown }
 end
