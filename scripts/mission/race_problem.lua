@@ -135,9 +135,9 @@ local function floor_of(made, floor)
                          high[1] + AROUND, high[2] + AROUND, low[1] - AROUND, high[2] + AROUND } } }
 end
 
-local function add_model(p, o, model)
+local function add_model(p, o, model, softer)
   local profile = o.timing == "profile"
-  local smoothness = o.weights.smoothness * (o.time and IN_TIME or 1)
+  local smoothness = softer * o.weights.smoothness * (o.time and IN_TIME or 1)
   if model == "quadrotor_full" then
     p:add_model { type = "quadrotor_full", thrust_share = o.thrust, rate_share = o.rate_share }
     p:add_cost { type = "derivative", name = "smoothness", block = "rotor_thrusts", order = 1,
@@ -200,7 +200,7 @@ function problem.make(run, course, vehicle, made, model, coarse)
   end
   local p = run:problem { vehicle = vehicle, legs = legs, periodic = course.closed,
                           environment = { zones = floor_of(made, o.floor) } }
-  add_model(p, o, model)
+  add_model(p, o, model, made.softer or 1)
   if free then p:add_cost { type = "flight_time", weight = 1 } end
   if free and o.time then
     p:add_constraint { type = "hard_keyframe", name = "time", block = "time",
