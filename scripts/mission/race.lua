@@ -44,8 +44,8 @@ local DECLARATIONS = {
               number("curvature", 0.1, "", "largest, 1/m", { minimum = 0, maximum = 10 }),
               number("spacing", 8, "m", "between its keyframes", { above = 0 }),
               number("height", 3, "m", "of flight, within half of itself", { above = 0 }) } },
-  { name = "start", type = "numbers", size = 3, unit = "m", summary = "at rest; absent: the first" },
-  { name = "finish", type = "numbers", size = 3, unit = "m", summary = "at rest; absent: the last" },
+  { name = "start", type = "numbers", size = 3, unit = "m", summary = "at rest; else the first" },
+  { name = "finish", type = "numbers", size = 3, unit = "m", summary = "at rest; else the last" },
   { name = "closed", type = "boolean", default = false,
     summary = "flown round and round: the end closes onto the start" },
   { name = "laps", type = "integer", default = 1, minimum = 1, maximum = 1000, summary = "rounds" },
@@ -170,6 +170,11 @@ local function flown(run)
     run:fail("timing", "'profile' is for the model 'quadrotor'; 'quadrotor_full' needs 'optimal'")
   end
   local vehicle = run:vehicle(o.vehicle)
+  if o.model == "quadrotor_full"
+     and o.thrust * 4 * vehicle.rotor_thrust_max <= 9.80665 * vehicle.mass then
+    run:fail("thrust", string.format("%.3g of the thrust does not carry vehicle '%s'", o.thrust,
+                                     vehicle.name))
+  end
   local course = courses.read(run)
   local made = problem.legs(course, vehicle, o)
   check_battery(run, made, vehicle)

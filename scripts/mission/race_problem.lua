@@ -65,7 +65,9 @@ local function stations(course)
   local made = { points = {}, at = {} }
   local function go(place)
     local last = made.points[#made.points]
-    if not last or courses.distance(last, place) > SAME then made.points[#made.points + 1] = place end
+    if not last or courses.distance(last, place) > SAME then
+      made.points[#made.points + 1] = place
+    end
     return #made.points - 1
   end
   local first = course.gates[1]

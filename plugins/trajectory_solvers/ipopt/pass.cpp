@@ -283,8 +283,7 @@ void set_options(::Ipopt::OptionsList& options, const PassRequest& pass, bool qu
   if (!pass.warm && settings.first_barrier < kUsualBarrier) {
     // A first guess worth keeping is not pushed far from its bounds.
     options.SetNumericValue("mu_init", settings.first_barrier);
-    for (const char* push :
-         {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"})
+    for (const char* push : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"})
       options.SetNumericValue(push, std::min(1e-2, settings.first_barrier));
   }
   if (!pass.warm) return;

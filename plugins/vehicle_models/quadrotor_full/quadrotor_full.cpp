@@ -72,9 +72,7 @@ class QuadrotorFull final : public VehicleModel {
     for (int r = 0; r < 3; ++r)
       for (int i = 0; i < 4; ++i) moment_[r][i] = mixer(r + 1, i) / inertia_[r];
     thrust_min_ = vehicle.rotors.thrust_min;
-    thrust_max_ = thrust_share_ * vehicle.rotors.thrust_max;
-    if (!(4 * thrust_max_ > vehicle.mass * kGravity))
-      throw InputError("thrust_share leaves vehicle '" + vehicle.name + "' too weak to hover");
+    thrust_max_ = std::max(thrust_min_, thrust_share_ * vehicle.rotors.thrust_max);
     tilt_rate_ = rate_share_ * vehicle.tilt_rate_max.value_or(kInfinity);
     yaw_rate_ = rate_share_ * vehicle.yaw_rate_max;
     climb_ = vehicle.climb_speed_max;
