@@ -62,7 +62,7 @@ local DECLARATIONS = {
   number("margin", 0.02, "m", "kept from rims and floor", { minimum = 0, maximum = 10 }),
   { name = "closed_loop", type = "choice", default = "required",
     choices = { "required", "reported" }, summary = "whether tracking under control must hold" },
-  number("step", 0.05, "s", "between stages of the first guess", { above = 0, maximum = 1 }),
+  number("step", 0.06, "s", "between stages of the first guess", { above = 0, maximum = 1 }),
   { name = "refinements", type = "integer", default = 4, minimum = 0, maximum = 10,
     summary = "times that coarse legs get twice the stages" },
   { name = "weights", type = "table", summary = "of the cost, beside the time in s", table = {
