@@ -11,6 +11,7 @@ return race.course {
   thrust = 1,
   closed_loop = "reported",
   floor = 0.3,
+  step = 0.05,
   start = { -6, 4, 1.5 },
   finish = { 5, 0, 1.5 },
   gates = {

@@ -20,9 +20,9 @@ struct Leg {
 // A free step is a variable, equal for all stages of a leg. A leg ends where the next one begins:
 // on a stage, which is where keyframes of free time stand.
 struct Horizon {
-  int stages = 0;          // at least 2
-  double step = 0;         // s; with legs their mean
-  bool step_free = false;  // some step is a variable
+  int stages = 0;              // at least 2
+  double step = 0;             // s; with legs their mean
+  bool step_free = false;      // some step is a variable
   std::vector<Leg> legs = {};  // empty: one leg of `stages` and `step`
   // The last stage closes onto the first: every state is the same, but yaw, which may have made
   // whole turns (counter-clockwise).

@@ -367,7 +367,9 @@ Trajectory TrajectoryProblem::trajectory(const Stages& at) const {
   result.samples.resize(columns.horizon.stages);
   for (int i = 0; i < columns.horizon.stages; ++i) {
     Sample& sample = result.samples[i];
-    sample.time = time(at, i);
+    // Of free steps the sum: whatever a solver leaves behind, times increase.
+    const bool sum = columns.horizon.step_free && i > 0;
+    sample.time = sum ? result.samples[i - 1].time + columns.step(at, i - 1) : time(at, i);
     for (const BoundModel& model : columns.models) {
       std::vector<double> numbers(model.arguments());
       columns.gather_model(model, at, i, 0.0, numbers.data());

@@ -14,12 +14,12 @@ namespace lapwing {
 
 struct GateTask {
   std::string name;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();    // m, world: middle
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();   // unit; zero for a ball
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();         // unit, across the direction
-  std::vector<Eigen::Vector2d> corners;                  // m, left and up; counter-clockwise, convex
-  double radius = 0;                                     // m, of a ball
-  double tunnel_length = 0;                              // m
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();   // m, world: middle
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit; zero for a ball
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();        // unit, across the direction
+  std::vector<Eigen::Vector2d> corners;                 // m, left and up; counter-clockwise, convex
+  double radius = 0;                                    // m, of a ball
+  double tunnel_length = 0;                             // m
   bool ball() const { return corners.empty(); }
   Eigen::Vector3d left() const { return up.cross(direction); }
 };

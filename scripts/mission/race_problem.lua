@@ -9,6 +9,7 @@ local HOVER = 1             -- s, of a course that is a single place
 local FEWEST = 4            -- intervals of a leg
 local FAR = 1e4             -- m
 local AROUND = 100          -- m, of floor around the course
+local PIECES = 20           -- of a leg, in the first guess of its time
 local GUESS = 0.5           -- share of the acceleration that the first guess uses
 local PROFILE = 0.8         -- share of speed and acceleration that a timing by profile uses
 local IN_TIME = 1e4         -- times the weight of smoothness where the time is given
@@ -23,15 +24,40 @@ local function strength(vehicle, o)
                                    vehicle.acceleration_down) }
 end
 
--- Seconds from rest to rest along a straight line, at shares of speed and acceleration.
-local function straight_time(from, to, limits, speed_share, acceleration_share)
+-- Seconds from rest to rest along a straight line, at a share of speed and acceleration.
+local function straight_time(from, to, limits)
   local across = math.sqrt((to[1] - from[1]) ^ 2 + (to[2] - from[2]) ^ 2)
   local up = to[3] - from[3]
   local d = courses.distance(from, to)
   local slowest = math.max(across / limits.across, up > 0 and up / limits.up or -up / limits.down)
-  local speed, a = speed_share * d / slowest, acceleration_share * limits.acceleration
+  local speed, a = PROFILE * d / slowest, PROFILE * limits.acceleration
   if d <= speed * speed / a then return 2 * math.sqrt(d / a) end
   return d / speed + speed / a
+end
+
+-- Seconds for every leg along straight lines: speeding up from rest, slowing down to rest, and in
+-- between the speed at which the acceleration turns a leg of mean length into the next one.
+local function flowing_times(made, course, limits)
+  local a, length, ends = GUESS * limits.acceleration, 0, { 0 }
+  for i = 2, #made.points do
+    length = length + courses.distance(made.points[i - 1], made.points[i])
+    ends[i] = length
+  end
+  local cruise = math.min(limits.across, limits.up, limits.down,
+                          math.sqrt(a * length / (#made.points - 1)))
+  local times = {}
+  for i = 2, #made.points do
+    local step, time = (ends[i] - ends[i - 1]) / PIECES, 0
+    for k = 1, PIECES do
+      local at = ends[i - 1] + (k - 0.5) * step
+      local speed = cruise
+      if not course.closed then speed = math.min(speed, math.sqrt(2 * a * at)) end
+      if made.rests then speed = math.min(speed, math.sqrt(2 * a * (length - at))) end
+      time = time + step / speed
+    end
+    times[i - 1] = time
+  end
+  return times
 end
 
 -- Places that legs run between, and for every gate the leg that ends in it. {points =, at =}
@@ -39,7 +65,9 @@ local function stations(course)
   local made = { points = {}, at = {} }
   local function go(place)
     local last = made.points[#made.points]
-    if not last or courses.distance(last, place) > SAME then made.points[#made.points + 1] = place end
+    if not last or courses.distance(last, place) > SAME then
+      made.points[#made.points + 1] = place
+    end
     return #made.points - 1
   end
   local first = course.gates[1]
@@ -73,11 +101,10 @@ function problem.legs(course, vehicle, o)
   local limits = strength(vehicle, o)
   local profile = o.timing == "profile"
   made.durations, made.intervals, made.total = {}, {}, 0
+  if not made.hovers and not profile then made.durations = flowing_times(made, course, limits) end
   for i = 2, #made.points do
-    local share = profile and PROFILE or GUESS
-    local time = made.hovers and HOVER
-                 or straight_time(made.points[i - 1], made.points[i], limits,
-                                  profile and PROFILE or 1, share)
+    local time = made.hovers and HOVER or made.durations[i - 1]
+                 or straight_time(made.points[i - 1], made.points[i], limits)
     made.durations[i - 1] = time
     made.total = made.total + time
   end
@@ -88,6 +115,15 @@ function problem.legs(course, vehicle, o)
   end
   made.total = made.total * scale
   return made
+end
+
+-- The durations of a solution, and intervals no longer than the step.
+function problem.take_times(made, solution, o)
+  for i, time in ipairs(solution.legs) do
+    made.durations[i] = time
+    made.intervals[i] = math.max(FEWEST, math.ceil(time / o.step - 1e-9))
+  end
+  made.total = solution.duration
 end
 
 local function floor_of(made, floor)
@@ -101,10 +137,10 @@ local function floor_of(made, floor)
                          high[1] + AROUND, high[2] + AROUND, low[1] - AROUND, high[2] + AROUND } } }
 end
 
-local function add_model(p, o)
+local function add_model(p, o, model, softer)
   local profile = o.timing == "profile"
-  local smoothness = o.weights.smoothness * (o.time and IN_TIME or 1)
-  if o.model == "quadrotor_full" then
+  local smoothness = softer * o.weights.smoothness * (o.time and IN_TIME or 1)
+  if model == "quadrotor_full" then
     p:add_model { type = "quadrotor_full", thrust_share = o.thrust, rate_share = o.rate_share }
     p:add_cost { type = "derivative", name = "smoothness", block = "rotor_thrusts", order = 1,
                  weight = smoothness }
@@ -143,10 +179,10 @@ local function add_gates(p, course, made, o)
 end
 
 -- At rest a point mass has no speed; hovering too is asked for where a controller must follow.
-local function ends_of(course, made, o)
+local function ends_of(course, made, o, model)
   local state = { type = "boundary_state", start_position = made.points[1],
                   finish_position = course.finish }
-  local hovers = o.closed_loop == "required" or o.model == "quadrotor_full"
+  local hovers = o.closed_loop == "required" or model == "quadrotor_full"
   for _, name in ipairs { "start", "finish" } do
     local rests = name == "start" or made.rests
     state[name] = not rests and "free" or hovers and "rest" or "moving"
@@ -155,8 +191,9 @@ local function ends_of(course, made, o)
   return state
 end
 
--- The problem of these legs; `coarse` is the solution on fewer stages to begin from.
-function problem.make(run, course, vehicle, made, coarse)
+-- The problem of these legs; `coarse` is the solution to begin from, on fewer stages or of another
+-- model.
+function problem.make(run, course, vehicle, made, model, coarse)
   local o = run.options
   local legs = {}
   local free = o.timing == "optimal" and not made.hovers
@@ -165,7 +202,7 @@ function problem.make(run, course, vehicle, made, coarse)
   end
   local p = run:problem { vehicle = vehicle, legs = legs, periodic = course.closed,
                           environment = { zones = floor_of(made, o.floor) } }
-  add_model(p, o)
+  add_model(p, o, model, made.softer or 1)
   if free then p:add_cost { type = "flight_time", weight = 1 } end
   if free and o.time then
     p:add_constraint { type = "hard_keyframe", name = "time", block = "time",
@@ -173,7 +210,7 @@ function problem.make(run, course, vehicle, made, coarse)
   end
   add_gates(p, course, made, o)
   if not course.closed then
-    p:add_constraint(ends_of(course, made, o))
+    p:add_constraint(ends_of(course, made, o, model))
   end
   if coarse then
     p:guess_solution(coarse)

@@ -56,9 +56,9 @@ Check gates_of(Plan plan, std::vector<GateTask> gates) {
 TEST(Gates, AreJudgedOnThePath) {
   const Check check = gates_of(gliding(), {window(3), window(6.1)});
   EXPECT_TRUE(check.pass);
-  EXPECT_NEAR(check.worst, -0.2, 1e-6) << "0.5 m half width, 0.3 m beside the middle";
+  EXPECT_NEAR(check.worst.value(), -0.2, 1e-6) << "0.5 m half width, 0.3 m beside the middle";
   EXPECT_TRUE(gates_of(gliding(), {ball(3, 0.31), ball(6, 0.4)}).pass);
-  EXPECT_NEAR(gates_of(gliding(), {ball(3, 0.31)}).worst, -0.01, 1e-6);
+  EXPECT_NEAR(gates_of(gliding(), {ball(3, 0.31)}).worst.value(), -0.01, 1e-6);
   EXPECT_FALSE(gates_of(gliding(), {ball(3, 0.29)}).pass);
 }
 
@@ -107,25 +107,24 @@ TEST(Gates, SurviveTheDocument) {
 }
 
 TEST(Rotors, AreJudgedOneByOne) {
-  const auto failing = [](const Plan& plan) {
+  const auto fails = [](const Plan& plan, const std::string& name) {
     const std::vector<Check> failures = verify(plan).failures();
-    return failures.empty() ? std::string() : failures.front().name;
+    return std::any_of(failures.begin(), failures.end(),
+                       [&](const Check& check) { return check.name == name; });
   };
-  EXPECT_EQ(failing(gliding()), "");
+  EXPECT_TRUE(verify(gliding()).feasible());
   Plan plan = gliding();
   plan.trajectory.samples[4].orientation = Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ());
-  EXPECT_EQ(failing(plan), "defect_yaw");
+  EXPECT_TRUE(fails(plan, "defect_yaw"));
   plan = gliding();
   plan.trajectory.samples[4].orientation.coeffs() *= 1.1;
-  EXPECT_EQ(failing(plan), "document");
+  EXPECT_TRUE(fails(plan, "document"));
   plan = gliding();
   plan.trajectory.samples[4].body_rates.x() = 0.1;
-  EXPECT_EQ(failing(plan), "defect_yaw");
+  EXPECT_TRUE(fails(plan, "defect_yaw"));
   plan = gliding();
   plan.trajectory.samples[4].rotor_thrusts[2] = 9;
-  bool rotor = false;
-  for (const Check& check : verify(plan).failures()) rotor |= check.name == "rotor_thrust";
-  EXPECT_TRUE(rotor);
+  EXPECT_TRUE(fails(plan, "rotor_thrust"));
 }
 
 }  // namespace

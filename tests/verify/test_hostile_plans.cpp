@@ -167,9 +167,17 @@ TEST(HostilePlans, VehicleTamperedWith) {
               HasSubstr("a gimbal that the vehicle does not have"));
 }
 
-TEST(HostilePlans, ModelsThatThisVersionCannotIntegrate) {
-  EXPECT_THAT(refusal_after([](Plan& p) { p.trajectory.model = MotionModel::rotors; }),
-              HasSubstr("does not verify the motion model 'rotors'"));
+TEST(HostilePlans, RotorsWithoutAnAttitude) {
+  EXPECT_THAT(refusal_after([](Plan& p) {
+                p.trajectory.model = MotionModel::rotors;
+                p.trajectory.samples[2].orientation.coeffs().setZero();
+              }),
+              HasSubstr("sample 3 has an orientation that is no unit quaternion"));
+  EXPECT_THAT(refusal_after([](Plan& p) {
+                p.trajectory.model = MotionModel::rotors;
+                p.trajectory.samples[1].rotor_thrusts[3] = std::nan("");
+              }),
+              HasSubstr("sample 2 holds a number that is not finite"));
 }
 
 TEST(HostilePlans, IntervalsTooCoarseToFollow) {

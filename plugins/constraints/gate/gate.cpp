@@ -26,7 +26,7 @@ class Gate final : public DifferentiableConstraint<Gate> {
   static ParameterTable parameters() {
     return ParameterTable{}
         .integer("leg", 1, "the leg that ends in the opening, or where the tunnel begins",
-                 between(0, 1000000))
+                 at_least(0))
         .choice("shape", "ball", {"ball", "rectangle", "triangle", "pentagon", "hexagon"},
                 "of the opening")
         .numbers("position", {0, 0, 0}, "m", "middle of the opening, world")

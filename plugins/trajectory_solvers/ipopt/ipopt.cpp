@@ -40,7 +40,11 @@ class Ipopt final : public TrajectorySolver {
                 "second derivatives: exact, of residuals to first order, or estimated from "
                 "gradients")
         .choice("mu_strategy", "adaptive", {"adaptive", "monotone"},
-                "how the barrier parameter falls");
+                "how the barrier parameter falls")
+        .number("first_barrier", 0.1, "",
+                "barrier parameter of the first iteration, for monotone; less where the guess is "
+                "good",
+                between(1e-9, 0.1));
   }
 
   explicit Ipopt(const Parameters& parameters) {
@@ -51,6 +55,7 @@ class Ipopt final : public TrajectorySolver {
     settings_.acceptable_iterations = static_cast<int>(parameters.integer("acceptable_iterations"));
     settings_.hessian = parameters.text("hessian");
     settings_.mu_strategy = parameters.text("mu_strategy");
+    settings_.first_barrier = parameters.number("first_barrier");
   }
 
   SolveResult solve(const TrajectoryProblem& problem, const SolveRequest& request) const override;

@@ -23,6 +23,7 @@ using Index = ::Ipopt::Index;
 using Number = ::Ipopt::Number;
 
 constexpr double kNoBound = 2e19;      // Ipopt takes what is beyond 1e19 as none
+constexpr double kUsualBarrier = 0.1;  // Ipopt's own first one
 constexpr double kWarmBarrier = 1e-6;  // where the barrier parameter begins from an earlier answer
 constexpr double kWarmPush = 1e-9;     // how far from its bounds an earlier answer is moved
 constexpr int kRestorations = 10;      // iterations in a row that Ipopt may take for feasibility
@@ -279,6 +280,12 @@ void set_options(::Ipopt::OptionsList& options, const PassRequest& pass, bool qu
   if (quadratic)
     for (const char* constant : {"jac_c_constant", "jac_d_constant", "hessian_constant"})
       options.SetStringValue(constant, "yes");
+  if (!pass.warm && settings.first_barrier < kUsualBarrier) {
+    // A first guess worth keeping is not pushed far from its bounds.
+    options.SetNumericValue("mu_init", settings.first_barrier);
+    for (const char* push : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"})
+      options.SetNumericValue(push, std::min(1e-2, settings.first_barrier));
+  }
   if (!pass.warm) return;
   options.SetStringValue("warm_start_init_point", "yes");
   options.SetNumericValue("mu_init", kWarmBarrier);

@@ -15,6 +15,7 @@ struct IpoptSettings {
   double tolerance = 0, feasibility = 0, acceptable_tolerance = 0;
   int acceptable_iterations = 0;
   std::string hessian, mu_strategy;
+  double first_barrier = 0.1;
 };
 
 struct PassRequest {

@@ -72,9 +72,7 @@ class QuadrotorFull final : public VehicleModel {
     for (int r = 0; r < 3; ++r)
       for (int i = 0; i < 4; ++i) moment_[r][i] = mixer(r + 1, i) / inertia_[r];
     thrust_min_ = vehicle.rotors.thrust_min;
-    thrust_max_ = thrust_share_ * vehicle.rotors.thrust_max;
-    if (!(4 * thrust_max_ > vehicle.mass * kGravity))
-      throw InputError("thrust_share leaves vehicle '" + vehicle.name + "' too weak to hover");
+    thrust_max_ = std::max(thrust_min_, thrust_share_ * vehicle.rotors.thrust_max);
     tilt_rate_ = rate_share_ * vehicle.tilt_rate_max.value_or(kInfinity);
     yaw_rate_ = rate_share_ * vehicle.yaw_rate_max;
     climb_ = vehicle.climb_speed_max;
@@ -136,16 +134,21 @@ class QuadrotorFull final : public VehicleModel {
     set_yaw(sample);
   }
 
-  // Without thrusts of its own, a sample hovers.
+  // A sample without thrusts of its own, such as that of a point mass, stands along its force and
+  // shares it out among the rotors.
   void from_sample(const Sample& sample, double* x) const override {
     Eigen::Map<Eigen::Vector3d>(x + 0) = sample.position;
     Eigen::Map<Eigen::Vector3d>(x + 3) = sample.velocity;
-    const Eigen::Quaterniond& q = sample.orientation;
+    Eigen::Quaterniond q = sample.orientation;
+    Eigen::Vector4d thrusts = sample.rotor_thrusts;
+    if (const double force = sample.force.norm(); thrusts.isZero(0)) {
+      const bool pushed = force > 0;
+      thrusts.setConstant(pushed ? force / 4 : mass_ * kGravity / 4);
+      if (pushed) q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), sample.force);
+    }
     Eigen::Map<Eigen::Vector4d>(x + 6) = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
     Eigen::Map<Eigen::Vector3d>(x + 10) = sample.body_rates;
-    const bool hover = sample.rotor_thrusts.isZero(0);
-    Eigen::Map<Eigen::Vector4d>(x + 13) =
-        hover ? Eigen::Vector4d::Constant(mass_ * kGravity / 4) : sample.rotor_thrusts;
+    Eigen::Map<Eigen::Vector4d>(x + 13) = thrusts;
     Eigen::Map<Eigen::Vector4d>(x + 17) = sample.rotor_thrust_rates;
   }
 
