@@ -66,6 +66,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
   if (entry.kind == Map::kKind) return check_registered<Map>(registry, entry, options, check_map);
   if (entry.kind == PathPlanner::kKind)
     return check_registered<PathPlanner>(registry, entry, options, check_path_planner);
+  if (entry.kind == TourSolver::kKind)
+    return check_registered<TourSolver>(registry, entry, options, check_tour_solver);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
 }
 
