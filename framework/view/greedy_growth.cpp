@@ -21,11 +21,12 @@ struct Candidate {
 class Round {
  public:
   Round(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work)
-      : tour_(tour), known_(known), growth_(growth), work_(work) {}
+      : tour_(tour), known_(known), growth_(growth), work_(work) {
+    tour_.cheapest_places(extra_, after_);
+  }
 
   // One view more; false when nothing fits any more, or the work ended.
   bool step(std::int64_t iterations) {
-    tour_.cheapest_places(extra_, after_);
     open_.clear();
     const double room = tour_.room();
     for (int view = 0; view < static_cast<int>(known_.size()); ++view) {
@@ -55,7 +56,9 @@ class Round {
       const int view = best.view;
       open_.pop_back();
       if (known_[view] <= 0 || !tour_.admits(view, after_[view])) continue;
-      tour_.insert(view, after_[view]);
+      const int at = after_[view], before = tour_.size();
+      tour_.insert(view, at);
+      tour_.update_places(at, tour_.size() - before, extra_, after_);
       return true;
     }
     return false;
@@ -90,6 +93,12 @@ class Round {
 };
 
 }  // namespace
+
+std::vector<double> gains_alone(const TourProblem& problem) {
+  std::vector<double> gains(problem.views());
+  for (int v = 0; v < problem.views(); ++v) gains[v] = problem.score().alone(v);
+  return gains;
+}
 
 void grow(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work,
           std::int64_t iterations) {

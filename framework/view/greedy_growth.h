@@ -21,8 +21,11 @@ struct Growth {
   int patience = 0;
 };
 
+// What every view would bring alone: more than it can bring to any tour.
+std::vector<double> gains_alone(const TourProblem& problem);
+
 // Grows until nothing fits that brings anything, or the work ends. `known`: per view a gain that it
-// cannot exceed now; infinite where none is known; updated.
+// cannot exceed now; updated.
 void grow(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work,
           std::int64_t iterations = 0);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "framework/core/error.h"
 
@@ -92,6 +93,8 @@ void ViewScoreBuilder::add_view(std::span<const ViewScore::Contribution> contrib
     score_.amounts_.push_back(amount);
   }
   score_.first_.push_back(score_.voxels_.size());
+  const auto amounts = score_.amounts_of(score_.views() - 1);
+  score_.alone_.push_back(std::accumulate(amounts.begin(), amounts.end(), std::int64_t{0}));
 }
 
 ViewScore ViewScoreBuilder::take() && {
@@ -115,6 +118,7 @@ ViewScore additive_score(std::span<const double> scores) {
     result.voxels_.push_back(static_cast<std::uint32_t>(v));
     result.amounts_.push_back(static_cast<Amount>(std::lround(scores[v] / result.unit_)));
     result.first_.push_back(v + 1);
+    result.alone_.push_back(result.amounts_.back());
   }
   result.capacities_ = result.amounts_;
   return result;

@@ -34,6 +34,8 @@ class ViewScore {
   }
   std::span<const Amount> capacities() const { return capacities_; }
   double unit() const { return unit_; }
+  // f of one view alone.
+  double alone(int view) const { return static_cast<double>(alone_[view]) * unit_; }
   // f of all views together.
   double total() const;
   std::size_t bytes() const;
@@ -45,6 +47,7 @@ class ViewScore {
   std::vector<std::uint32_t> voxels_;
   std::vector<Amount> amounts_;
   std::vector<Amount> capacities_;
+  std::vector<std::int64_t> alone_;  // per view
   double unit_ = 1;
 };
 

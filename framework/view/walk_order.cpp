@@ -10,9 +10,19 @@ constexpr int kLongestMoved = 3;
 
 class Order {
  public:
-  Order(const TourProblem& problem, const std::vector<int>& walk) {
-    stops_.reserve(walk.size());
-    for (const int view : walk) stops_.push_back({view, problem.legs_from(view).data()});
+  Order(const TourProblem& problem, const std::vector<int>& walk, const std::vector<int>& settled) {
+    std::vector<std::pair<int, int>> beside(problem.views(), {-1, -1});
+    for (std::size_t i = 1; i + 1 < settled.size(); ++i) {
+      beside[settled[i]] = std::minmax(settled[i - 1], settled[i + 1]);
+    }
+    const std::size_t n = walk.size();
+    stops_.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool inner = i > 0 && i + 1 < n;
+      const bool same =
+          inner && beside[walk[i]] == std::pair<int, int>(std::minmax(walk[i - 1], walk[i + 1]));
+      stops_.push_back({walk[i], problem.legs_from(walk[i]).data(), !same});
+    }
   }
 
   bool exchange_legs();
@@ -28,27 +38,35 @@ class Order {
   struct Stop {
     int view;
     const double* legs;
+    bool moved;  // has other neighbours than when all was tried
   };
   int size() const { return static_cast<int>(stops_.size()); }
   double leg(int i, int j) const { return stops_[i].legs[stops_[j].view]; }
+  bool exchange_with(int i);
   bool move_segment(int first, int last);
 
   std::vector<Stop> stops_;
 };
 
 // 2-opt: legs (i, i+1) and (j, j+1) become (i, j) and (i+1, j+1).
+bool Order::exchange_with(int i) {
+  bool changed = false;
+  for (int j = 0; j + 1 < size(); ++j) {
+    const int a = std::min(i, j), b = std::max(i, j);
+    if (b - a < 2) continue;
+    const double before = leg(a, a + 1) + leg(b, b + 1), crossing = leg(a, b);
+    if (crossing >= before || crossing + leg(a + 1, b + 1) >= before - kShorter) continue;
+    for (const int k : {a, a + 1, b, b + 1}) stops_[k].moved = true;
+    std::reverse(stops_.begin() + a + 1, stops_.begin() + b + 1);
+    changed = true;
+  }
+  return changed;
+}
+
 bool Order::exchange_legs() {
   bool changed = false;
-  for (int i = 0; i + 3 < size(); ++i) {
-    double here = leg(i, i + 1);
-    for (int j = i + 2; j + 1 < size(); ++j) {
-      const double before = here + leg(j, j + 1);
-      const double crossing = leg(i, j);
-      if (crossing >= before || crossing + leg(i + 1, j + 1) >= before - kShorter) continue;
-      std::reverse(stops_.begin() + i + 1, stops_.begin() + j + 1);
-      here = leg(i, i + 1);
-      changed = true;
-    }
+  for (int i = 0; i + 1 < size(); ++i) {
+    if (stops_[i].moved || stops_[i + 1].moved) changed = exchange_with(i) || changed;
   }
   return changed;
 }
@@ -71,6 +89,7 @@ bool Order::move_segment(int first, int last) {
     place = j;
   }
   if (place < 0) return false;
+  for (const int k : {first - 1, first, last, last + 1, place, place + 1}) stops_[k].moved = true;
   const auto begin = stops_.begin();
   if (turned) std::reverse(begin + first, begin + last + 1);
   if (place < first)
@@ -84,6 +103,7 @@ bool Order::move_views() {
   bool changed = false;
   for (int length = 1; length <= kLongestMoved; ++length) {
     for (int first = 1; first + length < size(); ++first) {
+      if (!stops_[first].moved && !stops_[first + length - 1].moved) continue;
       changed = move_segment(first, first + length - 1) || changed;
     }
   }
@@ -102,6 +122,7 @@ bool Order::drop_second_visits() {
       continue;
     }
     sorted.erase(from);
+    stops_[i - 1].moved = stops_[i + 1].moved = true;
     stops_.erase(stops_.begin() + i);
     changed = true;
   }
@@ -110,8 +131,9 @@ bool Order::drop_second_visits() {
 
 }  // namespace
 
-std::vector<int> shorter_order(const TourProblem& problem, const std::vector<int>& walk) {
-  Order order(problem, walk);
+std::vector<int> shorter_order(const TourProblem& problem, const std::vector<int>& walk,
+                               const std::vector<int>& settled) {
+  Order order(problem, walk, settled);
   bool changed = !problem.each_once() && order.drop_second_visits();
   for (;;) {
     const bool exchanged = order.exchange_legs();

@@ -46,7 +46,14 @@ void WorkingTour::cheapest_places(std::vector<double>& extra, std::vector<int>& 
   const std::size_t n = problem_->views();
   extra.assign(n, std::numeric_limits<double>::infinity());
   after.assign(n, 0);
-  for (int i = 0; i + 1 < size(); ++i) {
+  compare_places(0, size() - 2, extra, after);
+}
+
+// Legs first..last against the best so far.
+void WorkingTour::compare_places(int first, int last, std::vector<double>& extra,
+                                 std::vector<int>& after) const {
+  const std::size_t n = problem_->views();
+  for (int i = first; i <= last; ++i) {
     const double* from = problem_->legs_from(walk_[i]).data();
     const double* to = problem_->legs_from(walk_[i + 1]).data();
     const double leg = from[walk_[i + 1]];
@@ -56,6 +63,33 @@ void WorkingTour::cheapest_places(std::vector<double>& extra, std::vector<int>& 
         extra[v] = more;
         after[v] = i;
       }
+    }
+  }
+}
+
+void WorkingTour::update_places(int at, int added, std::vector<double>& extra,
+                                std::vector<int>& after) const {
+  std::vector<int> lost;  // their leg is gone
+  for (int v = 0; v < problem_->views(); ++v) {
+    if (after[v] > at) {
+      after[v] += added;
+    } else if (after[v] == at) {
+      lost.push_back(v);
+      extra[v] = std::numeric_limits<double>::infinity();
+      after[v] = 0;
+    }
+  }
+  compare_places(at, at + added, extra, after);
+  for (int i = 0; i + 1 < size() && !lost.empty(); ++i) {
+    // From what stands in the walk: ways from there are known already.
+    const double* from = problem_->legs_from(walk_[i]).data();
+    const double* to = problem_->legs_from(walk_[i + 1]).data();
+    const double leg = from[walk_[i + 1]];
+    for (const int v : lost) {
+      const double more = from[v] + to[v] - leg;
+      if (more >= extra[v]) continue;
+      extra[v] = more;
+      after[v] = i;
     }
   }
 }
@@ -122,14 +156,19 @@ bool WorkingTour::take_out(int first, int last) {
 }
 
 bool WorkingTour::shorten() {
-  const std::vector<int> order = shorter_order(*problem_, walk_);
-  if (order.empty()) return false;
+  const std::vector<int> order = shorter_order(*problem_, walk_, settled_);
+  if (order.empty()) {
+    settled_ = walk_;
+    return false;
+  }
   const double before = seconds_;
   const std::vector<int> old = walk_;
   become(order);
   const auto& limit = problem_->image_limit();
+  settled_ = walk_;
   if (seconds_ < before && !(limit && images_ > *limit)) return true;
   become(old);
+  settled_ = walk_;
   return false;
 }
 

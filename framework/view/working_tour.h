@@ -31,6 +31,8 @@ class WorkingTour {
   // For every view the least that putting it into the walk adds (s), and after which position.
   // Passing what is there already costs nothing extra; infinite where there is no way.
   void cheapest_places(std::vector<double>& extra, std::vector<int>& after) const;
+  // The same after `insert` put something in after position `at` and made the walk `added` longer.
+  void update_places(int at, int added, std::vector<double>& extra, std::vector<int>& after) const;
   // Whether the image limit admits `view` after position `after`, with all that is passed.
   bool admits(int view, int after) const;
   // Puts `view` in, with the views on its ways.
@@ -47,6 +49,8 @@ class WorkingTour {
   // Positions first..last give way to `by`; seconds, visits and score follow.
   void replace(int first, int last, std::span<const int> by);
   int images_with(int first, int last, std::span<const int> by) const;
+  void compare_places(int first, int last, std::vector<double>& extra,
+                      std::vector<int>& after) const;
   void visit(int view);
   void leave(int view);
 
@@ -56,6 +60,7 @@ class WorkingTour {
   std::vector<int> visits_;
   double seconds_ = 0;
   int images_ = 0;
+  std::vector<int> settled_;  // the walk when it was last found to be short
 };
 
 }  // namespace lapwing

@@ -68,7 +68,7 @@ TEST(Greedy, KeepsItsPromiseUnderALimitOfImages) {
     d.image_limit = limit;
     const TourProblem problem(d);
     WorkingTour tour(problem);
-    std::vector<double> known(problem.views(), HUGE_VAL);
+    std::vector<double> known = gains_alone(problem);
     const TourRequest request;
     TourWork work(request);
     grow(tour, known, {}, work);
@@ -93,7 +93,7 @@ TEST(Greedy, LazyAndPlainAgree) {
       for (const bool lazy : {false, true}) {
         TourWork work(request);
         WorkingTour tour(problem);
-        std::vector<double> known(problem.views(), HUGE_VAL);
+        std::vector<double> known = gains_alone(problem);
         grow(tour, known, {.by_ratio = by_ratio, .lazy = lazy}, work);
         walks[lazy] = tour.walk();
         evaluations[lazy] = tour.state().evaluations();

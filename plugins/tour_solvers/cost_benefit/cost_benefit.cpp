@@ -5,8 +5,6 @@
 // that the literature gives belongs to the better of both, which is what comes out here.
 //
 //   tour: {solver: cost_benefit}
-#include <limits>
-
 #include "framework/plugin/plugin.h"
 #include "framework/view/greedy_growth.h"
 
@@ -33,7 +31,7 @@ class CostBenefit final : public TourSolver {
       WorkingTour tour(problem);
       if (work.request().initial) tour.become(*work.request().initial);
       tour.state().set_evaluations(tour.state().evaluations() + evaluations);
-      std::vector<double> known(problem.views(), std::numeric_limits<double>::infinity());
+      std::vector<double> known = gains_alone(problem);
       grow(tour, known, {.by_ratio = by_ratio, .lazy = lazy_}, work);
       evaluations = tour.state().evaluations();
       best.iterations += tour.images();

@@ -6,8 +6,6 @@
 // is no such promise.
 //
 //   tour: {solver: greedy}
-#include <limits>
-
 #include "framework/plugin/plugin.h"
 #include "framework/view/greedy_growth.h"
 
@@ -28,7 +26,7 @@ class Greedy final : public TourSolver {
   Search search(const TourProblem& problem, TourWork& work) const override {
     WorkingTour tour(problem);
     if (work.request().initial) tour.become(*work.request().initial);
-    std::vector<double> known(problem.views(), std::numeric_limits<double>::infinity());
+    std::vector<double> known = gains_alone(problem);
     grow(tour, known, {.by_ratio = false, .lazy = lazy_}, work);
     Search result;
     result.walk = tour.finished();
