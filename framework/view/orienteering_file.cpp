@@ -26,7 +26,9 @@ double rounded(const Node& a, const Node& b) {
 double rounded_up(const Node& a, const Node& b) {
   return std::ceil(std::hypot(a.x - b.x, a.y - b.y));
 }
-double exact(const Node& a, const Node& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double exact(const Node& a, const Node& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
 
 // Degrees and minutes, as DDD.MM, with TSPLIB's own pi.
 double geographic(const Node& a, const Node& b) {
@@ -61,7 +63,10 @@ std::vector<double> matrix_of(const std::vector<Node>& nodes, Distance distance)
 // Words with the line that each stands in.
 class Words {
  public:
-  Words(std::string_view text, std::string source) : text_(text), source_(std::move(source)) {}
+  Words(std::string_view text, std::string source, int line = 1)
+      : text_(text), source_(std::move(source)), line_(line) {}
+  // The number in a text that stood in this line.
+  Words part(std::string_view text) const { return {text, source_, line_}; }
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(Origin{source_, line_}, what);
@@ -108,7 +113,7 @@ class Words {
   std::string_view text_;
   std::string source_;
   std::size_t at_ = 0;
-  int line_ = 1;
+  int line_;
 };
 
 class TsplibReader {
@@ -127,9 +132,9 @@ class TsplibReader {
 
  private:
   std::string header(const std::string& key) {
-    for (const char* known : {"NAME", "TYPE", "COMMENT", "DIMENSION", "COST_LIMIT",
-                              "EDGE_WEIGHT_TYPE", "EDGE_WEIGHT_FORMAT", "DISPLAY_DATA_TYPE",
-                              "NODE_COORD_TYPE"}) {
+    for (const char* known :
+         {"NAME", "TYPE", "COMMENT", "DIMENSION", "COST_LIMIT", "EDGE_WEIGHT_TYPE",
+          "EDGE_WEIGHT_FORMAT", "DISPLAY_DATA_TYPE", "NODE_COORD_TYPE"}) {
       if (key != known) continue;
       const std::string value = words_.rest();
       if (key == "DIMENSION") take_dimension(value);
@@ -140,8 +145,7 @@ class TsplibReader {
   }
 
   void take_dimension(const std::string& value) {
-    Words words(value, "");
-    n_ = words.integer("DIMENSION", 1, kMostNodes);
+    n_ = words_.part(value).integer("DIMENSION", 1, kMostNodes);
   }
 
   bool section(const std::string& key) {
@@ -224,8 +228,7 @@ class TsplibReader {
       if (nodes_.empty()) words_.fail("there is no NODE_COORD_SECTION");
       d.legs = matrix_of(nodes_, found->second);
     }
-    Words limit(fields_["COST_LIMIT"], "");
-    d.budget = limit.number("COST_LIMIT");
+    d.budget = words_.part(fields_["COST_LIMIT"]).number("COST_LIMIT");
     d.score = std::make_shared<const ViewScore>(additive_score(scores_));
     d.view_seconds = {0};
     d.start = d.end = *depot_;
@@ -269,7 +272,8 @@ OrienteeringInstance read_plain(std::string_view text, const std::string& source
 OrienteeringInstance read_orienteering(std::string_view text, const std::string& source) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) throw InputError(Origin{source, 1}, "the file is empty");
-  const bool number = text[first] == '-' || text[first] == '.' || std::isdigit(static_cast<unsigned char>(text[first]));
+  const bool number = text[first] == '-' || text[first] == '.' ||
+                      std::isdigit(static_cast<unsigned char>(text[first]));
   return number ? read_plain(text, source) : TsplibReader(text, source).read();
 }
 

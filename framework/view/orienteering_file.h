@@ -2,10 +2,11 @@
 // views.
 //
 // TSPLIB-style (OPLib; TYPE: OP): NODE_COORD_SECTION or EDGE_WEIGHT_SECTION, NODE_SCORE_SECTION,
-// DEPOT_SECTION with one depot, COST_LIMIT; distances are rounded as TSPLIB 95 says (EUC_2D, CEIL_2D,
-// GEO, ATT, EXPLICIT as FULL_MATRIX, UPPER_ROW, LOWER_ROW, UPPER_DIAG_ROW, LOWER_DIAG_ROW). The tour
-// is a loop from the depot. The plain format: a line `budget 1`, then lines `x y score`; from the
-// first point to the second, by exact distances. Distances stand where a tour problem has seconds.
+// DEPOT_SECTION with one depot, COST_LIMIT; distances are rounded as TSPLIB 95 says (EUC_2D,
+// CEIL_2D, GEO, ATT, EXPLICIT as FULL_MATRIX, UPPER_ROW, LOWER_ROW, UPPER_DIAG_ROW,
+// LOWER_DIAG_ROW). The tour is a loop from the depot. The plain format: a line `budget 1`, then
+// lines `x y score`; from the first point to the second, by exact distances. Distances stand where
+// a tour problem has seconds.
 #pragma once
 
 #include <filesystem>

@@ -77,7 +77,9 @@ TEST(EveryPlugin, IsThere) {
                                    {"path_planner", "informed_rrt_star"},
                                    {"path_planner", "bit_star"},
                                    {"tour_solver", "greedy"},
-                                   {"tour_solver", "cost_benefit"}})
+                                   {"tour_solver", "cost_benefit"},
+                                   {"tour_solver", "recursive_greedy"},
+                                   {"tour_solver", "local_search"}})
     EXPECT_NO_THROW(plugins().find(kind, name)) << kind << " " << name;
 }
 

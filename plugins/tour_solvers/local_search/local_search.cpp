@@ -2,10 +2,12 @@
 //
 // Each iteration takes some views out (a stretch, a neighbourhood, or any), shortens the order by
 // 2-opt and or-opt, and puts in what promises most gain per second, until nothing fits: insertion,
-// dropping, swaps and moves of segments in one. Gains are evaluated lazily: what views bring is
-// remembered, and what leaves the tour raises only what shares voxels with it. A worse tour may
-// follow a better one as simulated annealing allows; the best of all is what comes out, so it is
-// never worse than where it began: the initial tour, or one grown by gain per second.
+// dropping, swaps and moves of segments in one. Some begin the other way round: a cluster of views
+// comes in, over the budget if need be, and what is worth least per second goes. Gains are
+// evaluated lazily: what views bring is remembered, and what leaves the tour raises only what
+// shares voxels with it. A worse tour may follow a better one as simulated annealing allows; the
+// best of all is what comes out, so it is never worse than where it began: the initial tour, or one
+// grown by gain per second.
 //
 //   tour: {solver: local_search, iterations: 2000}
 #include <algorithm>
@@ -13,6 +15,7 @@
 
 #include "framework/plugin/plugin.h"
 #include "framework/view/greedy_growth.h"
+#include "framework/view/recursive_growth.h"
 #include "plugins/tour_solvers/local_search/ruin.h"
 
 namespace lapwing {
@@ -20,15 +23,16 @@ namespace {
 
 struct Settings {
   std::int64_t iterations;
-  double share;    // of a tour's views, most taken out at once
-  double warmth;   // of a typical view's share in the score, at the beginning
-  double chance;   // how much promises are scattered
-  int patience;    // evaluations for one choice
+  double share;      // of a tour's views, most taken out at once
+  double warmth;     // of a typical view's share in the score, at the beginning
+  double exchanges;  // share of the iterations that begin by putting in
+  double chance;     // how much promises are scattered
+  int patience;      // evaluations for one choice
 };
 
 constexpr int kMostOut = 30;
-constexpr double kColdest = 0.02;     // of the warmth, at the end
-constexpr double kRoomWorth = 0.3;    // of the tour's own score per second: what room is worth
+constexpr double kColdest = 0.02;   // of the warmth, at the end
+constexpr double kRoomWorth = 0.3;  // of the tour's own score per second: what room is worth
 
 class Annealing {
  public:
@@ -47,6 +51,13 @@ class Annealing {
       current_.become(*work_.request().initial);
       best_walk_ = *work_.request().initial;
       best_score_ = problem_.score_of(best_walk_);
+    } else {
+      RecursiveTour first = grow_recursively(problem_, work_);
+      evaluations_ = first.evaluations;
+      best_score_ = first.score;
+      current_.become(first.walk);
+      current_.state().set_evaluations(evaluations_);
+      best_walk_ = std::move(first.walk);
     }
     fill(current_, {.by_ratio = true});
     keep(current_);
@@ -90,7 +101,10 @@ class Annealing {
 
   void change(WorkingTour& tour) {
     const int most = std::clamp(static_cast<int>(settings_.share * tour.images()), 2, kMostOut);
-    ruin(tour, static_cast<int>(random_.integer(1, most)), known_, random_);
+    const int count = static_cast<int>(random_.integer(1, most));
+    if (random_.uniform() >= settings_.exchanges || !exchange(tour, count, known_, random_)) {
+      ruin(tour, count, known_, random_);
+    }
     tour.shorten();
     for (double& factor : favour_) factor = std::exp(settings_.chance * random_.uniform(-1, 1));
     fill(tour, {.by_ratio = true, .favour = favour_, .patience = settings_.patience});
@@ -103,6 +117,7 @@ class Annealing {
   }
 
   bool accepted(const WorkingTour& trial) {
+    if (trial.room() < 0) return false;
     const double change = value(trial) - value(current_);
     const double unit = best_score_ / std::max(1, current_.images());
     const double heat = settings_.warmth * unit * std::pow(kColdest, share_done());
@@ -131,8 +146,8 @@ class Annealing {
 
 class LocalSearch final : public TourSolver {
  public:
-  static constexpr PluginText kText{"local_search", "1.0.0",
-                                    "ruin and repair of a tour, from the initial one or its own", ""};
+  static constexpr PluginText kText{
+      "local_search", "1.0.0", "ruin and repair of a tour, from the initial one or its own", ""};
   static ParameterTable parameters() {
     return ParameterTable{}
         .integer("iterations", 2000, "times the tour is ruined and repaired",
@@ -142,14 +157,18 @@ class LocalSearch final : public TourSolver {
         .number("warmth", 1.0, "",
                 "how much worse a tour may become at first, in views of average worth",
                 between(1e-3, 100))
+        .number("exchanges", 0.3, "",
+                "share of the iterations that begin by putting views in over the budget",
+                between(0, 1))
         .number("chance", 0.5, "", "how far promises are scattered; 0 for strictly the best",
                 between(0, 5))
         .integer("patience", 12, "most evaluations for one choice", between(1, 100'000));
   }
   explicit LocalSearch(const Parameters& parameters)
-      : settings_{parameters.integer("iterations"), parameters.number("share"),
-                  parameters.number("warmth"), parameters.number("chance"),
-                  static_cast<int>(parameters.integer("patience"))} {}
+      : settings_{
+            parameters.integer("iterations"), parameters.number("share"),
+            parameters.number("warmth"),      parameters.number("exchanges"),
+            parameters.number("chance"),      static_cast<int>(parameters.integer("patience"))} {}
 
  protected:
   Search search(const TourProblem& problem, TourWork& work) const override {

@@ -40,6 +40,11 @@ struct KnownGains {
   void left(const ViewScore& score, int view, double loss);
 };
 
+// Puts up to `count` neighbouring views that are not on the tour in, at least one and over the
+// budget if need be, and takes out what is worth least per second that it saves until the tour fits
+// again: the way into a cluster that no single view is worth. False where there is none to put in.
+bool exchange(WorkingTour& tour, int count, KnownGains& known, Random& random);
+
 // Takes about `count` views out: a stretch of the walk, views near one another, or any.
 void ruin(WorkingTour& tour, int count, KnownGains& known, Random& random);
 

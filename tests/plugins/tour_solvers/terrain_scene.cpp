@@ -12,9 +12,15 @@ namespace {
 struct Vector {
   double x = 0, y = 0, z = 0;
 };
-Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double length(const Vector& a) { return std::sqrt(dot(a, a)); }
+Vector operator-(const Vector& a, const Vector& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+double dot(const Vector& a, const Vector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+double length(const Vector& a) {
+  return std::sqrt(dot(a, a));
+}
 
 struct Voxel {
   Vector position, normal;
@@ -93,7 +99,8 @@ double contribution(const View& view, const Voxel& voxel, double edge) {
   if (facing <= 0) return 0;
   const double incidence = std::acos(std::min(1.0, facing)) * kDegrees;
   const double pixels = 345 * 0.2 * edge / distance;
-  return std::exp(-std::max(incidence - 25, 0.0) / 25) * std::exp(-std::max(6 - pixels, 0.0) / 3) / 3;
+  return std::exp(-std::max(incidence - 25, 0.0) / 25) * std::exp(-std::max(6 - pixels, 0.0) / 3) /
+         3;
 }
 
 std::vector<View> random_views(Random& random, const Terrain& terrain,
