@@ -4,6 +4,7 @@ lapwing_packages=(
   libeigen3-dev libyaml-cpp-dev liblua5.4-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libcli11-dev libgeographiclib-dev libembree-dev libpng-dev libtbb-dev libassimp-dev
   libcgal-dev liboctomap-dev libopencv-calib3d-dev libompl-dev coinor-libipopt-dev libnlopt-dev
+  coinor-libcbc-dev
 )
 lapwing_test_packages=(libgtest-dev chromium binutils)
 lapwing_bench_packages=(libbenchmark-dev)

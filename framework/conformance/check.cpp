@@ -68,6 +68,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
     return check_registered<PathPlanner>(registry, entry, options, check_path_planner);
   if (entry.kind == ViewInformation::kKind)
     return check_registered<ViewInformation>(registry, entry, options, check_information);
+  if (entry.kind == TourSolver::kKind)
+    return check_registered<TourSolver>(registry, entry, options, check_tour_solver);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
 }
 

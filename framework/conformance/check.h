@@ -19,6 +19,7 @@
 #include "framework/problem/cost_term.h"
 #include "framework/problem/vehicle_model.h"
 #include "framework/solve/trajectory_solver.h"
+#include "framework/view/tour_solver.h"
 #include "framework/view/view_information.h"
 
 namespace lapwing {
@@ -56,6 +57,8 @@ std::vector<CheckResult> check_trajectory_solver(const Specimen<TrajectorySolver
                                                  const CheckOptions& options = {});
 std::vector<CheckResult> check_path_planner(const Specimen<PathPlanner>& subject,
                                             const CheckOptions& options = {});
+std::vector<CheckResult> check_tour_solver(const Specimen<TourSolver>& subject,
+                                           const CheckOptions& options = {});
 std::vector<CheckResult> check_map(const Specimen<Map>& subject, const CheckOptions& options = {});
 std::vector<CheckResult> check_information(const Specimen<ViewInformation>& subject,
                                            const CheckOptions& options = {});

@@ -19,7 +19,8 @@ std::vector<PluginEntry> checked_entries() {
   std::vector<PluginEntry> result;
   for (const PluginEntry& entry : plugins().entries())
     for (const char* kind :
-         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner"})
+         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner",
+          "tour_solver"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }
@@ -74,7 +75,11 @@ TEST(EveryPlugin, IsThere) {
                                    {"path_planner", "rrt_star"},
                                    {"path_planner", "rrt_connect"},
                                    {"path_planner", "informed_rrt_star"},
-                                   {"path_planner", "bit_star"}})
+                                   {"path_planner", "bit_star"},
+                                   {"tour_solver", "greedy"},
+                                   {"tour_solver", "cost_benefit"},
+                                   {"tour_solver", "recursive_greedy"},
+                                   {"tour_solver", "local_search"}})
     EXPECT_NO_THROW(plugins().find(kind, name)) << kind << " " << name;
 }
 

@@ -1,0 +1,38 @@
+// Small tour problems whose answers are known by enumeration. Internal to the room and to tests.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "framework/view/tour_problem.h"
+
+namespace lapwing {
+
+// The best score of any tour, by trying every set of views with the quickest walk through it; at
+// most 16 views. Shares no code with bounds, solvers and shortest ways: it reads `definition`.
+// Negative where there is no tour.
+double best_score_by_enumeration(const TourDefinition& definition);
+
+struct TourWorldOptions {
+  int views = 10;
+  int voxels = 40;
+  bool legs = false;  // legs between all views instead of motions between near ones
+  bool loop = true;
+  bool additive = false;      // a score per view
+  double budget_share = 0.5;  // of what all views take, roughly
+  int image_limit = 0;        // 0 for none
+};
+// Views strewn over a square, each seeing the voxels near it.
+TourDefinition random_tour(std::uint64_t seed, const TourWorldOptions& options);
+
+struct TourWorld {
+  std::string name;
+  TourDefinition definition;
+  double best = -1;  // negative: infeasible
+};
+// Loops and ways, motions and legs, coverage and scores, with and without a limit of images, and
+// some that cannot be.
+std::vector<TourWorld> tour_worlds();
+
+}  // namespace lapwing

@@ -1,0 +1,188 @@
+#include "framework/view/view_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+namespace {
+
+using Amount = ViewScore::Amount;
+
+constexpr int kCoverageBits = 20, kAdditiveBits = 30;
+
+// A power of two that divides the next power of two above `largest` into 2^bits.
+double unit_for(double largest, int bits) {
+  return largest > 0 ? std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(largest))) - bits) : 1;
+}
+
+bool sound(double amount) {
+  return std::isfinite(amount) && amount >= 0;
+}
+
+}  // namespace
+
+double ViewScore::total() const {
+  std::vector<std::int64_t> sums(voxels(), 0);
+  for (std::size_t i = 0; i < voxels_.size(); ++i) sums[voxels_[i]] += amounts_[i];
+  std::int64_t total = 0;
+  for (std::size_t v = 0; v < sums.size(); ++v) {
+    total += std::min<std::int64_t>(sums[v], capacities_[v]);
+  }
+  return static_cast<double>(total) * unit_;
+}
+
+std::size_t ViewScore::bytes() const {
+  return first_.size() * sizeof(std::size_t) + voxels_.size() * sizeof(std::uint32_t) +
+         (amounts_.size() + capacities_.size()) * sizeof(Amount);
+}
+
+ViewScoreBuilder::ViewScoreBuilder(std::size_t voxels, std::span<const double> weights) {
+  if (voxels > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError("a view score holds fewer than 2^32 voxels, not " + std::to_string(voxels));
+  }
+  if (!weights.empty() && weights.size() != voxels) {
+    throw InputError("a view score of " + std::to_string(voxels) +
+                     " voxels needs as many weights, not " + std::to_string(weights.size()));
+  }
+  double largest = weights.empty() ? 1 : 0;
+  for (std::size_t v = 0; v < weights.size(); ++v) {
+    if (!sound(weights[v])) {
+      throw InputError("the weight of voxel " + std::to_string(v) +
+                       " must be a finite number of at least 0");
+    }
+    largest = std::max(largest, weights[v]);
+  }
+  score_.unit_ = unit_for(largest, kCoverageBits);
+  score_.capacities_.resize(voxels);
+  for (std::size_t v = 0; v < voxels; ++v) {
+    const double weight = weights.empty() ? 1 : weights[v];
+    score_.capacities_[v] = static_cast<Amount>(std::lround(weight / score_.unit_));
+  }
+  sums_.resize(voxels);
+}
+
+void ViewScoreBuilder::add_view(std::span<const ViewScore::Contribution> contributions) {
+  sorted_.assign(contributions.begin(), contributions.end());
+  std::sort(sorted_.begin(), sorted_.end(),
+            [](const auto& a, const auto& b) { return a.voxel < b.voxel; });
+  const auto refuse = [&](const ViewScore::Contribution& c, const std::string& what) {
+    throw InputError("view " + std::to_string(score_.views()) + ", voxel " +
+                     std::to_string(c.voxel) + ": " + what);
+  };
+  for (std::size_t i = 0; i < sorted_.size(); ++i) {
+    const ViewScore::Contribution& c = sorted_[i];
+    if (c.voxel >= score_.voxels()) {
+      refuse(c, "there are " + std::to_string(score_.voxels()) + " voxels");
+    }
+    if (!sound(c.amount)) refuse(c, "a contribution must be a finite number of at least 0");
+    if (i > 0 && sorted_[i - 1].voxel == c.voxel) refuse(c, "is contributed to twice");
+  }
+  for (const ViewScore::Contribution& c : sorted_) {
+    const double units = std::min<double>(c.amount / score_.unit_, score_.capacities_[c.voxel]);
+    const Amount amount = static_cast<Amount>(std::lround(units));
+    if (amount == 0) continue;
+    sums_[c.voxel] += amount;
+    if (sums_[c.voxel] > std::numeric_limits<Amount>::max()) {
+      refuse(c, "more than 2,000 views see it fully; leave some of them out");
+    }
+    score_.voxels_.push_back(c.voxel);
+    score_.amounts_.push_back(amount);
+  }
+  score_.first_.push_back(score_.voxels_.size());
+  const auto amounts = score_.amounts_of(score_.views() - 1);
+  score_.alone_.push_back(std::accumulate(amounts.begin(), amounts.end(), std::int64_t{0}));
+}
+
+ViewScore ViewScoreBuilder::take() && {
+  score_.voxels_.shrink_to_fit();
+  score_.amounts_.shrink_to_fit();
+  return std::move(score_);
+}
+
+ViewScore additive_score(std::span<const double> scores) {
+  double largest = 0;
+  for (std::size_t v = 0; v < scores.size(); ++v) {
+    if (!sound(scores[v])) {
+      throw InputError("the score of view " + std::to_string(v) +
+                       " must be a finite number of at least 0");
+    }
+    largest = std::max(largest, scores[v]);
+  }
+  ViewScore result;
+  result.unit_ = unit_for(largest, kAdditiveBits);
+  for (std::size_t v = 0; v < scores.size(); ++v) {
+    result.voxels_.push_back(static_cast<std::uint32_t>(v));
+    result.amounts_.push_back(static_cast<Amount>(std::lround(scores[v] / result.unit_)));
+    result.first_.push_back(v + 1);
+    result.alone_.push_back(result.amounts_.back());
+  }
+  result.capacities_ = result.amounts_;
+  return result;
+}
+
+ScoreState::ScoreState(const ViewScore& score)
+    : score_(&score), seen_(score.voxels(), 0), included_(score.views(), 0) {}
+
+double ScoreState::gain(int view) {
+  ++evaluations_;
+  if (included_[view]) return 0;
+  const auto voxels = score_->voxels_of(view);
+  const auto amounts = score_->amounts_of(view);
+  const Amount* capacities = score_->capacities().data();
+  std::int64_t gain = 0;
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    const std::uint32_t v = voxels[i];
+    gain += std::min(amounts[i], std::max(0, capacities[v] - seen_[v]));
+  }
+  return static_cast<double>(gain) * score_->unit();
+}
+
+double ScoreState::loss(int view) {
+  ++evaluations_;
+  if (!included_[view]) return 0;
+  const auto voxels = score_->voxels_of(view);
+  const auto amounts = score_->amounts_of(view);
+  const Amount* capacities = score_->capacities().data();
+  std::int64_t loss = 0;
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    const std::uint32_t v = voxels[i];
+    loss += std::min(amounts[i], std::max(0, capacities[v] - (seen_[v] - amounts[i])));
+  }
+  return static_cast<double>(loss) * score_->unit();
+}
+
+void ScoreState::add(int view) {
+  if (included_[view]) return;
+  ++evaluations_;
+  const auto voxels = score_->voxels_of(view);
+  const auto amounts = score_->amounts_of(view);
+  const Amount* capacities = score_->capacities().data();
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    const std::uint32_t v = voxels[i];
+    sum_ += std::min(amounts[i], std::max(0, capacities[v] - seen_[v]));
+    seen_[v] += amounts[i];
+  }
+  included_[view] = 1;
+  ++size_;
+}
+
+void ScoreState::remove(int view) {
+  if (!included_[view]) return;
+  ++evaluations_;
+  const auto voxels = score_->voxels_of(view);
+  const auto amounts = score_->amounts_of(view);
+  const Amount* capacities = score_->capacities().data();
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    const std::uint32_t v = voxels[i];
+    seen_[v] -= amounts[i];
+    sum_ -= std::min(amounts[i], std::max(0, capacities[v] - seen_[v]));
+  }
+  included_[view] = 0;
+  --size_;
+}
+
+}  // namespace lapwing
