@@ -28,6 +28,10 @@ struct MissionResult {
   double solve_seconds = 0;        // wall clock, all solves together
   std::vector<std::string> notes;  // sentences for the user
   Value block;                     // the kind's own figures, null or a map
+  // Where the files lie that the plan's environment names, as long as the mission lives; and their
+  // names.
+  std::filesystem::path obstacle_folder = {};
+  std::vector<std::string> obstacle_files = {};
 };
 
 class Mission {
