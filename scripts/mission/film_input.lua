@@ -135,9 +135,10 @@ input.subject = {
 input.keyframe = {
   { name = "time", type = "number", unit = "s", minimum = 0,
     summary = "absent: evenly between the others, or as timing says" },
-  { name = "time_weight", type = "number", unit = "s", above = 0,
-    summary = "path_first: the time is preferred, a miss of this much is worth a second of flight" },
-  { name = "earliest", type = "number", unit = "s", minimum = 0, summary = "path_first: not before" },
+  { name = "time_weight", type = "number", above = 0,
+    summary = "path_first: prefers the time; times its squared miss, s of flight" },
+  { name = "earliest", type = "number", unit = "s", minimum = 0,
+    summary = "path_first: not before" },
   { name = "latest", type = "number", unit = "s", minimum = 0, summary = "path_first: not after" },
   { name = "position", type = "numbers", size = 3, unit = "m", required = true,
     minimum = -1e6, maximum = 1e6, summary = "world: east, north, up" },

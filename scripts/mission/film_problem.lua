@@ -190,7 +190,9 @@ function problem.state(run, shot, stretch, only)
   local path, corridor = passages.path(p, shot, keyframes, environment, o.planner)
   if shot.track then
     path = {}
-    for i, place in ipairs(shot.track) do path[i] = { time = place.time, position = place.value } end
+    for i, place in ipairs(shot.track) do
+      path[i] = { time = place.time, position = place.value }
+    end
   end
   p:add_model { type = "quadrotor" }
   p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }

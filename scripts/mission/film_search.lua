@@ -1,4 +1,5 @@
--- Solving a film: attempts, the search for a flight that holds, and what to say where there is none.
+-- Solving a film: attempts, the search for a flight that holds, and what to say where there is
+-- none.
 local passages = require "mission.passages"
 local problem = require "mission.film_problem"
 local subjects = require "mission.subjects"

@@ -1,11 +1,12 @@
--- Global before local (thesis 2.1, 6.1): where solvers begin, straight from keyframe to keyframe and
--- round what stands between; and, where a passage comes to nothing, the next one.
+-- Global before local (thesis 2.1, 6.1): where solvers begin, straight from keyframe to keyframe
+-- and round what stands between; and, where a passage comes to nothing, the next one.
 --
--- shot.legs[i] is the leg from keyframe i to i + 1: the `way` through it (nil where none was found),
--- `why` there is none, and the ways that have `failed`. shot.passages lists what was tried.
+-- shot.legs[i] is the leg from keyframe i to i + 1: the `way` through it (nil where none was
+-- found), `why` there is none, and the ways that have `failed`. shot.passages lists what was tried.
 local M = {}
 
-local MORE = 0.3   -- m, that a planned way keeps beside the margin
+-- m, that a planned way keeps beside the margin; less where an end leaves no more room.
+local MORE = { 0.3, 0.1, 0 }
 local TRIES = 20   -- of the planner, to find another passage
 
 local function distance(a, b)
@@ -63,8 +64,11 @@ function M.path(p, shot, keyframes, environment, planner)
     local leg = shot.legs[i] or { failed = {} }
     shot.legs[i] = leg
     if blocked and not leg.way and not leg.why then
-      leg.way, leg.why = p:plan_way { from = positions[i], to = positions[i + 1], more = MORE,
-                                      planner = planner, excluded = leg.failed, tries = TRIES }
+      for _, more in ipairs(MORE) do
+        leg.way, leg.why = p:plan_way { from = positions[i], to = positions[i + 1], more = more,
+                                        planner = planner, excluded = leg.failed, tries = TRIES }
+        if not string.find(leg.why or "", "_blocked") then break end
+      end
     end
     for _, place in ipairs(leg.way and between(leg.way, times[i], times[i + 1]) or {}) do
       path[#path + 1] = place
@@ -102,7 +106,8 @@ local function note_of(entry)
 end
 
 -- Tries passage after passage until one `holds`, in the open and, if that fails, within a corridor;
--- `first` is what came of the first. Gives what held or else the first, and sentences on what failed.
+-- `first` is what came of the first. Gives what held or else the first, and sentences on what
+-- failed.
 function M.search(run, shot, first, attempt, holds)
   local stretch, notes, tried = first.stretch, {}, first
   shot.passages = {}
@@ -119,6 +124,7 @@ function M.search(run, shot, first, attempt, holds)
       shot.passages[#shot.passages + 1] = entry
       if not certified then notes[#notes + 1] = note_of(entry) end
     end
+    if not way then why = why .. "; no way was planned, " .. (shot.legs[leg].why or "") end
     record(why, false, false)
     if run:cancelled() or not way then break end
     shot.in_corridor = true

@@ -59,14 +59,16 @@ local function candidates(keyframes, fastest)
 end
 
 -- The cheapest times at which keyframes are passed, each leg lasting at least legs[i] seconds: from
--- keyframe to keyframe the least price of every time, by dynamic programming. Or nil and the keyframe
--- that cannot have its time.
+-- keyframe to keyframe the least price of every time, by dynamic programming. Or nil and the
+-- keyframe that cannot have its time.
 function M.cheapest(keyframes, legs)
   local fastest = 0
   for _, leg in ipairs(legs) do fastest = fastest + leg end
   local list, count = candidates(keyframes, fastest), #keyframes
   local least, from = {}, {}
-  for j, t in ipairs(list) do least[j] = t == 0 and price(keyframes[1], 0, count == 1) or math.huge end
+  for j, t in ipairs(list) do
+    least[j] = t == 0 and price(keyframes[1], 0, count == 1) or math.huge
+  end
   for k = 2, count do
     local before, best, place, i = least, math.huge, nil, 1
     least, from[k] = {}, {}
@@ -139,8 +141,8 @@ local function places_of(timed, stops, chosen)
   return places
 end
 
--- A film at its own pace gives the path; then faster, as the vehicle allows, until it follows within
--- the tolerance. Gives what came of it, sentences, and figures.
+-- A film at its own pace gives the path; then faster, as the vehicle allows, until it follows
+-- within the tolerance. Gives what came of it, sentences, and figures.
 function M.path_first(run, shot, attempt, holds)
   local o = run.options
   if o.stretch ~= 1 then run:fail("stretch", "path_first finds the times itself") end
@@ -151,7 +153,8 @@ function M.path_first(run, shot, attempt, holds)
     run:fail("keyframes[1]", "path_first starts in the first keyframe, at 0 s")
   end
   for i, k in ipairs(wanted) do
-    own[i] = { position = k.position, yaw_deg = k.yaw_deg, look_at = k.look_at, subject = k.subject }
+    own[i] = { position = k.position, yaw_deg = k.yaw_deg, look_at = k.look_at,
+               subject = k.subject }
   end
   if shot.duration and not (last.time or wishes(last)) then last.time = shot.duration end
   shot.keyframes, shot.duration = own, nil

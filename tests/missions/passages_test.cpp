@@ -10,7 +10,6 @@ namespace {
 
 class PassageFilms : public Filming {
  protected:
-  // `text` with $F for the folder.
   Flown film(const std::string& text, const std::string& more = "") {
     write_file_atomically(folder_ / "film.lua", text);
     return fly((folder_ / "film.lua").string(), more);
@@ -156,8 +155,8 @@ TEST_F(PassageFilms, TheRealBuildingsMap) {
   if (!data || !fs::exists(fs::path(data) / "maps/geb079.bt"))
     GTEST_SKIP() << "LAPWING_DATA names no folder with maps/geb079.bt";
   const Flown flown = film(R"(return require "mission.film".shot {
-    name = "building 79", vehicle = "vehicles/solo", margin = 0.4, passages = 0,
-    keyframes = { { position = {$A} }, { position = {$B} } },
+    name = "building 79", vehicle = "vehicles/solo", margin = 0.15,
+    keyframes = { { position = {-5.88, -0.52, 2.12} }, { position = {-1.4, -0.68, 1} } },
     obstacles = { { type = "map", file = "geb079.bt" } } })",
                            "--data '" + std::string(data) + "'");
   EXPECT_EQ(flown.status, 0) << to_json(flown.result);

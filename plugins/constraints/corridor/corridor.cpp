@@ -79,7 +79,7 @@ class Corridor final : public DifferentiableConstraint<Corridor, 4> {
     for (int stage = 0; stage < horizon.stages; ++stage) {
       std::vector<Face> faces = faces_at(stage, horizon);
       if (faces.empty()) continue;
-      check_box(faces, stage * horizon.step, horizon.step);
+      check_box(faces, horizon.time(stage), horizon.step_after(stage));
       most = std::max(most, faces.size());
       stages_.push_back(stage);
       faces_.push_back(std::move(faces));
@@ -126,8 +126,10 @@ class Corridor final : public DifferentiableConstraint<Corridor, 4> {
         }
       faces.push_back(face);
     };
-    for (const double middle : {(stage - 0.5) * horizon.step, (stage + 0.5) * horizon.step}) {
-      const double time = std::clamp(middle, 0.0, horizon.duration());
+    const double here = horizon.time(stage);
+    const double before = horizon.time(std::max(stage - 1, 0));
+    const double after = horizon.time(std::min(stage + 1, horizon.stages - 1));
+    for (const double time : {(before + here) / 2, (here + after) / 2}) {
       for (const Region& region : regions_)
         if (region.start <= time && time <= region.finish)
           for (const Face& face : region.faces) add(face);
