@@ -147,13 +147,24 @@ class Chase {
     return speed;
   }
 
+  // The circle that leads to the pursued point bends by 2 sin(angle) / lookahead; the speed at
+  // which the acceleration asked for is enough for it.
+  double turning_speed(const Vector3d& way) const {
+    constexpr double kSlow = 0.1;  // m/s, below which there is no direction of flight
+    const double fast = now_.velocity.norm();
+    if (fast < kSlow) return settings_.speed;
+    const double cosine = now_.velocity.dot(way) / fast;
+    const double sine = cosine < 0 ? 1 : std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    return std::sqrt(0.7 * settings_.acceleration * settings_.lookahead / std::max(2 * sine, 1e-3));
+  }
+
   Vector3d acceleration() {
     along_ = line_.nearest(now_.position, along_, std::min(goal_along(), along_ + reach()));
     const double ahead = std::min(along_ + settings_.lookahead, goal_along());
     Vector3d way = line_.place(ahead) - now_.position;
     const double distance = way.norm();
     if (distance > 0) way /= distance;
-    double pace = speed();
+    double pace = std::min(speed(), turning_speed(way));
     if (way.z() * pace > vehicle_.climb_speed_max) pace = vehicle_.climb_speed_max / way.z();
     if (-way.z() * pace > vehicle_.descent_speed_max) pace = vehicle_.descent_speed_max / -way.z();
     Vector3d wanted = (0.98 * pace * way - now_.velocity) / kResponse;

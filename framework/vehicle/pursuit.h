@@ -3,8 +3,8 @@
 //
 // The result is a trajectory of the motion model `force`, from rest to rest: the reference that the
 // controller follows (`fly` in closed_loop.h flies it by the whole quadrotor), and as good a plan
-// as any for the verifier. Corners are cut by less than the lookahead; views, which stop the
-// running point until they are reached, are not. World frame, SI.
+// as any for the verifier. As set here, right angles are missed by less than a metre; views, which
+// stop the running point until they are reached, are not. World frame, SI.
 #pragma once
 
 #include <span>
@@ -17,14 +17,14 @@
 namespace lapwing {
 
 struct PursuitSettings {
-  double speed = 3;           // m/s, on the way
-  double view_speed = 0.5;    // m/s, nearer than `slow_within` to the next view
-  double slow_within = 3;     // m
-  double lookahead = 2;       // m, by which the point that is pursued runs ahead
-  double acceleration = 1.5;  // m/s^2, the most that is asked for
-  bool stop = true;           // at every view, until the vehicle rests in it; else it is flown by
-  double pause = 0;           // s, at rest in a view, for the image; with `stop`
-  double step = 0.05;         // s, between samples
+  double speed = 3;         // m/s, on the way
+  double view_speed = 0.5;  // m/s, nearer than `slow_within` to the next view
+  double slow_within = 3;   // m
+  double lookahead = 2;     // m, by which the point that is pursued runs ahead
+  double acceleration = 2;  // m/s^2, the most that is asked for
+  bool stop = true;         // at every view, until the vehicle rests in it; else it is flown by
+  double pause = 0;         // s, at rest in a view, for the image; with `stop`
+  double step = 0.05;       // s, between samples
 };
 
 // An image is taken at this point of the path, with this heading.
