@@ -56,9 +56,9 @@ Check gates_of(Plan plan, std::vector<GateTask> gates) {
 TEST(Gates, AreJudgedOnThePath) {
   const Check check = gates_of(gliding(), {window(3), window(6.1)});
   EXPECT_TRUE(check.pass);
-  EXPECT_NEAR(check.worst, -0.2, 1e-6) << "0.5 m half width, 0.3 m beside the middle";
+  EXPECT_NEAR(check.worst.value(), -0.2, 1e-6) << "0.5 m half width, 0.3 m beside the middle";
   EXPECT_TRUE(gates_of(gliding(), {ball(3, 0.31), ball(6, 0.4)}).pass);
-  EXPECT_NEAR(gates_of(gliding(), {ball(3, 0.31)}).worst, -0.01, 1e-6);
+  EXPECT_NEAR(gates_of(gliding(), {ball(3, 0.31)}).worst.value(), -0.01, 1e-6);
   EXPECT_FALSE(gates_of(gliding(), {ball(3, 0.29)}).pass);
 }
 
