@@ -8,6 +8,7 @@
 #include "framework/app/mapping_run.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
+#include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/log.h"
 #include "framework/export/exporter.h"
@@ -116,13 +117,16 @@ void print_summary(const Outcome& outcome) {
   if (outcome.status != "ok" && outcome.status != "cancelled" && !result.report.message.empty()) {
     std::cout << "  " << result.report.message << "\n";
   }
+  if (outcome.status == "ok" && result.report.status == SolveStatus::iteration_limit)
+    std::cout << "  the solver came to its iteration limit: every check holds, a slightly better "
+                 "flight may exist\n";
   for (const std::string& note : result.notes) std::cout << "  " << note << "\n";
   std::cout << race_result(outcome.raced);
   std::cout << "  report: " << (outcome.folder / "report.html").string() << std::endl;
 }
 
 std::string report_page(const Outcome& outcome) {
-  Report report = flight_report(outcome.result.plan);
+  Report report = flight_report(outcome.result.plan, outcome.result.obstacle_folder);
   if (outcome.status == "cancelled") {
     report.status = "cancelled";
     report.status_mark = Mark::fail;
@@ -156,6 +160,8 @@ void write_files(const Outcome& outcome, const Registry& registry, const log::Ca
   for (const Check& check : outcome.certificate.failures()) log::info("fails: " + to_line(check));
   files.log = capture.text();
   files.long_exposure = outcome.long_exposure;
+  for (const std::string& name : outcome.result.obstacle_files)
+    files.obstacles.emplace_back(name, read_file(outcome.result.obstacle_folder / name));
   write_run_folder(outcome.folder, files);
 }
 
@@ -211,7 +217,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
     outcome.seconds = steady_seconds() - begin;
     return finish_mapping({outcome.result, outcome.folder, outcome.seconds}, invocation, capture);
   }
-  outcome.certificate = verify(outcome.result.plan);
+  outcome.certificate = verify(outcome.result.plan, outcome.result.obstacle_folder);
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome);
   if (!outcome.result.plan.lights.empty()) outcome.long_exposure = photograph(outcome.result.plan);

@@ -54,8 +54,8 @@ void print(const Plan& plan, const FlownPath& path) {
 }
 
 // What the verifier would refuse cannot be flown either.
-void require_a_sound_plan(const Plan& plan) {
-  const Certificate certificate = verify(plan);
+void require_a_sound_plan(const Plan& plan, const std::filesystem::path& folder) {
+  const Certificate certificate = verify(plan, folder);
   const Check* document = certificate.find("document");
   if (!document->pass) throw InputError({}, "the plan does not hold together: " + document->detail);
 }
@@ -65,7 +65,7 @@ void require_a_sound_plan(const Plan& plan) {
 ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditions& conditions,
                          const std::filesystem::path& target, const Invocation& invocation) {
   const Plan plan = read_plan(file);
-  require_a_sound_plan(plan);
+  require_a_sound_plan(plan, file.parent_path());
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   const FlownPath path = fly(plan.trajectory, vehicle, conditions);
   if (!target.empty())

@@ -8,6 +8,24 @@
 namespace lapwing {
 namespace {
 
+// The distance to a ball, in place of what a file would hold.
+class BallDistance final : public DistanceField {
+ public:
+  BallDistance(const Eigen::Vector3d& center, double radius) : center_(center), radius_(radius) {}
+  double distance(const Eigen::Vector3d& p_W, Eigen::Vector3d* gradient) const override {
+    const double away = (p_W - center_).norm();
+    if (gradient)
+      *gradient = away > 0 ? Eigen::Vector3d((p_W - center_) / away)
+                           : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    return away - radius_;
+  }
+  double reach() const override { return 1e3; }
+
+ private:
+  Eigen::Vector3d center_;
+  double radius_;
+};
+
 struct Plausible {
   double middle = 0, spread = 1;
 };
@@ -57,6 +75,12 @@ Environment standard_environment() {
   environment.boxes = {{"", {-3, -3, -2}, {3, 5, 2}}, {"tower", {6, -12, 0}, {12, -4, 15}}};
   environment.zones = {{"", {{0, 0}, {12, 1}, {13, 9}, {6, 4}, {2, 11}}},
                        {"field", {{-15, -15}, {-15, -2}, {-4, -9}}, -5, 8}};
+  environment.flight_zones = {
+      {"", {{-30, -30}, {30, -30}, {30, 30}, {-30, 30}}, -30, 30},
+      {"yard", {{-25, -25}, {25, -25}, {25, 25}, {4, 25}, {4, 2}, {-25, 2}}, -9}};
+  environment.meshes = {
+      {"wall", "", "", std::make_shared<BallDistance>(Eigen::Vector3d(2, -7, 3), 2)}};
+  environment.maps = {{"", "", "", std::make_shared<BallDistance>(Eigen::Vector3d(-6, 9, -2), 5)}};
   environment.subjects = {
       {"walker", {0.15, 0.55, 1.25}, {{1, 2, 1}, {2, 2, 1}, {2, 4, 3}}, 1.8, 0.6},
       {"point", {0.0}, {{-4, 5, 0}}}};

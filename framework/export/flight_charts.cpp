@@ -3,6 +3,7 @@
 #include <set>
 
 #include "framework/core/units.h"
+#include "framework/export/surroundings.h"
 
 namespace lapwing {
 namespace {
@@ -62,7 +63,7 @@ Projection better_side(const Trajectory& trajectory) {
 
 }  // namespace
 
-Section path_section(const Plan& plan) {
+Section path_section(const Plan& plan, const std::filesystem::path& folder) {
   Drawing drawing;
   drawing.along = time_axis();
   Polyline line{"path", {}, {}, {}};
@@ -76,9 +77,7 @@ Section path_section(const Plan& plan) {
   for (std::size_t i = 0; i < plan.task.keyframes.size(); ++i) {
     drawing.points.push_back({std::to_string(i + 1), plan.task.keyframes[i].position});
   }
-  drawing.spheres = plan.environment.spheres;
-  drawing.boxes = plan.environment.boxes;
-  drawing.zones = plan.environment.zones;
+  add_surroundings(plan, folder, drawing);
   std::erase_if(drawing.zones, all_around);
   std::set<std::string> drawn;  // once, however many laps there are
   for (const GateTask& gate : plan.task.gates)

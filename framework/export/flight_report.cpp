@@ -261,10 +261,10 @@ Section solver_section(const Value& solver) {
 
 }  // namespace
 
-std::vector<Section> flight_sections(const Plan& plan) {
+std::vector<Section> flight_sections(const Plan& plan, const std::filesystem::path& folder) {
   if (plan.trajectory.samples.empty()) throw Error("a flight without samples has no report");
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
-  std::vector<Section> sections{summary_section(plan, vehicle), path_section(plan)};
+  std::vector<Section> sections{summary_section(plan, vehicle), path_section(plan, folder)};
   if (plan.trajectory.has_gimbal) sections.push_back(camera_section(plan, vehicle));
   sections.push_back(motion_section(plan, vehicle));
   if (Section inputs = input_section(plan, vehicle); !inputs.blocks.empty()) {
@@ -283,11 +283,11 @@ std::vector<Section> flight_sections(const Plan& plan) {
   return sections;
 }
 
-Report flight_report(const Plan& plan) {
+Report flight_report(const Plan& plan, const std::filesystem::path& folder) {
   const Verdict verdict = verdict_of(plan);
   Report report;
   report.title = plan.mission;
-  report.sections = flight_sections(plan);
+  report.sections = flight_sections(plan, folder);
   report.subtitle = plan.kind + ", " + number_text(plan.trajectory.duration()) + " s with " +
                     vehicle_from_value(plan.vehicle).name;
   report.status = verdict.text;

@@ -1,6 +1,7 @@
 // The report of a flight, from its plan alone.
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "framework/export/report.h"
@@ -13,9 +14,10 @@ namespace lapwing {
 // {"name", "status", "iterations", "cost", "message", "terms": {name: cost}, "history":
 // [{"iteration", "cost", "violation", "step", "terms"}]}; "message", "terms" and "history" may
 // lack. Throws InputError naming the field when certificate, solver report or vehicle is malformed.
-std::vector<Section> flight_sections(const Plan& plan);
+// Meshes of the environment are drawn where `folder`, the plan's, holds them.
+std::vector<Section> flight_sections(const Plan& plan, const std::filesystem::path& folder = {});
 
 // The whole page: title, verdict, the sections above.
-Report flight_report(const Plan& plan);
+Report flight_report(const Plan& plan, const std::filesystem::path& folder = {});
 
 }  // namespace lapwing

@@ -16,6 +16,19 @@ void remove_old(const std::filesystem::path& path) {
   if (code) throw InputError(path.string() + ": cannot remove: " + code.message());
 }
 
+// obstacle_N.ply and obstacle_N.ot of an earlier run.
+void remove_old_obstacles(const std::filesystem::path& folder) {
+  std::error_code code;
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename().string();
+    const std::string ending = entry.path().extension().string();
+    if (name.starts_with("obstacle_") && (ending == ".ply" || ending == ".ot"))
+      old.push_back(entry.path());
+  }
+  for (const auto& path : old) remove_old(path);
+}
+
 }  // namespace
 
 std::string run_folder_name(std::string_view mission) {
@@ -49,6 +62,9 @@ void write_run_folder(const std::filesystem::path& folder, const RunFiles& files
       {"plan.json", files.plan}};
   // The old plan goes first: were the run to end here, no plan would vouch for files of another.
   remove_old(folder / "plan.json");
+  remove_old_obstacles(folder);
+  for (const auto& [name, contents] : files.obstacles)
+    write_file_atomically(folder / name, contents);
   for (const auto& [name, contents] : all) {
     if (contents) {
       write_file_atomically(folder / name, *contents);

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace lapwing {
 
@@ -26,6 +28,8 @@ struct RunFiles {
   std::optional<std::string> log = {};            // run.log
   std::optional<std::string> map = {};            // map.ot
   std::optional<std::string> long_exposure = {};  // long_exposure.png
+  // Meshes and maps that the plan names: obstacle_1.ply, obstacle_2.ot, ...
+  std::vector<std::pair<std::string, std::string>> obstacles = {};
 };
 
 // Creates the folder and writes each file whole or not at all; plan.json last, so that a folder

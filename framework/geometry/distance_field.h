@@ -14,6 +14,10 @@ class DistanceField {
   // where several places are nearest. Thread-safe.
   virtual double distance(const Eigen::Vector3d& p_W, Eigen::Vector3d* gradient) const = 0;
 
+  // The second derivatives: here the differences of the gradient over a tenth of a millimetre.
+  // Across a kink they are those of the chord.
+  virtual Eigen::Matrix3d curvature(const Eigen::Vector3d& p_W) const;
+
   // m; distances are not told apart beyond it.
   virtual double reach() const = 0;
 };

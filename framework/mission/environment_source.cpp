@@ -18,23 +18,22 @@ Box box_of(const Parameters& given) {
   return box;
 }
 
-Zone zone_of(const Parameters& given) {
+Zone zone_of(const Parameters& given, const std::string& kind) {
   Zone zone{.name = given.text("name"), .corners = {}};
+  const std::string what = kind + " '" + zone.name + "'";
   const auto numbers = given.numbers("corners");
   if (numbers.size() < 6 || numbers.size() % 2 != 0)
     throw InputError(given.origin("corners"),
-                     "zone '" + zone.name + "': corners: expected at least three pairs x, y");
+                     what + ": corners: expected at least three pairs x, y");
   for (std::size_t i = 0; i < numbers.size(); i += 2)
     zone.corners.emplace_back(numbers[i], numbers[i + 1]);
   if (!is_simple_polygon(zone.corners))
     throw InputError(given.origin("corners"),
-                     "zone '" + zone.name +
-                         "': its edges cross or touch, or corners coincide; list them in turn");
+                     what + ": its edges cross or touch, or corners coincide; list them in turn");
   if (given.has("floor")) zone.floor = given.number("floor");
   if (given.has("ceiling")) zone.ceiling = given.number("ceiling");
   if (!(zone.floor < zone.ceiling))
-    throw InputError(given.origin("ceiling"),
-                     "zone '" + zone.name + "': its ceiling must be above its floor");
+    throw InputError(given.origin("ceiling"), what + ": its ceiling must be above its floor");
   return zone;
 }
 
@@ -57,6 +56,12 @@ Subject subject_of(const Parameters& given) {
   return subject;
 }
 
+MapObstacle map_of(const Parameters& given, double margin, MissionRun& run) {
+  const Box box = box_of(given);
+  return run.obstacles.map(run.files.find(given.text("file"), "maps"), box.name, margin,
+                           {box.lower, box.upper}, given.text("type"), *run.settings.registry);
+}
+
 }  // namespace
 
 ParameterTable environment_table() {
@@ -74,6 +79,10 @@ ParameterTable environment_table() {
       .required_numbers("corners", 0, "m", "x and y of each corner in turn, world", far)
       .optional_number("floor", "m", "lowest height that is closed; absent: the ground and below")
       .optional_number("ceiling", "m", "highest height that is closed; absent: all above");
+  ParameterTable mesh;
+  mesh.text("name", "", "for messages").required_text("file", "a mesh, in metres with z up");
+  ParameterTable map = box;
+  map.required_text("file", "a map, .ot or .bt").text("type", "brick", "plugin that holds it");
   ParameterTable point;
   point.required_number("time", "s", "from the start of the flight")
       .required_numbers("position", 3, "m", "of its middle, world", far);
@@ -88,25 +97,37 @@ ParameterTable environment_table() {
   table.tables("spheres", sphere, "to keep out of")
       .tables("boxes", box, "to keep out of, parallel to the axes")
       .tables("zones", zone, "not to be flown over")
+      .tables("flight_zones", zone, "not to be left, every one of them")
+      .tables("meshes", mesh, "to keep away from")
+      .tables("maps", map, "occupied or unknown: to keep away from; known to within a box")
       .tables("subjects", subject, "what is filmed")
       .number("margin", 0, "m", "kept from every surface", at_least(0));
   return table;
 }
 
-Environment environment_of(const Parameters& given) {
+Environment environment_of(const Parameters& given, MissionRun& run) {
   Environment environment;
+  environment.margin = given.number("margin");
   for (const Parameters& sphere : given.tables("spheres"))
     environment.spheres.push_back(
         {sphere.text("name"), vector_of(sphere.numbers("center")), sphere.number("radius")});
   for (const Parameters& box : given.tables("boxes")) environment.boxes.push_back(box_of(box));
-  for (const Parameters& zone : given.tables("zones")) environment.zones.push_back(zone_of(zone));
+  for (const Parameters& zone : given.tables("zones"))
+    environment.zones.push_back(zone_of(zone, "zone"));
+  for (const Parameters& zone : given.tables("flight_zones"))
+    environment.flight_zones.push_back(zone_of(zone, "flight zone"));
+  for (const Parameters& mesh : given.tables("meshes"))
+    environment.meshes.push_back(run.obstacles.mesh(run.files.find(mesh.text("file"), "meshes"),
+                                                    mesh.text("name"), environment.margin,
+                                                    run.settings.print));
+  for (const Parameters& map : given.tables("maps"))
+    environment.maps.push_back(map_of(map, environment.margin, run));
   for (const Parameters& entry : given.tables("subjects")) {
     for (const Subject& other : environment.subjects)
       if (other.name == entry.text("name"))
         throw InputError(entry.origin("name"), "two subjects are named '" + other.name + "'");
     environment.subjects.push_back(subject_of(entry));
   }
-  environment.margin = given.number("margin");
   return environment;
 }
 

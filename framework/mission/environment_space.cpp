@@ -19,7 +19,7 @@ class EnvironmentSpace final : public FreeSpace {
   }
   bool swept_box_free(const Vector3d& from, const Vector3d& to,
                       const Vector3d& half) const override {
-    return clear(from, to, margin_ + half.norm());
+    return from == to ? box_clear(from, half) : clear(from, to, margin_ + half.norm());
   }
   Eigen::AlignedBox3d bounds() const override {
     constexpr double kFar = std::numeric_limits<double>::max();
@@ -27,7 +27,26 @@ class EnvironmentSpace final : public FreeSpace {
   }
 
  private:
-  double distance(const Vector3d& p) const { return nearest_obstacle(environment_, p).distance; }
+  double distance(const Vector3d& p) const {
+    double least = nearest_obstacle(environment_, p).distance;
+    for (const Zone& zone : environment_.flight_zones)
+      least = std::min(least, -signed_distance(zone, p));
+    return least;
+  }
+
+  // A box at rest is judged part by part: one whose middle has room enough for all of it is free.
+  bool box_clear(const Vector3d& middle, const Vector3d& half) const {
+    constexpr double kLeast = 0.15;  // m; smaller parts in doubt are taken for blocked
+    const double room = distance(middle) - margin_, radius = half.norm();
+    if (room < 0) return false;
+    if (room >= radius) return true;
+    if (radius < kLeast) return false;
+    int axis = 0;
+    half.maxCoeff(&axis);
+    Vector3d step = Vector3d::Zero(), part = half;
+    step(axis) = part(axis) = half(axis) / 2;
+    return box_clear(middle - step, part) && box_clear(middle + step, part);
+  }
 
   // Distances change by no more than the way travelled: from each place as far as it is sure to be
   // free, in steps of a millimetre at least.

@@ -1,11 +1,15 @@
 #include "framework/mission/flight_library.h"
 
+#include <algorithm>
+
 #include <lua.hpp>
 
+#include "framework/core/units.h"
 #include "framework/export/light_painting.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
+#include "framework/vehicle/pursuit.h"
 
 namespace lapwing {
 
@@ -46,16 +50,43 @@ int fly_plan(lua_State* state) {
   return 1;
 }
 
-// run:time_path{points = {x, y, z, ...}, spacing =, rounding =, speed =, acceleration =}: {points =
-// {x, y, z, ...}, times = {...}}, as fast as the limits allow, from rest to rest.
+namespace {
+
+// What the vehicle can do, a share of it.
+MotionLimits limits_of(const Vehicle& v, double share) {
+  MotionLimits limits;
+  limits.speed_across = share * v.speed_across_max;
+  limits.climb_speed = share * v.climb_speed_max;
+  limits.descent_speed = share * v.descent_speed_max;
+  limits.acceleration_across = share * v.acceleration_across_max;
+  // Half of the thrust above hovering is left for what goes across (input_limits).
+  const double up = (v.thrust_max() / v.mass - kGravity) / 2;
+  const double down = (kGravity - v.thrust_min() / v.mass) / 2;
+  limits.acceleration_up = share * std::min(up, v.acceleration_up_max.value_or(up));
+  limits.acceleration_down = share * std::min(down, v.acceleration_down_max.value_or(down));
+  return limits;
+}
+
+}  // namespace
+
+// run:time_path{points = {x, y, z, ...}, spacing =, rounding =, speed =, acceleration =}, or with
+// vehicle = and share = in place of the last two: {points = {x, y, z, ...}, times = {...}}, as fast
+// as the limits allow, from rest to rest.
 int time_path(lua_State* state) {
+  static constexpr std::string_view kVehicle[] = {"vehicle"};
   ParameterTable table;
   table.required_numbers("points", 0, "m", "x, y, z of each point in turn, world")
       .number("spacing", 0.01, "m", "between the points of the answer", above(0))
       .number("rounding", 0, "m", "of corners, standard deviation", at_least(0))
-      .required_number("speed", "m/s", "largest", above(0))
-      .required_number("acceleration", "m/s^2", "largest, along and across together", above(0));
-  const Parameters given = table_argument(state, 2, table, "time_path");
+      .number("share", 1, "", "of what the vehicle can do", {0, 1, true})
+      .optional_number("speed", "m/s", "largest", above(0))
+      .optional_number("acceleration", "m/s^2", "largest, along and across together", above(0));
+  const Parameters given = table_argument(state, 2, table, "time_path", kVehicle);
+  lua_getfield(state, 2, "vehicle");
+  const Vehicle* vehicle =
+      lua_isnil(state, -1) ? nullptr : &object_argument<Vehicle>(state, -1, kVehicleType);
+  if (!vehicle && !(given.has("speed") && given.has("acceleration")))
+    throw InputError(given.origin(), "time_path: expected a vehicle, or speed and acceleration");
   const Points path = points_of(given, "points");
   const double spacing = given.number("spacing"), length = length_of(path);
   if (!(length > 0)) throw InputError(given.origin("points"), "time_path: the path has no length");
@@ -63,12 +94,85 @@ int time_path(lua_State* state) {
     throw InputError(given.origin("spacing"), "time_path: more than a million points");
   const Points smooth = rounded(resampled(path, spacing), given.number("rounding"));
   const std::vector<double> times =
-      fastest_times(smooth, {given.number("speed"), given.number("acceleration")});
+      vehicle
+          ? fastest_times(smooth, limits_of(*vehicle, given.number("share")))
+          : fastest_times(smooth, PathLimits{given.number("speed"), given.number("acceleration")});
   Value points = Value::list(), result = Value::map();
   for (const Eigen::Vector3d& p : smooth)
     for (int axis = 0; axis < 3; ++axis) points.push_back(p(axis));
   result.set("points", std::move(points));
   result.set("times", Value(Value::List(times.begin(), times.end())));
+  push_value(state, result);
+  return 1;
+}
+
+// run:path_distance{points = {x, y, z, ...}, path = {x, y, z, ...}}: how far the farthest of the
+// points is from the path, m.
+int path_distance(lua_State* state) {
+  ParameterTable table;
+  table.required_numbers("points", 0, "m", "x, y, z of each in turn, world")
+      .required_numbers("path", 0, "m", "likewise");
+  const Parameters given = table_argument(state, 2, table, "path_distance");
+  const std::vector<Points> path = {points_of(given, "path")};
+  double worst = 0;
+  for (const Eigen::Vector3d& p : points_of(given, "points"))
+    worst = std::max(worst, distance_to(path, p));
+  lua_pushnumber(state, worst);
+  return 1;
+}
+
+// run:pursue{vehicle =, points = {x, y, z, ...}, views = {{point =, yaw =}, ...}, speed =, ...}:
+// {duration =, views = {{arrival =, departure =, miss =}, ...}, lost =, position_error =}, as the
+// whole quadrotor flies it in still air.
+int pursue_path(lua_State* state) {
+  const PursuitSettings standard;
+  static constexpr std::string_view kVehicle[] = {"vehicle"};
+  ParameterTable view;
+  view.integer("point", 1, "of the path, from 1 on", at_least(1))
+      .number("yaw", 0, "rad", "heading");
+  ParameterTable table;
+  table.required_numbers("points", 0, "m", "x, y, z of each point in turn, world")
+      .tables("views", view, "where images are taken")
+      .number("speed", standard.speed, "m/s", "on the way", above(0))
+      .number("view_speed", standard.view_speed, "m/s", "near a view", above(0))
+      .number("slow_within", standard.slow_within, "m", "of a view", above(0))
+      .number("lookahead", standard.lookahead, "m", "of what is pursued", above(0))
+      .number("acceleration", standard.acceleration, "m/s^2", "largest", above(0))
+      .boolean("stop", standard.stop, "at every view")
+      .number("pause", standard.pause, "s", "in every view", between(0, 3600));
+  const Parameters given = table_argument(state, 2, table, "pursue", kVehicle);
+  lua_getfield(state, 2, "vehicle");
+  const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
+  PursuitSettings settings;
+  settings.speed = given.number("speed");
+  settings.view_speed = given.number("view_speed");
+  settings.slow_within = given.number("slow_within");
+  settings.lookahead = given.number("lookahead");
+  settings.acceleration = given.number("acceleration");
+  settings.stop = given.boolean("stop");
+  settings.pause = given.number("pause");
+  std::vector<PursuitView> views;
+  for (const Parameters& entry : given.tables("views"))
+    views.push_back({static_cast<std::size_t>(entry.integer("point") - 1), entry.number("yaw")});
+  const Points path = points_of(given, "points");
+  Value passed = Value::list(), result = Value::map();
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    const Pursuit pursuit = pursue(path, views, vehicle, settings);
+    const FlownPath flown =
+        fly(pursuit.trajectory, vehicle, {}, run_of(state).settings.cancellation);
+    for (const ViewPassed& view_passed : pursuit.views) {
+      Value entry = Value::map();
+      entry.set("arrival", view_passed.arrival);
+      entry.set("departure", view_passed.departure);
+      entry.set("miss", view_passed.miss);
+      passed.push_back(std::move(entry));
+    }
+    result.set("duration", pursuit.trajectory.duration());
+    result.set("lost", flown.lost);
+    result.set("position_error", flown.position_error_worst);
+  }
+  result.set("views", std::move(passed));
   push_value(state, result);
   return 1;
 }

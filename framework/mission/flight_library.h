@@ -14,5 +14,7 @@ Points points_of(const Parameters& given, const std::string& key);
 // The methods, for the table of `run`; to be guarded.
 int fly_plan(lua_State* state);
 int time_path(lua_State* state);
+int path_distance(lua_State* state);
+int pursue_path(lua_State* state);
 
 }  // namespace lapwing

@@ -34,7 +34,7 @@ std::vector<std::filesystem::path> data_folders(const std::filesystem::path& scr
 struct Mission::Impl {
   Impl(const std::filesystem::path& script_file, MissionSettings given)
       : script(script_file),
-        run{given, DataFiles(data_folders(script_file, given)), "", "", Value::map(), 0},
+        run{given, DataFiles(data_folders(script_file, given)), "", "", Value::map(), 0, {}},
         sandbox(given.limits, given.seed, {given.scripts}, given.print) {
     sandbox.watch(given.cancellation);
   }
@@ -168,6 +168,8 @@ MissionResult Mission::plan() {
     result.block = planned->block;
   });
   result.solve_seconds = impl.run.solve_seconds;
+  result.obstacle_folder = impl.run.obstacles.folder();
+  result.obstacle_files = impl.run.obstacles.files();
   return result;
 }
 

@@ -29,6 +29,10 @@ struct MissionResult {
   std::vector<std::string> notes;  // sentences for the user
   Value block;                     // the kind's own figures, null or a map
   std::vector<Pilot> pilots;       // who fly it by hand, in simulation
+  // Where the files lie that the plan's environment names, as long as the mission lives; and their
+  // names.
+  std::filesystem::path obstacle_folder = {};
+  std::vector<std::string> obstacle_files = {};
 };
 
 class Mission {

@@ -91,8 +91,16 @@ int solve(lua_State* state) {
   return 1;
 }
 
+// x, y, z of every stage in turn.
+Value positions_of(const SolutionObject& solution) {
+  Value list = Value::list();
+  for (const Sample& s : solution.problem->trajectory(solution.result.point.stages).samples)
+    for (int axis = 0; axis < 3; ++axis) list.push_back(s.position(axis));
+  return list;
+}
+
 // Fields of a solution: status, message, solver, cost, iterations, violations, legs (durations, s),
-// duration, defects (of each leg, as shares of what a certificate allows).
+// duration, defects (of each leg, as shares of what a certificate allows), path.
 int solution_field(lua_State* state) {
   const SolutionObject& solution = object_argument<SolutionObject>(state, 1, kSolutionType);
   const SolveReport& report = solution.result.report;
@@ -125,6 +133,8 @@ int solution_field(lua_State* state) {
     fields.set("defects", Value(Value::List(defects.begin(), defects.end())));
   }
   fields.set("duration", solution.problem->time(at, horizon.stages - 1));
+  fields.set("path", Value());
+  if (field == "path") fields.set("path", positions_of(solution));
   const Value* found = fields.find(field);
   if (!found) refuse_field("a solution", field, fields);
   push_value(state, *found);
@@ -340,7 +350,7 @@ int certify(lua_State* state) {
   Certificate certificate;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    certificate = verify(object.plan);
+    certificate = verify(object.plan, run_of(state).obstacles.folder());
   }
   Value result = certificate.to_value();
   Value failures = Value::list();
@@ -416,6 +426,8 @@ int run_field(lua_State* state) {
                                      {"certify", &guarded<certify>},
                                      {"fly", &guarded<fly_plan>},
                                      {"time_path", &guarded<time_path>},
+                                     {"pursue", &guarded<pursue_path>},
+                                     {"path_distance", &guarded<path_distance>},
                                      {"cancelled", &guarded<cancelled>},
                                      {"progress", &guarded<progress>},
                                      {"fail", &guarded<fail>}};

@@ -2,12 +2,11 @@
 #include <lua.hpp>
 
 #include "framework/mission/environment_source.h"
-#include "framework/mission/environment_space.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
 #include "framework/mission/vehicle_source.h"
-#include "framework/path/path_planner.h"
+#include "framework/mission/way_library.h"
 #include "framework/problem/constraint.h"
 #include "framework/problem/cost_term.h"
 #include "framework/problem/vehicle_model.h"
@@ -169,85 +168,42 @@ int guess_block(lua_State* state) {
   return 0;
 }
 
+Eigen::Vector3d place_argument(lua_State* state, const char* what) {
+  const Origin origin = Sandbox::of(state).script_position(state);
+  const Value given = value_from_lua(state, 2, origin, what);
+  if (!given.is_list() || given.as_list().size() != 3)
+    throw InputError(origin, std::string(what) + ": expected a position of 3 numbers");
+  const auto& p = given.as_list();
+  return {p[0].as_number(), p[1].as_number(), p[2].as_number()};
+}
+
 // problem:nearest_obstacle{x, y, z}: distance (negative inside, infinite without any) and name
 int nearest(lua_State* state) {
   const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
-  const Origin origin = Sandbox::of(state).script_position(state);
-  const Value given = value_from_lua(state, 2, origin, "nearest_obstacle");
-  if (!given.is_list() || given.as_list().size() != 3)
-    throw InputError(origin, "nearest_obstacle: expected a position of 3 numbers");
-  const auto& p = given.as_list();
-  const NearestObstacle nearest = nearest_obstacle(
-      object.problem->environment(), {p[0].as_number(), p[1].as_number(), p[2].as_number()});
+  const NearestObstacle nearest =
+      nearest_obstacle(object.problem->environment(), place_argument(state, "nearest_obstacle"));
   lua_pushnumber(state, nearest.distance);
   lua_pushlstring(state, nearest.name.data(), nearest.name.size());
   return 2;
 }
 
-// Around both places and everything in the way, not below the lower one.
-Eigen::AlignedBox3d planning_bounds(const Environment& environment, const Eigen::Vector3d& from,
-                                    const Eigen::Vector3d& to) {
-  constexpr double kRoom = 10;  // m
-  Eigen::AlignedBox3d box(from);
-  box.extend(to);
-  const double floor = box.min().z();
-  for (const Sphere& sphere : environment.spheres) {
-    box.extend(sphere.center + Eigen::Vector3d::Constant(sphere.radius));
-    box.extend(sphere.center - Eigen::Vector3d::Constant(sphere.radius));
-  }
-  for (const Box& other : environment.boxes) {
-    box.extend(other.lower);
-    box.extend(other.upper);
-  }
-  for (const Zone& zone : environment.zones)
-    for (const Eigen::Vector2d& corner : zone.corners)
-      box.extend(Eigen::Vector3d(corner.x(), corner.y(), floor));
-  Eigen::Vector3d lower = box.min() - Eigen::Vector3d::Constant(kRoom);
-  lower.z() = floor - environment.margin;
-  return {lower, box.max() + Eigen::Vector3d::Constant(kRoom)};
-}
-
-// problem:plan_way{from =, to =, planner =, more =}: {{x, y, z}, ...}, a free way that keeps the
-// margin and `more` metres; or nothing and why there is none.
-int plan_way(lua_State* state) {
-  MissionRun& run = run_of(state);
+// problem:flight_zone_distance{x, y, z}: to the nearest edge of a flight zone, negative outside of
+// one, infinite without any; and its name or number
+int flight_zone_distance(lua_State* state) {
   const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
-  static constexpr std::string_view kPlanner[] = {"planner"};
-  ParameterTable table;
-  table.required_numbers("from", 3, "m", "world")
-      .required_numbers("to", 3, "m", "world")
-      .number("more", 0, "m", "kept beside the margin", at_least(0));
-  const Parameters given = table_argument(state, 2, table, "plan_way", kPlanner);
-  lua_getfield(state, 2, "planner");
-  const PluginChoice chosen = plugin_choice(state, -1, "planner");
-  const auto planner =
-      run.settings.registry->create<PathPlanner>(chosen.type, chosen.parameters, "planner");
-  const Environment& environment = object.problem->environment();
-  const auto space = free_space_of(environment, given.number("more"));
-  PathProblem problem;
-  problem.space = space.get();
-  problem.start = Eigen::Vector3d(given.numbers("from").data());
-  problem.goal = Eigen::Vector3d(given.numbers("to").data());
-  problem.bounds = planning_bounds(environment, problem.start, problem.goal);
-  PathRequest request;
-  request.seed = run.settings.seed;
-  request.cancellation = run.settings.cancellation;
-  PathResult result;
-  {
-    const Sandbox::ClockPause pause(Sandbox::of(state));
-    result = planner->plan(problem, request);
+  const Eigen::Vector3d p = place_argument(state, "flight_zone_distance");
+  const auto& zones = object.problem->environment().flight_zones;
+  double least = std::numeric_limits<double>::infinity();
+  std::string name;
+  for (std::size_t i = 0; i < zones.size(); ++i) {
+    const double inside = -signed_distance(zones[i], p);
+    if (!(inside < least)) continue;
+    least = inside;
+    name = zones[i].name.empty() ? std::to_string(i + 1) : zones[i].name;
   }
-  if (result.report.status != PathStatus::found) {
-    lua_pushnil(state);
-    push_text(state, std::string(to_string(result.report.status)) +
-                         (result.report.message.empty() ? "" : ": " + result.report.message));
-    return 2;
-  }
-  Value points = Value::list();
-  for (const Eigen::Vector3d& p : result.points)
-    points.push_back(Value(Value::List{p.x(), p.y(), p.z()}));
-  push_value(state, points);
-  return 1;
+  lua_pushnumber(state, least);
+  push_text(state, name);
+  return 2;
 }
 
 }  // namespace
@@ -325,8 +281,11 @@ int problem_of_run(lua_State* state) {
     horizon.turns = static_cast<int>(given.integer("turns"));
   }
   ProblemObject object;
-  object.problem = std::make_shared<TrajectoryProblem>(vehicle, horizon,
-                                                       environment_of(given.table("environment")));
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    object.problem = std::make_shared<TrajectoryProblem>(
+        vehicle, horizon, environment_of(given.table("environment"), run_of(state)));
+  }
   new_object(state, kProblemType, std::move(object));
   return 1;
 }
@@ -348,7 +307,9 @@ void open_problem_library(lua_State* state) {
                               {"guess_block", &guarded<guess_block>},
                               {"guess_solution", &guarded<guess_solution>},
                               {"nearest_obstacle", &guarded<nearest>},
+                              {"flight_zone_distance", &guarded<flight_zone_distance>},
                               {"plan_way", &guarded<plan_way>},
+                              {"grow_corridor", &guarded<grow_corridor_of_problem>},
                               {"finish", &guarded<finish>},
                               {nullptr, nullptr}};
   define_type<ProblemObject>(state, kProblemType, methods);

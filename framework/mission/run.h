@@ -12,6 +12,7 @@
 
 #include "framework/core/progress.h"
 #include "framework/mission/data_files.h"
+#include "framework/mission/obstacle_files.h"
 #include "framework/mission/sandbox.h"
 #include "framework/plugin/registry.h"
 #include "framework/problem/trajectory_problem.h"
@@ -66,6 +67,7 @@ struct MissionRun {
   std::string name, kind;
   Value configuration = Value::map();
   double solve_seconds = 0;
+  ObstacleFiles obstacles = {};
 };
 
 // The run that a state belongs to.

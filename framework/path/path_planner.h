@@ -87,6 +87,7 @@ class PathPlanner {
 std::vector<Eigen::Vector3d> without_detours(const PathProblem& problem,
                                              std::vector<Eigen::Vector3d> points);
 
+// m.
 double path_length(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace lapwing

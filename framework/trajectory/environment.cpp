@@ -60,6 +60,20 @@ void see(const std::vector<Obstacle>& obstacles, const char* kind, const Eigen::
   }
 }
 
+// Those of meshes and maps, where somebody has read them.
+template <class Source>
+void see_fields(const std::vector<Source>& sources, const char* kind, const Eigen::Vector3d& p,
+                NearestObstacle& nearest) {
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (!sources[i].distance) continue;
+    const double distance = sources[i].distance->distance(p, nullptr);
+    if (!(distance < nearest.distance)) continue;
+    nearest.distance = distance;
+    nearest.name = sources[i].name.empty() ? std::string(kind) + " " + std::to_string(i + 1)
+                                           : sources[i].name;
+  }
+}
+
 }  // namespace
 
 Eigen::Vector3d Subject::position(double time) const {
@@ -109,6 +123,8 @@ NearestObstacle nearest_obstacle(const Environment& environment, const Eigen::Ve
   see(environment.spheres, "sphere", p, nearest);
   see(environment.boxes, "box", p, nearest);
   see(environment.zones, "zone", p, nearest);
+  see_fields(environment.meshes, "mesh", p, nearest);
+  see_fields(environment.maps, "map", p, nearest);
   return nearest;
 }
 

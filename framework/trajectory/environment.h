@@ -3,10 +3,14 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "framework/geometry/distance_field.h"
 
 namespace lapwing {
 
@@ -23,7 +27,8 @@ struct Box {
   Eigen::Vector3d upper = Eigen::Vector3d::Zero();
 };
 
-// A no-fly zone: all points above a polygon on the ground between two heights.
+// All points above a polygon on the ground between two heights: closed to flight, or the only ones
+// open to it.
 struct Zone {
   std::string name;
   std::vector<Eigen::Vector2d> corners;  // at least 3, in either turn; edges do not cross
@@ -37,6 +42,17 @@ struct MeshObstacle {
   std::string name;
   std::string file;    // relative to the plan's folder, and below it
   std::string sha256;  // of the file, 64 hexadecimal digits
+  // To what the file holds. Planners read it; a document has none, and it is null.
+  std::shared_ptr<const DistanceField> distance = nullptr;
+  Eigen::AlignedBox3d bounds = {};  // m, of the triangles; empty where nobody has read them
+};
+
+// A map in a file beside the plan (.ot): what is occupied or unknown is closed to flight.
+struct MapObstacle {
+  std::string name;
+  std::string file;    // as of a mesh
+  std::string sha256;  // likewise
+  std::shared_ptr<const DistanceField> distance = nullptr;  // likewise
 };
 
 // What is filmed: an upright cylinder around a middle that may move. Straight and even motion
@@ -55,8 +71,10 @@ struct Subject {
 struct Environment {
   std::vector<Sphere> spheres;
   std::vector<Box> boxes;
-  std::vector<Zone> zones;
+  std::vector<Zone> zones;         // closed to flight
+  std::vector<Zone> flight_zones;  // the flight stays inside every one of them
   std::vector<MeshObstacle> meshes;
+  std::vector<MapObstacle> maps;
   std::vector<Subject> subjects;  // filmed
   double margin = 0;              // m kept from every surface, vehicle radius included
 };
@@ -70,8 +88,9 @@ double signed_distance(const Sphere& sphere, const Eigen::Vector3d& p);
 double signed_distance(const Box& box, const Eigen::Vector3d& p);
 double signed_distance(const Zone& zone, const Eigen::Vector3d& p);
 
-// The nearest of all spheres, boxes and zones (meshes are not read here): its distance (infinite
-// where there is none) and its name, or its kind and number where it has none ("sphere 2").
+// The nearest of all spheres, boxes and closed zones, and of the meshes and maps whose distance is
+// given: its distance (infinite where there is none) and its name, or its kind and number where it
+// has none ("sphere 2"). Distances of meshes and maps are told apart up to their reach only.
 struct NearestObstacle {
   double distance = std::numeric_limits<double>::infinity();
   std::string name;

@@ -33,12 +33,19 @@ Value to_value(const Zone& zone) {
   return value;
 }
 
-Value to_value(const MeshObstacle& mesh) {
+template <class Source>
+Value file_to_value(const Source& source) {
   Value value = Value::map();
-  value.set("name", mesh.name);
-  value.set("file", mesh.file);
-  value.set("sha256", mesh.sha256);
+  value.set("name", source.name);
+  value.set("file", source.file);
+  value.set("sha256", source.sha256);
   return value;
+}
+Value to_value(const MeshObstacle& mesh) {
+  return file_to_value(mesh);
+}
+Value to_value(const MapObstacle& map) {
+  return file_to_value(map);
 }
 
 Value to_value(const Subject& subject) {
@@ -102,7 +109,10 @@ Value environment_to_value(const Environment& environment) {
   value.set("spheres", list_of(environment.spheres));
   value.set("boxes", list_of(environment.boxes));
   if (!environment.zones.empty()) value.set("zones", list_of(environment.zones));
+  if (!environment.flight_zones.empty())
+    value.set("flight_zones", list_of(environment.flight_zones));
   if (!environment.meshes.empty()) value.set("meshes", list_of(environment.meshes));
+  if (!environment.maps.empty()) value.set("maps", list_of(environment.maps));
   if (!environment.subjects.empty()) value.set("subjects", list_of(environment.subjects));
   return value;
 }
@@ -117,8 +127,12 @@ Environment environment_from(Fields fields) {
     return Box{f.text("name"), f.vector3("lower"), f.vector3("upper")};
   });
   environment.zones = read_all(fields.optional_tables("zones"), zone_from);
+  environment.flight_zones = read_all(fields.optional_tables("flight_zones"), zone_from);
   environment.meshes = read_all(fields.optional_tables("meshes"), [](Fields& f) {
     return MeshObstacle{f.text("name"), f.text("file"), f.text("sha256")};
+  });
+  environment.maps = read_all(fields.optional_tables("maps"), [](Fields& f) {
+    return MapObstacle{f.text("name"), f.text("file"), f.text("sha256")};
   });
   environment.subjects = read_all(fields.optional_tables("subjects"), subject_from);
   fields.finish();

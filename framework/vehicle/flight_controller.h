@@ -19,7 +19,7 @@ struct ControllerGains {
 // The attitude loop is critically damped. Its bandwidth w is such that an error of 0.5 rad asks for
 // half of the moment that rotors have left beside hovering; at most 20 rad/s about roll and pitch,
 // 4 rad/s about yaw, and 0.5 over the rotors' lag. The regulator weighs deviations by what is worth
-// an acceleration of 2 m/s^2: 0.1 m, 0.5 m/s, 0.1 m s. Where the attitude answers later than 0.2 s
+// an acceleration of 2 m/s^2: 0.1 m, 0.5 m/s, 0.1 m s. Where the attitude answers later than 0.15 s
 // (2/w and the lag) all times of the regulator grow in proportion.
 ControllerGains gains_of(const Vehicle& vehicle);
 

@@ -12,6 +12,7 @@
 #include "framework/trajectory/plan.h"
 #include "framework/vehicle/closed_loop.h"
 #include "framework/vehicle/vehicle.h"
+#include "framework/verify/blocked_voxels.h"
 #include "framework/verify/certificate.h"
 #include "framework/verify/motion.h"
 #include "framework/verify/tolerances.h"
@@ -53,6 +54,7 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"gimbal_yaw_rate", CheckGroup::safety, true, "rad/s"},
     CheckKind{"gimbal_pitch_rate", CheckGroup::safety, true, "rad/s"},
     CheckKind{"clearance", CheckGroup::safety, true, "m"},
+    CheckKind{"flight_zone", CheckGroup::safety, true, "m"},
     CheckKind{"subject_distance", CheckGroup::safety, true, "m"},
     CheckKind{"flight_time", CheckGroup::safety, true, "s"},
     CheckKind{"budget", CheckGroup::safety, true, "s"},
@@ -105,19 +107,22 @@ struct Flight {
   const Plan& plan;
   const Vehicle& vehicle;
   Motion& motion;
-  std::span<const MeshScene> meshes;  // of the environment, in its order
+  std::span<const MeshScene> meshes;    // of the environment, in its order
+  std::span<const BlockedVoxels> maps;  // likewise
 };
 
 // The families. Each appends its checks; `document` also yields the vehicle that it read.
 struct Document {
   Check check;
   Vehicle vehicle;
-  std::vector<MeshScene> meshes;  // of the environment, in its order
+  std::vector<MeshScene> meshes;    // of the environment, in its order
+  std::vector<BlockedVoxels> maps;  // likewise, where the flight comes
 };
 Document check_document(const Plan& plan, const std::filesystem::path& folder);
 void check_dynamics(const Flight& flight, Certificate& certificate);
 void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);
+void check_flight_zones(const Flight& flight, Certificate& certificate);
 void check_subject_distance(const Flight& flight, Certificate& certificate);
 // What was flown, where the motion model can be.
 std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& certificate);

@@ -64,6 +64,27 @@ double distance(const MeshBody& mesh, const Eigen::Vector3d& p) {
   return nearest ? nearest->distance : mesh.reach;
 }
 
+// Likewise a map.
+struct MapBody {
+  const std::string& name;
+  const BlockedVoxels& voxels;
+  double reach;
+};
+
+double distance(const MapBody& map, const Eigen::Vector3d& p) {
+  return map.voxels.distance(p, map.reach);
+}
+
+// How far inside a flight zone a point is; negative outside.
+struct Inside {
+  const std::string& name;
+  const Zone& zone;
+};
+
+double distance(const Inside& inside, const Eigen::Vector3d& p) {
+  return -distance(inside.zone, p);
+}
+
 // The smallest distance on a chord and its share of it; never above the true one.
 struct Nearest {
   double distance, share;
@@ -126,9 +147,18 @@ Nearest nearest(const MeshBody& mesh, const Chord& chord) {
   return nearest_by_halves(mesh, chord);
 }
 
+Nearest nearest(const MapBody& map, const Chord& chord) {
+  return nearest_by_halves(map, chord);
+}
+
+Nearest nearest(const Inside& inside, const Chord& chord) {
+  return nearest_by_halves(inside, chord);
+}
+
 class Clearance {
  public:
-  explicit Clearance(double margin) : worst_("clearance", margin, tolerances::kClearance, true) {}
+  Clearance(const char* check, double margin)
+      : worst_(check, margin, tolerances::kClearance, true) {}
 
   template <class Obstacle>
   void see(const Obstacle& obstacle, const char* kind, std::size_t number, const Chord& chord,
@@ -173,22 +203,19 @@ void see_all(const Flight& flight, const Chord& chord, double time, double durat
     const MeshBody mesh{environment.meshes[i].name, flight.meshes[i], kReach + environment.margin};
     clearance.see(mesh, "mesh", i, chord, time, duration);
   }
+  for (std::size_t i = 0; i < flight.maps.size(); ++i) {
+    const MapBody map{environment.maps[i].name, flight.maps[i],
+                      environment.margin + tolerances::kMapReach};
+    clearance.see(map, "map", i, chord, time, duration);
+  }
 }
 
-}  // namespace
-
-void check_clearance(const Flight& flight, Certificate& certificate) {
-  const Environment& environment = flight.plan.environment;
-  if (environment.spheres.empty() && environment.boxes.empty() && environment.zones.empty() &&
-      environment.meshes.empty()) {
-    certificate.checks.push_back(skipped_check("clearance", "the environment has no obstacle"));
-    return;
-  }
-  Motion& motion = flight.motion;
-  Clearance clearance(environment.margin);
+// Calls see(chord, time, duration) for the samples and for all that lies between them.
+template <class See>
+void along(Motion& motion, See see) {
   for (std::size_t i = 0; i <= motion.intervals(); ++i) {
     const MotionPoint p = motion.stated(i);
-    see_all(flight, {p.position, p.position, 0}, p.time, 0, clearance);
+    see(Chord{p.position, p.position, 0}, p.time, 0.0);
   }
   for (std::size_t i = 0; i < motion.intervals(); ++i) {
     const auto points = motion.integrate(i);
@@ -197,10 +224,42 @@ void check_clearance(const Flight& flight, Certificate& certificate) {
       const MotionPoint& b = points[k];
       const double h = b.time - a.time;
       const double bulge = std::max(a.acceleration.norm(), b.acceleration.norm()) * h * h / 8;
-      see_all(flight, {a.position, b.position, bulge}, a.time, h, clearance);
+      see(Chord{a.position, b.position, bulge}, a.time, h);
     }
   }
+}
+
+}  // namespace
+
+void check_clearance(const Flight& flight, Certificate& certificate) {
+  const Environment& environment = flight.plan.environment;
+  if (environment.spheres.empty() && environment.boxes.empty() && environment.zones.empty() &&
+      environment.meshes.empty() && environment.maps.empty()) {
+    certificate.checks.push_back(skipped_check("clearance", "the environment has no obstacle"));
+    return;
+  }
+  Clearance clearance("clearance", environment.margin);
+  along(flight.motion, [&](const Chord& chord, double time, double duration) {
+    see_all(flight, chord, time, duration, clearance);
+  });
   certificate.checks.push_back(clearance.check());
+}
+
+void check_flight_zones(const Flight& flight, Certificate& certificate) {
+  const Environment& environment = flight.plan.environment;
+  if (environment.flight_zones.empty()) {
+    certificate.checks.push_back(
+        skipped_check("flight_zone", "the environment has no zone to stay in"));
+    return;
+  }
+  Clearance inside("flight_zone", environment.margin);
+  along(flight.motion, [&](const Chord& chord, double time, double duration) {
+    for (std::size_t i = 0; i < environment.flight_zones.size(); ++i) {
+      const Zone& zone = environment.flight_zones[i];
+      inside.see(Inside{zone.name, zone}, "flight zone", i, chord, time, duration);
+    }
+  });
+  certificate.checks.push_back(inside.check());
 }
 
 }  // namespace lapwing

@@ -27,6 +27,7 @@ class Reader {
     }
     if (problems_.empty()) steps(document.vehicle);
     if (problems_.empty()) read_meshes(document.meshes);
+    if (problems_.empty()) read_maps(document.vehicle, document.maps);
     const auto count = static_cast<double>(problems_.size());
     document.check = judged(make_check("document"), count, 0, 0, at_);
     document.check.detail = listed();
@@ -78,6 +79,34 @@ class Reader {
   static bool rotors_sound(const Sample& s) {
     return sound(s.body_rates) && sound(s.rotor_thrusts[0]) && sound(s.rotor_thrusts[1]) &&
            sound(s.rotor_thrusts[2]) && sound(s.rotor_thrusts[3]);
+  }
+
+  // Where the flight comes, as far as clearance is told apart.
+  Eigen::AlignedBox3d surroundings(const Vehicle& vehicle) const {
+    Motion motion(plan_.trajectory, vehicle);
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i <= motion.intervals(); ++i) box.extend(motion.stated(i).position);
+    for (std::size_t i = 0; i < motion.intervals(); ++i)
+      for (const MotionPoint& point : motion.integrate(i)) box.extend(point.position);
+    const Eigen::Vector3d room =
+        Eigen::Vector3d::Constant(plan_.environment.margin + tolerances::kMapReach);
+    return {box.min() - room, box.max() + room};
+  }
+
+  void read_maps(const Vehicle& vehicle, std::vector<BlockedVoxels>& maps) {
+    for (const MapObstacle& map : plan_.environment.maps) {
+      const std::filesystem::path file = folder_ / map.file;
+      try {
+        const std::string bytes = read_file(file, std::size_t{1} << 30);
+        if (sha256(bytes) != map.sha256) {
+          add("map '" + map.name + "': '" + map.file + "' has changed since the plan was made");
+          continue;
+        }
+        maps.emplace_back(parse_map(bytes, map.file), surroundings(vehicle));
+      } catch (const std::exception& error) {
+        add("map '" + map.name + "': " + error.what());
+      }
+    }
   }
 
   static bool all_sound(const Sample& s) {

@@ -70,13 +70,17 @@ void list_problems(const Environment& environment, std::vector<std::string>& pro
     const std::string problem = problem_of(zone);
     if (!problem.empty()) problems.push_back("zone '" + zone.name + "'" + problem);
   }
-  for (const MeshObstacle& mesh : environment.meshes) {
-    const std::filesystem::path file(mesh.file);
-    const bool up = std::find(file.begin(), file.end(), "..") != file.end();
-    if (mesh.file.empty() || file.is_absolute() || up) {
-      problems.push_back("mesh '" + mesh.name + "' must name a file below the plan's folder");
-    }
+  for (const Zone& zone : environment.flight_zones) {
+    const std::string problem = problem_of(zone);
+    if (!problem.empty()) problems.push_back("flight zone '" + zone.name + "'" + problem);
   }
+  const auto judge_file = [&](const std::string& what, const std::filesystem::path& file) {
+    const bool up = std::find(file.begin(), file.end(), "..") != file.end();
+    if (file.empty() || file.is_absolute() || up)
+      problems.push_back(what + "' must name a file below the plan's folder");
+  };
+  for (const MeshObstacle& mesh : environment.meshes) judge_file("mesh '" + mesh.name, mesh.file);
+  for (const MapObstacle& map : environment.maps) judge_file("map '" + map.name, map.file);
   std::set<std::string> names;
   for (const Subject& subject : environment.subjects) {
     if (subject.name.empty()) problems.push_back("a subject has no name");

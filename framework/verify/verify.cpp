@@ -16,10 +16,11 @@ Certificate verify(const Plan& plan, const std::filesystem::path& folder) {
     return certificate;
   }
   Motion motion(plan.trajectory, document.vehicle);
-  const Flight flight{plan, document.vehicle, motion, document.meshes};
+  const Flight flight{plan, document.vehicle, motion, document.meshes, document.maps};
   check_dynamics(flight, certificate);
   check_limits(flight, certificate);
   check_clearance(flight, certificate);
+  check_flight_zones(flight, certificate);
   check_subject_distance(flight, certificate);
   check_time(flight, certificate);
   const std::optional<FlownPath> flown = check_closed_loop(flight, certificate);

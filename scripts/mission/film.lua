@@ -10,17 +10,10 @@
 -- the limits of vehicle and gimbal, obstacles, how the flight begins and ends, with `hard` the
 -- keyframes.
 local input = require "mission.film_input"
-local problem = require "mission.film_problem"
+local search = require "mission.film_search"
 local shot_file = require "mission.shot_file"
-local subjects = require "mission.subjects"
-local times = require "mission.keyframe_times"
 
 local film = { shots = require "mission.shot_types" }
-
-local HOVER = 10                -- s, of a single keyframe without a time
-local LARGEST_STRETCH = 64
-local CAMERA_STRETCH = 1.05     -- steps beyond what the flight alone needs
-local STRETCH_ACCURACY = 1.01   -- the smallest certified stretch is found to 1 %
 
 local function weight(name, default, summary)
   return { name = name, type = "number", default = default, minimum = 0, maximum = 1e9,
@@ -55,9 +48,19 @@ local common = {
     summary = "keyframes must be met within this; absent: they pull" },
   { name = "stretch", type = "number", default = 1, minimum = 1e-3, maximum = 1e3,
     words = { "auto" }, summary = "factor on all times; auto: the smallest that is certified" },
+  { name = "timing", type = "choice", default = "given", summary = "of the keyframes",
+    choices = { "given", "time_first", "path_first" } },
+  { name = "path_tolerance", type = "number", unit = "m", default = 0.25, above = 0,
+    summary = "path_first: how far the flight may leave the path that is kept" },
   { name = "obstacles", type = "tables", table = input.obstacle, summary = "to keep out of" },
   { name = "margin", type = "number", unit = "m", default = 0.5, minimum = 0, maximum = 1e3,
     summary = "kept from every obstacle, the vehicle's own radius included" },
+  { name = "flight_zones", type = "tables", table = input.flight_zone,
+    summary = "to stay inside of, every one" },
+  { name = "volume", type = "table", table = input.volume,
+    summary = "that a tracking system covers: to stay inside" },
+  { name = "battery", type = "number", unit = "s", above = 0,
+    summary = "of flight; absent: the vehicle's flight time" },
   { name = "cuts", type = "tables", table = input.cut, summary = "footage that is thrown away" },
   { name = "framing", type = "number", default = 0.95, above = 0, maximum = 1,
     summary = "share of the time that a subject must be in the image" },
@@ -65,6 +68,8 @@ local common = {
     summary = "trajectory solver" },
   { name = "planner", type = "plugin", kind = "path_planner", default = "bit_star",
     summary = "finds a way round obstacles to begin with" },
+  { name = "passages", type = "integer", default = 4, minimum = 0, maximum = 20,
+    summary = "ways of another kind that are tried where the first comes to nothing" },
 }
 local of_shot = {
   { name = "duration", type = "number", unit = "s", above = 0, maximum = 1e5,
@@ -76,114 +81,6 @@ local of_shot = {
 }
 local of_file = { { name = "input", type = "text", summary = "a designer's shot, JSON" } }
 
--- ---- solving ------------------------------------------------------------------------------------
-
--- `only`: "unlimited", as if the vehicle could do anything; "flight", without the camera.
-local function attempt(run, shot, stretch, only)
-  local stated, task, camera = problem.state(run, shot, stretch, only)
-  local cuts = camera and camera.cuts or {}
-  local result = { stretch = stretch, task = task, camera = camera, cuts = cuts }
-  result.solution = run:solve(stated, run.options.solver)
-  result.verdict = run:certify(run:plan { solution = result.solution, task = task, cuts = cuts })
-  return result
-end
-
--- What more time would not mend: a way that obstacles close, a subject that the gimbal cannot see.
-local function blocked(failing)
-  return string.find(failing.verdict.failures[1] or "", "^clearance") ~= nil
-end
-local function out_of_sight(failing)
-  return string.find(failing.verdict.failures[1] or "", "^framing") ~= nil
-end
-
--- Which limit a film breaks, where and when: a leg that is too fast for it, or else what the film
--- would ask for if nothing held it.
-local function broken_limit(run, shot, failing, leg)
-  if leg then return leg end
-  if out_of_sight(failing) then
-    return subjects.hidden(failing.camera, shot.vehicle) or failing.verdict.failures[1]
-  end
-  local free = attempt(run, shot, failing.stretch, "unlimited")
-  local limit = free.solution.status == "optimal" and free.verdict.failures[1]
-  return limit or failing.verdict.failures[1] or failing.solution.message
-end
-
--- Certified, and not only because the least violation hides in the verifier's tolerance.
-local function holds(tried)
-  return tried.verdict.feasible and tried.solution.status ~= "infeasible"
-end
-
--- The smallest stretch above a failing attempt at which the film is certified, to 1 %; or nil.
--- Below `least` no film is possible. The flight alone is what takes time, so that is looked for
--- first, and stretched further only where the camera needs more.
-local function smallest_stretch(run, shot, failing, least)
-  local low, good, more = math.max(failing.stretch, least), nil, 0.05
-  local most = failing.stretch * LARGEST_STRETCH
-  while not good and low * (1 + more) < most and not run:cancelled() do
-    local tried = attempt(run, shot, low * (1 + more), "flight")
-    if holds(tried) then good = tried else low, more = tried.stretch, 2 * more end
-  end
-  while good and good.stretch / low > STRETCH_ACCURACY and not run:cancelled() do
-    local tried = attempt(run, shot, math.sqrt(low * good.stretch), "flight")
-    if holds(tried) then good = tried else low = tried.stretch end
-  end
-  local stretch = good and good.stretch
-  while stretch and stretch < most and not run:cancelled() do
-    local tried = attempt(run, shot, stretch)
-    if holds(tried) then return tried end
-    stretch = stretch * CAMERA_STRETCH
-  end
-end
-
-local function finished(run, shot, chosen, notes, certified)
-  return run:plan { solution = chosen.solution, task = chosen.task, cuts = chosen.cuts,
-                    notes = notes, geodetic_origin = shot.origin,
-                    figures = { stretch = chosen.stretch, certified_stretch = certified } }
-end
-
--- Subjects and looks ask for a camera that turns by itself.
-local function check_gimbal(run, shot)
-  if shot.vehicle.gimbal then return end
-  local message = "vehicle '" .. shot.vehicle.name .. "' has no gimbal to look at it with"
-  if #shot.subjects > 0 then run:fail("subjects[1]", message) end
-  for i, k in ipairs(shot.keyframes) do
-    if k.look_at or k.subject then run:fail("keyframes[" .. i .. "].look_at", message) end
-  end
-  if #shot.cuts > 0 then run:fail("cuts", "there is nothing to cut between: no subject") end
-end
-
-local function fly(run, shot)
-  local o = run.options
-  shot.vehicle = run:vehicle(o.vehicle)
-  shot.cuts, shot.subjects = o.cuts, shot.subjects or {}
-  if #shot.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
-  check_gimbal(run, shot)
-  times.fill(shot, shot.vehicle)
-  times.check(run, shot)
-  times.unwrap_yaw(shot.keyframes)
-  local last = shot.keyframes[#shot.keyframes].time
-  shot.duration = shot.duration or (last > 0 and last or HOVER)
-  local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or problem.MISS,
-                                      o.hard and 0 or problem.LATE)
-  local auto = o.stretch == "auto"
-  local first = attempt(run, shot, auto and 1 or o.stretch, auto and why and "flight" or nil)
-  local status = first.solution.status
-  local broken = not why and (status == "numerical_error" or status == "unsupported")
-  if first.verdict.feasible or broken or run:cancelled() then
-    return finished(run, shot, first, {}, first.verdict.feasible and first.stretch or nil)
-  end
-  if not why and blocked(first) then return finished(run, shot, first, {}) end
-  local hopeless = not why and out_of_sight(first)
-  why = broken_limit(run, shot, first, why)
-  if hopeless or not o.hard and not auto then return finished(run, shot, first, { why }) end
-  local good = smallest_stretch(run, shot, first, least)
-  local note = good and string.format("%s; certified from a stretch of %.2f", why, good.stretch)
-    or string.format("%s; no stretch up to %g is certified", why, LARGEST_STRETCH)
-  if run:cancelled() then note = why .. "; the search for a stretch was cancelled" end
-  local chosen = auto and good or first
-  return finished(run, shot, chosen, { note }, good and good.stretch or nil)
-end
-
 -- ---- what scripts call --------------------------------------------------------------------------
 
 local function mission(what, given, declared, shot_of)
@@ -193,7 +90,7 @@ local function mission(what, given, declared, shot_of)
   options.name = nil
   local all = table.move(common, 1, #common, #declared + 1, { table.unpack(declared) })
   return { kind = "film", name = name, options = lapwing.options(all, options),
-           plan = function(run) return fly(run, shot_of(run)) end }
+           plan = function(run) return search.fly(run, shot_of(run)) end }
 end
 
 -- film.shot { name =, duration =, subject = { position =, height = }, keyframes = { { time =,

@@ -4,7 +4,6 @@ local input = {}
 local GRID = 0.1         -- s, between the samples of a track that is a function
 local MOST_SAMPLES = 10000
 local OFF_TRACK = 0.25   -- m, that the function may leave the straight way between two samples
-local MOST_OBSTACLES = 300
 
 -- A track as a function of time becomes a list, so that options are plain data.
 local function sampled(track, duration, what)
@@ -102,10 +101,12 @@ function input.written_out(given)
     end
     out.keyframes = list
   end
-  if type(out.obstacles) == "table" then
-    local list = {}
-    for i, entry in ipairs(out.obstacles) do list[i] = with_flat_corners(entry) end
-    out.obstacles = list
+  for _, option in ipairs { "obstacles", "flight_zones" } do
+    if type(out[option]) == "table" then
+      local list = {}
+      for i, entry in ipairs(out[option]) do list[i] = with_flat_corners(entry) end
+      out[option] = list
+    end
   end
   return out
 end
@@ -133,7 +134,12 @@ input.subject = {
 
 input.keyframe = {
   { name = "time", type = "number", unit = "s", minimum = 0,
-    summary = "absent: evenly between the others" },
+    summary = "absent: evenly between the others, or as timing says" },
+  { name = "time_weight", type = "number", above = 0,
+    summary = "path_first: prefers the time; times its squared miss, s of flight" },
+  { name = "earliest", type = "number", unit = "s", minimum = 0,
+    summary = "path_first: not before" },
+  { name = "latest", type = "number", unit = "s", minimum = 0, summary = "path_first: not after" },
   { name = "position", type = "numbers", size = 3, unit = "m", required = true,
     minimum = -1e6, maximum = 1e6, summary = "world: east, north, up" },
   { name = "yaw_deg", type = "number", unit = "deg", summary = "0 east, counter-clockwise" },
@@ -149,8 +155,8 @@ input.cut = {
 }
 
 input.obstacle = {
-  { name = "type", type = "choice", required = true, choices = { "sphere", "box", "no_fly_zone" },
-    summary = "its form" },
+  { name = "type", type = "choice", required = true, 
+    choices = { "sphere", "box", "no_fly_zone", "mesh", "map" }, summary = "its form" },
   { name = "name", type = "text", default = "", summary = "for messages" },
   { name = "center", type = "numbers", size = 3, unit = "m", summary = "of a sphere" },
   { name = "radius", type = "number", unit = "m", above = 0, summary = "of a sphere" },
@@ -160,37 +166,22 @@ input.obstacle = {
     summary = "of a zone: x and y in turn, or {{x, y}, ...}" },
   { name = "floor", type = "number", unit = "m", summary = "of a zone; absent: the ground" },
   { name = "ceiling", type = "number", unit = "m", summary = "of a zone; absent: all above" },
+  { name = "file", type = "text", summary = "of a mesh or a map" },
 }
 
-local FORMS = { sphere = { center = true, radius = true }, box = { lower = true, upper = true },
-                no_fly_zone = { corners = true, floor = false, ceiling = false } }
+input.flight_zone = {
+  { name = "name", type = "text", default = "", summary = "for messages" },
+  { name = "corners", type = "numbers", unit = "m", required = true,
+    summary = "x and y in turn, or {{x, y}, ...}" },
+  { name = "floor", type = "number", unit = "m", summary = "absent: the ground and below" },
+  { name = "ceiling", type = "number", unit = "m", summary = "absent: all above" },
+}
 
--- The environment of a problem from the option `obstacles`.
-function input.environment(run, obstacles, margin)
-  if #obstacles > MOST_OBSTACLES then
-    run:fail("obstacles", string.format("%d are more than the %d that a film can keep clear of",
-                                        #obstacles, MOST_OBSTACLES))
-  end
-  local environment = { spheres = {}, boxes = {}, zones = {}, margin = margin }
-  local lists = { sphere = environment.spheres, box = environment.boxes,
-                  no_fly_zone = environment.zones }
-  for i, given in ipairs(obstacles) do
-    local made = { name = given.name }
-    for form, keys in pairs(FORMS) do
-      for key, needed in pairs(keys) do
-        local what = string.format("obstacles[%d].%s", i, key)
-        if form ~= given.type and given[key] ~= nil and FORMS[given.type][key] == nil then
-          run:fail(what, "a " .. given.type .. " has none")
-        elseif form == given.type and needed and given[key] == nil then
-          run:fail(string.format("obstacles[%d]", i), "a " .. form .. " needs " .. key)
-        elseif form == given.type then
-          made[key] = given[key]
-        end
-      end
-    end
-    table.insert(lists[given.type], made)
-  end
-  return environment
-end
+input.volume = {
+  { name = "lower", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
+    summary = "lowest corner, world" },
+  { name = "upper", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
+    summary = "highest corner" },
+}
 
 return input

@@ -1,9 +1,9 @@
 -- A film as a trajectory problem: blocks, cost terms, constraints, a first guess, and the task that
 -- its plan is judged by (thesis 3.5).
-local input = require "mission.film_input"
+local surroundings = require "mission.film_environment"
+local passages = require "mission.passages"
 local subjects = require "mission.subjects"
 local tracks = require "mission.tracks"
-local ways = require "mission.ways"
 
 local problem = {}
 
@@ -71,6 +71,13 @@ local function check_keyframes(run, p, shot, options, stretch, camera)
           subject.distance))
       end
     end
+    local outside, zone = p:flight_zone_distance(k.position)
+    if outside + reach < options.margin then
+      run:fail("keyframes[" .. i .. "].position", string.format(
+        "%s flight zone '%s': %.3g m %s its edge, and %g m are to be kept",
+        outside < 0 and "outside" or "too near the edge of", zone, math.abs(outside),
+        outside < 0 and "beyond" or "from", options.margin))
+    end
     if distance + reach < options.margin then
       run:fail("keyframes[" .. i .. "].position", string.format(
         "%s obstacle '%s': %.3g m from its surface, and %g m are to be kept",
@@ -80,8 +87,8 @@ local function check_keyframes(run, p, shot, options, stretch, camera)
 end
 
 -- The environment that a film states, subjects included.
-local function environment_of(run, options, camera)
-  local environment = input.environment(run, options.obstacles, options.margin)
+local function environment_of(run, shot, options, camera)
+  local environment = surroundings.of(run, options, shot.keyframes)
   environment.subjects = {}
   for i, subject in ipairs(camera and camera.list or {}) do
     environment.subjects[i] = { name = subject.name, height = subject.height,
@@ -91,10 +98,15 @@ local function environment_of(run, options, camera)
   return environment
 end
 
-local function add_obstacles(p, environment, camera)
-  for form, plugin in pairs { spheres = "sphere_obstacle", boxes = "box_obstacle",
-                              zones = "no_fly_zone" } do
-    if #environment[form] > 0 then p:add_constraint { type = plugin } end
+local function add_obstacles(p, environment, camera, corridor)
+  if corridor then
+    p:add_constraint { type = "corridor", regions = corridor }
+  else
+    for form, plugin in pairs { spheres = "sphere_obstacle", boxes = "box_obstacle",
+                                zones = "no_fly_zone", flight_zones = "flight_zone" } do
+      if #environment[form] > 0 then p:add_constraint { type = plugin } end
+    end
+    if #environment.meshes + #environment.maps > 0 then p:add_constraint { type = "clearance" } end
   end
   for _, subject in ipairs(camera and camera.list or {}) do
     if subject.distance then
@@ -146,9 +158,7 @@ local function add_camera(p, weights, camera, environment)
 end
 
 -- The way through the keyframes, with the yaw that looks at the target.
-local function guess(p, keyframes, camera, environment, planner)
-  local obstructed = #environment.spheres + #environment.boxes + #environment.zones > 0
-  local path = ways.path(p, keyframes.times, keyframes.positions, planner, obstructed)
+local function guess(keyframes, camera, path)
   local times, positions, yaws = {}, {}, {}
   if not camera or #keyframes.yaws > 0 then
     for i, place in ipairs(path) do times[i], positions[i] = place.time, place.position end
@@ -171,12 +181,19 @@ function problem.state(run, shot, stretch, only)
   local camera = only ~= "flight" and shot.vehicle.gimbal
     and subjects.plan(run, shot, stretch, duration, shot.vehicle)
   local keyframes = keyframes_of(shot, stretch, o)
-  local environment = environment_of(run, o, camera)
+  local environment = environment_of(run, shot, o, camera)
   local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
                                   duration / FEWEST_INTERVALS)
   local p = run:problem { vehicle = shot.vehicle, duration = duration, step = step,
                           environment = environment }
   check_keyframes(run, p, shot, o, stretch, camera)
+  local path, corridor = passages.path(p, shot, keyframes, environment, o.planner)
+  if shot.track then
+    path = {}
+    for i, place in ipairs(shot.track) do
+      path[i] = { time = place.time, position = place.value }
+    end
+  end
   p:add_model { type = "quadrotor" }
   p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }
   p:add_cost(smoothness(o, shot.vehicle))
@@ -185,7 +202,11 @@ function problem.state(run, shot, stretch, only)
   if only ~= "unlimited" then
     p:add_constraint { type = "input_limits", across = "extent" }
     p:add_constraint { type = "state_limits" }
-    add_obstacles(p, environment, camera)
+    add_obstacles(p, environment, camera, corridor)
+  end
+  if shot.track and only ~= "flight" then  -- of timing.lua
+    p:add_cost { type = "keyframe", name = "path", weight = shot.track_weight,
+                 keyframes = shot.track }
   end
   local yaws = keyframes.yaws
   p:add_constraint(boundary(o, stretch, not camera and #yaws == 0 and 0 or nil))
@@ -209,7 +230,7 @@ function problem.state(run, shot, stretch, only)
     end
     task.framing_share = #task.framing > 0 and o.framing or nil
   end
-  p:guess_path(guess(p, keyframes, camera, environment, o.planner))
+  p:guess_path(guess(keyframes, camera, path))
   p:finish()
   return p, task, camera
 end

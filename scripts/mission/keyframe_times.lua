@@ -84,4 +84,13 @@ function times.fastest_leg(keyframes, vehicle, miss, late)
   return least, sentence
 end
 
+-- A flight that is longer than the battery lasts is none.
+function times.check_battery(run, shot, stretch)
+  local battery = run.options.battery or shot.vehicle.flight_time
+  if shot.duration * stretch <= battery then return end
+  run:fail("duration", string.format("%.4g s of flight are more than the %g s that %s",
+    shot.duration * stretch, battery, run.options.battery and "`battery` allows"
+    or "vehicle '" .. shot.vehicle.name .. "' flies on one battery"))
+end
+
 return times

@@ -224,6 +224,70 @@ TEST_F(FilmTest, WrongObstaclesAreNamed) {
          "keyframes[2].position: inside obstacle 'box 1'");
 }
 
+TEST_F(FilmTest, WrongFlightZonesAreNamed) {
+  const auto zone = [&](const std::string& text) {
+    return shot("flight_zones = { { name = 'yard', " + text + "} },");
+  };
+  expect(zone("corners = {{0, 0}, {1, 0}}"),
+         "flight zone 'yard': corners: expected at least three");
+  expect(zone("corners = {{0, 0}, {4, 4}, {4, 0}, {0, 4}}"),
+         "flight zone 'yard': its edges cross or touch");
+  expect(zone("corners = {{0, 0}, {1, 0}, {0, 1}}, floor = 3, ceiling = 2"),
+         "flight zone 'yard': its ceiling must be above its floor");
+  expect(zone("corners = {{-9, -9}, {5, -9}, {5, 9}, {-9, 9}}"),
+         "keyframes[2].position: outside flight zone 'yard': 1 m beyond its edge");
+  expect(zone("corners = {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, ceiling = 3.5"),
+         "keyframes[2].position: outside flight zone 'yard': 0.5 m beyond its edge");
+  expect(zone("corners = {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, top = 3"), "flight_zones[1].top: unknown key");
+  expect(shot("volume = { lower = {-9, -9, 0} },"), "volume: expected lower and upper");
+  expect(shot("volume = { lower = {-9, -9, 5}, upper = {9, 9, 0} },"),
+         "volume: lower must be below upper");
+  expect(shot("volume = { lower = {-9, -9, 0}, upper = {9, 9, 3.2} },"),
+         "keyframes[2].position: outside flight zone 'volume'");
+}
+
+TEST_F(FilmTest, ABatteryThatIsTooSmallIsNamed) {
+  expect(shot("battery = 6,"), "duration: 8 s of flight are more than the 6 s that `battery`");
+  expect(shot("battery = 10, stretch = 2,"), "16 s of flight are more than the 10 s");
+  const Plan film = plan(shot("battery = 60,"));
+  EXPECT_EQ(film.budget, 60);
+  EXPECT_TRUE(verify(film).find("budget")->pass);
+  expect(
+      "return require('mission.film').shot { keyframes = { { time = 0, position = {0, 0, 3} }, "
+      "{ time = 5000, position = {1, 0, 3} } } }",
+      "5000 s of flight are more than the 1200 s that vehicle '");
+}
+
+TEST_F(FilmTest, FilesOfObstaclesAreChecked) {
+  const auto obstacle = [&](const std::string& text) {
+    return shot("obstacles = { {" + text + "} },");
+  };
+  expect(obstacle("type = 'mesh'"), "obstacles[1]: a mesh needs file");
+  expect(obstacle("type = 'mesh', file = 'gone.ply'"), "gone.ply");
+  expect(obstacle("type = 'mesh', file = '../wall.ply'"), "../wall.ply");
+  expect(obstacle("type = 'sphere', center = {0, 0, 1}, radius = 1, file = 'a.ply'"),
+         "obstacles[1].file: a sphere has none");
+  write_file_atomically(folder_ / "broken.ply", "ply\nno more");
+  expect(obstacle("type = 'mesh', file = 'broken.ply'"), "broken.ply");
+  write_file_atomically(folder_ / "broken.ot", "# Octomap OcTree file\nid OcTree\n");
+  expect(obstacle("type = 'map', file = 'broken.ot'"), "broken.ot");
+}
+
+TEST_F(FilmTest, WishesForTimesMustMakeSense) {
+  const auto timed = [](const std::string& second, const std::string& more = "") {
+    return "return require('mission.film').shot { timing = 'path_first', " + more +
+           " keyframes = { { position = {0, 0, 3} }, { position = {9, 0, 3}, " + second +
+           " }, { position = {20, 5, 3} } } }";
+  };
+  expect(timed("time = 0.5"), "keyframes[2]: cannot be passed when it asks to be: from the one");
+  expect(timed("latest = 1"), "keyframes[2]: cannot be passed when it asks to be");
+  expect(timed("earliest = 9, latest = 5"), "keyframes[2].latest: comes before earliest");
+  expect(timed("time = 9, latest = 12"), "keyframes[2].time: give a time, or earliest and latest");
+  expect(timed("time_weight = 1"), "keyframes[2].time_weight: needs a time");
+  expect(timed("earliest = 9", "stretch = 2,"), "path_first finds the times itself");
+  expect(shot("", ", time_weight = 1"), "need timing = \"path_first\"");
+}
+
 TEST_F(FilmTest, ShotTypesMakeKeyframes) {
   const auto keyframes = [&](const std::string& shots) {
     return plan(

@@ -65,5 +65,49 @@ TEST(FastestTimes, TurningBackOnTheSpotIsARest) {
   EXPECT_LT(before, 0.1);
 }
 
+constexpr MotionLimits kDrone{.speed_across = 8,
+                              .climb_speed = 2.5,
+                              .descent_speed = 2,
+                              .acceleration_across = 4,
+                              .acceleration_up = 3,
+                              .acceleration_down = 5};
+
+TEST(FastestTimes, EveryDirectionHasItsOwnLimits) {
+  const auto along = [](const Vector3d& to) {
+    return fastest_times(resampled({{0, 0, 0}, to}, 0.005), kDrone).back();
+  };
+  EXPECT_NEAR(along({40, 0, 0}), 5 + 8.0 / 4, 0.02);
+  EXPECT_NEAR(along({0, 0, 10}), 4 + 2.5 / 2 * (1 / 3.0 + 1 / 5.0), 0.02);
+  EXPECT_NEAR(along({0, 0, -10}), 5 + 1 * (1 / 3.0 + 1 / 5.0), 0.02);
+  // With all limits alike it is the timing by norms, on a level path.
+  const Points level = rounded(resampled({{0, 0, 0}, {8, 0, 0}, {8, 6, 0}, {0, 3, 0}}, 0.02), 0.5);
+  const MotionLimits alike{5, 5, 5, 2, 2, 2};
+  EXPECT_NEAR(fastest_times(level, alike).back(),
+              fastest_times(level, PathLimits{.speed = 5, .acceleration = 2}).back(), 0.05);
+}
+
+TEST(FastestTimes, DifferencesOfTheTimedPathKeepTheLimits) {
+  const Points path =
+      rounded(resampled({{0, 0, 2}, {9, 1, 5}, {12, 9, 4}, {3, 12, 9}, {0, 0, 3}}, 0.02), 0.8);
+  const std::vector<double> times = fastest_times(path, kDrone);
+  double hardest = 0;
+  constexpr std::size_t kApart = 12;
+  for (std::size_t i = kApart; i + kApart < path.size(); ++i) {
+    const double before = times[i] - times[i - kApart], after = times[i + kApart] - times[i];
+    ASSERT_GT(before, 0);
+    const Vector3d u = (path[i] - path[i - kApart]) / before,
+                   v = (path[i + kApart] - path[i]) / after;
+    const Vector3d a = 2 * (v - u) / (before + after);
+    EXPECT_LE(v.head<2>().norm(), 1.01 * kDrone.speed_across);
+    EXPECT_LE(v.z(), 1.01 * kDrone.climb_speed);
+    EXPECT_GE(v.z(), -1.01 * kDrone.descent_speed);
+    EXPECT_LE(a.head<2>().norm(), 1.1 * kDrone.acceleration_across) << i;
+    EXPECT_LE(a.z(), 1.1 * kDrone.acceleration_up) << i;
+    EXPECT_GE(a.z(), -1.1 * kDrone.acceleration_down) << i;
+    hardest = std::max(hardest, a.head<2>().norm());
+  }
+  EXPECT_GT(hardest, 0.9 * kDrone.acceleration_across) << "and no slower than it must be";
+}
+
 }  // namespace
 }  // namespace lapwing

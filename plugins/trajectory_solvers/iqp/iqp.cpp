@@ -165,7 +165,10 @@ SolveStatus Solve::iterate() {
     // What contradicts itself once mostly does so again: no second proof until violations vanish.
     Step step;
     if (!contradictory_) step = quadratic_step();
-    contradictory_ = contradictory_ || step.status == QuadraticStatus::infeasible;
+    // One that comes to no end is mostly one whose contradiction is too small to be proven.
+    contradictory_ = contradictory_ || step.status == QuadraticStatus::infeasible ||
+                     step.status == QuadraticStatus::iteration_limit ||
+                     step.status == QuadraticStatus::numerical_error;
     if (contradictory_) step = elastic_step();
     if (step.status == QuadraticStatus::cancelled) return SolveStatus::cancelled;
     if (step.status != QuadraticStatus::optimal) {
@@ -180,7 +183,7 @@ SolveStatus Solve::iterate() {
     if (problem_.quadratic()) {
       at_ = problem_.retract(at_, step.d);
       record(1.0);
-      if (!step.elastic) return SolveStatus::optimal;
+      if (!step.elastic || worst_violation() <= feasibility_) return SolveStatus::optimal;
       report_.message = explain(step);
       return SolveStatus::infeasible;
     }

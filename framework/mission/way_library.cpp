@@ -1,0 +1,144 @@
+#include "framework/mission/way_library.h"
+
+#include <lua.hpp>
+
+#include "framework/mission/environment_space.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/run.h"
+#include "framework/path/passages.h"
+
+namespace lapwing {
+namespace {
+
+using Way = std::vector<Eigen::Vector3d>;
+
+// Around both places and everything in the way, not below the lower one.
+Eigen::AlignedBox3d planning_bounds(const Environment& environment, const Eigen::Vector3d& from,
+                                    const Eigen::Vector3d& to) {
+  constexpr double kRoom = 10;  // m
+  Eigen::AlignedBox3d box(from);
+  box.extend(to);
+  const double floor = box.min().z();
+  for (const Sphere& sphere : environment.spheres) {
+    box.extend(sphere.center + Eigen::Vector3d::Constant(sphere.radius));
+    box.extend(sphere.center - Eigen::Vector3d::Constant(sphere.radius));
+  }
+  for (const Box& other : environment.boxes) {
+    box.extend(other.lower);
+    box.extend(other.upper);
+  }
+  for (const Zone& zone : environment.zones)
+    for (const Eigen::Vector2d& corner : zone.corners)
+      box.extend(Eigen::Vector3d(corner.x(), corner.y(), floor));
+  for (const MeshObstacle& mesh : environment.meshes) box.extend(mesh.bounds);
+  Eigen::Vector3d lower = box.min() - Eigen::Vector3d::Constant(kRoom);
+  lower.z() = floor - environment.margin;
+  return {lower, box.max() + Eigen::Vector3d::Constant(kRoom)};
+}
+
+Way way_of(const Value& given, const Origin& origin, const std::string& what) {
+  Way way;
+  for (const Value& place : given.is_list() ? given.as_list() : Value::List{}) {
+    if (!place.is_list() || place.as_list().size() != 3)
+      throw InputError(origin, what + ": expected places {x, y, z}");
+    const auto& p = place.as_list();
+    way.emplace_back(p[0].as_number(), p[1].as_number(), p[2].as_number());
+  }
+  if (way.size() < 2) throw InputError(origin, what + ": expected two places or more");
+  return way;
+}
+
+Value list_of(const Eigen::Vector3d& p) {
+  return Value(Value::List{p.x(), p.y(), p.z()});
+}
+
+std::vector<Way> excluded_argument(lua_State* state, const Origin& origin) {
+  std::vector<Way> ways;
+  lua_getfield(state, 2, "excluded");
+  const Value given = value_from_lua(state, -1, origin, "plan_way.excluded");
+  lua_pop(state, 1);
+  if (given.is_null()) return ways;
+  for (const Value& way : given.is_list() ? given.as_list() : Value::List{})
+    ways.push_back(way_of(way, origin, "plan_way.excluded"));
+  return ways;
+}
+
+}  // namespace
+
+int plan_way(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  static constexpr std::string_view kOwn[] = {"planner", "excluded"};
+  ParameterTable table;
+  table.required_numbers("from", 3, "m", "world")
+      .required_numbers("to", 3, "m", "world")
+      .number("more", 0, "m", "kept beside the margin", at_least(0))
+      .integer("tries", PassageSearch{}.tries, "of the planner, where ways are excluded",
+               between(1, 1000));
+  const Parameters given = table_argument(state, 2, table, "plan_way", kOwn);
+  PassageSearch search;
+  search.excluded = excluded_argument(state, origin);
+  search.tries = static_cast<int>(given.integer("tries"));
+  lua_getfield(state, 2, "planner");
+  const PluginChoice chosen = plugin_choice(state, -1, "planner");
+  const auto planner =
+      run.settings.registry->create<PathPlanner>(chosen.type, chosen.parameters, "planner");
+  const Environment& environment = object.problem->environment();
+  const auto space = free_space_of(environment, given.number("more"));
+  PathProblem problem;
+  problem.space = space.get();
+  problem.start = Eigen::Vector3d(given.numbers("from").data());
+  problem.goal = Eigen::Vector3d(given.numbers("to").data());
+  problem.bounds = planning_bounds(environment, problem.start, problem.goal);
+  PathRequest request;
+  request.seed = run.settings.seed;
+  request.cancellation = run.settings.cancellation;
+  PassageResult found;
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    found = find_passage(*planner, problem, request, search);
+  }
+  const PathReport& report = found.path.report;
+  if (report.status != PathStatus::found) {
+    lua_pushnil(state);
+    push_text(state, std::string(to_string(report.status)) +
+                         (report.message.empty() ? "" : ": " + report.message));
+    return 2;
+  }
+  Value points = Value::list();
+  for (const Eigen::Vector3d& p : found.path.points) points.push_back(list_of(p));
+  push_value(state, points);
+  return 1;
+}
+
+int grow_corridor_of_problem(lua_State* state) {
+  const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  static constexpr std::string_view kOwn[] = {"way"};
+  table_argument(state, 2, {}, "grow_corridor", kOwn);
+  lua_getfield(state, 2, "way");
+  const Way way =
+      way_of(value_from_lua(state, -1, origin, "grow_corridor.way"), origin, "grow_corridor.way");
+  const Environment& environment = object.problem->environment();
+  std::vector<CorridorBox> boxes;
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    const auto space = free_space_of(environment, 0);
+    boxes = grow_corridor(*space, planning_bounds(environment, way.front(), way.back()), way);
+  }
+  Value list = Value::list();
+  for (const CorridorBox& box : boxes) {
+    Value entry = Value::map();
+    entry.set("from", box.from);
+    entry.set("to", box.to);
+    entry.set("lower", list_of(box.box.min()));
+    entry.set("size", list_of(box.box.sizes()));
+    list.push_back(std::move(entry));
+  }
+  push_value(state, list);
+  return 1;
+}
+
+}  // namespace lapwing

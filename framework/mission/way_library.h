@@ -1,0 +1,17 @@
+// Ways round what stands in the way: methods of a problem.
+#pragma once
+
+struct lua_State;
+
+namespace lapwing {
+
+// problem:plan_way{from =, to =, planner =, more =, excluded = {way, ...}, tries =}: {{x, y, z},
+// ...}, a free way that keeps the margin and `more` metres and goes through a passage that none of
+// the excluded ways has; or nothing and why there is none.
+int plan_way(lua_State* state);
+
+// problem:grow_corridor{way = {{x, y, z}, ...}}: {{from =, to =, lower =, size =}, ...}, free boxes
+// along the way, parts in shares of its length; empty where the way is not free.
+int grow_corridor_of_problem(lua_State* state);
+
+}  // namespace lapwing

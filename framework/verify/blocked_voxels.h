@@ -1,0 +1,32 @@
+// What a map file closes to flight, for the verifier: every voxel that is not known to be free.
+//
+// Internal to this room. World frame, metres.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "framework/map/map_file.h"
+
+namespace lapwing {
+
+class BlockedVoxels {
+ public:
+  // Of the voxels that `box` meets; everything beyond them counts as blocked. Free is less probably
+  // occupied than 0.25. InputError: a map of two states, which cannot say what it does not know; a
+  // box of more than 2^31 voxels.
+  BlockedVoxels(const MapFile& file, const Eigen::AlignedBox3d& box);
+
+  // m to the nearest blocked voxel's cube, 0 within it; at most `farthest`. Exact.
+  double distance(const Eigen::Vector3d& p_W, double farthest) const;
+
+ private:
+  bool free(int x, int y, int z) const;
+
+  VoxelGrid grid_;
+  int low_[3], size_[3];
+  std::vector<std::uint64_t> free_;  // a bit a voxel, x fastest
+};
+
+}  // namespace lapwing

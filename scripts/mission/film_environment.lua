@@ -1,0 +1,72 @@
+-- What surrounds a film: obstacles, flight zones and the tracking volume, as a problem wants them.
+local M = {}
+
+local MOST_OBSTACLES = 300
+local ROOM = 15  -- m about the keyframes, in which a map is looked at
+
+local FORMS = { sphere = { center = true, radius = true }, box = { lower = true, upper = true },
+                no_fly_zone = { corners = true, floor = false, ceiling = false },
+                mesh = { file = true }, map = { file = true } }
+
+-- Where flights may be: the zones, and the tracking volume as one more.
+local function flight_zones(run, options)
+  local zones = table.move(options.flight_zones, 1, #options.flight_zones, 1, {})
+  local volume = options.volume
+  if volume and (volume.lower or volume.upper) then
+    local low, high = volume.lower, volume.upper
+    if not (low and high) then run:fail("volume", "expected lower and upper") end
+    for i = 1, 3 do
+      if low[i] >= high[i] then run:fail("volume", "lower must be below upper in x, y and z") end
+    end
+    zones[#zones + 1] = { name = "volume", floor = low[3], ceiling = high[3],
+      corners = { low[1], low[2], high[1], low[2], high[1], high[2], low[1], high[2] } }
+  end
+  return zones
+end
+
+-- The box about the keyframes in which distances of maps are wanted.
+local function surroundings(keyframes)
+  local lower, upper = {}, {}
+  for i = 1, 3 do
+    lower[i], upper[i] = math.huge, -math.huge
+    for _, k in ipairs(keyframes) do
+      lower[i] = math.min(lower[i], k.position[i] - ROOM)
+      upper[i] = math.max(upper[i], k.position[i] + ROOM)
+    end
+  end
+  return lower, upper
+end
+
+-- The environment of a problem from the options `obstacles`, `flight_zones` and `volume`.
+function M.of(run, options, keyframes)
+  local obstacles = options.obstacles
+  if #obstacles > MOST_OBSTACLES then
+    run:fail("obstacles", string.format("%d are more than the %d that a film can keep clear of",
+                                        #obstacles, MOST_OBSTACLES))
+  end
+  local environment = { spheres = {}, boxes = {}, zones = {}, meshes = {}, maps = {},
+                        flight_zones = flight_zones(run, options), margin = options.margin }
+  local lists = { sphere = environment.spheres, box = environment.boxes,
+                  no_fly_zone = environment.zones, mesh = environment.meshes,
+                  map = environment.maps }
+  for i, given in ipairs(obstacles) do
+    local made = { name = given.name ~= "" and given.name or given.file or "" }
+    if given.type == "map" then made.lower, made.upper = surroundings(keyframes) end
+    for form, keys in pairs(FORMS) do
+      for key, needed in pairs(keys) do
+        local what = string.format("obstacles[%d].%s", i, key)
+        if form ~= given.type and given[key] ~= nil and FORMS[given.type][key] == nil then
+          run:fail(what, "a " .. given.type .. " has none")
+        elseif form == given.type and needed and given[key] == nil then
+          run:fail(string.format("obstacles[%d]", i), "a " .. form .. " needs " .. key)
+        elseif form == given.type then
+          made[key] = given[key]
+        end
+      end
+    end
+    table.insert(lists[given.type], made)
+  end
+  return environment
+end
+
+return M
