@@ -27,7 +27,7 @@ fi
 # A source that took longer than its budget beside other work is compiled once more by itself, and
 # its processor time counts. .ninja_log: start, end (ms), time stamp, output, command hash.
 mapfile -t candidates < <(awk -v limit=$((source_budget * 1000)) \
-  '$4 ~ /\.cpp\.o$/ { took[$4] = $2 - $1 } END { for (o in took) if (took[o] > limit) print o }' \
+  '$4 ~ /\.c(pp|xx)\.o$/ { took[$4] = $2 - $1 } END { for (o in took) if (took[o] > limit) print o }' \
   build/release/.ninja_log)
 slow=()
 for object in "${candidates[@]}"; do
