@@ -35,7 +35,8 @@ GatePassage through_ball(const GateTask& gate, std::span<const PathPoint> path, 
 }
 
 // Follows the path from the chord that enters at `k` until it leaves, by either end.
-GatePassage through_opening(const GateTask& gate, std::span<const PathPoint> path, std::size_t k) {
+GatePassage through_opening(const GateTask& gate, std::span<const PathPoint> path, std::size_t k,
+                            double tolerance) {
   const double half = 0.5 * gate.tunnel_length;
   const auto along = [&](const Vector3d& p) { return (p - gate.position).dot(gate.direction); };
   const auto beyond = [&](const Vector3d& p) {
@@ -54,7 +55,7 @@ GatePassage through_opening(const GateTask& gate, std::span<const PathPoint> pat
   };
   for (; k + 1 < path.size(); ++k) {
     const Vector3d& next = path[k + 1].position;
-    if (along(next) >= half) {
+    if (along(next) >= half - (k + 2 == path.size() ? tolerance : 0)) {
       see(at_plane(k, half), path[k].time);
       passage.after = k;
       return passage;
@@ -76,8 +77,10 @@ GatePassage gate_passage(const GateTask& gate, std::span<const PathPoint> path, 
   for (std::size_t k = from; k + 1 < path.size(); ++k) {
     const double a = (path[k].position - gate.position).dot(gate.direction) - entry;
     const double b = (path[k + 1].position - gate.position).dot(gate.direction) - entry;
-    if (!(a < 0 && b >= 0)) continue;
-    const GatePassage passage = through_opening(gate, path, k);
+    // A lap that ends in the plane of its gate has come there, to the tolerance.
+    const bool last = k + 2 == path.size();
+    if (!(a < 0 && b >= (last ? -tolerance : 0))) continue;
+    const GatePassage passage = through_opening(gate, path, k, tolerance);
     if (passage.outside < best.outside) best = passage;
     if (best.outside <= tolerance) break;
   }

@@ -21,7 +21,8 @@ struct GatePassage {
 };
 
 // By the chords of the path from the one that begins at point `from` on: the first passage in the
-// gate's direction that is at most `tolerance` metres outside, else the best one.
+// gate's direction that is at most `tolerance` metres outside, else the best one. A path that ends
+// at most `tolerance` before the gate's plane, or its tunnel's end, has reached it.
 GatePassage gate_passage(const GateTask& gate, std::span<const PathPoint> path, std::size_t from,
                          double tolerance);
 

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kResponse = 0.15;    // s, in which a wrong velocity is mended
+constexpr double kPursuitResponse = 0.15;    // s, in which a wrong velocity is mended
 constexpr double kApproach = 0.7;     // s, of the last centimetres to a stop
 constexpr double kThere = 0.02;       // m, from a view where the vehicle stops
 constexpr double kStill = 0.04;       // m/s, of a vehicle at rest
@@ -137,8 +137,8 @@ class Chase {
     const double a = 0.7 * settings_.acceleration, left = away();
     double speed = settings_.speed;
     if (!at_goal()) {
-      // What was asked for comes kResponse later.
-      const double late = kResponse * now_.velocity.norm();
+      // What was asked for comes kPursuitResponse later.
+      const double late = kPursuitResponse * now_.velocity.norm();
       const double before = std::max(0.0, left - late - settings_.slow_within);
       speed =
           std::min(speed, std::sqrt(settings_.view_speed * settings_.view_speed + 2 * a * before));
@@ -167,7 +167,7 @@ class Chase {
     double pace = std::min(speed(), turning_speed(way));
     if (way.z() * pace > vehicle_.climb_speed_max) pace = vehicle_.climb_speed_max / way.z();
     if (-way.z() * pace > vehicle_.descent_speed_max) pace = vehicle_.descent_speed_max / -way.z();
-    Vector3d wanted = (0.98 * pace * way - now_.velocity) / kResponse;
+    Vector3d wanted = (0.98 * pace * way - now_.velocity) / kPursuitResponse;
     const double asked = wanted.norm();
     return asked > settings_.acceleration ? Vector3d(wanted * (settings_.acceleration / asked))
                                           : wanted;
@@ -191,7 +191,7 @@ class Chase {
   void step(const Vector3d& asked) {
     const double h = settings_.step;
     // In a pause the rest of the motion dies away.
-    Vector3d a = pausing() ? Vector3d(-now_.velocity / kResponse) : asked;
+    Vector3d a = pausing() ? Vector3d(-now_.velocity / kPursuitResponse) : asked;
     const double spin = turning();
     sample(a, spin);
     now_.time += h;

@@ -11,7 +11,7 @@ namespace tol = tolerances;
 
 constexpr int kDefects = 5;
 constexpr const char* kDefectNames[kDefects] = {"defect_position", "defect_velocity", "defect_yaw",
-                                          "defect_yaw_rate", "defect_gimbal"};
+                                                "defect_yaw_rate", "defect_gimbal"};
 constexpr double kLimits[kDefects] = {tol::kPositionDefect, tol::kVelocityDefect, tol::kYawDefect,
                                       tol::kYawRateDefect, tol::kGimbalDefect};
 using Defects = Eigen::Matrix<double, kDefects, 1>;
@@ -96,8 +96,9 @@ void check_dynamics(const Flight& flight, Certificate& certificate) {
     const bool made = motion.intervals() > 0 && (k < 4 || has_gimbal);
     certificate.checks.push_back(
         made ? worst[static_cast<std::size_t>(k)].check()
-             : skipped_check(kDefectNames[k], motion.intervals() == 0 ? "a single sample has no interval"
-                                                                : "the plan moves no gimbal"));
+             : skipped_check(kDefectNames[k], motion.intervals() == 0
+                                                  ? "a single sample has no interval"
+                                                  : "the plan moves no gimbal"));
   }
   certificate.checks.push_back(motion.intervals() > 0
                                    ? drift.check()

@@ -19,7 +19,7 @@ double unit_for(double largest, int bits) {
   return largest > 0 ? std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(largest))) - bits) : 1;
 }
 
-bool sound(double amount) {
+bool sound_amount(double amount) {
   return std::isfinite(amount) && amount >= 0;
 }
 
@@ -50,7 +50,7 @@ ViewScoreBuilder::ViewScoreBuilder(std::size_t voxels, std::span<const double> w
   }
   double largest = weights.empty() ? 1 : 0;
   for (std::size_t v = 0; v < weights.size(); ++v) {
-    if (!sound(weights[v])) {
+    if (!sound_amount(weights[v])) {
       throw InputError("the weight of voxel " + std::to_string(v) +
                        " must be a finite number of at least 0");
     }
@@ -78,7 +78,7 @@ void ViewScoreBuilder::add_view(std::span<const ViewScore::Contribution> contrib
     if (c.voxel >= score_.voxels()) {
       refuse(c, "there are " + std::to_string(score_.voxels()) + " voxels");
     }
-    if (!sound(c.amount)) refuse(c, "a contribution must be a finite number of at least 0");
+    if (!sound_amount(c.amount)) refuse(c, "a contribution must be a finite number of at least 0");
     if (i > 0 && sorted_[i - 1].voxel == c.voxel) refuse(c, "is contributed to twice");
   }
   for (const ViewScore::Contribution& c : sorted_) {
@@ -106,7 +106,7 @@ ViewScore ViewScoreBuilder::take() && {
 ViewScore additive_score(std::span<const double> scores) {
   double largest = 0;
   for (std::size_t v = 0; v < scores.size(); ++v) {
-    if (!sound(scores[v])) {
+    if (!sound_amount(scores[v])) {
       throw InputError("the score of view " + std::to_string(v) +
                        " must be a finite number of at least 0");
     }

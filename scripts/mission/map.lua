@@ -103,8 +103,9 @@ function M.of_scene(given)
       local o = run.options
       local make = require("scene." .. o.scene)
       if type(make) ~= "function" then
-        run:fail("scene", string.format("'%s' is a part of scenes, no scene: expected street, "
-                                        .. "church, courtyard, suburb, downtown or office", o.scene))
+        run:fail("scene", string.format(
+          "'%s' is a part of scenes, no scene: expected street, church, courtyard, suburb, "
+          .. "downtown or office", o.scene))
       end
       local scene = make { seed = o.scene_seed }
       local surface = run:surface(scene)

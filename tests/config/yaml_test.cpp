@@ -6,13 +6,13 @@
 namespace lapwing {
 namespace {
 
-Value parsed(const std::string& text) {
+Value parsed_yaml(const std::string& text) {
   return from_yaml(text, "a.yaml");
 }
 
 std::string refusal(const std::string& text) {
   try {
-    parsed(text);
+    parsed_yaml(text);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -20,7 +20,7 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(Yaml, TypesPlainScalarsAndLeavesQuotedOnesText) {
-  const Value value = parsed(
+  const Value value = parsed_yaml(
       "i: -7\np: +3\nx: 0.25\ne: 1e-3\nd: .5\nt: 2.\nb: true\nn: ~\nempty:\n"
       "text: hover here\nquoted: '3'\ndouble: \"1.5\"\nyes: yes\nversion: 1.2.3\n"
       "speed: 36 km/h\nbig: 18446744073709551615\nblock: |\n  one\n  two\n");
@@ -44,7 +44,7 @@ TEST(Yaml, TypesPlainScalarsAndLeavesQuotedOnesText) {
 }
 
 TEST(Yaml, RemembersTheLineOfEveryNode) {
-  const Value value = parsed(
+  const Value value = parsed_yaml(
       "# a comment\n"
       "solver:\n"
       "  type: iqp\n"
@@ -67,7 +67,7 @@ TEST(Yaml, RemembersTheLineOfEveryNode) {
 
 TEST(Yaml, AnEmptyTextIsAnEmptyMap) {
   for (const char* text : {"", "\n\n", "# only a comment\n", "---\n", "~"}) {
-    EXPECT_EQ(parsed(text), Value::map()) << text;
+    EXPECT_EQ(parsed_yaml(text), Value::map()) << text;
   }
 }
 
@@ -77,7 +77,7 @@ TEST(Yaml, CollectsWhatItRefuses) {
             "a.yaml:3: repeated key 'a', first on line 1\n"
             "a.yaml:4: '-.inf' is not a finite number\n"
             "a.yaml:5: '1e999' is not a finite number");
-  EXPECT_EQ(parsed("a: 1e-999").at("a"), Value(0.0));
+  EXPECT_EQ(parsed_yaml("a: 1e-999").at("a"), Value(0.0));
 }
 
 TEST(Yaml, RefusesWhatNobodyShouldExpandInTheirHead) {
@@ -103,7 +103,7 @@ TEST(Yaml, RefusesOtherEncodingsSizeAndDepth) {
   EXPECT_EQ(refusal("a: 1\nb: \xff\n"), "a.yaml:2: not UTF-8 text");
   EXPECT_EQ(refusal(std::string("a\0: 1", 5)), "a.yaml:1: not UTF-8 text");
   EXPECT_EQ(refusal("a: \xc0\xaf"), "a.yaml:1: not UTF-8 text");
-  EXPECT_EQ(parsed("a: \"ä\u20ac\"").at("a"), Value("ä\u20ac"));
+  EXPECT_EQ(parsed_yaml("a: \"ä\u20ac\"").at("a"), Value("ä\u20ac"));
   EXPECT_NE(refusal(std::string(kMaximumYamlBytes + 1, ' ')).find("larger than"),
             std::string::npos);
   const auto nested = [](std::size_t depth) {

@@ -14,7 +14,7 @@ const Section& named(const std::vector<Section>& sections, const std::string& ti
   throw Error("no section " + title);
 }
 
-const Chart& chart(const Section& section, const std::string& title) {
+const Chart& flight_chart(const Section& section, const std::string& title) {
   for (const Block& b : section.blocks) {
     const auto* c = std::get_if<Chart>(&b);
     if (c != nullptr && c->title == title) return *c;
@@ -41,22 +41,22 @@ TEST(FlightReport, DrawsMotionAndInputsAgainstTheVehiclesLimits) {
   const Plan plan = synthetic_flight(20, 201, 4);
   const std::vector<Section> sections = flight_sections(plan);
   const Section& motion = named(sections, "Motion");
-  EXPECT_EQ(limit(chart(motion, "Speed across"), "maximum"), 10);
-  EXPECT_EQ(limit(chart(motion, "Climb and descent"), "climb at most"), 2.5);
-  EXPECT_EQ(limit(chart(motion, "Climb and descent"), "descent at most"), -2);
-  EXPECT_EQ(limit(chart(motion, "Acceleration across"), "maximum"), 4);
-  EXPECT_TRUE(chart(motion, "Acceleration up").limits.empty());
+  EXPECT_EQ(limit(flight_chart(motion, "Speed across"), "maximum"), 10);
+  EXPECT_EQ(limit(flight_chart(motion, "Climb and descent"), "climb at most"), 2.5);
+  EXPECT_EQ(limit(flight_chart(motion, "Climb and descent"), "descent at most"), -2);
+  EXPECT_EQ(limit(flight_chart(motion, "Acceleration across"), "maximum"), 4);
+  EXPECT_TRUE(flight_chart(motion, "Acceleration up").limits.empty());
   const Section& inputs = named(sections, "Inputs");
   // (1 - 0.2/2) 4 * 8 N and (0.2/2) 4 * 8 N + 4 * 0.2 N.
-  EXPECT_NEAR(limit(chart(inputs, "Thrust"), "maximum"), 28.8, 1e-12);
-  EXPECT_NEAR(limit(chart(inputs, "Thrust"), "minimum"), 4.0, 1e-12);
-  EXPECT_TRUE(chart(inputs, "Thrust").series[0].stepped);
-  EXPECT_NEAR(limit(chart(named(sections, "Direction"), "Yaw rate"), "maximum"), 90, 1e-9);
+  EXPECT_NEAR(limit(flight_chart(inputs, "Thrust"), "maximum"), 28.8, 1e-12);
+  EXPECT_NEAR(limit(flight_chart(inputs, "Thrust"), "minimum"), 4.0, 1e-12);
+  EXPECT_TRUE(flight_chart(inputs, "Thrust").series[0].stepped);
+  EXPECT_NEAR(limit(flight_chart(named(sections, "Direction"), "Yaw rate"), "maximum"), 90, 1e-9);
   const Sample& s = plan.trajectory.samples[50];
-  EXPECT_EQ(chart(motion, "Speed across").series[0].y[50], s.velocity.head<2>().norm());
-  EXPECT_EQ(chart(inputs, "Thrust").series[0].y[50], s.force.norm());
-  EXPECT_EQ(chart(motion, "Position").series[2].y[50], s.position.z());
-  EXPECT_EQ(chart(motion, "Position").markers.size(), 6u);
+  EXPECT_EQ(flight_chart(motion, "Speed across").series[0].y[50], s.velocity.head<2>().norm());
+  EXPECT_EQ(flight_chart(inputs, "Thrust").series[0].y[50], s.force.norm());
+  EXPECT_EQ(flight_chart(motion, "Position").series[2].y[50], s.position.z());
+  EXPECT_EQ(flight_chart(motion, "Position").markers.size(), 6u);
 }
 
 TEST(FlightReport, MeasuresTheMissOfEachKeyframe) {
@@ -97,7 +97,7 @@ TEST(FlightReport, ShowsTheCertificateAsItIs) {
 
 TEST(FlightReport, FollowsTheCostOfEachTerm) {
   const Section solver = named(flight_sections(synthetic_flight(20, 201, 4)), "Solver");
-  const Chart& costs = chart(solver, "Weighted cost per term");
+  const Chart& costs = flight_chart(solver, "Weighted cost per term");
   ASSERT_EQ(costs.series.size(), 4u);
   EXPECT_EQ(costs.series[1].name, "keyframe");
   EXPECT_EQ(costs.series[1].x.size(), 9u);
@@ -114,7 +114,7 @@ TEST(FlightReport, ATermThatComesLateBeginsLate) {
   auto& history = plan.solver.find("history")->as_list();
   history[5].find("terms")->set("late", 3.0);
   const Section solver = named(flight_sections(plan), "Solver");
-  const Series& late = chart(solver, "Weighted cost per term").series.back();
+  const Series& late = flight_chart(solver, "Weighted cost per term").series.back();
   EXPECT_EQ(late.name, "late");
   EXPECT_EQ(late.x, std::vector<double>{5});
 }
@@ -138,7 +138,7 @@ TEST(FlightReport, DrawsRotorsAgainstTheirLimits) {
   plan.trajectory.model = MotionModel::rotors;
   plan.trajectory.inputs_held = false;
   const Section inputs = named(flight_sections(plan), "Inputs");
-  const Chart& rotors = chart(inputs, "Rotor thrusts");
+  const Chart& rotors = flight_chart(inputs, "Rotor thrusts");
   EXPECT_EQ(rotors.series.size(), 4u);
   EXPECT_FALSE(rotors.series[0].stepped);
   EXPECT_EQ(limit(rotors, "maximum"), 8);

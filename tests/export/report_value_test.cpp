@@ -48,7 +48,7 @@ std::string error_of_block(const std::string& block) {
   return error_of(R"({"title": "t", "sections": [{"title": "s", "blocks": [)" + block + "]}]}");
 }
 
-bool contains(const std::string& text, const std::string& part) {
+bool has_text(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -96,28 +96,28 @@ TEST(ReportValue, ReadsSectionsAlone) {
     sections_from_value(from_json(R"([{"titel": "x", "blocks": []}])", "f"), "report");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_TRUE(contains(error.what(), "report[1].title: missing")) << error.what();
-    EXPECT_TRUE(contains(error.what(), "report[1].titel: unknown; did you mean 'title'?"))
+    EXPECT_TRUE(has_text(error.what(), "report[1].title: missing")) << error.what();
+    EXPECT_TRUE(has_text(error.what(), "report[1].titel: unknown; did you mean 'title'?"))
         << error.what();
   }
 }
 
 TEST(ReportValue, NamesWhatIsWrongAndWhere) {
-  EXPECT_TRUE(contains(error_of("[]"), "expected a map, got a list"));
-  EXPECT_TRUE(contains(error_of(R"({"sections": []})"), "title: missing"));
-  EXPECT_TRUE(contains(error_of(R"({"title": "t"})"), "sections: missing"));
-  EXPECT_TRUE(contains(error_of_block(R"({"type": "pie", "slices": 3})"),
+  EXPECT_TRUE(has_text(error_of("[]"), "expected a map, got a list"));
+  EXPECT_TRUE(has_text(error_of(R"({"sections": []})"), "title: missing"));
+  EXPECT_TRUE(has_text(error_of(R"({"title": "t"})"), "sections: missing"));
+  EXPECT_TRUE(has_text(error_of_block(R"({"type": "pie", "slices": 3})"),
                        "sections[1].blocks[1].type: expected one of: text, facts, table, chart, "
                        "path, scene, image"));
-  EXPECT_FALSE(contains(error_of_block(R"({"type": "pie", "slices": 3})"), "slices"));
-  EXPECT_TRUE(contains(error_of_block(R"({"text": "x"})"), "blocks[1].type: missing"));
-  EXPECT_TRUE(contains(error_of_block(R"({"type": "text", "text": "x", "foldet": "y"})"),
+  EXPECT_FALSE(has_text(error_of_block(R"({"type": "pie", "slices": 3})"), "slices"));
+  EXPECT_TRUE(has_text(error_of_block(R"({"text": "x"})"), "blocks[1].type: missing"));
+  EXPECT_TRUE(has_text(error_of_block(R"({"type": "text", "text": "x", "foldet": "y"})"),
                        "blocks[1].foldet: unknown; did you mean 'folded'?"));
-  EXPECT_TRUE(contains(error_of_block(R"({"type": "text", "text": "x", "preformatted": 1})"),
+  EXPECT_TRUE(has_text(error_of_block(R"({"type": "text", "text": "x", "preformatted": 1})"),
                        "preformatted: expected true or false"));
-  EXPECT_TRUE(contains(error_of_block(R"({"type": "image", "caption": "c", "png_base64": "@@@@"})"),
+  EXPECT_TRUE(has_text(error_of_block(R"({"type": "image", "caption": "c", "png_base64": "@@@@"})"),
                        "png_base64: expected the bytes of a PNG file in padded base64"));
-  EXPECT_TRUE(contains(error_of_block(R"({"type": "image", "caption": "c", "png_base64": "AAAA"})"),
+  EXPECT_TRUE(has_text(error_of_block(R"({"type": "image", "caption": "c", "png_base64": "AAAA"})"),
                        "the image is no PNG file"));
 }
 
@@ -127,24 +127,24 @@ TEST(ReportValue, RefusesSeriesThatCannotBeDrawn) {
                           R"(, "y": {"label": "v"}, "series": [)" + series + "]}");
   };
   EXPECT_EQ(chart(R"({"name": "a", "x": [0, 1], "y": [1, 2]})"), "");
-  EXPECT_TRUE(contains(chart(R"({"name": "a", "x": [0, 1], "y": [1]})"), "2 x and 1 y"));
-  EXPECT_TRUE(contains(chart(R"({"name": "a", "x": [0, null], "y": [1, 2]})"),
+  EXPECT_TRUE(has_text(chart(R"({"name": "a", "x": [0, 1], "y": [1]})"), "2 x and 1 y"));
+  EXPECT_TRUE(has_text(chart(R"({"name": "a", "x": [0, null], "y": [1, 2]})"),
                        "series[1].x[2]: expected a finite number"));
   EXPECT_TRUE(
-      contains(chart(R"({"name": "a", "x": [1, 0], "y": [1, 2]})"), "below the one before"));
-  EXPECT_TRUE(contains(chart(R"({"name": "a", "x": [0], "y": ["1"]})"),
+      has_text(chart(R"({"name": "a", "x": [1, 0], "y": [1, 2]})"), "below the one before"));
+  EXPECT_TRUE(has_text(chart(R"({"name": "a", "x": [0], "y": ["1"]})"),
                        "series[1].y[1]: expected a number, got a text"));
-  EXPECT_TRUE(contains(chart(R"({"name": "a", "x": 3, "y": []})"), "expected a list"));
-  EXPECT_TRUE(contains(chart(R"({"name": "a", "y": []})"), "series[1].x: missing"));
+  EXPECT_TRUE(has_text(chart(R"({"name": "a", "x": 3, "y": []})"), "expected a list"));
+  EXPECT_TRUE(has_text(chart(R"({"name": "a", "y": []})"), "series[1].x: missing"));
   EXPECT_TRUE(
-      contains(chart("", R"({"label": "t", "logarithmic": true})"), "x.logarithmic: unknown"));
-  EXPECT_TRUE(contains(error_of_block(R"({"type": "scene", "title": "s",
+      has_text(chart("", R"({"label": "t", "logarithmic": true})"), "x.logarithmic: unknown"));
+  EXPECT_TRUE(has_text(error_of_block(R"({"type": "scene", "title": "s",
                                          "lines": [{"name": "l", "points": [[1, 2]]}]})"),
                        "lines[1].points[1]: expected a list of 3 numbers"));
-  EXPECT_TRUE(contains(error_of_block(R"({"type": "table", "columns": [{"name": "a"}],
+  EXPECT_TRUE(has_text(error_of_block(R"({"type": "table", "columns": [{"name": "a"}],
                                          "rows": [{"cells": [true]}]})"),
                        "rows[1].cells[1]: expected a text or a number, got"));
-  EXPECT_TRUE(contains(error_of_block(R"({"type": "table", "columns": [{"name": "a"}],
+  EXPECT_TRUE(has_text(error_of_block(R"({"type": "table", "columns": [{"name": "a"}],
                                          "rows": [{"cells": [1, 2]}]})"),
                        "a row has 2 cells for 1 columns"));
 }
@@ -152,10 +152,10 @@ TEST(ReportValue, RefusesSeriesThatCannotBeDrawn) {
 TEST(ReportValue, ReportsAllErrorsTogether) {
   const std::string errors = error_of_block(R"({"type": "facts", "facts": [
       {"label": 1, "value": "x"}, {"label": "b"}, {"label": "c", "value": [], "colour": "red"}]})");
-  EXPECT_TRUE(contains(errors, "facts[1].label: expected a text, got an integer")) << errors;
-  EXPECT_TRUE(contains(errors, "facts[2].value: missing"));
-  EXPECT_TRUE(contains(errors, "facts[3].value: expected a text, got a list"));
-  EXPECT_TRUE(contains(errors, "facts[3].colour: unknown"));
+  EXPECT_TRUE(has_text(errors, "facts[1].label: expected a text, got an integer")) << errors;
+  EXPECT_TRUE(has_text(errors, "facts[2].value: missing"));
+  EXPECT_TRUE(has_text(errors, "facts[3].value: expected a text, got a list"));
+  EXPECT_TRUE(has_text(errors, "facts[3].colour: unknown"));
 }
 
 }  // namespace

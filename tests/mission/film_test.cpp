@@ -238,7 +238,8 @@ TEST_F(FilmTest, WrongFlightZonesAreNamed) {
          "keyframes[2].position: outside flight zone 'yard': 1 m beyond its edge");
   expect(zone("corners = {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, ceiling = 3.5"),
          "keyframes[2].position: outside flight zone 'yard': 0.5 m beyond its edge");
-  expect(zone("corners = {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, top = 3"), "flight_zones[1].top: unknown key");
+  expect(zone("corners = {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, top = 3"),
+         "flight_zones[1].top: unknown key");
   expect(shot("volume = { lower = {-9, -9, 0} },"), "volume: expected lower and upper");
   expect(shot("volume = { lower = {-9, -9, 5}, upper = {9, 9, 0} },"),
          "volume: lower must be below upper");

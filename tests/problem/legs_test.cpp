@@ -10,7 +10,7 @@ namespace {
 
 using namespace laboratory;
 
-const Registry& plugins() {
+const Registry& leg_plugins() {
   static const Registry registry({LAPWING_BUILD_DIR "/lib/plugins"});
   return registry;
 }
@@ -19,7 +19,7 @@ const std::vector<Leg> kThree = {{.intervals = 2, .step = 0.4},
                                  {.intervals = 3, .step = 0.2, .free = false},
                                  {.intervals = 2, .step = 0.5, .shortest = 0.6, .longest = 2}};
 
-Value derivative_of(const std::string& block, int order) {
+Value leg_derivative(const std::string& block, int order) {
   Value parameters = Value::map();
   parameters.set("block", block);
   parameters.set("order", order);
@@ -28,13 +28,14 @@ Value derivative_of(const std::string& block, int order) {
 
 TrajectoryProblem quadrotor(const Horizon& horizon) {
   TrajectoryProblem problem(plain_vehicle(), horizon);
-  problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
+  problem.add_model("quadrotor", leg_plugins().create<VehicleModel>("quadrotor"));
   for (int order = 1; order <= 4; ++order)
-    problem.add_cost("smooth_" + std::to_string(order), 0.3 * order,
-                     plugins().create<CostTerm>("derivative", derivative_of("position", order)));
+    problem.add_cost(
+        "smooth_" + std::to_string(order), 0.3 * order,
+        leg_plugins().create<CostTerm>("derivative", leg_derivative("position", order)));
   problem.add_cost("even_force", 0.1,
-                   plugins().create<CostTerm>("derivative", derivative_of("force", 2)));
-  problem.add_cost("flight_time", 2, plugins().create<CostTerm>("flight_time"));
+                   leg_plugins().create<CostTerm>("derivative", leg_derivative("force", 2)));
+  problem.add_cost("flight_time", 2, leg_plugins().create<CostTerm>("flight_time"));
   return problem;
 }
 
@@ -101,7 +102,7 @@ TEST(Legs, APeriodicFlightMayTurn) {
   horizon.periodic = true;
   horizon.turns = 1;
   TrajectoryProblem problem(plain_vehicle(), horizon);
-  problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
+  problem.add_model("quadrotor", leg_plugins().create<VehicleModel>("quadrotor"));
   problem.set_path_guess({0, 1}, {{0, 0, 1}, {0, 0, 1}}, {0.0, 2 * std::numbers::pi});
   problem.finish();
   EXPECT_EQ(problem.row_name(problem.rows() - 8), "closure.position.x");
@@ -115,10 +116,11 @@ TEST(Legs, DividedDifferencesOfPowersAreFactorials) {
   TrajectoryProblem problem(plain_vehicle(),
                             Horizon::of_legs({{.intervals = 3, .step = 0.1, .free = false},
                                               {.intervals = 3, .step = 0.35, .free = false}}));
-  problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
+  problem.add_model("quadrotor", leg_plugins().create<VehicleModel>("quadrotor"));
   for (int order = 1; order <= 4; ++order)
-    problem.add_cost("order_" + std::to_string(order), 1,
-                     plugins().create<CostTerm>("derivative", derivative_of("position", order)));
+    problem.add_cost(
+        "order_" + std::to_string(order), 1,
+        leg_plugins().create<CostTerm>("derivative", leg_derivative("position", order)));
   problem.finish();
   double factorial = 1;
   for (int order = 1; order <= 4; ++order) {

@@ -53,6 +53,15 @@ Check gates_of(Plan plan, std::vector<GateTask> gates) {
   return {};
 }
 
+// The glide ends at x = 10, or a rounding before it.
+TEST(Gates, AreReachedByAPathThatEndsInThem) {
+  EXPECT_TRUE(gates_of(gliding(), {window(10)}).pass);
+  EXPECT_TRUE(gates_of(gliding(), {window(10 + 1e-9)}).pass);
+  EXPECT_TRUE(gates_of(gliding(), {window(9 + 1e-9, 0, 2)}).pass);
+  EXPECT_FALSE(gates_of(gliding(), {window(10.01)}).pass);
+  EXPECT_FALSE(gates_of(gliding(), {window(9.01, 0, 2)}).pass);
+}
+
 TEST(Gates, AreJudgedOnThePath) {
   const Check check = gates_of(gliding(), {window(3), window(6.1)});
   EXPECT_TRUE(check.pass);

@@ -13,7 +13,7 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-CandidateSettings settings() {
+CandidateSettings candidate_settings() {
   CandidateSettings s;
   s.region = AlignedBox3d(Vector3d(4, -4, 0), Vector3d(6, 4, 9));
   s.allowed = AlignedBox3d(Vector3d(-10, -10, 0), Vector3d(10, 10, 10));
@@ -30,7 +30,7 @@ Candidates generate(const CandidateSettings& s, std::uint64_t seed = 1) {
 
 TEST(Candidates, AreFreeAllowedApartAndLookDown) {
   const auto space = free_space_of(std::shared_ptr<const Map>(walled_room()));
-  const CandidateSettings s = settings();
+  const CandidateSettings s = candidate_settings();
   const Candidates made = generate(s);
   ASSERT_GT(made.viewpoints.size(), 200u);
   for (std::size_t k = 0; k < made.viewpoints.size(); ++k) {
@@ -49,12 +49,12 @@ TEST(Candidates, AreFreeAllowedApartAndLookDown) {
 
 TEST(Candidates, BehindTheWallAreReachedRoundIt) {
   int behind = 0;
-  for (const Viewpoint& v : generate(settings()).viewpoints) behind += v.position.x() > 6;
+  for (const Viewpoint& v : generate(candidate_settings()).viewpoints) behind += v.position.x() > 6;
   EXPECT_GT(behind, 20);
 }
 
 TEST(Candidates, AreDenserNearTheRegion) {
-  CandidateSettings s = settings();
+  CandidateSettings s = candidate_settings();
   s.step = 1.2;
   s.step_growth = 0.4;
   int near = 0, far = 0;
@@ -68,7 +68,7 @@ TEST(Candidates, AreDenserNearTheRegion) {
 
 TEST(Candidates, LookMostlyTowardsTheRegion) {
   int towards = 0, all = 0;
-  for (const Viewpoint& v : generate(settings()).viewpoints) {
+  for (const Viewpoint& v : generate(candidate_settings()).viewpoints) {
     if (v.position.x() > 0) continue;
     ++all;
     towards += v.direction().x() > 0;
@@ -85,12 +85,12 @@ TEST(Candidates, AreTheSameForASeedAndOthersForAnother) {
     }
     return numbers;
   };
-  EXPECT_EQ(at(generate(settings(), 4)), at(generate(settings(), 4)));
-  EXPECT_NE(at(generate(settings(), 4)), at(generate(settings(), 5)));
+  EXPECT_EQ(at(generate(candidate_settings(), 4)), at(generate(candidate_settings(), 4)));
+  EXPECT_NE(at(generate(candidate_settings(), 4)), at(generate(candidate_settings(), 5)));
 }
 
 TEST(Candidates, StopAtTheMostAndDrawUpToTheLeast) {
-  CandidateSettings s = settings();
+  CandidateSettings s = candidate_settings();
   s.most = 50;
   EXPECT_EQ(generate(s).viewpoints.size(), 50u);
   s.most = 1000;
@@ -112,11 +112,11 @@ std::string refusal(const std::vector<Viewpoint>& given, const CandidateSettings
 
 TEST(Candidates, NoFreeStartIsSaid) {
   using testing::HasSubstr;
-  EXPECT_THAT(refusal({}, settings()), HasSubstr("no viewpoint to begin with"));
-  EXPECT_THAT(refusal({kStart[0], {{5.2, 0, 5}, 0, 0}}, settings()),
+  EXPECT_THAT(refusal({}, candidate_settings()), HasSubstr("no viewpoint to begin with"));
+  EXPECT_THAT(refusal({kStart[0], {{5.2, 0, 5}, 0, 0}}, candidate_settings()),
               HasSubstr("viewpoint 2 to begin with is not in free space"));
-  EXPECT_THAT(refusal({{{0, 0, 50}, 0, 0}}, settings()), HasSubstr("outside the room"));
-  CandidateSettings s = settings();
+  EXPECT_THAT(refusal({{{0, 0, 50}, 0, 0}}, candidate_settings()), HasSubstr("outside the room"));
+  CandidateSettings s = candidate_settings();
   s.region = AlignedBox3d();
   EXPECT_THAT(refusal(kStart, s), HasSubstr("region of interest is empty"));
 }
@@ -124,7 +124,7 @@ TEST(Candidates, NoFreeStartIsSaid) {
 TEST(Motions, JoinNeighboursThatAreFreeAndMatch) {
   const auto map = walled_room();
   const auto space = free_space_of(std::shared_ptr<const Map>(map));
-  const std::vector<Viewpoint> viewpoints = generate(settings()).viewpoints;
+  const std::vector<Viewpoint> viewpoints = generate(candidate_settings()).viewpoints;
   SightSettings sight;
   sight.pinhole = {120, 90, 69, 69, 59.5, 44.5};
   sight.region = AlignedBox3d(Vector3d(4, -4, 0), Vector3d(6, 4, 9));
@@ -132,8 +132,8 @@ TEST(Motions, JoinNeighboursThatAreFreeAndMatch) {
   std::vector<std::vector<VoxelKey>> seen;
   for (const Viewpoint& v : viewpoints) seen.push_back(visible.seen_coarsely_from(v, 60));
   MotionSettings s;
-  s.allowed = settings().allowed;
-  s.half = settings().half;
+  s.allowed = candidate_settings().allowed;
+  s.half = candidate_settings().half;
   const MotionGraph graph = find_motions(*space, viewpoints, seen, s, 1, 2);
   ASSERT_GT(graph.motions.size(), viewpoints.size());
   EXPECT_EQ(graph.tried,

@@ -10,7 +10,7 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-SightSettings settings() {
+SightSettings sight_settings() {
   SightSettings s;
   s.pinhole = {200, 150, 115, 115, 99.5, 74.5};
   s.region = AlignedBox3d(Vector3d(-9, -9, 0), Vector3d(9, 9, 9));
@@ -21,7 +21,7 @@ const Viewpoint kAhead{{-5, 0.2, 5.1}, 0, 0};
 
 TEST(VisibleVoxels, OfAWallAreTheVoxelsInFrontAlone) {
   const auto map = walled_room();
-  const VisibleVoxels visible(map, wall_face(), settings());
+  const VisibleVoxels visible(map, wall_face(), sight_settings());
   const std::vector<SeenVoxel> seen = visible.seen_from(kAhead);
   std::size_t wall = 0;
   for (std::size_t k = 0; k < seen.size(); ++k) {
@@ -29,7 +29,7 @@ TEST(VisibleVoxels, OfAWallAreTheVoxelsInFrontAlone) {
       EXPECT_LT(seen[k - 1].voxel, seen[k].voxel);
     }
     const Vector3d center = map->grid().center(seen[k].voxel);
-    EXPECT_TRUE(settings().region.contains(center));
+    EXPECT_TRUE(sight_settings().region.contains(center));
     // Nothing behind the wall and nothing free: only the wall, as the region ends inside the room.
     EXPECT_NEAR(center.x(), 5.25, 1e-9);
     EXPECT_LT(std::abs(center.y()), 4);
@@ -41,7 +41,7 @@ TEST(VisibleVoxels, OfAWallAreTheVoxelsInFrontAlone) {
 
 TEST(VisibleVoxels, AngleDistanceAndSizeAreThoseOfTheGeometry) {
   const auto map = walled_room();
-  const VisibleVoxels visible(map, wall_face(), settings());
+  const VisibleVoxels visible(map, wall_face(), sight_settings());
   for (const SeenVoxel& seen : visible.seen_from(kAhead)) {
     const Vector3d towards = map->grid().center(seen.voxel) - kAhead.position;
     EXPECT_NEAR(seen.sight.distance, towards.norm(), 1e-5);
@@ -54,13 +54,13 @@ TEST(VisibleVoxels, AngleDistanceAndSizeAreThoseOfTheGeometry) {
 TEST(VisibleVoxels, WithoutASurfaceNearbyTheAngleIsNotKnown) {
   const auto map = walled_room();
   for (const auto& prior : {std::shared_ptr<MeshScene>(), wall_face(-1), wall_face(2)})
-    for (const SeenVoxel& seen : VisibleVoxels(map, prior, settings()).seen_from(kAhead))
+    for (const SeenVoxel& seen : VisibleVoxels(map, prior, sight_settings()).seen_from(kAhead))
       EXPECT_FALSE(seen.sight.incidence.has_value());
 }
 
 TEST(VisibleVoxels, TheUnknownIsSeenTooAndTheFreeIsNot) {
   const auto map = walled_room();
-  SightSettings s = settings();
+  SightSettings s = sight_settings();
   s.region = AlignedBox3d(Vector3d(-30, -30, -5), Vector3d(30, 30, 30));
   int unknown = 0;
   for (const SeenVoxel& seen : VisibleVoxels(map, nullptr, s).seen_from(kAhead)) {
@@ -72,7 +72,7 @@ TEST(VisibleVoxels, TheUnknownIsSeenTooAndTheFreeIsNot) {
 }
 
 TEST(VisibleVoxels, CoarseViewsSeeAPartOfTheSame) {
-  const VisibleVoxels visible(walled_room(), nullptr, settings());
+  const VisibleVoxels visible(walled_room(), nullptr, sight_settings());
   std::vector<VoxelKey> fine;
   for (const SeenVoxel& seen : visible.seen_from(kAhead)) fine.push_back(seen.voxel);
   const std::vector<VoxelKey> coarse = visible.seen_coarsely_from(kAhead, 40);
@@ -95,16 +95,17 @@ TEST(Matchable, IsTheShareOfWhatBothSee) {
 
 TEST(VisibleVoxels, WhatMakesNoSenseIsRefused) {
   const auto map = walled_room();
-  SightSettings s = settings();
+  SightSettings s = sight_settings();
   s.region = AlignedBox3d();
   EXPECT_THROW(VisibleVoxels(map, nullptr, s), InputError);
-  s = settings();
+  s = sight_settings();
   s.range = 0;
   EXPECT_THROW(VisibleVoxels(map, nullptr, s), InputError);
-  s = settings();
+  s = sight_settings();
   s.region = AlignedBox3d(Vector3d(0.3, 0, 0), Vector3d(0.4, 9, 9));  // no voxel's centre
   EXPECT_THROW(VisibleVoxels(map, nullptr, s), InputError);
-  EXPECT_THROW(VisibleVoxels(map, nullptr, settings()).seen_coarsely_from(kAhead, 0), InputError);
+  EXPECT_THROW(VisibleVoxels(map, nullptr, sight_settings()).seen_coarsely_from(kAhead, 0),
+               InputError);
 }
 
 }  // namespace

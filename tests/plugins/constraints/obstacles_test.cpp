@@ -7,7 +7,7 @@
 namespace lapwing {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // The drone's largest acceleration: 4 across, and down as it falls or up as its rotors can.
 double acceleration() {
@@ -24,7 +24,7 @@ Environment surroundings() {
   environment.zones = {
       {"court", {{0, 0}, {6, 0}, {6, 5}, {4, 5}, {4, 2}, {2, 2}, {2, 5}, {0, 5}}, 1, 4},
       {"field", {{20, 0}, {20, 10}, {30, 0}}},
-      {"", {{-9, -9}, {-5, -9}, {-5, -5}, {-9, -5}}, 10, kInfinity}};
+      {"", {{-9, -9}, {-5, -9}, {-5, -5}, {-9, -5}}, 10, kUnbounded}};
   environment.subjects = {
       {"walker", {0.25, 1.25, 2.25}, {{0, 0, 1}, {2, 0, 1}, {2, -1, 1}}, 1.8, 1},
       {"still", {0}, {{9, 9, 1}}}};
@@ -170,7 +170,7 @@ double closest_arc(const BoundRows& rows, int row, const Eigen::Vector3d& lower,
                    const Eigen::Vector3d& upper,
                    const std::function<double(const Eigen::Vector3d&)>& distance, double kept) {
   Random random(7);
-  double closest = kInfinity;
+  double closest = kUnbounded;
   int feasible = 0;
   for (int k = 0; k < 60000; ++k) {
     const Arc arc = random_arc(random, lower, upper);
@@ -235,7 +235,7 @@ TEST(SubjectDistance, FollowsTheSubjectAndHoldsBetweenStages) {
 
   Random random(9);
   int feasible = 0;
-  double closest = kInfinity;
+  double closest = kUnbounded;
   for (int k = 0; k < 60000; ++k) {
     const Arc arc = random_arc(random, {-4, -5, -4}, {6, 5, 6});
     const double start = random.uniform(0, 2.2);

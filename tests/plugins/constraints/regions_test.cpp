@@ -9,19 +9,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-double acceleration() {
+double drone_acceleration() {
   const Vehicle drone = camera_drone();
   return std::hypot(4.0, std::max(kGravity, drone.thrust_max() / drone.mass - kGravity));
 }
 double bulge(double h) {
-  return acceleration() * h * h / 8;
+  return drone_acceleration() * h * h / 8;
 }
-double asked(double distance, double speed, double h) {
-  const double length = std::sqrt(speed * speed + 1e-4) * h + acceleration() * h * h / 2;
+double asked_of(double distance, double speed, double h) {
+  const double length = std::sqrt(speed * speed + 1e-4) * h + drone_acceleration() * h * h / 2;
   return std::sqrt(std::pow(distance + bulge(h), 2) + length * length / 4);
 }
 
-Eigen::VectorXd stage(const Vector3d& position, const Vector3d& velocity, double h) {
+Eigen::VectorXd stage_of(const Vector3d& position, const Vector3d& velocity, double h) {
   Eigen::VectorXd x(7);
   x << position, velocity, h;
   return x;
@@ -47,22 +47,22 @@ TEST(Clearance, IsTheDistanceToTheMeshLessWhatThePathNeeds) {
     const Vector3d p(random.uniform(-6, 6), random.uniform(-5, 7), random.uniform(-4, 9));
     const Vector3d v(random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(-2, 2));
     const double outside = std::min(std::abs(signed_distance(house, p)), 6.0);  // no inside
-    EXPECT_NEAR(rows.values(stage(p, v, 0.1))(0), outside - asked(0.5, v.norm(), 0.1), 1e-6);
+    EXPECT_NEAR(rows.values(stage_of(p, v, 0.1))(0), outside - asked_of(0.5, v.norm(), 0.1), 1e-6);
   }
   // Far away the row is constant and far from its bound.
-  EXPECT_GT(rows.values(stage({90, 0, 0}, {9, 0, 0}, 0.1))(0), 4);
+  EXPECT_GT(rows.values(stage_of({90, 0, 0}, {9, 0, 0}, 0.1))(0), 4);
 }
 
 TEST(Clearance, DerivativesAreThoseOfTheField) {
   const Environment around = beside_a_house();
   const BoundRows rows("clearance", map_of({}), around);
   const Vector3d v(3, -1, 0.5);
-  rows.expect_derivatives(stage({4, 1, 2}, v, 0.1), "off a face", 0, 1e-4, 1e-4);
-  rows.expect_derivatives(stage({4, 5, 2}, v, 0.1), "off an edge", 0, 1e-4, 1e-4);
-  rows.expect_derivatives(stage({4, 5, 7}, v, 0.1), "off a corner", 0, 1e-4, 1e-4);
-  rows.expect_derivatives(stage({1.3, 1, 2}, v, 0.1), "inside", 0, 1e-4, 1e-4);
-  rows.expect_finite(stage({2, 1, 2}, v, 0.1), "on a face");
-  rows.expect_finite(stage({2, 3, 5}, {0, 0, 0}, 0.1), "on a corner");
+  rows.expect_derivatives(stage_of({4, 1, 2}, v, 0.1), "off a face", 0, 1e-4, 1e-4);
+  rows.expect_derivatives(stage_of({4, 5, 2}, v, 0.1), "off an edge", 0, 1e-4, 1e-4);
+  rows.expect_derivatives(stage_of({4, 5, 7}, v, 0.1), "off a corner", 0, 1e-4, 1e-4);
+  rows.expect_derivatives(stage_of({1.3, 1, 2}, v, 0.1), "inside", 0, 1e-4, 1e-4);
+  rows.expect_finite(stage_of({2, 1, 2}, v, 0.1), "on a face");
+  rows.expect_finite(stage_of({2, 3, 5}, {0, 0, 0}, 0.1), "on a corner");
 }
 
 TEST(Clearance, AWallWithoutThicknessCannotBeSteppedOver) {
@@ -74,8 +74,8 @@ TEST(Clearance, AWallWithoutThicknessCannotBeSteppedOver) {
   around.meshes = {{"wall", "", "", std::make_shared<MeshDistance>(scene, 6.0)}};
   const BoundRows rows("clearance", map_of({}), around);
   // From 1 m before it to 1 m behind it within one step of 0.2 s: each stage alone is clear.
-  EXPECT_LT(rows.values(stage({-1, 0, 0}, {10, 0, 0}, 0.2))(0), 0);
-  EXPECT_GT(rows.values(stage({-1, 0, 0}, {0, 0, 0}, 0.2))(0), 0);
+  EXPECT_LT(rows.values(stage_of({-1, 0, 0}, {10, 0, 0}, 0.2))(0), 0);
+  EXPECT_GT(rows.values(stage_of({-1, 0, 0}, {0, 0, 0}, 0.2))(0), 0);
 }
 
 TEST(Clearance, AFileThatNobodyReadIsAnError) {
@@ -100,14 +100,14 @@ TEST(FlightZone, RowsAreTheWayToTheNearestEdge) {
   for (int k = 0; k < 500; ++k) {
     const Vector3d p(random.uniform(-25, 25), random.uniform(-25, 25), random.uniform(-4, 35));
     const Vector3d v(random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(-2, 2));
-    const Eigen::VectorXd g = rows.values(stage(p, v, 0.1));
+    const Eigen::VectorXd g = rows.values(stage_of(p, v, 0.1));
     EXPECT_NEAR(g(0), -signed_distance(around.flight_zones[0], p) - 0.5 - bulge(0.1), 1e-12);
-    EXPECT_NEAR(g(1), -signed_distance(around.flight_zones[1], p) - asked(0.5, v.norm(), 0.1),
+    EXPECT_NEAR(g(1), -signed_distance(around.flight_zones[1], p) - asked_of(0.5, v.norm(), 0.1),
                 1e-12);
   }
-  rows.expect_derivatives(stage({4, 3, 5}, {2, 1, 0}, 0.1), "inside");
-  rows.expect_derivatives(stage({1, -0.7, 5}, {2, 1, 0}, 0.1), "inside, off the reflex corner");
-  rows.expect_derivatives(stage({-30, 29, 50}, {2, 1, 0}, 0.1), "outside");
+  rows.expect_derivatives(stage_of({4, 3, 5}, {2, 1, 0}, 0.1), "inside");
+  rows.expect_derivatives(stage_of({1, -0.7, 5}, {2, 1, 0}, 0.1), "inside, off the reflex corner");
+  rows.expect_derivatives(stage_of({-30, 29, 50}, {2, 1, 0}, 0.1), "outside");
 }
 
 TEST(FlightZone, ThePathBetweenStagesStaysInside) {
@@ -120,11 +120,11 @@ TEST(FlightZone, ThePathBetweenStagesStaysInside) {
     const double h = random.uniform(0.05, 0.4);
     const Vector3d v = random.uniform(0, 10) *
                        Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-    const Vector3d a =
-        acceleration() * Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    const Vector3d a = drone_acceleration() *
+                       Vector3d(random.normal(), random.normal(), random.normal()).normalized();
     const auto at = [&](double t) -> Vector3d { return from + t * v + t * t / 2 * a; };
-    if (rows.values(stage(from, v, h)).minCoeff() < 0) continue;
-    if (rows.values(stage(at(h), v + h * a, h)).minCoeff() < 0) continue;
+    if (rows.values(stage_of(from, v, h)).minCoeff() < 0) continue;
+    if (rows.values(stage_of(at(h), v + h * a, h)).minCoeff() < 0) continue;
     ++feasible;
     for (int i = 0; i <= 20; ++i)
       for (const Zone& zone : around.flight_zones)

@@ -1,0 +1,98 @@
+// Races flown by hand: the logs that are shipped, flown round the course that they were made for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "framework/core/files.h"
+#include "framework/trajectory/plan.h"
+#include "framework/vehicle/race_score.h"
+#include "tests/missions/flown_film.h"
+#include "tests/vehicle/scripted_pilots.h"
+
+namespace lapwing {
+namespace {
+
+class RaceGame : public Filming {
+ protected:
+  int command(const std::string& arguments) {
+    const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing " + arguments +
+                             " > /dev/null 2> '" + (folder_ / "stderr.txt").string() + "'";
+    return WEXITSTATUS(std::system(line.c_str()));
+  }
+  std::string error() { return read_file(folder_ / "stderr.txt"); }
+};
+using testing::HasSubstr;
+
+const std::string kRacing = (kExamples / "../racing").string();
+
+std::string log_of(const RaceFlight& flight) {
+  std::string text = "time,forward,left\n";
+  char line[80];
+  double next = 0;
+  for (const RaceSample& sample : flight.samples) {
+    if (sample.time < next - 1e-9) continue;
+    next = sample.time + 0.1;
+    std::snprintf(line, sizeof line, "%.3f,%.3f,%.3f\n", sample.time, sample.stick.x(),
+                  sample.stick.y());
+    text += line;
+  }
+  return text;
+}
+
+TEST_F(RaceGame, TimidCutterAndLeaverEndAsTheyShould) {
+  const Flown flown = fly("../racing/two_players.lua");
+  ASSERT_EQ(flown.status, 0);
+  const Plan plan = read_plan(flown.folder / "plan.json");
+  // LAPWING_WRITE_PILOTS=FOLDER makes the logs anew, for a course that has changed.
+  if (const char* folder = std::getenv("LAPWING_WRITE_PILOTS")) {
+    const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+    const ReferenceMotion course(plan.trajectory, vehicle);
+    const StickLog centred({{0, {0, 0}}}, "none");
+    const Pilot pilot{.name = "", .log = centred};
+    const std::filesystem::path to = folder;
+    const auto write = [&](const char* name, const StickSource& stick) {
+      write_file_atomically(to / name, log_of(fly_race(plan.trajectory, vehicle, pilot, stick)));
+    };
+    write("timid.csv", timid_pilot(course));
+    write("cutter.csv", corner_cutter(course));
+    write("leaver.csv", leaver(course));
+  }
+  const Value& pilots = flown.result.at("game").at("pilots");
+  ASSERT_EQ(pilots.as_list().size(), 2u);
+  const Value &timid = pilots.as_list()[0], &cutter = pilots.as_list()[1];
+  EXPECT_EQ(timid.at("end").as_text(), "finished");
+  EXPECT_EQ(cutter.at("end").as_text(), "finished");
+  EXPECT_GT(timid.at("time").as_number(), 1.1 * plan.trajectory.duration());
+  EXPECT_LT(cutter.at("time").as_number(), timid.at("time").as_number());
+  EXPECT_GT(cutter.at("deviation_mean").as_number(), timid.at("deviation_mean").as_number());
+  EXPECT_THAT(read_file(flown.folder / "report.html"), HasSubstr("Score over time"));
+
+  const std::string page = (folder_ / "race.html").string();
+  EXPECT_EQ(command("race '" + (flown.folder / "plan.json").string() + "' --pilot '" + kRacing +
+                    "/pilots/leaver.csv:weight=1,strength=8,reach=12' --pilot '" + kRacing +
+                    "/pilots/timid.csv:name=Ann' -o '" + page + "'"),
+            0);
+  EXPECT_THAT(read_file(page), HasSubstr("left the course"));
+  EXPECT_THAT(read_file(page), HasSubstr("Ann wins"));
+}
+
+TEST_F(RaceGame, WhatIsNoRaceIsSaid) {
+  const Flown flown = fly("../racing/two_players.lua", "--set players=[]");
+  ASSERT_EQ(flown.status, 0);
+  EXPECT_EQ(flown.result.find("game"), nullptr);
+  const std::string plan = "race '" + (flown.folder / "plan.json").string() + "' ";
+  const auto refused = [&](const std::string& given, const std::string& why) {
+    EXPECT_EQ(command(plan + given), 2) << given;
+    EXPECT_THAT(error(), HasSubstr(why));
+  };
+  refused("", "--pilot");
+  refused("--pilot nowhere.csv", "nowhere.csv");
+  write_file_atomically(folder_ / "gap.csv", "time,forward,left\n0,0,0\n3,0,0\n");
+  refused("--pilot '" + (folder_ / "gap.csv").string() + "'", "a gap from 0 s to 3 s");
+  const std::string timid = "--pilot '" + kRacing + "/pilots/timid.csv";
+  refused(timid + ":wieght=1'", "unknown 'wieght'");
+  refused(timid + ":weight=2'", "weight must lie between 0 and 1");
+  refused(timid + ":weight=x'", "must be a number");
+}
+
+}  // namespace
+}  // namespace lapwing
