@@ -1,6 +1,6 @@
--- A course flown by hand: three pilots, from the logs of their sticks, in simulation.
+-- A course flown by hand: two pilots, from the logs of their sticks, in simulation.
 --   lapwing run examples/racing/two_players.lua
---   lapwing race out/two_players/plan.json --pilot examples/racing/pilots/cutter.csv:weight=0.8
+--   lapwing race out/two_players/plan.json --pilot examples/racing/pilots/leaver.csv:weight=1,strength=10,reach=4
 local race = require "mission.race"
 
 return race.course {
@@ -19,7 +19,7 @@ return race.course {
       height = 3 },
   },
   players = {
-    { name = "Timid", log = "pilots/timid.csv" },
-    { name = "Cutter", log = "pilots/cutter.csv", handicap = 1 },
+    { name = "Timid", log = "pilots/timid.csv", strength = 10, reach = 4 },
+    { name = "Cutter", log = "pilots/cutter.csv", strength = 10, reach = 4, handicap = 1 },
   },
 }

@@ -17,6 +17,7 @@ namespace {
 constexpr double kBehind = 0.3, kAhead = 0.6;  // s of the plan, where progress is looked for
 constexpr double kProgressStep = 0.005;        // s of the plan
 constexpr double kFollow = 5;                  // 1/s, of the reference after the pilot's progress
+constexpr double kAtRest = 0.5;                // m/s
 constexpr double kLastLeg = 1;                 // s of the plan, in which the finish counts
 
 void check(const Pilot& pilot) {
@@ -51,6 +52,7 @@ class RaceController {
         inertia_(vehicle.inertia),
         gains_(gains_of(vehicle)),
         allocation_(vehicle),
+        lead_(2 / std::sqrt(gains_.attitude.x() / inertia_.x()) + vehicle.rotors.lag),
         progress_(reference.start()),
         clock_(reference.start()) {}
 
@@ -83,7 +85,9 @@ class RaceController {
     Vector3d feedback = stiffness * error + 2 * std::sqrt(stiffness) * drift;
     feedback.z() =
         gains_.integral * integral_ + gains_.position * error.z() + gains_.velocity * drift.z();
-    const Vector3d planned = pilot_.speed * pilot_.speed * wanted.acceleration;
+    // The attitude answers that much later.
+    const double ahead = std::min(clock_ + pilot_.speed * lead_, reference_.finish());
+    const Vector3d planned = pilot_.speed * pilot_.speed * reference_.at(ahead).acceleration;
     const Vector3d flown = pilot_.strength * (stick.x() * axes.along + stick.y() * axes.left);
     const Vector3d acceleration = (1 - pilot_.weight) * planned + pilot_.weight * flown - feedback;
     const Vector3d force = mass_ * (acceleration + Vector3d(0, 0, kGravity)) + drag_ * velocity;
@@ -109,10 +113,18 @@ class RaceController {
   Vector3d inertia_;
   ControllerGains gains_;
   RotorAllocation allocation_;
+  double lead_;              // s
   double progress_, clock_;  // s of the plan: of the pilot, and of the reference that follows
   double integral_ = 0;      // m s, of the height
   bool saturated_ = false;
 };
+
+// The last point, moving as just before it: afterwards the reference hovers.
+ReferencePoint end_of(const ReferenceMotion& reference) {
+  ReferencePoint end = reference.at(reference.finish());
+  end.velocity = reference.at(reference.finish() - kProgressStep).velocity;
+  return end;
+}
 
 BodyState starting_state(const ReferenceMotion& reference, const Vehicle& vehicle, double speed) {
   const ReferencePoint start = reference.at(reference.start());
@@ -154,7 +166,7 @@ RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilo
   RaceController controller(vehicle, reference, pilot);
   const RotorBody body(vehicle);
   BodyState state = starting_state(reference, vehicle, pilot.speed);
-  const Vector3d finish = reference.at(reference.finish()).position;
+  const ReferencePoint finish = end_of(reference);
   const double most = limits.time_factor * (reference.finish() - reference.start()) / pilot.speed;
   const auto every = std::max<std::int64_t>(1, std::llround(limits.sample_step / limits.step));
 
@@ -168,8 +180,14 @@ RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilo
     const Vector3d place = reference.at(controller.progress()).position;
     const double deviation = (state.position - place).norm();
     const Eigen::Vector2d stick = source(time, state, controller.progress());
-    const bool there = controller.progress() >= reference.finish() - kLastLeg &&
-                       (state.position - finish).norm() <= limits.finish_radius;
+    // Past the end of the course, or, where it ends at rest, as good as there.
+    const Vector3d beyond = state.position - finish.position;
+    const bool past =
+        controller.progress() >= reference.finish() && beyond.dot(finish.velocity) >= 0;
+    const bool near = finish.velocity.norm() < kAtRest &&
+                      controller.progress() >= reference.finish() - kLastLeg &&
+                      beyond.norm() <= limits.finish_radius;
+    const bool there = past || near;
     const bool over = (state.orientation * Vector3d::UnitZ()).z() < 0;
     const bool lost = !(deviation <= limits.off_course);
     const bool ended = there || over || lost || time >= most;

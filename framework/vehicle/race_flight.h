@@ -38,7 +38,7 @@ struct RaceFlightLimits {
   double sample_step = 0.02;   // s, between the kept samples
   double off_course = 6;       // m, from the course: out of the race
   double time_factor = 3;      // times the pilot's reference: out of the race
-  double finish_radius = 0.5;  // m, of the course's end
+  double finish_radius = 0.5;  // m, of the end of a course that ends at rest
 };
 
 struct RaceSample {

@@ -7,35 +7,40 @@
 
 namespace lapwing {
 
-// Left of where the course leads at `progress`, m, of a place `ahead` seconds on.
-inline double bend_ahead(const ReferenceMotion& course, double progress, double ahead) {
+// What the course asks of the stick at `progress`: its acceleration along and to the left of it, in
+// full deflections of `strength` m/s^2.
+inline Eigen::Vector2d asked_of_stick(const ReferenceMotion& course, double progress,
+                                      double strength) {
   const ReferencePoint here = course.at(progress);
-  const Eigen::Vector3d to = course.at(progress + ahead).position - here.position;
-  Eigen::Vector2d along = here.velocity.head<2>();
-  if (along.norm() < 1e-6) return 0;
-  along.normalize();
-  return along.x() * to.y() - along.y() * to.x();
+  const Eigen::Vector2d along = here.velocity.head<2>().normalized();
+  const Eigen::Vector2d a = here.acceleration.head<2>() / strength;
+  return {along.dot(a), along.x() * a.y() - along.y() * a.x()};
 }
 
-// Slower than planned wherever the course bends.
-inline StickSource timid_pilot(const ReferenceMotion& course) {
-  return [&course](double, const BodyState&, double progress) -> Eigen::Vector2d {
-    return {std::abs(bend_ahead(course, progress, 0.6)) > 0.4 ? -0.8 : -0.4, 0};
+inline Eigen::Vector2d within_the_frame(const Eigen::Vector2d& stick) {
+  return stick.cwiseMax(-1).cwiseMin(1);
+}
+
+// As the course asks, but slower.
+inline StickSource timid_pilot(const ReferenceMotion& course, double strength) {
+  return [&course, strength](double, const BodyState&, double progress) {
+    return within_the_frame(asked_of_stick(course, progress, strength) - Eigen::Vector2d(0.25, 0));
   };
 }
 
-// Faster than planned, towards the inside of every bend.
-inline StickSource corner_cutter(const ReferenceMotion& course) {
-  return [&course](double, const BodyState&, double progress) -> Eigen::Vector2d {
-    return {0.6, std::clamp(0.25 * bend_ahead(course, progress, 0.8), -0.5, 0.5)};
+// Faster, and into every bend before it comes, further than it asks.
+inline StickSource corner_cutter(const ReferenceMotion& course, double strength) {
+  return [&course, strength](double, const BodyState&, double progress) {
+    const Eigen::Vector2d now = asked_of_stick(course, progress, strength);
+    const Eigen::Vector2d soon = asked_of_stick(course, progress + 0.15, strength);
+    return within_the_frame({now.x() + 0.25, 0.7 * now.y() + 0.6 * soon.y()});
   };
 }
 
-// Straight on where the course bends, for good.
-inline StickSource leaver(const ReferenceMotion& course) {
-  return [&course](double time, const BodyState&, double progress) -> Eigen::Vector2d {
-    if (time < 2) return {0.2, 0};
-    return {1, bend_ahead(course, progress, 0.8) > 0 ? -1.0 : 1.0};
+// Straight on where the course bends.
+inline StickSource leaver(const ReferenceMotion& course, double strength) {
+  return [&course, strength](double, const BodyState&, double progress) {
+    return within_the_frame({0.5, -2 * asked_of_stick(course, progress, strength).y()});
   };
 }
 
