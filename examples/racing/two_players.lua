@@ -1,6 +1,6 @@
 -- A course flown by hand: two pilots, from the logs of their sticks, in simulation.
 --   lapwing run examples/racing/two_players.lua
---   lapwing race out/two_players/plan.json --pilot examples/racing/pilots/leaver.csv:weight=1,strength=10,reach=4
+--   lapwing race out/two_players/plan.json --pilot examples/racing/pilots/leaver.csv:weight=1
 local race = require "mission.race"
 
 return race.course {
