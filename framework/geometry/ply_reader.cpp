@@ -12,7 +12,7 @@
 namespace lapwing {
 namespace {
 
-[[noreturn]] void fail(const std::string& name, const std::string& why) {
+[[noreturn]] void fail_ply(const std::string& name, const std::string& why) {
   throw InputError("'" + name + "': " + why);
 }
 
@@ -74,21 +74,22 @@ class Numbers {
     while (at_ < bytes_.size() && space(bytes_[at_])) ++at_;
     const std::size_t begin = at_;
     while (at_ < bytes_.size() && !space(bytes_[at_])) ++at_;
-    if (begin == at_) fail(name_, "it ends before all that its header claims");
+    if (begin == at_) fail_ply(name_, "it ends before all that its header claims");
     double value = 0;
     const char* first = bytes_.data() + begin;
     const char* last = bytes_.data() + at_;
     const auto [end, error] = std::from_chars(*first == '+' ? first + 1 : first, last, value);
     if (error != std::errc{} || end != last) {
-      fail(name_, "'" + std::string(bytes_.substr(begin, std::min<std::size_t>(at_ - begin, 40))) +
-                      "' is no number");
+      fail_ply(name_,
+               "'" + std::string(bytes_.substr(begin, std::min<std::size_t>(at_ - begin, 40))) +
+                   "' is no number");
     }
     return value;
   }
 
   double next_binary(const Type& type) {
     const auto size = static_cast<std::size_t>(type.bytes);
-    if (left() < size) fail(name_, "it ends before all that its header claims");
+    if (left() < size) fail_ply(name_, "it ends before all that its header claims");
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < size; ++i) {
       const auto byte = static_cast<unsigned char>(bytes_[at_ + i]);
@@ -131,7 +132,7 @@ Property read_property(std::istringstream& words, const std::string& line,
   property.type = type_named(type);
   words >> property.name;
   if (!property.type.bytes || property.name.empty()) {
-    fail(name, "its header states '" + line + "', which is no property");
+    fail_ply(name, "its header states '" + line + "', which is no property");
   }
   return property;
 }
@@ -144,7 +145,7 @@ void read_line(const std::string& line, const std::string& name, bool& has_forma
     words >> second;
     has_format =
         second == "ascii" || second == "binary_little_endian" || second == "binary_big_endian";
-    if (!has_format) fail(name, "its format '" + second + "' is unknown");
+    if (!has_format) fail_ply(name, "its format '" + second + "' is unknown");
     header.encoding = second == "ascii"                  ? Encoding::text
                       : second == "binary_little_endian" ? Encoding::little
                                                          : Encoding::big;
@@ -154,20 +155,20 @@ void read_line(const std::string& line, const std::string& name, bool& has_forma
     const char* last = third.data() + third.size();
     const auto [end, error] = std::from_chars(third.data(), last, element.count);
     if (error != std::errc{} || end != last) {
-      fail(name, "'" + third + "' in its header is no number of elements");
+      fail_ply(name, "'" + third + "' in its header is no number of elements");
     }
     header.elements.push_back(std::move(element));
   } else if (first == "property") {
-    if (header.elements.empty()) fail(name, "its header has a property of no element");
+    if (header.elements.empty()) fail_ply(name, "its header has a property of no element");
     header.elements.back().properties.push_back(read_property(words, line, name));
   } else if (!first.empty() && first != "comment" && first != "obj_info") {
-    fail(name, "its header states '" + line + "', which means nothing");
+    fail_ply(name, "its header states '" + line + "', which means nothing");
   }
 }
 
 Header read_header(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kLongest = 64 << 10;
-  if (!bytes.starts_with("ply")) fail(name, "it does not begin with 'ply'");
+  if (!bytes.starts_with("ply")) fail_ply(name, "it does not begin with 'ply'");
   Header header;
   bool has_format = false;
   for (std::size_t at = 3; at < std::min(bytes.size(), kLongest);) {
@@ -177,13 +178,13 @@ Header read_header(std::string_view bytes, const std::string& name) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     at = end + 1;
     if (line == "end_header") {
-      if (!has_format) fail(name, "its header states no format");
+      if (!has_format) fail_ply(name, "its header states no format");
       header.size = at;
       return header;
     }
     read_line(line, name, has_format, header);
   }
-  fail(name, "its header has no end");
+  fail_ply(name, "its header has no end");
 }
 
 void check_counts(const Header& header, std::size_t size, const std::string& name) {
@@ -193,14 +194,15 @@ void check_counts(const Header& header, std::size_t size, const std::string& nam
   for (const Element& e : header.elements) {
     claim += (claim.empty() ? "" : " and ") + std::to_string(e.count) + " " + e.name;
     if (e.count > 0 && e.properties.empty()) {
-      fail(name, "its " + std::to_string(e.count) + " elements '" + e.name + "' have no property");
+      fail_ply(name,
+               "its " + std::to_string(e.count) + " elements '" + e.name + "' have no property");
     }
     needed += static_cast<double>(e.count) * static_cast<double>(e.least_bytes(header.encoding));
   }
   // A text may lack the last line's end.
   if (needed > static_cast<double>(room) + 1) {
-    fail(name, "its header claims " + claim + ", which cannot fit in the " + std::to_string(room) +
-                   " bytes that follow");
+    fail_ply(name, "its header claims " + claim + ", which cannot fit in the " +
+                       std::to_string(room) + " bytes that follow");
   }
 }
 
@@ -239,7 +241,7 @@ class PlyBody {
 
   void read_vertices(const Element& element) {
     const int x = place_of(element, "x"), y = place_of(element, "y"), z = place_of(element, "z");
-    if (x < 0 || y < 0 || z < 0) fail(name_, "its vertices lack x, y or z");
+    if (x < 0 || y < 0 || z < 0) fail_ply(name_, "its vertices lack x, y or z");
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_item(element);
       const auto at = [&](int place) { return item_.singles[static_cast<std::size_t>(place)]; };
@@ -282,7 +284,7 @@ class PlyBody {
     const double length = numbers_.next(property.length);
     if (!(length >= 0) || length != std::floor(length) ||
         length > static_cast<double>(numbers_.left()) + 1) {
-      fail(name_, "a list claims more entries than the file holds");
+      fail_ply(name_, "a list claims more entries than the file holds");
     }
     const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
     for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(length); ++i) {
