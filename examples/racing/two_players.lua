@@ -8,7 +8,7 @@ return race.course {
   vehicle = "vehicles/racer",
   closed = true,
   laps = 2,
-  thrust = 0.33,
+  thrust = 0.6,
   floor = 0.5,
   gates = {
     { name = "south", shape = "rectangle", position = { 0, -12, 2 }, normal_yaw = 0, width = 5,
@@ -19,7 +19,7 @@ return race.course {
       height = 3 },
   },
   players = {
-    { name = "Timid", log = "pilots/timid.csv", strength = 14, reach = 4 },
-    { name = "Cutter", log = "pilots/cutter.csv", strength = 14, reach = 4, handicap = 1 },
+    { name = "Timid", log = "pilots/timid.csv", strength = 10, reach = 4 },
+    { name = "Cutter", log = "pilots/cutter.csv", strength = 10, reach = 4, handicap = 1 },
   },
 }

@@ -47,16 +47,16 @@ TEST_F(RaceGame, TimidCutterAndLeaverEndAsTheyShould) {
     const Vehicle vehicle = vehicle_from_value(plan.vehicle);
     const ReferenceMotion course(plan.trajectory, vehicle);
     const StickLog centred({{0, {0, 0}}}, "none");
-    const Pilot pilot{.name = "", .log = centred, .strength = 14, .reach = 4};
+    const Pilot pilot{.name = "", .log = centred, .strength = 10, .reach = 4};
     Pilot wild = pilot;
     wild.weight = 1;
     const std::filesystem::path to = folder;
     const auto write = [&](const char* name, const Pilot& who, const StickSource& stick) {
       write_file_atomically(to / name, log_of(fly_race(plan.trajectory, vehicle, who, stick)));
     };
-    write("timid.csv", pilot, timid_pilot(course, 14));
-    write("cutter.csv", pilot, corner_cutter(course, 14));
-    write("leaver.csv", wild, leaver(course, 14));
+    write("timid.csv", pilot, timid_pilot(course, 10));
+    write("cutter.csv", pilot, corner_cutter(course, 10));
+    write("leaver.csv", wild, leaver(course, 10));
   }
   const Value& pilots = flown.result.at("game").at("pilots");
   ASSERT_EQ(pilots.as_list().size(), 2u);
@@ -70,8 +70,8 @@ TEST_F(RaceGame, TimidCutterAndLeaverEndAsTheyShould) {
 
   const std::string page = (folder_ / "race.html").string();
   EXPECT_EQ(command("race '" + (flown.folder / "plan.json").string() + "' --pilot '" + kRacing +
-                    "/pilots/leaver.csv:weight=1,strength=14,reach=4' --pilot '" + kRacing +
-                    "/pilots/timid.csv:name=Ann,strength=14,reach=4' -o '" + page + "'"),
+                    "/pilots/leaver.csv:weight=1,strength=10,reach=4' --pilot '" + kRacing +
+                    "/pilots/timid.csv:name=Ann,strength=10,reach=4' -o '" + page + "'"),
             0);
   for (const char* words : {"left the course", "Ann wins"})
     EXPECT_NE(read_file(page).find(words), std::string::npos) << words;

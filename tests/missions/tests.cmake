@@ -6,3 +6,4 @@ foreach(name missions missions_long)
   add_dependencies(test_${name} lapwing_app ${plugins})
 endforeach()
 set_tests_properties(missions_long PROPERTIES LABELS long TIMEOUT 900)
+set_tests_properties(missions PROPERTIES COST 1000)  # the longest begins first

@@ -19,5 +19,20 @@ TEST_F(DesignersShots, AllThirtyTwo) {
   }
 }
 
+TEST_F(DesignersShots, TooFastOnesAreStretchedOrExplained) {
+  const Flown stretched = fly_shot(22);
+  expect_certified(stretched);
+  const double stretch = stretched.result.at("film").at("stretch").as_number();
+  EXPECT_GT(stretch, 2.0);  // 20.7 m/s were asked for, 10 m/s are allowed
+  EXPECT_LT(stretch, 2.5);
+  const Flown fixed = fly_shot(22, "--set stretch=1");
+  EXPECT_EQ(fixed.status, 1);
+  const std::string note = fixed.result.at("notes").as_list().at(0).as_text();
+  EXPECT_NE(note.find("speed_across of 20.7 m/s from keyframe 1 to 2 exceeds 10 m/s"),
+            std::string::npos)
+      << note;
+  EXPECT_NE(note.find("certified from a stretch of 2."), std::string::npos) << note;
+}
+
 }  // namespace
 }  // namespace lapwing

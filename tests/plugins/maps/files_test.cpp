@@ -86,7 +86,7 @@ TEST_P(Memory, ALimitRefusesAndChangesNothing) {
   const auto map = make_map(GetParam(), value);
   std::vector<Eigen::Vector3f> points;
   Random random(3);
-  for (int k = 0; k < 4000; ++k)
+  for (int k = 0; k < 1500; ++k)
     points.push_back(Eigen::Vector3d(random.normal(), random.normal(), random.normal())
                          .normalized()
                          .cast<float>() *
@@ -109,7 +109,7 @@ TEST_P(Memory, ALimitRefusesAndChangesNothing) {
   if (GetParam() == std::string("brick"))
     refused([&] { map->import(std::vector<VoxelLeaf>{{{0, 0, 0}, 12, 0, -1.0f}}); });
   std::vector<VoxelLeaf> many;
-  for (int k = 0; k < 300000; ++k)
+  for (int k = 0; k < 30000; ++k)
     many.push_back({{static_cast<std::uint16_t>(random.integer(0, 65535)),
                      static_cast<std::uint16_t>(random.integer(0, 65535)),
                      static_cast<std::uint16_t>(random.integer(0, 65535))},
