@@ -110,7 +110,7 @@ class QuadrotorFull final : public VehicleModel {
     if (const double force = sample.force.norm(); thrusts.isZero(0)) {
       const bool pushed = force > 0;
       thrusts.setConstant(pushed ? force / 4 : step_.mass_ * kGravity / 4);
-      if (pushed) q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), sample.force);
+      if (pushed) q = upright_to(sample.force / force);
     }
     Eigen::Map<Eigen::Vector4d>(x + 6) = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
     Eigen::Map<Eigen::Vector3d>(x + 10) = sample.body_rates;
@@ -135,6 +135,13 @@ class QuadrotorFull final : public VehicleModel {
   }
 
  private:
+  // The shortest turn from up to a direction. (Eigen's own decomposes a matrix, which takes g++
+  // longer than the rest of this file.)
+  static Eigen::Quaterniond upright_to(const Eigen::Vector3d& direction) {
+    const Eigen::Quaterniond q(1 + direction.z(), -direction.y(), direction.x(), 0);
+    return q.norm() > 1e-9 ? q.normalized() : Eigen::Quaterniond(0, 1, 0, 0);
+  }
+
   // Where the nose points, and how fast that turns; the trajectory makes turns of it.
   static void set_yaw(Sample& sample) {
     const Eigen::Vector3d nose = sample.orientation * Eigen::Vector3d::UnitX();
