@@ -1,9 +1,7 @@
 // What every plugin of kind `information` must pass.
 #include <cmath>
 
-#include "framework/conformance/findings.h"
-#include "framework/conformance/sample_parameters.h"
-#include "framework/conformance/standard_setting.h"
+#include "framework/conformance/every_case.h"
 #include "framework/core/random.h"
 
 namespace lapwing {
@@ -49,26 +47,11 @@ void check_one(const ViewInformation& information, const std::vector<VoxelSight>
 
 std::vector<CheckResult> check_information(const Specimen<ViewInformation>& subject,
                                            const CheckOptions& options) {
-  Findings findings;
-  const StandardSetting standard(false);
   const std::vector<VoxelSight> sights = sights_to_ask(options.seed);
-  for (const ParameterCase& parameter_case : parameter_cases(subject.parameters, standard)) {
-    findings.set_case(parameter_case.description);
-    try {
-      const std::unique_ptr<ViewInformation> information =
-          subject.create(parameter_case.parameters);
-      findings.expect("creation", true, {});
-      findings.survives("exceptions", "its contributions",
-                        [&] { check_one(*information, sights, findings); });
-    } catch (const InputError& error) {
-      findings.expect("creation", !parameter_case.must_work,
-                      [&] { return std::string("refused: ") + error.what(); });
-    } catch (const std::exception& error) {
-      findings.fail("creation", std::string("throws: ") + error.what());
-    }
-  }
-  findings.set_case("");
-  return std::move(findings).results();
+  return check_every_case(subject, "its contributions",
+                          [&](const ViewInformation& information, Findings& findings, bool) {
+                            check_one(information, sights, findings);
+                          });
 }
 
 }  // namespace lapwing

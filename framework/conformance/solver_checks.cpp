@@ -1,10 +1,8 @@
 // What every trajectory solver must pass.
 #include <cmath>
 
-#include "framework/conformance/findings.h"
-#include "framework/conformance/sample_parameters.h"
+#include "framework/conformance/every_case.h"
 #include "framework/conformance/solver_shelf.h"
-#include "framework/conformance/standard_setting.h"
 
 namespace lapwing {
 namespace {
@@ -147,26 +145,10 @@ class SolverCheck {
 
 std::vector<CheckResult> check_trajectory_solver(const Specimen<TrajectorySolver>& subject,
                                                  const CheckOptions&) {
-  Findings findings;
-  const StandardSetting standard(false);
-  bool first = true;
-  for (const ParameterCase& parameter_case : parameter_cases(subject.parameters, standard)) {
-    findings.set_case(parameter_case.description);
-    try {
-      const std::unique_ptr<TrajectorySolver> solver = subject.create(parameter_case.parameters);
-      findings.expect("creation", true, {});
-      findings.survives("exceptions", "a solve",
-                        [&] { SolverCheck(*solver, findings).run(first); });
-    } catch (const InputError& error) {
-      findings.expect("creation", !parameter_case.must_work,
-                      [&] { return std::string("refused: ") + error.what(); });
-    } catch (const std::exception& error) {
-      findings.fail("creation", std::string("throws: ") + error.what());
-    }
-    first = false;
-  }
-  findings.set_case("");
-  return std::move(findings).results();
+  return check_every_case(subject, "a solve",
+                          [](const TrajectorySolver& solver, Findings& findings, bool first) {
+                            SolverCheck(solver, findings).run(first);
+                          });
 }
 
 }  // namespace lapwing

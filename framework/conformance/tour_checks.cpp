@@ -1,9 +1,7 @@
 // What every tour solver must pass.
 #include <cmath>
 
-#include "framework/conformance/findings.h"
-#include "framework/conformance/sample_parameters.h"
-#include "framework/conformance/standard_setting.h"
+#include "framework/conformance/every_case.h"
 #include "framework/conformance/tour_worlds.h"
 
 namespace lapwing {
@@ -154,27 +152,11 @@ class TourCheck {
 
 std::vector<CheckResult> check_tour_solver(const Specimen<TourSolver>& subject,
                                            const CheckOptions&) {
-  Findings findings;
-  const StandardSetting standard(false);
   const std::vector<TourWorld> worlds = tour_worlds();
-  bool first = true;
-  for (const ParameterCase& parameter_case : parameter_cases(subject.parameters, standard)) {
-    findings.set_case(parameter_case.description);
-    try {
-      const std::unique_ptr<TourSolver> solver = subject.create(parameter_case.parameters);
-      findings.expect("creation", true, {});
-      findings.survives("exceptions", "a search",
-                        [&] { TourCheck(*solver, findings).run(first, worlds); });
-    } catch (const InputError& error) {
-      findings.expect("creation", !parameter_case.must_work,
-                      [&] { return std::string("refused: ") + error.what(); });
-    } catch (const std::exception& error) {
-      findings.fail("creation", std::string("throws: ") + error.what());
-    }
-    first = false;
-  }
-  findings.set_case("");
-  return std::move(findings).results();
+  return check_every_case(subject, "a search",
+                          [&](const TourSolver& solver, Findings& findings, bool first) {
+                            TourCheck(solver, findings).run(first, worlds);
+                          });
 }
 
 }  // namespace lapwing

@@ -1,0 +1,37 @@
+// A plugin tried with every case of its parameters. Internal to the room.
+#pragma once
+
+#include "framework/conformance/findings.h"
+#include "framework/conformance/sample_parameters.h"
+#include "framework/conformance/standard_setting.h"
+#include "framework/core/error.h"
+
+namespace lapwing {
+
+// Creates the subject for every case and calls `check(plugin, findings, first)`; `first`: with its
+// defaults. What it throws in creation or check becomes a finding; `what` names the check's call.
+template <class Kind, class Check>
+std::vector<CheckResult> check_every_case(const Specimen<Kind>& subject, const std::string& what,
+                                          const Check& check) {
+  Findings findings;
+  const StandardSetting standard(false);
+  bool first = true;
+  for (const ParameterCase& parameter_case : parameter_cases(subject.parameters, standard)) {
+    findings.set_case(parameter_case.description);
+    try {
+      const std::unique_ptr<Kind> plugin = subject.create(parameter_case.parameters);
+      findings.expect("creation", true, {});
+      findings.survives("exceptions", what, [&] { check(*plugin, findings, first); });
+    } catch (const InputError& error) {
+      findings.expect("creation", !parameter_case.must_work,
+                      [&] { return std::string("refused: ") + error.what(); });
+    } catch (const std::exception& error) {
+      findings.fail("creation", std::string("throws: ") + error.what());
+    }
+    first = false;
+  }
+  findings.set_case("");
+  return std::move(findings).results();
+}
+
+}  // namespace lapwing
