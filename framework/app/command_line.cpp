@@ -39,6 +39,18 @@ CLI::Option* add_text(CLI::App& command, const std::string& name, const std::str
   return command.add_option(name, callback, help)->type_name(value_name)->expected(1);
 }
 
+// A report page: refused before any work when its name does not say so.
+CLI::Option* add_page(CLI::App& command, std::filesystem::path& target) {
+  return add_text(command, "-o,--output", "PATH", "the report page to write, .html",
+                  [&](const std::string& path) {
+                    target = path;
+                    if (target.extension() != ".html")
+                      throw CLI::ValidationError("-o", "'" + path +
+                                                           "' is no name for a page: expected one "
+                                                           "that ends in .html");
+                  });
+}
+
 // Repeatable; every use takes one value, which may hold brackets and commas.
 template <class T>
 void add_repeated(CLI::App& command, const std::string& name, const std::string& value_name,
@@ -144,8 +156,7 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
            });
   add_count(*simulate, "--seed", 0, kLargestSeed, "of the gusts",
             [&](std::uint64_t seed) { conditions.seed = seed; });
-  add_text(*simulate, "-o,--output", "PATH", "write a report page",
-           [&](const std::string& path) { target = path; });
+  add_page(*simulate, target);
   add_json(*simulate, invocation);
   simulate->callback(
       [&] { command = [&] { return simulate_plan(plan, conditions, target, invocation); }; });
@@ -178,10 +189,10 @@ void add_map_commands(CLI::App& app, Invocation& invocation, std::filesystem::pa
   info->callback([&] { command = [&] { return show_map(file, invocation); }; });
   CLI::App* convert = add("convert", "write a map in another format: .ot, .bt, .ply");
   CLI::App* view = add("view", "write a report page with pictures");
-  for (CLI::App* made : {convert, view})
-    add_text(*made, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
-      target = path;
-    })->required();
+  add_text(*convert, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
+    target = path;
+  })->required();
+  add_page(*view, target)->required();
   convert->callback([&] { command = [&] { return convert_map(file, target, invocation); }; });
   view->callback([&] { command = [&] { return view_map(file, target, invocation); }; });
 }
@@ -194,9 +205,7 @@ void add_scene_commands(CLI::App& app, Invocation& invocation, std::filesystem::
   add_text(*view, "file", "SCENE", "a mesh file, a Lua scene, or the name of a shipped one",
            [&](const std::string& path) { file = path; })
       ->required();
-  add_text(*view, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
-    target = path;
-  })->required();
+  add_page(*view, target)->required();
   add_count(*view, "--seed", 0, kLargestSeed, "of a Lua scene",
             [&](std::uint64_t seed) { stated.seed = seed; });
   add_text(*view, "--unit", "M", "metres that one unit of a mesh file is, in place of what it says",
@@ -220,8 +229,7 @@ void add_race_command(CLI::App& app, Invocation& invocation, std::filesystem::pa
            });
   add_text(*race, "--gate-price", "S", "s per gate that is missed",
            [&](const std::string& text) { rules.gate_price = read_number("--gate-price", text); });
-  add_text(*race, "-o,--output", "PATH", "write a report page",
-           [&](const std::string& path) { target = path; });
+  add_page(*race, target);
   add_json(*race, invocation);
   race->callback(
       [&] { command = [&] { return race_plan(plan, pilots, rules, target, invocation); }; });

@@ -70,18 +70,27 @@ Grey16 read_image(const fs::path& file) {
   return decode_grey16_png(read_file(file), "'" + file.string() + "'");
 }
 
+// The frames, in order of their names; a pose without its image is a lost image.
 std::vector<std::string> names_in(const fs::path& folder) {
   std::error_code error;
-  std::vector<std::string> names;
+  std::vector<std::string> names, posed;
   fs::directory_iterator files(folder, error);
   if (error) fail(folder, "cannot be listed: " + error.message());
   for (const auto& entry : files) {
     const std::string name = entry.path().filename().string();
     if (name.ends_with(kImageEnd)) {
       names.push_back(name.substr(0, name.size() - std::string(kImageEnd).size()));
+    } else if (name.ends_with(kPoseEnd)) {
+      posed.push_back(name.substr(0, name.size() - std::string(kPoseEnd).size()));
     }
   }
   std::sort(names.begin(), names.end());
+  std::sort(posed.begin(), posed.end());
+  for (const std::string& name : posed) {
+    if (std::binary_search(names.begin(), names.end(), name)) continue;
+    if (names.empty()) break;
+    fail(folder / (name + kPoseEnd), "its image " + name + kImageEnd + " is missing");
+  }
   return names;
 }
 

@@ -185,6 +185,9 @@ TEST_F(CommandLine, VerifyAndExport) {
   EXPECT_EQ(finished.status, 0) << finished.err;
   EXPECT_EQ(read_file(folder_ / "hop.csv"), read_file(folder_ / "out/hop/trajectory.csv"));
   refused({"export", "out/hop/plan.json", "--format", "cvs", "-o", "x.csv"}, {"'cvs'", "'csv'"});
+  for (const char* of : {"map", "scene"})
+    refused({of, "view", "street", "-o", "page.ot"}, {"'page.ot'", ".html"});
+  refused({"simulate", "out/hop/plan.json", "-o", "page"}, {"'page'", ".html"});
   refused({"verify", "out/hop/plan.jsn"}, {"out/hop/plan.jsn"});
   const std::string plan = read_file(folder_ / "out/hop/plan.json");
   std::string changed = plan;

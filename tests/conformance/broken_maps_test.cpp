@@ -1,4 +1,8 @@
 // Maps broken on purpose, each of which must be caught.
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "framework/conformance/check.h"
 #include "framework/conformance/reference_map.h"
 #include "framework/map/swept_box.h"
@@ -22,6 +26,12 @@ enum class Mistake {
   wrong_bounds,
   import_adds,
   mean_of_known,
+  knows_at_birth,
+  threads_lose_points,
+  never_the_same,
+  one_reader_at_a_time,
+  import_rounds,
+  order_wanders,
   refuses
 };
 
@@ -31,6 +41,13 @@ class BrokenMap final : public ReferenceMap {
       : ReferenceMap(settings), mistake_(mistake) {}
 
   void for_each_leaf(const std::function<void(const VoxelLeaf&)>& visit) const override {
+    if (mistake_ == Mistake::order_wanders && voxels_.size() > 3) {
+      std::vector<VoxelLeaf> leaves;
+      ReferenceMap::for_each_leaf([&](const VoxelLeaf& leaf) { leaves.push_back(leaf); });
+      std::rotate(leaves.begin(), leaves.begin() + ++visits_ % 3, leaves.end());
+      for (const VoxelLeaf& leaf : leaves) visit(leaf);
+      return;
+    }
     ReferenceMap::for_each_leaf(visit);
     if (mistake_ == Mistake::leaf_twice && voxels_.size() > 3)
       visit({voxels_.begin()->first, 0, 0, voxels_.begin()->second.log_odds});
@@ -43,13 +60,19 @@ class BrokenMap final : public ReferenceMap {
   std::optional<VoxelBox> bounds() const override {
     std::optional<VoxelBox> box = ReferenceMap::bounds();
     if (box && mistake_ == Mistake::wrong_bounds) ++box->upper.z;
+    if (!box && mistake_ == Mistake::knows_at_birth) return VoxelBox{};
     return box;
   }
 
  protected:
   void insert(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& origin) override {
     const auto before = voxels_;
+    if (mistake_ == Mistake::threads_lose_points && threads() > 1) points = points.subspan(1);
     ReferenceMap::insert(points, origin);
+    if (mistake_ == Mistake::never_the_same) {
+      static int maps = 0;
+      voxels_[grid().key(points.front().cast<double>())].log_odds = 0.001f * ++maps;
+    }
     if (mistake_ == Mistake::misses_win)  // a voxel with a point is passed as well
       for (const Eigen::Vector3f& p : points)
         voxels_[grid().key(p.cast<double>())].log_odds += settings().miss;
@@ -67,11 +90,23 @@ class BrokenMap final : public ReferenceMap {
   void assign(std::span<const VoxelLeaf> leaves) override {
     const auto before = voxels_;
     ReferenceMap::assign(leaves);
+    if (mistake_ == Mistake::import_rounds)
+      for (const VoxelLeaf& leaf : leaves) {
+        float& log_odds = voxels_[leaf.key].log_odds;
+        log_odds = std::round(log_odds * 4) / 4;
+      }
     if (mistake_ != Mistake::import_adds) return;
     for (const auto& [key, voxel] : before) voxels_[key].log_odds += 0.25f;
   }
   void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const override {
     ReferenceMap::cast_checked(rays, hits);
+    if (mistake_ == Mistake::one_reader_at_a_time) {
+      const bool alone = ++readers_ == 1;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));  // so that readers meet
+      if (!alone) hits[0].state = VoxelState::free;
+      if (!alone) hits[0].distance = 0;
+      --readers_;
+    }
     for (MapRayHit& hit : hits) {
       if (mistake_ == Mistake::hit_too_far && hit.distance > 3 * grid().resolution())
         hit.distance += static_cast<float>(0.01 * grid().resolution());
@@ -104,6 +139,8 @@ class BrokenMap final : public ReferenceMap {
 
  private:
   Mistake mistake_;
+  mutable int visits_ = 0;
+  mutable std::atomic<int> readers_ = 0;
 };
 
 // Takes what it should refuse, a bit.
@@ -184,6 +221,12 @@ TEST(BrokenMap, IsCaught) {
                                        {Mistake::wrong_bounds, "integration"},
                                        {Mistake::import_adds, "import"},
                                        {Mistake::mean_of_known, "means"},
+                                       {Mistake::knows_at_birth, "empty"},
+                                       {Mistake::threads_lose_points, "threads"},
+                                       {Mistake::one_reader_at_a_time, "threads"},
+                                       {Mistake::never_the_same, "repeatable"},
+                                       {Mistake::import_rounds, "round trip"},
+                                       {Mistake::order_wanders, "refusals"},
                                        {Mistake::refuses, "creation"}})
     EXPECT_TRUE(contains(failures_of(mistake), check)) << check << " " << static_cast<int>(mistake);
 }

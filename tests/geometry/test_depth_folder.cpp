@@ -119,6 +119,12 @@ TEST_F(DepthFolders, ImagesMustBeWholeAndOfOneSize) {
   EXPECT_NE(refusal(), "");
 }
 
+TEST_F(DepthFolders, ALostImageIsNoticed) {
+  fs::remove(folder_ / "frame-2.depth.png");
+  EXPECT_NE(refusal().find("frame-2.pose.txt"), std::string::npos) << refusal();
+  EXPECT_NE(refusal().find("frame-2.depth.png is missing"), std::string::npos) << refusal();
+}
+
 TEST_F(DepthFolders, TheCameraMustMakeSense) {
   for (const char* text : {"0 0 3\n0 10 3\n0 0 1\n", "10 0 9\n0 10 3\n0 0 1\n",
                            "10 1 3\n0 10 3\n0 0 1\n", "10 0 3\n0 10 3\n", "10 0 3 0 -10 3 0 0 1"}) {

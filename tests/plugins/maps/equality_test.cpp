@@ -29,9 +29,10 @@ class EqualMaps : public testing::TestWithParam<const char*> {};
 TEST_P(EqualMaps, OnRealFrames) {
   if (!data_folder()) GTEST_SKIP() << "no ../shared/data (LAPWING_DATA)";
   Value value = parameters(GetParam(), 0.05);
-  value.set("pixel_step", 4);
+  value.set("pixel_step", 2);
+  value.set("observations", true);
   Pair pair(value);
-  for (const PosedDepthImage& frame : real_frames(12)) pair.integrate(frame);
+  for (const PosedDepthImage& frame : real_frames(50)) pair.integrate(frame);
   EXPECT_EQ(first_difference(*pair.octomap, *pair.brick), "");
   EXPECT_GT(pair.brick->counts().occupied, 1000u);
   EXPECT_GT(pair.brick->counts().free, 20000u);
