@@ -31,6 +31,7 @@ local weights = {
   weight("skewness", 0, "seeing a subject from far above or below"),
   weight("framing", 100, "a subject away from its place and size in the image"),
   weight("occlusion", 10, "obstacles between camera and target"),
+  weight("time", 1, "timing = free: the duration, per s"),
 }
 local ends = { "rest", "moving", "free" }
 local common = {
@@ -49,7 +50,7 @@ local common = {
   { name = "stretch", type = "number", default = 1, minimum = 1e-3, maximum = 1e3,
     words = { "auto" }, summary = "factor on all times; auto: the smallest that is certified" },
   { name = "timing", type = "choice", default = "given", summary = "of the keyframes",
-    choices = { "given", "time_first", "path_first" } },
+    choices = { "given", "time_first", "path_first", "free" } },
   { name = "path_tolerance", type = "number", unit = "m", default = 0.25, above = 0,
     summary = "path_first: how far the flight may leave the path that is kept" },
   { name = "obstacles", type = "tables", table = input.obstacle, summary = "to keep out of" },

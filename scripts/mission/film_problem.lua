@@ -235,4 +235,8 @@ function problem.state(run, shot, stretch, only)
   return p, task, camera
 end
 
+-- For problems that share some of it.
+problem.parts = { boundary = boundary, smoothness = smoothness, environment = environment_of,
+                  add_obstacles = add_obstacles, guess = guess }
+
 return problem

@@ -5,6 +5,7 @@ local problem = require "mission.film_problem"
 local subjects = require "mission.subjects"
 local times = require "mission.keyframe_times"
 local timing = require "mission.timing"
+local wished = require "mission.wished_times"
 
 local M = {}
 
@@ -139,8 +140,9 @@ function M.fly(run, shot)
   if #shot.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
   check_gimbal(run, shot)
   timing.check(run, shot)
-  if o.timing ~= "path_first" then return at_given_times(run, shot) end
-  local chosen, notes, figures = timing.path_first(run, shot, attempt, holds)
+  if o.timing == "given" or o.timing == "time_first" then return at_given_times(run, shot) end
+  local way = o.timing == "free" and wished or timing
+  local chosen, notes, figures = way.fly(run, shot, attempt, holds)
   return finished(run, shot, chosen, notes, holds(chosen) and 1 or nil, figures)
 end
 

@@ -18,8 +18,8 @@ local function wishes(k) return k.time_weight or k.earliest or k.latest end
 function M.check(run, shot)
   for i, k in ipairs(shot.keyframes) do
     local what = "keyframes[" .. i .. "]"
-    if wishes(k) and run.options.timing ~= "path_first" then
-      run:fail(what, "time_weight, earliest and latest need timing = \"path_first\"")
+    if wishes(k) and run.options.timing ~= "path_first" and run.options.timing ~= "free" then
+      run:fail(what, "time_weight, earliest and latest need timing = \"path_first\" or \"free\"")
     end
     if k.time_weight and not k.time then run:fail(what .. ".time_weight", "needs a time") end
     if k.time and (k.earliest or k.latest) then
@@ -143,7 +143,7 @@ end
 
 -- A film at its own pace gives the path; then faster, as the vehicle allows, until it follows
 -- within the tolerance. Gives what came of it, sentences, and figures.
-function M.path_first(run, shot, attempt, holds)
+function M.fly(run, shot, attempt, holds)
   local o = run.options
   if o.stretch ~= 1 then run:fail("stretch", "path_first finds the times itself") end
   local wanted = shot.keyframes

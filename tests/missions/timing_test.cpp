@@ -55,5 +55,71 @@ TEST_F(TimedFilms, WishesAreGranted) {
   EXPECT_GT(asked(", time = 9, time_weight = 50"), preferred);
 }
 
+// Times that are found together with the path.
+class FreeFilms : public Filming {
+ protected:
+  Flown timed(const std::string& second, const std::string& third = "",
+              const std::string& more = "", const std::string& flags = "", int worst = 1) {
+    write_file_atomically(folder_ / "film.lua", R"(return require "mission.film".shot {
+      name = "timed", vehicle = "vehicles/solo", timing = "free",
+      keyframes = { { position = {0, 0, 3} }, { position = {14, 2, 5})" + second +
+                                                    R"( }, { position = {20, 14, 4})" + third +
+                                                    " } }, " + more + "}");
+    return fly((folder_ / "film.lua").string(), flags, "out", worst);
+  }
+  // The times of the keyframes of a film that is certified.
+  std::vector<double> times(const std::string& second, const std::string& third = "",
+                            const std::string& more = "", const std::string& flags = "") {
+    const Flown flown = timed(second, third, more, flags);
+    EXPECT_EQ(flown.status, 0) << second << third << more << to_json(flown.result);
+    std::vector<double> found;
+    if (flown.status != 0) return {0, 0, 0};
+    for (const auto& k : read_plan(flown.folder / "plan.json").task.keyframes)
+      found.push_back(k.time);
+    return found;
+  }
+};
+
+TEST_F(FreeFilms, WishesAreGranted) {
+  const std::vector<double> fastest = times("");
+  EXPECT_NEAR(times(", time = 9")[1], 9, 1e-9);
+  EXPECT_NEAR(times(", earliest = 8, latest = 12")[1], 8, 1e-3);
+  EXPECT_NEAR(times(", latest = 3")[1], 3, 1e-3);
+  EXPECT_NEAR(times(", latest = 30")[1], fastest[1], 0.02) << "a window that asks for nothing";
+  EXPECT_NEAR(times("", ", earliest = 10, latest = 11")[2], 10, 1e-3) << "of the duration";
+  EXPECT_NEAR(times("", "", "duration = 20,")[2], 20, 1e-9);
+  const double preferred = times(", time = 9, time_weight = 0.2")[1];
+  EXPECT_GT(preferred, fastest[1] + 1);
+  EXPECT_LT(preferred, 8);
+  EXPECT_NEAR(times(", time = 9, time_weight = 50")[1], 9, 0.05);
+}
+
+TEST_F(FreeFilms, SolversAgree) {
+  EXPECT_NEAR(times("")[2], times("", "", "", "--set solver=ipopt")[2], 0.01);
+}
+
+TEST_F(FreeFilms, ADashTakesWhatTheAccelerationAllows) {
+  write_file_atomically(folder_ / "film.lua", R"(return require "mission.film".shot {
+    name = "dash", vehicle = "vehicles/solo", timing = "free", hard = 0.05,
+    weights = { smoothness = 0, effort = 0, yaw = 0, time = 100 },
+    keyframes = { { position = {0, 0, 3} }, { position = {14, 0, 3} } } })");
+  const Flown flown = fly((folder_ / "film.lua").string(), "", "out");
+  ASSERT_EQ(flown.status, 0) << to_json(flown.result);
+  const double duration = read_plan(flown.folder / "plan.json").trajectory.duration();
+  // From rest to rest over 13.9 m with 4 m/s^2, both ways: 2 sqrt(d / a).
+  EXPECT_GT(duration, 3.72);
+  EXPECT_LT(duration, 4.1);
+}
+
+TEST_F(FreeFilms, WhatCannotBeGrantedIsNamed) {
+  const Flown early = timed(", latest = 1.5", "", "", "", 2);
+  EXPECT_EQ(early.status, 2);
+  EXPECT_NE(to_json(early.result).find("no times grant every wish"), std::string::npos)
+      << to_json(early.result);
+  const Flown fixed = timed("", "", "stretch = 2,", "", 2);
+  EXPECT_EQ(fixed.status, 2);
+  EXPECT_NE(to_json(fixed.result).find("finds the times itself"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace lapwing
