@@ -120,8 +120,8 @@ bool maps_hold(const Medians& medians) {
   }
   return held & map_ratio(medians, "map_cast_room/brick", "map_cast_room/octomap", 5) &
          map_ratio(medians, "map_cast_singly/brick", "map_cast_singly/octomap", 50) &
-         map_ratio(medians, "map_cast_street/brick", "map_cast_street/octomap", 20) &
-         map_ratio(medians, "map_cast_street/brick", "map_castRay_street", 20) &
+         map_ratio(medians, "map_cast_street/brick", "map_cast_street/octomap", 10) &
+         map_ratio(medians, "map_cast_street/brick", "map_castRay_street", 10) &
          map_ratio(medians, "map_cast_room/brick", "map_castRay_room", 5) &
          at_most(medians, "map_view/real_time", 1, 25, true) &
          at_most(medians, "map_sweep/brick_10000", 1, 200, false);
