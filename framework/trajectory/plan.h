@@ -14,6 +14,7 @@
 #include "framework/trajectory/environment.h"
 #include "framework/trajectory/gate.h"
 #include "framework/trajectory/polyline.h"
+#include "framework/trajectory/scan_task.h"
 #include "framework/trajectory/time_span.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -45,6 +46,7 @@ struct Task {
   double drawing_tolerance = 0.05;   // m, of the mean distance between light and strokes
   Eigen::Vector3d drawing_view =
       Eigen::Vector3d::UnitY();  // the way that its spectators look, world
+  std::optional<ScanTask> scan;  // to photograph a region
 };
 
 struct Plan {

@@ -24,4 +24,7 @@ std::vector<TimeSpan> spans_from(std::vector<Fields> entries);
 Value task_to_value(const Task& task);
 Task task_from(Fields fields);
 
+Value scan_to_value(const ScanTask& scan);
+ScanTask scan_from(Fields fields);
+
 }  // namespace lapwing

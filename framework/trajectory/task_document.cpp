@@ -117,6 +117,7 @@ Value task_to_value(const Task& task) {
     const Eigen::Vector3d& view = task.drawing_view;
     value.set("drawing_view", Value(Value::List{view.x(), view.y(), view.z()}));
   }
+  if (task.scan) value.set("scan", scan_to_value(*task.scan));
   if (task.framing.empty()) return value;
   for (const FramingTask& asked : task.framing) {
     Value entry = Value::map();
@@ -152,6 +153,7 @@ Task task_from(Fields fields) {
     task.drawing_tolerance = fields.number("drawing_tolerance");
     task.drawing_view = fields.vector3("drawing_view");
   }
+  if (fields.has("scan")) task.scan = scan_from(fields.table("scan"));
   if (fields.has("framing") || fields.has("framing_share")) {
     for (Fields& entry : fields.tables("framing")) {
       const std::string subject = entry.text("subject");

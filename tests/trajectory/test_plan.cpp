@@ -271,6 +271,73 @@ TEST(Plan, NotANumberCannotBeWritten) {
   }
 }
 
+Plan scan_plan() {
+  Plan plan = small_plan();
+  ScanTask scan;
+  scan.region = {Eigen::Vector3d(-1, -2, 0), Eigen::Vector3d(1.0 / 3, 2, 9)};
+  scan.camera = {600, 450, 345, 346, 299.5, 224.5};
+  scan.range = 55;
+  scan.map = "known";
+  scan.seen = 123456789012;
+  scan.seen_share = 0.97;
+  scan.tolerance = 0.2;
+  scan.angle_tolerance = 0.05;
+  scan.views = {{0.1, {1, 2, 3}, 0.5, -0.25, ViewKind::planned},
+                {0.2, {1.0 / 3, 2, 3}, 7.5, -1.5, ViewKind::matching}};
+  plan.task.scan = scan;
+  return plan;
+}
+
+TEST(Plan, ScansSurvive) {
+  const Plan plan = reread(scan_plan());
+  EXPECT_EQ(plan_text(plan), plan_text(scan_plan()));
+  ASSERT_TRUE(plan.task.scan.has_value());
+  const ScanTask& scan = *plan.task.scan;
+  EXPECT_EQ(scan.region.min(), Eigen::Vector3d(-1, -2, 0));
+  EXPECT_EQ(scan.region.max(), Eigen::Vector3d(1.0 / 3, 2, 9));
+  EXPECT_EQ(scan.camera.width, 600);
+  EXPECT_EQ(scan.camera.height, 450);
+  EXPECT_EQ(scan.camera.focal_x, 345);
+  EXPECT_EQ(scan.camera.focal_y, 346);
+  EXPECT_EQ(scan.camera.principal_x, 299.5);
+  EXPECT_EQ(scan.camera.principal_y, 224.5);
+  EXPECT_EQ(scan.range, 55);
+  EXPECT_EQ(scan.map, "known");
+  EXPECT_EQ(scan.seen, 123456789012);
+  EXPECT_EQ(scan.seen_share, 0.97);
+  EXPECT_EQ(scan.tolerance, 0.2);
+  EXPECT_EQ(scan.angle_tolerance, 0.05);
+  ASSERT_EQ(scan.views.size(), 2u);
+  EXPECT_EQ(scan.views[0].time, 0.1);
+  EXPECT_EQ(scan.views[0].kind, ViewKind::planned);
+  EXPECT_EQ(scan.views[1].kind, ViewKind::matching);
+  EXPECT_EQ(scan.views[1].position, Eigen::Vector3d(1.0 / 3, 2, 3));
+  EXPECT_EQ(scan.views[1].yaw, 7.5);
+  EXPECT_EQ(scan.views[1].pitch, -1.5);
+  EXPECT_EQ(to_value(small_plan()).at("task").find("scan"), nullptr);
+  EXPECT_FALSE(reread(small_plan()).task.scan.has_value());
+}
+
+TEST(Plan, EveryErrorOfAScanIsListed) {
+  Value value = to_value(scan_plan());
+  Value& scan = *value.find("task")->find("scan");
+  scan.find("camera")->set("image_size", Value(Value::List{600.5, 450}));
+  erase(*scan.find("region"), "upper");
+  scan.set("reach", 3);
+  scan.set("seen", "all");
+  erase(scan, "map");
+  auto& views = scan.find("views")->as_list();
+  views[0].set("kind", "extra");
+  views[0].set("roll", 0.0);
+  erase(views[1], "pitch");
+  const std::string text = error_of(value);
+  for (const char* part :
+       {"task.scan.camera.image_size: expected whole numbers of pixels", "task.scan.region.upper",
+        "task.scan.reach", "task.scan.seen", "task.scan.map", "task.scan.views[1].kind",
+        "task.scan.views[1].roll", "task.scan.views[2].pitch"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
 TEST(Plan, TruncatedFileIsOneClearError) {
   const auto path = std::filesystem::path(testing::TempDir()) / "lapwing_truncated_plan.json";
   const std::string text = plan_text(small_plan());
