@@ -31,11 +31,11 @@ struct IntegerProgram {
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 struct IntegerSearch {
-  int nodes = 1000;                           // of branch and bound
+  int nodes = 1000;  // of branch and bound
   int seed = 1;
-  std::vector<double> start;                  // a feasible point, or empty
-  std::function<bool(std::int64_t)> ended;    // asked with the nodes so far, often
-  std::optional<double> seconds_left = {};    // wall clock, for what cannot be asked
+  std::vector<double> start;                // a feasible point, or empty
+  std::function<bool(std::int64_t)> ended;  // asked with the nodes so far, often
+  std::optional<double> seconds_left = {};  // wall clock, for what cannot be asked
 };
 
 struct IntegerResult {

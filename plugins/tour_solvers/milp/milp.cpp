@@ -15,7 +15,7 @@
 namespace lapwing {
 namespace {
 
-constexpr double kSlack = 1e-6;       // of a start that CBC is to accept
+constexpr double kSlack = 1e-6;      // of a start that CBC is to accept
 constexpr double kTolerance = 1e-4;  // of CBC's bound
 
 // The same tours, but the score is the sum of rewards.
@@ -170,7 +170,8 @@ class Milp final : public TourSolver {
     result.upper_bound = whole ? std::floor(bound) : bound;
   }
 
-  // Whether rewards are the score itself, and the program holds every tour: then CBC's bound is one.
+  // Whether rewards are the score itself, and the program holds every tour: then CBC's bound is
+  // one.
   static bool counts_all(const TourProblem& problem, const Rewards& rewards,
                          const TourProgram& tours) {
     if (!tours.complete() || rewards.places > 0 || problem.image_limit()) return false;

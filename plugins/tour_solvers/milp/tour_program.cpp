@@ -41,8 +41,8 @@ void TourProgram::add_arcs(int neighbours) {
     for (const auto& [leg, j] : near) {
       way.clear();
       problem_.append_way(chosen_[i], chosen_[j], way);
-      const bool direct = std::none_of(way.begin(), way.end() - 1,
-                                       [&](int view) { return position_[view] >= 0; });
+      const bool direct =
+          std::none_of(way.begin(), way.end() - 1, [&](int view) { return position_[view] >= 0; });
       if (!direct) continue;
       if (left-- <= 0) {
         complete_ = false;
@@ -62,8 +62,8 @@ void TourProgram::add_arc(int from, int to) {
   std::vector<int> way;
   problem_.append_way(chosen_[from], chosen_[to], way);
   list.push_back({to, static_cast<int>(arcs_.size())});
-  arcs_.push_back({from, to, problem_.leg(chosen_[from], chosen_[to]),
-                   static_cast<int>(way.size()) - 1});
+  arcs_.push_back(
+      {from, to, problem_.leg(chosen_[from], chosen_[to]), static_cast<int>(way.size()) - 1});
 }
 
 // The chosen views of a walk, by position, with no arc twice: P a b Q a b R becomes P a Q' b R,

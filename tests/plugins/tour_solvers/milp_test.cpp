@@ -81,8 +81,8 @@ TEST(Milp, OnePlaceHasOneDirection) {
   const TourResult result = milp(TourProblem(d));
   // The other directions are worth nothing to it, though there is time for them.
   EXPECT_EQ(result.report.score, 4) << result.report.message;
-  EXPECT_EQ(tour_plugins().create<TourSolver>("greedy", Value())->solve(TourProblem(d)).report.score,
-            6);
+  EXPECT_EQ(
+      tour_plugins().create<TourSolver>("greedy", Value())->solve(TourProblem(d)).report.score, 6);
 }
 
 // Never below greedy in the sum that it maximises; what it says of that sum is in its message.
