@@ -60,9 +60,18 @@ int shard_of(GridKey key) {
   return static_cast<int>(mixed(key) >> (64 - kShardBits));
 }
 
-struct Mean {
+struct Sum {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::int64_t count = 0;
+
+  void add(const Eigen::Vector3d& p) {
+    sum += p;
+    ++count;
+  }
+  Eigen::Vector3f mean() const { return (sum / static_cast<double>(count)).cast<float>(); }
+};
+
+struct SumInCube : Sum {
   GridKey cube = kNoPlace;  // that it lies in
 };
 
@@ -82,10 +91,6 @@ GridPoints in_order(std::vector<Placed> placed) {
   points.reserve(placed.size());
   for (const Placed& p : placed) points.push_back(p.point);
   return points;
-}
-
-Eigen::Vector3f mean_of(const Mean& mean) {
-  return (mean.sum / static_cast<double>(mean.count)).cast<float>();
 }
 
 }  // namespace
@@ -206,35 +211,34 @@ SurfaceSample::SurfaceSample(const TriangleMesh& mesh, const ReconstructionSetti
   Eigen::AlignedBox3d wide = settings.region;
   wide.min().array() -= settings.near + settings.grid;
   wide.max().array() += settings.near + settings.grid;
-  // Triangles in parts, each with a table of its own, which are put together in order.
-  constexpr std::size_t kParts = 64;
-  std::vector<GridTable<Mean>> parts(kParts);
-  parallel_for(kParts, threads, [&](std::size_t part) {
-    const std::size_t n = mesh.triangles.size();
-    for (std::size_t t = part * n / kParts; t < (part + 1) * n / kParts; ++t) {
-      sample(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), wide,
-             [&](const Eigen::Vector3d& p) {
-               if (!wide.contains(p)) return;
-               Mean& mean = parts[part][grid.of(p)];
-               mean.sum += p;
-               ++mean.count;
-             });
+  // Triangles in parts, each with a table of its own, which are put together in order; few at once,
+  // so that what is held twice stays small.
+  constexpr std::size_t kParts = 64, kAtOnce = 8;
+  GridTable<Sum> all;
+  for (std::size_t first = 0; first < kParts; first += kAtOnce) {
+    std::vector<GridTable<Sum>> parts(kAtOnce);
+    parallel_for(kAtOnce, threads, [&](std::size_t k) {
+      const std::size_t n = mesh.triangles.size(), part = first + k;
+      for (std::size_t t = part * n / kParts; t < (part + 1) * n / kParts; ++t) {
+        sample(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), wide,
+               [&](const Eigen::Vector3d& p) {
+                 if (wide.contains(p)) parts[k][grid.of(p)].add(p);
+               });
+      }
+    });
+    for (const auto& part : parts) {
+      for (const auto& slot : part.slots()) {
+        if (slot.key == kNoPlace) continue;
+        Sum& sum = all[slot.key];
+        sum.sum += slot.entry.sum;
+        sum.count += slot.entry.count;
+      }
     }
-  });
-  GridTable<Mean> all;
-  for (auto& part : parts) {
-    for (const auto& slot : part.slots()) {
-      if (slot.key == kNoPlace) continue;
-      Mean& mean = all[slot.key];
-      mean.sum += slot.entry.sum;
-      mean.count += slot.entry.count;
-    }
-    part = {};
   }
   std::vector<Placed> placed;
   placed.reserve(all.size());
   for (const auto& slot : all.slots()) {
-    if (slot.key != kNoPlace) placed.push_back({slot.key, mean_of(slot.entry)});
+    if (slot.key != kNoPlace) placed.push_back({slot.key, slot.entry.mean()});
   }
   const GridPoints points = in_order(std::move(placed));
   for (const Eigen::Vector3f& p : points) {
@@ -278,7 +282,7 @@ struct Reconstruction::Parts {
   int images = 0;
   // A cube's shard holds its places of the grid as well.
   std::vector<GridTable<Agreement>> cubes = std::vector<GridTable<Agreement>>(kShards);
-  std::vector<GridTable<Mean>> means = std::vector<GridTable<Mean>>(kShards);
+  std::vector<GridTable<SumInCube>> means = std::vector<GridTable<SumInCube>>(kShards);
 
   struct Measured {
     GridKey cube;
@@ -351,11 +355,9 @@ void Reconstruction::Parts::put(const std::vector<Image>& batch, int shard) {
         agreement.last = number;
         ++agreement.images;
       }
-      const Eigen::Vector3d p = measured.point.cast<double>();
-      Mean& mean = means[shard][grid.of(p)];
-      mean.sum += p;
-      ++mean.count;
-      mean.cube = measured.cube;
+      SumInCube& sum = means[shard][grid.of(measured.point.cast<double>())];
+      sum.add(measured.point.cast<double>());
+      sum.cube = measured.cube;
     }
   }
 }
@@ -386,7 +388,7 @@ GridPoints Reconstruction::points(int threads) const {
       if (slot.key == kNoPlace) continue;
       const Agreement* agreement = parts_->cubes[shard].find(slot.entry.cube);
       if (agreement && agreement->images >= least) {
-        of_shard[shard].push_back({slot.key, mean_of(slot.entry)});
+        of_shard[shard].push_back({slot.key, slot.entry.mean()});
       }
     }
   });

@@ -16,7 +16,6 @@
 #include <coin/CoinPackedMatrix.hpp>
 #include <coin/OsiClpSolverInterface.hpp>
 #include <memory>
-#include <mutex>
 
 namespace lapwing {
 
@@ -131,16 +130,9 @@ void add_cuts_and_heuristics(CbcModel& model) {
   model.addHeuristic(&neighbourhood, "neighbourhood");
 }
 
-// CBC's own state is per model, but not promised to be.
-std::mutex& turnstile() {
-  static std::mutex mutex;
-  return mutex;
-}
-
 }  // namespace
 
 IntegerResult solve_program(const IntegerProgram& program, const IntegerSearch& search) {
-  const std::lock_guard lock(turnstile());
   IntegerResult result;
   result.x = search.start;
   OsiClpSolverInterface solver;

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "framework/plugin/plugin.h"
+#include "framework/view/fixed_rewards.h"
 #include "framework/view/greedy_growth.h"
-#include "plugins/tour_solvers/milp/rewards.h"
 #include "plugins/tour_solvers/milp/tour_program.h"
 
 namespace lapwing {
@@ -64,7 +64,7 @@ class Milp final : public TourSolver {
 
  protected:
   Search search(const TourProblem& problem, TourWork& work) const override {
-    Rewards rewards = fix_rewards(problem, work);
+    FixedRewards rewards = fix_rewards(problem, work);
     const std::vector<int> chosen = choose(problem, rewards.of_view);
     const TourProblem additive = additive_problem(problem, rewards.of_view);
     Search result;
@@ -143,7 +143,7 @@ class Milp final : public TourSolver {
     return best;
   }
 
-  void say(const TourProblem& problem, const TourProblem& additive, const Rewards& rewards,
+  void say(const TourProblem& problem, const TourProblem& additive, const FixedRewards& rewards,
            const TourProgram& tours, const IntegerResult& found, const std::vector<int>& best,
            Search& result) const {
     const int nodes = found.nodes;
@@ -172,7 +172,7 @@ class Milp final : public TourSolver {
 
   // Whether rewards are the score itself, and the program holds every tour: then CBC's bound is
   // one.
-  static bool counts_all(const TourProblem& problem, const Rewards& rewards,
+  static bool counts_all(const TourProblem& problem, const FixedRewards& rewards,
                          const TourProgram& tours) {
     if (!tours.complete() || rewards.places > 0 || problem.image_limit()) return false;
     double alone = 0, counted = 0, reachable = 0;

@@ -1,4 +1,4 @@
-#include "plugins/tour_solvers/milp/rewards.h"
+#include "framework/view/fixed_rewards.h"
 
 #include <algorithm>
 #include <numeric>
@@ -34,8 +34,8 @@ std::vector<int> places_of(const TourProblem& problem) {
 
 }  // namespace
 
-Rewards fix_rewards(const TourProblem& problem, TourWork& work) {
-  Rewards rewards;
+FixedRewards fix_rewards(const TourProblem& problem, TourWork& work) {
+  FixedRewards rewards;
   rewards.of_view.assign(problem.views(), 0);
   const std::vector<int> place = places_of(problem);
   std::vector<int> choices(problem.views(), 0);

@@ -9,7 +9,7 @@
 
 namespace lapwing {
 
-struct Rewards {
+struct FixedRewards {
   std::vector<double> of_view;  // 0 for a view that is left out
   int places = 0;               // that have more than one view to choose from
   std::int64_t evaluations = 0;
@@ -19,6 +19,6 @@ struct Rewards {
 // again and again, of each place the best one alone, and each counts what it brought then. A sum
 // of rewards never is more than the score of the same views. Views joined by a motion that takes
 // no time stand at one place; in a problem of legs every view is a place of its own.
-Rewards fix_rewards(const TourProblem& problem, TourWork& work);
+FixedRewards fix_rewards(const TourProblem& problem, TourWork& work);
 
 }  // namespace lapwing
