@@ -29,7 +29,7 @@ struct ScanMethod {
     Value parameters = Value::map();
   };
   std::string name;  // as it was asked for
-  std::vector<Solver> solvers;
+  std::vector<Solver> solvers = {};
   bool pattern = false;
 };
 
@@ -67,7 +67,7 @@ struct ScanRow {
   std::string mission, method;
   std::uint64_t seed = 0;
   double budget = 0;  // s
-  std::string status, message;
+  std::string status = "", message = "";
   bool found = false;                 // a tour
   bool reproducible = true;           // false: the wall clock ended it
   bool counts = true;                 // of milp: see counts_as_rival
@@ -76,7 +76,7 @@ struct ScanRow {
   double seconds = 0;  // of flight
   int images = 0, first_images = 0, candidates = 0;
   std::int64_t evaluations = 0;
-  ReconstructionScore with_first, alone;  // with and without the first flight's images
+  ReconstructionScore with_first = {}, alone = {};  // with and without the first flight's images
 };
 Value to_value(const ScanRow& row);
 ScanRow scan_row_from(const Value& value);
