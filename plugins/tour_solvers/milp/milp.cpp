@@ -137,6 +137,12 @@ class Milp final : public TourSolver {
       tour.state().set_evaluations(evaluations);
       std::vector<double> known = gains_alone(additive);
       grow(tour, known, {.by_ratio = by_ratio}, work);
+      // What a shorter order leaves is filled again.
+      while (tour.shorten()) {
+        const int before = tour.images();
+        grow(tour, known, {.by_ratio = by_ratio}, work);
+        if (tour.images() == before) break;
+      }
       evaluations = tour.state().evaluations();
       take(tour.finished());
     }

@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace lapwing {
+namespace {
+
+// s of the budget: what an arc takes of the time that is left, at least. Without it arcs that take
+// no time could go round and round, far from the tour.
+constexpr double kLeastSeconds = 1e-7;
+
+}  // namespace
 
 TourProgram::TourProgram(const TourProblem& problem, const std::vector<double>& rewards,
                          std::vector<int> chosen, int neighbours, const std::vector<int>& walk)
@@ -101,9 +108,13 @@ std::vector<int> TourProgram::chosen_on(const std::vector<int>& walk) const {
 
 void TourProgram::write_program() {
   const int arcs = static_cast<int>(arcs_.size()), n = count();
-  const double most = std::max(1, n - 1);
+  const double room = problem_.budget() - problem_.fixed_seconds();
+  const double least = kLeastSeconds * room, all = room + 2 * n * least;
+  const auto out_to = problem_.legs_from(problem_.start());
+  const auto home_from = problem_.legs_from(problem_.end());
+  const auto used = [&](int a) { return std::max(arcs_[a].seconds, least); };
   for (int a = 0; a < arcs; ++a) program_.add_column(0, 1, true);
-  for (int a = 0; a < arcs; ++a) program_.add_column(0, most, false);
+  for (int a = 0; a < arcs; ++a) program_.add_column(0, all, false);
   for (int v = 0; v < n; ++v) program_.add_column(rewards_[chosen_[v]], 1, true);
 
   using Entry = IntegerProgram::Entry;
@@ -114,34 +125,45 @@ void TourProgram::write_program() {
     into[arcs_[a].to].push_back(a);
     budget.push_back({x(a), arcs_[a].seconds});
     if (arcs_[a].passed > 0) images.push_back({x(a), static_cast<double>(arcs_[a].passed)});
-    program_.add_row(-kUnbounded, {{f(a), 1}, {x(a), -most}}, 0);
+    // An arc that is too far away for the budget has less than nothing left: it is never taken.
+    const double left = all - out_to[chosen_[arcs_[a].from]] - arcs_[a].seconds;
+    const double needed = home_from[chosen_[arcs_[a].to]];
+    if (left < needed) {
+      program_.add_row(0, {{x(a), 1}}, 0);
+      program_.add_row(0, {{g(a), 1}}, 0);
+      continue;
+    }
+    program_.add_row(-kUnbounded, {{g(a), 1}, {x(a), -left}}, 0);
+    program_.add_row(0, {{g(a), 1}, {x(a), -needed}}, kUnbounded);
   }
-  program_.add_row(-kUnbounded, budget, problem_.budget() - problem_.fixed_seconds());
+  program_.add_row(-kUnbounded, budget, room);
   for (int v = 0; v < n; ++v) {
-    std::vector<Entry> balance, flow, taken{{y(v), 1}}, once;
+    std::vector<Entry> balance, time, taken{{y(v), 1}}, once;
     for (const int a : into[v]) {
       balance.push_back({x(a), 1});
-      flow.push_back({f(a), 1});
+      time.push_back({g(a), 1});
       taken.push_back({x(a), -1});
       once.push_back({x(a), 1});
     }
     for (const int a : out[v]) {
       balance.push_back({x(a), -1});
-      flow.push_back({f(a), -1});
+      time.push_back({g(a), -1});
+      time.push_back({x(a), -used(a)});
     }
     const double net = (v == end_ ? 1 : 0) - (v == start_ ? 1 : 0);
     program_.add_row(net, balance, net);
     images.push_back({y(v), 1});
     if (v == start_) {
       program_.add_row(1, {{y(v), 1}}, 1);
+      program_.add_row(-all, time, kUnbounded);
       // Nothing comes back to the start of a way; a loop closes once.
       if (problem_.each_once()) program_.add_row(0, once, problem_.loop() ? 1 : 0);
       continue;
     }
     // Where each view is visited once the arc into it is the view.
     program_.add_row(problem_.each_once() ? 0 : -kUnbounded, taken, 0);
-    flow.push_back({y(v), -1});
-    program_.add_row(0, flow, 0);
+    // The end of a way keeps what is left.
+    program_.add_row(0, time, v == end_ ? kUnbounded : 0);
     if (problem_.each_once()) forbid_turning_back(v);
     if (!problem_.image_limit()) continue;
     for (const int a : into[v]) program_.add_row(0, {{y(v), 1}, {x(a), -1}}, kUnbounded);
@@ -157,7 +179,6 @@ void TourProgram::forbid_turning_back(int view) {
     const auto back = std::lower_bound(list.begin(), list.end(), std::pair(view, 0));
     if (back == list.end() || back->first != view) continue;
     program_.add_row(-kUnbounded, {{x(arc), 1}, {x(back->second), 1}, {y(view), -1}}, 0);
-    program_.add_row(0, {{f(arc), 1}, {x(arc), -1}}, kUnbounded);
   }
 }
 
@@ -165,19 +186,17 @@ std::vector<double> TourProgram::point_of(const std::vector<int>& walk) const {
   const std::vector<int> on = chosen_on(walk);
   std::vector<double> point(program_.columns(), 0);
   for (const int v : on) point[y(v)] = 1;
-  std::vector<char> reached(chosen_.size(), 0);
-  reached[on.front()] = 1;
-  double left = -1;  // the start needs nothing
-  for (int v = 0; v < count(); ++v) left += point[y(v)];
+  const double room = problem_.budget() - problem_.fixed_seconds();
+  const double least = kLeastSeconds * room;
+  double left = room + 2 * count() * least;
   for (std::size_t k = 1; k < on.size(); ++k) {
     const auto& list = leaving_[on[k - 1]];
     const auto arc = std::find_if(list.begin(), list.end(),
                                   [&](const auto& known) { return known.first == on[k]; });
     if (arc == list.end()) return {};
+    left -= std::max(arcs_[arc->second].seconds, least);
     point[x(arc->second)] = 1;
-    point[f(arc->second)] = left;
-    if (!reached[on[k]]) --left;
-    reached[on[k]] = 1;
+    point[g(arc->second)] = left;
   }
   return point;
 }

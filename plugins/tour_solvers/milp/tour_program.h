@@ -1,14 +1,15 @@
 // An orienteering problem on the motion graph as a mixed-integer linear program.
 //
 // Per arc (a motion one way, or the shortest way between chosen views past others) whether the tour
-// takes it, x, and how many views it still has to take from there, f; per view whether it is taken,
-// y (the single-commodity flow of Letchford, Nasiri and Theis, "Compact formulations of the Steiner
+// takes it, x, and what is left of the budget at its end, g; per view whether it is taken, y (the
+// formulation by time of Letchford, Nasiri and Theis, "Compact formulations of the Steiner
 // traveling salesman problem and related problems", EJOR 2013). Views may be passed more than once;
-// no best tour takes an arc twice.
+// no best tour takes an arc twice. With d the seconds of the shortest way:
 //
-//   maximise  sum reward y        subject to  in(x) - out(x) = [end] - [start]  at every view
-//   sum leg x <= budget           y_v <= in(x_v),  0 <= f_a <= (views - 1) x_a
-//   in(f) - out(f) = y_v          at every view but the start
+//   maximise  sum reward y       subject to  in(x) - out(x) = [end] - [start]  at every view
+//   y_v <= in(x_v)               d(to, end) x <= g <= (budget - d(start, from) - leg) x
+//   in(g) = out(g + leg x)       at every view but the start, where budget + in(g) >= out(g + leg
+//   x)
 #pragma once
 
 #include <utility>
@@ -50,7 +51,7 @@ class TourProgram {
   void write_program();
   void forbid_turning_back(int view);
   int x(int arc) const { return arc; }
-  int f(int arc) const { return static_cast<int>(arcs_.size()) + arc; }
+  int g(int arc) const { return static_cast<int>(arcs_.size()) + arc; }
   int y(int view) const { return 2 * static_cast<int>(arcs_.size()) + view; }
   int count() const { return static_cast<int>(chosen_.size()); }
 
