@@ -60,7 +60,12 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
                        const std::filesystem::path& target, const Invocation& invocation) {
   const Registry registry = invocation.registry();
   const Plan plan = read_plan(file);
-  write_file_atomically(target, registry.create<Exporter>(format)->write(plan));
+  const auto exporter = registry.create<Exporter>(format);
+  if (exporter->file_extension().empty()) {
+    write_folder_atomically(target, exporter->write_folder(plan));
+  } else {
+    write_file_atomically(target, exporter->write(plan));
+  }
   return ExitStatus::done;
 }
 

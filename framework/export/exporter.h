@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "framework/core/folders.h"
 #include "framework/trajectory/plan.h"
 
 namespace lapwing {
@@ -14,12 +15,16 @@ class Exporter {
 
   virtual ~Exporter() = default;
 
-  // With its dot: ".csv".
+  // With its dot: ".csv"; empty for a format of several files, which make a folder.
   virtual std::string file_extension() const = 0;
 
   // The file's contents; the caller writes them, whole or not at all. Equal plans give equal bytes.
   // Throws InputError when this format cannot hold the plan, saying what it lacks. Thread-safe.
   virtual std::string write(const Plan& plan) const = 0;
+
+  // Of a format of several files: those, for one folder, and `write` is the first of them. Errors
+  // likewise.
+  virtual NamedContents write_folder(const Plan&) const { return {}; }
 };
 
 }  // namespace lapwing

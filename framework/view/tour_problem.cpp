@@ -163,7 +163,8 @@ TourProblem::TourProblem(TourDefinition d) {
   budget_ = d.budget;
   image_limit_ = d.image_limit;
   const int n = views();
-  std::vector<double> stops(n, d.view_seconds.front());
+  std::vector<double>& stops = stops_;
+  stops.assign(n, d.view_seconds.front());
   if (d.view_seconds.size() > 1) stops = std::move(d.view_seconds);
   fixed_seconds_ = stops[start_] + (loop() ? 0 : stops[end_]);
   stops[start_] = stops[end_] = 0;

@@ -59,6 +59,18 @@ class TourProblem {
   const std::optional<int>& image_limit() const { return image_limit_; }
   // Whether legs were given: each view at most once, nothing passed on the way.
   bool each_once() const { return !legs_.empty(); }
+  // What the views' motions lead to, ascending, and their legs; none in a problem of legs. Valid as
+  // long as this object.
+  std::span<const int> neighbours_of(int view) const {
+    if (each_once()) return {};
+    return std::span(neighbours_).subspan(first_neighbour_[view], degree(view));
+  }
+  std::span<const double> neighbour_legs_of(int view) const {
+    if (each_once()) return {};
+    return std::span(neighbour_legs_).subspan(first_neighbour_[view], degree(view));
+  }
+  // s: what a visit takes of its legs; 0 for start and end.
+  double stop_seconds(int view) const { return stops_[view]; }
   // s: of the views at start and end, which every tour pays.
   double fixed_seconds() const { return fixed_seconds_; }
 
@@ -90,11 +102,12 @@ class TourProblem {
  private:
   struct Ways;
   double direct_leg(int a, int b) const;
+  std::size_t degree(int view) const { return first_neighbour_[view + 1] - first_neighbour_[view]; }
 
   std::shared_ptr<const ViewScore> score_;
   std::vector<double> legs_;
   std::vector<int> first_neighbour_{0}, neighbours_;  // by view, neighbours ascending
-  std::vector<double> neighbour_legs_;
+  std::vector<double> neighbour_legs_, stops_;
   int start_ = 0, end_ = 0;
   double budget_ = 0, fixed_seconds_ = 0;
   std::optional<int> image_limit_;

@@ -71,7 +71,8 @@ TEST(TourSolvers, AllSayWhatWasReachable) {
   poor.budget = 0;
   TourDefinition dull = random_tour(11, {.legs = true});
   dull.score = std::make_shared<const ViewScore>(additive_score(std::vector<double>(10, 0)));
-  for (const char* solver : {"greedy", "cost_benefit", "recursive_greedy", "local_search"}) {
+  for (const char* solver :
+       {"greedy", "cost_benefit", "recursive_greedy", "local_search", "milp"}) {
     const auto plugin = tour_plugins().create<TourSolver>(solver, Value());
     const auto message = [&](const TourDefinition& definition) {
       const TourResult result = plugin->solve(TourProblem(definition));

@@ -1,0 +1,98 @@
+// Measuring scan tours as the thesis does (4.5, 4.9): methods against each other on the same
+// candidates, by what their images would make of the true surface.
+//
+// A study is a list of cases (a mission and a seed), budgets and methods; a row is what one method
+// did in one case with one budget. Every row is a file, written whole; a study that was ended at
+// any moment goes on from those that are there, and ends with the same bytes.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/core/progress.h"
+#include "framework/core/value.h"
+#include "framework/geometry/reconstruction.h"
+#include "framework/plugin/registry.h"
+#include "framework/view/pattern_tour.h"
+#include "framework/view/tour_solver.h"
+
+namespace lapwing {
+
+// A pattern, or tour solvers of which each begins with the tour of the one before.
+struct ScanMethod {
+  struct Solver {
+    std::string name;
+    Value parameters = Value::map();
+  };
+  std::string name;  // as it was asked for
+  std::vector<Solver> solvers = {};
+  bool pattern = false;
+};
+
+// "greedy", "cost_benefit+local_search", "milp:candidates=500,nodes=100", "hemisphere_60".
+// InputError for what is neither a pattern nor a known solver with right parameters.
+ScanMethod scan_method(const std::string& text, const Registry& registry);
+
+// All that methods may know, and the truth for judging them.
+struct ScanCase {
+  TourDefinition definition;  // of which the budget is the mission's own
+  std::vector<Viewpoint> viewpoints;
+  std::vector<Pose> first_flight;  // cameras
+  double first_seconds = 0;        // of the first flight
+  Pinhole camera;
+  Eigen::AlignedBox3d region;
+  double pattern_height = 30;                // m above the region's floor
+  std::shared_ptr<const MeshScene> surface;  // the true one
+};
+
+struct ScanStudy {
+  std::vector<std::string> missions;  // names, each once
+  std::vector<std::uint64_t> seeds;
+  std::vector<double> budgets;  // s; empty: each mission's own
+  std::vector<ScanMethod> methods;
+  std::optional<DepthNoise> noise;        // of the judged depth; absent: ideal
+  std::optional<double> guard = 300;      // s of wall clock for one solver
+  ReconstructionSettings reconstruction;  // its region is the case's
+  Value statement;  // of all else that rows depend on: scripts, configurations
+  int threads = 1;  // rows at once; results are the same
+  // Makes a case: mission and seed, by their places. Called once for each that lacks a row.
+  std::function<ScanCase(std::size_t mission, std::size_t seed)> prepare;
+};
+
+struct ScanRow {
+  std::string mission, method;
+  std::uint64_t seed = 0;
+  double budget = 0;  // s
+  std::string status = "", message = "";
+  bool found = false;                 // a tour
+  bool reproducible = true;           // false: the wall clock ended it
+  bool counts = true;                 // of milp: see counts_as_rival
+  double score = 0, score_share = 0;  // of what all candidates show together
+  std::optional<double> upper_bound = std::nullopt;
+  double seconds = 0;  // of flight
+  int images = 0, first_images = 0, candidates = 0;
+  std::int64_t evaluations = 0;
+  ReconstructionScore with_first = {}, alone = {};  // with and without the first flight's images
+};
+Value to_value(const ScanRow& row);
+ScanRow scan_row_from(const Value& value);
+
+// One row; `work_seconds` is set to what planning took.
+ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceSample& surface,
+                const ScanMethod& method, const ScanStudy& study, std::uint64_t seed,
+                const Registry& registry, const CancellationToken* cancellation,
+                double& work_seconds);
+
+// Rows of the whole study in their order: mission, budget, method, seed. Files go to `folder`:
+// study.json, rows/. Without `resume` a folder with another study's rows is refused, with it one of
+// a study that differs. InputError; Cancelled when told to stop, rows so far are kept.
+std::vector<ScanRow> run_study(const ScanStudy& study, const std::filesystem::path& folder,
+                               bool resume, const Registry& registry,
+                               const CancellationToken* cancellation,
+                               const std::function<void(const std::string&)>& say);
+
+}  // namespace lapwing

@@ -1,0 +1,287 @@
+#include "framework/view/pattern_tour.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+namespace {
+
+constexpr double kRadian = std::numbers::pi / 180;
+constexpr double kLowestRing = 10 * kRadian, kHighestRing = 80 * kRadian;
+
+Viewpoint looking_at(const Eigen::Vector3d& position, const Eigen::Vector3d& target) {
+  const Eigen::Vector3d d = target - position;
+  return {position, std::atan2(d.y(), d.x()), std::atan2(d.z(), d.head<2>().norm())};
+}
+
+void add_ellipse(const Pattern& p, const Eigen::Vector3d& floor, const Eigen::Vector3d& middle,
+                 std::vector<Viewpoint>& views) {
+  for (int i = 0; i < p.views; ++i) {
+    const double angle = 2 * std::numbers::pi * i / p.views;
+    const Eigen::Vector3d offset(p.along_x * std::cos(angle), p.along_y * std::sin(angle),
+                                 p.height);
+    views.push_back(looking_at(floor + offset, middle));
+  }
+}
+
+// As many lines as make views as far apart along a line as lines are from each other.
+void add_meander(const Pattern& p, const Eigen::Vector3d& floor, std::vector<Viewpoint>& views) {
+  const double share = std::sqrt(p.views * p.along_x / p.along_y);
+  const int lines = std::clamp(static_cast<int>(std::lround(share)), 1, p.views);
+  const int in_line = (p.views + lines - 1) / lines;
+  const auto place = [](double edge, int i, int count) {
+    return count > 1 ? edge * (static_cast<double>(i) / (count - 1) - 0.5) : 0.0;
+  };
+  for (int line = 0; line < lines; ++line) {
+    for (int k = 0; k < in_line; ++k) {
+      const int along = line % 2 ? in_line - 1 - k : k;
+      const Eigen::Vector3d offset(place(p.along_x, line, lines), place(p.along_y, along, in_line),
+                                   p.height);
+      views.push_back({floor + offset, 0, -std::numbers::pi / 2});
+    }
+  }
+}
+
+// Rings at equal steps of elevation, each with views in the measure of its length.
+void add_hemisphere(const Pattern& p, const Eigen::Vector3d& floor, const Eigen::Vector3d& middle,
+                    std::vector<Viewpoint>& views) {
+  const int rings = std::max(1, static_cast<int>(std::lround(std::sqrt(p.views / 5.0))));
+  std::vector<double> elevations;
+  double length = 0;
+  for (int ring = 0; ring < rings; ++ring) {
+    const double share = rings > 1 ? static_cast<double>(ring) / (rings - 1) : 0.5;
+    elevations.push_back(kLowestRing + share * (kHighestRing - kLowestRing));
+    length += std::cos(elevations.back());
+  }
+  double passed = 0;
+  int placed = 0;
+  for (const double elevation : elevations) {
+    passed += std::cos(elevation);
+    const int count = static_cast<int>(std::lround(p.views * passed / length)) - placed;
+    placed += count;
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2 * std::numbers::pi * i / count;
+      const Eigen::Vector3d offset(p.along_x * std::cos(elevation) * std::cos(angle),
+                                   p.along_y * std::cos(elevation) * std::sin(angle),
+                                   p.along_x * std::sin(elevation));
+      views.push_back(looking_at(floor + offset, middle));
+    }
+  }
+}
+
+}  // namespace
+
+const char* to_string(PatternKind kind) {
+  switch (kind) {
+    case PatternKind::circle:
+      return "circle";
+    case PatternKind::ellipse:
+      return "ellipse";
+    case PatternKind::meander:
+      return "meander";
+    case PatternKind::hemisphere:
+      break;
+  }
+  return "hemisphere";
+}
+
+std::string name_of(const Pattern& pattern) {
+  char text[80];
+  const bool one = pattern.kind == PatternKind::circle || pattern.kind == PatternKind::hemisphere;
+  if (one) {
+    std::snprintf(text, sizeof text, "%s_%g", to_string(pattern.kind), pattern.along_x);
+  } else {
+    std::snprintf(text, sizeof text, "%s_%gx%g", to_string(pattern.kind), pattern.along_x,
+                  pattern.along_y);
+  }
+  return text;
+}
+
+Pattern pattern_named(const std::string& name, double height) {
+  const auto refuse = [&] {
+    throw InputError("no pattern '" + name +
+                     "'; patterns are circle_RADIUS, hemisphere_RADIUS, ellipse_AxB and "
+                     "meander_AxB, in metres");
+  };
+  const std::size_t bar = name.find('_');
+  Pattern pattern{.height = height};
+  bool known = false;
+  for (const auto& [kind, views] : {std::pair{PatternKind::circle, 120},
+                                    {PatternKind::ellipse, 160},
+                                    {PatternKind::meander, 144},
+                                    {PatternKind::hemisphere, 160}}) {
+    if (name.substr(0, bar) != to_string(kind)) continue;
+    pattern.kind = kind;
+    pattern.views = views;
+    known = true;
+  }
+  if (!known || bar == name.npos) refuse();
+  const auto read = [&](const char* from, const char* to) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(from, to, number);
+    if (error != std::errc{} || end != to || !(number > 0) || number > 1e4) refuse();
+    return number;
+  };
+  const char *begin = name.data() + bar + 1, *end = name.data() + name.size();
+  const char* cross = std::find(begin, end, 'x');
+  const bool one = pattern.kind == PatternKind::circle || pattern.kind == PatternKind::hemisphere;
+  if (one == (cross != end)) refuse();
+  pattern.along_x = pattern.along_y = read(begin, cross);
+  if (!one) pattern.along_y = read(cross + 1, end);
+  return pattern;
+}
+
+std::vector<Viewpoint> pattern_viewpoints(const Pattern& pattern,
+                                          const Eigen::AlignedBox3d& region) {
+  if (region.isEmpty()) throw InputError("pattern: the region is empty");
+  if (pattern.views < 1) throw InputError("pattern: views must be at least 1");
+  if (!(pattern.along_x > 0 && pattern.along_y > 0 && std::isfinite(pattern.along_x) &&
+        std::isfinite(pattern.along_y))) {
+    throw InputError("pattern: sizes must be above 0 m");
+  }
+  const Eigen::Vector3d middle = region.center();
+  const Eigen::Vector3d floor(middle.x(), middle.y(), region.min().z());
+  std::vector<Viewpoint> views;
+  switch (pattern.kind) {
+    case PatternKind::circle:
+    case PatternKind::ellipse:
+      add_ellipse(pattern, floor, middle, views);
+      break;
+    case PatternKind::meander:
+      add_meander(pattern, floor, views);
+      break;
+    case PatternKind::hemisphere:
+      add_hemisphere(pattern, floor, middle, views);
+      break;
+  }
+  return views;
+}
+
+namespace {
+
+class Laying {
+ public:
+  Laying(const TourProblem& problem, const std::vector<Viewpoint>& viewpoints,
+         double metres_per_radian)
+      : problem_(problem),
+        viewpoints_(viewpoints),
+        weight_(metres_per_radian),
+        reachable_(problem.reachable()) {}
+
+  // The views that a pattern takes, each once in a row.
+  std::vector<int> lay(const std::vector<Viewpoint>& pattern) const {
+    std::vector<int> views;
+    for (const Viewpoint& wanted : pattern) {
+      const int view = nearest(wanted);
+      if (view >= 0 && (views.empty() || views.back() != view)) views.push_back(view);
+    }
+    return views;
+  }
+
+  // `stops` by shortest ways; empty where there is none.
+  std::vector<int> walk_through(const std::vector<int>& stops) const {
+    std::vector<int> walk{problem_.start()};
+    for (const int stop : stops) problem_.append_way(walk.back(), stop, walk);
+    problem_.append_way(walk.back(), problem_.end(), walk);
+    return walk;
+  }
+
+ private:
+  int nearest(const Viewpoint& wanted) const {
+    int best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (const int view : reachable_) {
+      const Viewpoint& v = viewpoints_[view];
+      const double apart =
+          (v.position - wanted.position).norm() + weight_ * angle_between(v, wanted);
+      if (apart >= least) continue;
+      least = apart;
+      best = view;
+    }
+    return best;
+  }
+
+  const TourProblem& problem_;
+  const std::vector<Viewpoint>& viewpoints_;
+  double weight_;
+  std::vector<int> reachable_;
+};
+
+// `count` of the stops, evenly.
+std::vector<int> thinned(const std::vector<int>& stops, int count) {
+  std::vector<int> fewer;
+  for (int i = 0; i < count; ++i) {
+    const std::size_t at = static_cast<std::size_t>(i) * stops.size() / count;
+    if (fewer.empty() || fewer.back() != stops[at]) fewer.push_back(stops[at]);
+  }
+  return fewer;
+}
+
+int different(std::vector<int> views) {
+  std::sort(views.begin(), views.end());
+  return static_cast<int>(std::unique(views.begin(), views.end()) - views.begin());
+}
+
+}  // namespace
+
+PatternTour fly_pattern(const TourProblem& problem, const std::vector<Viewpoint>& viewpoints,
+                        const std::vector<Viewpoint>& pattern, double metres_per_radian) {
+  if (static_cast<int>(viewpoints.size()) != problem.views()) {
+    throw InputError("pattern: " + std::to_string(problem.views()) + " views need as many places");
+  }
+  PatternTour tour;
+  const std::string hindrance = problem.why_infeasible();
+  if (!hindrance.empty()) {
+    tour.message = hindrance;
+    return tour;
+  }
+  const Laying laying(problem, viewpoints, metres_per_radian);
+  std::vector<int> stops = laying.lay(pattern);
+  if (stops.empty()) {
+    tour.message = "the pattern has no viewpoint";
+    return tour;
+  }
+  // From either end, or, where it is closed, from its nearest viewpoint: as is quickest.
+  std::vector<std::vector<int>> orders{stops, {stops.rbegin(), stops.rend()}, stops};
+  const auto legs = problem.legs_from(problem.start());
+  const auto entry = std::min_element(orders[2].begin(), orders[2].end(),
+                                      [&](int a, int b) { return legs[a] < legs[b]; });
+  std::rotate(orders[2].begin(), entry, orders[2].end());
+  for (const std::vector<int>& order : orders) {
+    const double seconds = problem.seconds_of(laying.walk_through(order));
+    if (seconds >= tour.whole_seconds) continue;
+    tour.whole_seconds = seconds;
+    stops = order;
+  }
+  tour.wanted = different(stops);
+  const int whole = static_cast<int>(stops.size());
+  for (int count = whole; count > 0; --count) {
+    const std::vector<int> fewer = count == whole ? stops : thinned(stops, count);
+    std::vector<int> walk = laying.walk_through(fewer);
+    if (!problem.problem_of(walk).empty()) continue;
+    tour.walk = std::move(walk);
+    tour.flown = different(fewer);
+    break;
+  }
+  char text[160];
+  if (tour.walk.empty()) {
+    std::snprintf(text, sizeof text,
+                  "not one of the pattern's %d viewpoints fits into the budget of %.6g s",
+                  tour.wanted, problem.budget());
+  } else if (tour.flown == tour.wanted) {
+    std::snprintf(text, sizeof text, "the whole pattern, %d viewpoints", tour.wanted);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "%d of the pattern's %d viewpoints: all would take %.6g s of %.6g s", tour.flown,
+                  tour.wanted, tour.whole_seconds, problem.budget());
+  }
+  tour.message = text;
+  return tour;
+}
+
+}  // namespace lapwing

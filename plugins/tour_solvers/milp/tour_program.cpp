@@ -1,0 +1,230 @@
+#include "plugins/tour_solvers/milp/tour_program.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lapwing {
+namespace {
+
+// s of the budget: what an arc takes of the time that is left, at least. Without it arcs that take
+// no time could go round and round, far from the tour.
+constexpr double kLeastSeconds = 1e-7;
+
+}  // namespace
+
+TourProgram::TourProgram(const TourProblem& problem, const std::vector<double>& rewards,
+                         std::vector<int> chosen, int neighbours, const std::vector<int>& walk)
+    : problem_(problem),
+      rewards_(rewards),
+      chosen_(std::move(chosen)),
+      position_(problem.views(), -1),
+      leaving_(chosen_.size()) {
+  for (int i = 0; i < count(); ++i) position_[chosen_[i]] = i;
+  start_ = position_[problem.start()];
+  end_ = position_[problem.end()];
+  add_arcs(neighbours);
+  const std::vector<int> on = chosen_on(walk);
+  for (std::size_t i = 1; i < on.size(); ++i) {
+    add_arc(on[i - 1], on[i]);
+    add_arc(on[i], on[i - 1]);
+  }
+  for (auto& list : leaving_) std::sort(list.begin(), list.end());
+  write_program();
+}
+
+// Both ways between each chosen view and the nearest others that no third one lies between: past a
+// third one the way is two arcs.
+void TourProgram::add_arcs(int neighbours) {
+  std::vector<std::pair<double, int>> near;
+  std::vector<int> way;
+  for (int i = 0; i < count(); ++i) {
+    const auto legs = problem_.legs_from(chosen_[i]);
+    near.clear();
+    for (int j = 0; j < count(); ++j) {
+      if (j != i && std::isfinite(legs[chosen_[j]])) near.push_back({legs[chosen_[j]], j});
+    }
+    std::sort(near.begin(), near.end());
+    int left = neighbours > 0 ? neighbours : count();
+    for (const auto& [leg, j] : near) {
+      way.clear();
+      problem_.append_way(chosen_[i], chosen_[j], way);
+      const bool direct =
+          std::none_of(way.begin(), way.end() - 1, [&](int view) { return position_[view] >= 0; });
+      if (!direct) continue;
+      if (left-- <= 0) {
+        complete_ = false;
+        break;
+      }
+      add_arc(i, j);
+      add_arc(j, i);
+    }
+  }
+}
+
+void TourProgram::add_arc(int from, int to) {
+  auto& list = leaving_[from];
+  if (std::any_of(list.begin(), list.end(), [&](const auto& known) { return known.first == to; })) {
+    return;
+  }
+  std::vector<int> way;
+  problem_.append_way(chosen_[from], chosen_[to], way);
+  list.push_back({to, static_cast<int>(arcs_.size())});
+  arcs_.push_back(
+      {from, to, problem_.leg(chosen_[from], chosen_[to]), static_cast<int>(way.size()) - 1});
+}
+
+// The chosen views of a walk, by position, with no arc twice: P a b Q a b R becomes P a Q' b R,
+// where Q' is Q the other way round, which passes the same views.
+std::vector<int> TourProgram::chosen_on(const std::vector<int>& walk) const {
+  std::vector<int> on;
+  for (const int view : walk) {
+    const int position = position_[view];
+    if (position >= 0 && (on.empty() || on.back() != position)) on.push_back(position);
+  }
+  for (bool again = true; again;) {
+    again = false;
+    std::vector<std::vector<std::pair<int, std::size_t>>> seen(chosen_.size());
+    for (std::size_t k = 0; k + 1 < on.size() && !again; ++k) {
+      auto& list = seen[on[k]];
+      const auto known = std::find_if(list.begin(), list.end(),
+                                      [&](const auto& arc) { return arc.first == on[k + 1]; });
+      if (known == list.end()) {
+        list.push_back({on[k + 1], k});
+        continue;
+      }
+      // At `first` a b, at `k` a b again: between them b Q a.
+      const std::size_t first = known->second;
+      std::vector<int> next(on.begin(), on.begin() + static_cast<std::ptrdiff_t>(first));
+      for (std::size_t i = k; i > first; --i) next.push_back(on[i]);
+      next.insert(next.end(), on.begin() + static_cast<std::ptrdiff_t>(k) + 1, on.end());
+      // Where Q was empty the walk stands still now.
+      next.erase(std::unique(next.begin(), next.end()), next.end());
+      on = std::move(next);
+      again = true;
+    }
+  }
+  return on;
+}
+
+void TourProgram::write_program() {
+  const int arcs = static_cast<int>(arcs_.size()), n = count();
+  const double room = problem_.budget() - problem_.fixed_seconds();
+  const double least = kLeastSeconds * room, all = room + 2 * n * least;
+  const auto out_to = problem_.legs_from(problem_.start());
+  const auto home_from = problem_.legs_from(problem_.end());
+  const auto used = [&](int a) { return std::max(arcs_[a].seconds, least); };
+  for (int a = 0; a < arcs; ++a) program_.add_column(0, 1, true);
+  for (int a = 0; a < arcs; ++a) program_.add_column(0, all, false);
+  for (int v = 0; v < n; ++v) program_.add_column(rewards_[chosen_[v]], 1, true);
+
+  using Entry = IntegerProgram::Entry;
+  std::vector<std::vector<int>> into(n), out(n);
+  std::vector<Entry> budget, images;
+  for (int a = 0; a < arcs; ++a) {
+    out[arcs_[a].from].push_back(a);
+    into[arcs_[a].to].push_back(a);
+    budget.push_back({x(a), arcs_[a].seconds});
+    if (arcs_[a].passed > 0) images.push_back({x(a), static_cast<double>(arcs_[a].passed)});
+    // An arc that is too far away for the budget has less than nothing left: it is never taken.
+    const double left = all - out_to[chosen_[arcs_[a].from]] - arcs_[a].seconds;
+    const double needed = home_from[chosen_[arcs_[a].to]];
+    if (left < needed) {
+      program_.add_row(0, {{x(a), 1}}, 0);
+      program_.add_row(0, {{g(a), 1}}, 0);
+      continue;
+    }
+    program_.add_row(-kUnbounded, {{g(a), 1}, {x(a), -left}}, 0);
+    program_.add_row(0, {{g(a), 1}, {x(a), -needed}}, kUnbounded);
+  }
+  program_.add_row(-kUnbounded, budget, room);
+  for (int v = 0; v < n; ++v) {
+    std::vector<Entry> balance, time, taken{{y(v), 1}}, once;
+    for (const int a : into[v]) {
+      balance.push_back({x(a), 1});
+      time.push_back({g(a), 1});
+      taken.push_back({x(a), -1});
+      once.push_back({x(a), 1});
+    }
+    for (const int a : out[v]) {
+      balance.push_back({x(a), -1});
+      time.push_back({g(a), -1});
+      time.push_back({x(a), -used(a)});
+    }
+    const double net = (v == end_ ? 1 : 0) - (v == start_ ? 1 : 0);
+    program_.add_row(net, balance, net);
+    images.push_back({y(v), 1});
+    if (v == start_) {
+      program_.add_row(1, {{y(v), 1}}, 1);
+      program_.add_row(-all, time, kUnbounded);
+      // Nothing comes back to the start of a way; a loop closes once.
+      if (problem_.each_once()) program_.add_row(0, once, problem_.loop() ? 1 : 0);
+      continue;
+    }
+    // Where each view is visited once the arc into it is the view.
+    program_.add_row(problem_.each_once() ? 0 : -kUnbounded, taken, 0);
+    // The end of a way keeps what is left.
+    program_.add_row(0, time, v == end_ ? kUnbounded : 0);
+    if (problem_.each_once()) forbid_turning_back(v);
+    if (!problem_.image_limit()) continue;
+    for (const int a : into[v]) program_.add_row(0, {{y(v), 1}, {x(a), -1}}, kUnbounded);
+  }
+  if (problem_.image_limit()) program_.add_row(-kUnbounded, images, *problem_.image_limit());
+}
+
+// Valid where each view is visited once, and no more than that: what the relaxation would do most.
+void TourProgram::forbid_turning_back(int view) {
+  for (const auto& [to, arc] : leaving_[view]) {
+    if (to == start_) continue;
+    const auto& list = leaving_[to];
+    const auto back = std::lower_bound(list.begin(), list.end(), std::pair(view, 0));
+    if (back == list.end() || back->first != view) continue;
+    program_.add_row(-kUnbounded, {{x(arc), 1}, {x(back->second), 1}, {y(view), -1}}, 0);
+  }
+}
+
+std::vector<double> TourProgram::point_of(const std::vector<int>& walk) const {
+  const std::vector<int> on = chosen_on(walk);
+  std::vector<double> point(program_.columns(), 0);
+  for (const int v : on) point[y(v)] = 1;
+  const double room = problem_.budget() - problem_.fixed_seconds();
+  const double least = kLeastSeconds * room;
+  double left = room + 2 * count() * least;
+  for (std::size_t k = 1; k < on.size(); ++k) {
+    const auto& list = leaving_[on[k - 1]];
+    const auto arc = std::find_if(list.begin(), list.end(),
+                                  [&](const auto& known) { return known.first == on[k]; });
+    if (arc == list.end()) return {};
+    left -= std::max(arcs_[arc->second].seconds, least);
+    point[x(arc->second)] = 1;
+    point[g(arc->second)] = left;
+  }
+  return point;
+}
+
+// Hierholzer: arcs that are taken come and go at every view in balance, but for start and end.
+std::vector<int> TourProgram::walk_of(const std::vector<double>& point) const {
+  std::vector<std::vector<int>> onward(chosen_.size());
+  for (int v = 0; v < count(); ++v) {
+    for (const auto& [to, arc] : leaving_[v]) {
+      if (point[x(arc)] > 0.5) onward[v].push_back(to);
+    }
+  }
+  std::vector<int> stack{start_}, turned;
+  while (!stack.empty()) {
+    const int v = stack.back();
+    if (onward[v].empty()) {
+      turned.push_back(v);
+      stack.pop_back();
+    } else {
+      stack.push_back(onward[v].back());
+      onward[v].pop_back();
+    }
+  }
+  std::vector<int> walk{problem_.start()};
+  for (std::size_t k = turned.size() - 1; k-- > 0;) {
+    problem_.append_way(chosen_[turned[k + 1]], chosen_[turned[k]], walk);
+  }
+  return walk;
+}
+
+}  // namespace lapwing
