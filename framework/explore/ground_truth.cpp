@@ -66,12 +66,13 @@ GroundTruth::GroundTruth(std::shared_ptr<const MeshScene> scene, const Eigen::Al
   if (!(resolution > 0)) throw InputError("voxels must have an edge above 0 m");
   const TriangleMesh& mesh = scene_->mesh();
   if (region_.isEmpty()) region_ = mesh.bounds();
+  lay_out();
   find_space(surface_voxels(mesh.vertices, mesh.triangles, resolution));
   if (surface_.empty())
     throw InputError("the scene has no surface that could be seen from the space around it");
 }
 
-void GroundTruth::find_space(std::span<const VoxelKey> all) {
+void GroundTruth::lay_out() {
   const Eigen::AlignedBox3d bounds = scene_->mesh().bounds();
   const Eigen::Vector3d beside(kBeside, kBeside, 0), above(kBeside, kBeside, kAbove);
   const double reach = grid_.reach() - grid_.resolution();
@@ -84,6 +85,10 @@ void GroundTruth::find_space(std::span<const VoxelKey> all) {
       throw InputError("the scene takes more than 2^29 voxels of " +
                        std::to_string(grid_.resolution()) + " m: take larger ones");
   }
+  space_.resize(voxels);
+}
+
+void GroundTruth::find_space(std::span<const VoxelKey> all) {
   SpaceFill fill(size_);
   for (const VoxelKey& key : all) fill.at(key.x - low_[0], key.y - low_[1], key.z - low_[2]) = kSurface;
   int from[3], to[3];
@@ -106,8 +111,7 @@ void GroundTruth::find_space(std::span<const VoxelKey> all) {
   const auto label = static_cast<std::uint16_t>(
       std::max_element(held.begin() + 1, held.end()) - held.begin());
   if (held.size() < 2) throw InputError("the region of interest is full: there is no space in it");
-  space_.resize(voxels);
-  for (std::size_t k = 0; k < voxels; ++k) space_[k] = fill.labels()[k] == label;
+  for (std::size_t k = 0; k < space_.size(); ++k) space_[k] = fill.labels()[k] == label;
 
   constexpr int kFaces[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (const VoxelKey& key : all) {

@@ -57,6 +57,7 @@ class GroundTruth {
     return static_cast<std::uint64_t>(x) | static_cast<std::uint64_t>(y) << 20 |
            static_cast<std::uint64_t>(z) << 40;
   }
+  void lay_out();
   void find_space(std::span<const VoxelKey> all);
   std::size_t place_of(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) +
