@@ -1,4 +1,5 @@
 #include "framework/app/command_line.h"
+#include "framework/app/train_command.h"
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -253,6 +254,53 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
   path->callback([&] { command = [&] { return show_plugin_path(invocation); }; });
 }
 
+void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& request,
+                        Command& command) {
+  CLI::App* train = app.add_subcommand("train", "learned utilities: samples, training, judging");
+  train->require_subcommand(1);
+  const auto add = [&](const char* name, const char* help, const char* target) {
+    CLI::App* made = train->add_subcommand(name, help);
+    add_text(*made, "-o,--output", "PATH", target, [&](const std::string& path) {
+      request.target = path;
+    })->required();
+    add_text(*made, "--utility", "NAME", "the utility that is trained; else learned",
+             [&](const std::string& given) { request.utility = given; });
+    add_repeated(*made, "--set", "KEY=VALUE", invocation.overrides,
+                 "set one parameter of the network or its training");
+    add_count(*made, "--threads", 1, kMostThreads, "threads to use; else one per core",
+              [&](std::uint64_t threads) { invocation.threads = static_cast<int>(threads); });
+    add_count(*made, "--seed", 0, kLargestSeed, "of all random numbers",
+              [&](std::uint64_t seed) { invocation.seed = seed; });
+    made->add_flag("--quiet", invocation.quiet, "no lines of progress");
+    return made;
+  };
+  const auto add_samples = [&](CLI::App& made) {
+    add_text(made, "samples", "DIR", "a folder of samples", [&](const std::string& path) {
+      request.samples = path;
+    })->required();
+    add_json(made, invocation);
+  };
+  CLI::App* dataset = add("dataset", "samples from episodes of the oracle", "a folder");
+  add_repeated(*dataset, "--world", "NAME[:FIRST-LAST]", request.worlds,
+               "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
+  add_count(*dataset, "--episodes", 1, 100'000, "of each world",
+            [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
+  add_count(*dataset, "--steps", 1, 100'000, "of each episode",
+            [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
+  CLI::App* fit = add("fit", "train a model", "the model's file");
+  add_samples(*fit);
+  add_text(*fit, "--validation", "DIR", "samples of other worlds or episodes",
+           [&](const std::string& path) { request.validation = path; })
+      ->required();
+  for (CLI::App* made : {dataset, fit})
+    made->add_flag("--resume", request.resume, "go on with what is there");
+  CLI::App* score = add("score", "rank correlation and loss of a model", "the model's file");
+  add_samples(*score);
+  dataset->callback([&] { command = [&] { return make_dataset(request, invocation); }; });
+  fit->callback([&] { command = [&] { return fit_model(request, invocation); }; });
+  score->callback([&] { command = [&] { return score_model(request, invocation); }; });
+}
+
 // What to say of a first word that is no command; empty where there is none.
 std::string unknown_command(const CLI::App& app) {
   const CLI::App* at = &app;
@@ -313,6 +361,7 @@ int run_command_line(int argc, const char* const* argv) {
   SceneStatement stated;
   std::vector<std::string> pilots;
   RaceRules rules;
+  TrainRequest training;
   Command command;
   add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
                "a folder of plugins, searched first");
@@ -323,6 +372,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_scene_commands(app, invocation, plan, stated, target, command);
   add_race_command(app, invocation, plan, pilots, rules, target, command);
   add_plugin_commands(app, invocation, name, command);
+  add_train_commands(app, invocation, training, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

@@ -70,6 +70,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
     return check_registered<ViewInformation>(registry, entry, options, check_information);
   if (entry.kind == TourSolver::kKind)
     return check_registered<TourSolver>(registry, entry, options, check_tour_solver);
+  if (entry.kind == ViewUtility::kKind)
+    return check_registered<ViewUtility>(registry, entry, options, check_utility);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
 }
 

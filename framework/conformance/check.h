@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/explore/view_utility.h"
 #include "framework/map/map.h"
 #include "framework/path/path_planner.h"
 #include "framework/plugin/registry.h"
@@ -62,6 +63,8 @@ std::vector<CheckResult> check_tour_solver(const Specimen<TourSolver>& subject,
 std::vector<CheckResult> check_map(const Specimen<Map>& subject, const CheckOptions& options = {});
 std::vector<CheckResult> check_information(const Specimen<ViewInformation>& subject,
                                            const CheckOptions& options = {});
+std::vector<CheckResult> check_utility(const Specimen<ViewUtility>& subject,
+                                       const CheckOptions& options = {});
 
 template <class Kind>
 Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {

@@ -20,7 +20,7 @@ std::vector<PluginEntry> checked_entries() {
   for (const PluginEntry& entry : plugins().entries())
     for (const char* kind :
          {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner",
-          "tour_solver"})
+          "tour_solver", "utility"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }

@@ -1,0 +1,104 @@
+#include "framework/app/exploration_worlds.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "framework/config/shipped.h"
+#include "framework/geometry/mesh_file.h"
+#include "framework/mission/scene_script.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t seed_of(const std::string& text, const std::string& given) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw InputError("world '" + given + "': expected NAME, NAME:SEED, NAME:FIRST-LAST or a file");
+  return seed;
+}
+
+// Two triangles under the mesh where nothing lies there yet.
+void lay_floor(TriangleMesh& mesh) {
+  constexpr double kBeyond = 10;  // m
+  const Eigen::AlignedBox3d box = mesh.bounds();
+  const Eigen::Vector3d low = box.min(), high = box.max();
+  const auto corner = [&](double x, double y) {
+    mesh.vertices.emplace_back(x, y, low.z());
+    return static_cast<std::int32_t>(mesh.vertices.size() - 1);
+  };
+  const auto a = corner(low.x() - kBeyond, low.y() - kBeyond),
+             b = corner(high.x() + kBeyond, low.y() - kBeyond),
+             c = corner(high.x() + kBeyond, high.y() + kBeyond),
+             d = corner(low.x() - kBeyond, high.y() + kBeyond);
+  mesh.triangles.push_back({a, b, c});
+  mesh.triangles.push_back({a, c, d});
+  if (!mesh.colors.empty()) mesh.colors.resize(mesh.triangles.size(), Rgb{160, 160, 160});
+}
+
+}  // namespace
+
+std::string WorldName::text() const {
+  const fs::path path(scene);
+  return path.has_extension() ? path.filename().string() : scene + " " + std::to_string(seed);
+}
+
+std::vector<WorldName> world_names(const std::string& given) {
+  const std::size_t colon = given.rfind(':');
+  if (colon == given.npos) return {{given, 1}};
+  const std::string name = given.substr(0, colon), seeds = given.substr(colon + 1);
+  const std::size_t dash = seeds.find('-');
+  const std::uint64_t first = seed_of(seeds.substr(0, dash), given);
+  const std::uint64_t last = dash == seeds.npos ? first : seed_of(seeds.substr(dash + 1), given);
+  if (last < first || last - first > 10'000)
+    throw InputError("world '" + given + "': the last seed lies before the first, or far beyond");
+  std::vector<WorldName> names;
+  for (std::uint64_t seed = first; seed <= last; ++seed) names.push_back({name, seed});
+  return names;
+}
+
+World load_world(const WorldName& name, const Registry& registry, const Invocation& invocation) {
+  const fs::path file(name.scene);
+  if (file.has_extension() && file.extension() != ".lua") {
+    TriangleMesh mesh = read_mesh(file).mesh;
+    lay_floor(mesh);
+    const Eigen::AlignedBox3d bounds = mesh.bounds();
+    return {name.text(), std::make_shared<MeshScene>(std::move(mesh), name.text()), bounds};
+  }
+  fs::path script = file;
+  if (!file.has_extension()) {
+    script = shipped_folder("scripts") / "scene" / file;
+    script += ".lua";
+  }
+  if (!fs::exists(script))
+    throw InputError("'" + name.scene + "' is no scene of scripts/scene and no file");
+  MissionSettings settings;
+  settings.scripts = shipped_folder("scripts");
+  settings.configs = shipped_folder("configs");
+  settings.data = invocation.data;
+  settings.registry = &registry;
+  Value options = Value::map();
+  options.set("seed", static_cast<std::int64_t>(name.seed));
+  GeneratedScene made = generate_scene(script, options, settings);
+  return {name.text(), std::make_shared<MeshScene>(std::move(made.mesh), name.text()), made.region};
+}
+
+ExplorationSetup::ExplorationSetup() : map(Value::map()) {
+  constexpr int kWidth = 160, kHeight = 120;
+  constexpr double kFocal = kWidth / 2.0;  // 90 degrees across
+  pitch = -10 * EIGEN_PI / 180;
+  episode.sensor.pinhole = {kWidth, kHeight, kFocal, kFocal, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
+  map.set("resolution", 0.4);
+  map.set("hit", 0.9);
+  map.set("miss", 0.1);
+  map.set("maximum_range", episode.sensor.range);
+  map.set("observations", true);
+}
+
+ObservedSurface::NewMap ExplorationSetup::new_map(const Registry& registry) const {
+  return [&registry, type = backend, given = map] { return registry.create<Map>(type, given); };
+}
+
+}  // namespace lapwing

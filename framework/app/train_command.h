@@ -1,0 +1,26 @@
+// lapwing train dataset|fit|score
+#pragma once
+
+#include "framework/app/command_line.h"
+
+namespace lapwing {
+
+struct TrainRequest {
+  std::string utility = "learned";
+  std::vector<std::string> worlds;    // dataset: "downtown:1-8", files
+  std::int64_t episodes = 4;          // dataset: of each world
+  int steps = 200;                    // dataset: of each episode
+  std::filesystem::path samples;      // fit, score: a folder
+  std::filesystem::path validation;   // fit: a folder of other worlds or episodes
+  std::filesystem::path target;       // dataset: a folder; fit, score: a model
+  bool resume = false;
+};
+
+// Episodes of the oracle, each a file of samples; with `resume` those that are there are kept.
+ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocation);
+// Writes the model, and MODEL.checkpoint after every epoch.
+ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation);
+// Spearman's rho and the loss of (5.4) per world.
+ExitStatus score_model(const TrainRequest& request, const Invocation& invocation);
+
+}  // namespace lapwing

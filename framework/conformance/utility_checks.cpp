@@ -1,0 +1,136 @@
+// What every plugin of kind `utility` must pass.
+#include <cmath>
+
+#include "framework/conformance/every_case.h"
+#include "framework/conformance/reference_map.h"
+
+namespace lapwing {
+namespace {
+
+// What an exploration knows of a room after two looks, or before the first; and views to ask about:
+// in what is known, at its border, beyond it, and the other way round.
+struct UtilityWorld {
+  class Told final : public TrueGain {
+   public:
+    double gain(const Viewpoint& view) const override {
+      return 10 + 5 * std::sin(view.position.x() + view.yaw);
+    }
+  };
+
+  std::string name;
+  std::unique_ptr<ReferenceMap> map;
+  std::unique_ptr<MapMeans> means;
+  Told told;
+  EpisodeView known;
+  std::vector<Viewpoint> views;
+
+  UtilityWorld(std::string named, int looks) : name(std::move(named)) {
+    MapSettings settings;
+    settings.resolution = 0.4;
+    settings.hit = log_odds_of(0.9);
+    settings.miss = log_odds_of(0.1);
+    settings.clamp_min = log_odds_of(0.1192);
+    settings.clamp_max = log_odds_of(0.971);
+    settings.free_below = log_odds_of(0.25);
+    settings.occupied_above = log_odds_of(0.75);
+    settings.maximum_range = 20;
+    settings.observations = true;
+    map = std::make_unique<ReferenceMap>(settings);
+    for (int look = 0; look < looks; ++look) look_around({look - 0.3, 0.2, 1.5 + 0.1 * look});
+    means = std::make_unique<MapMeans>(*map);
+    if (const auto bounds = map->bounds()) means->touch(*bounds);
+    const double pitch = -10 * EIGEN_PI / 180;
+    known = {map.get(), means.get(), {160, 120, 80, 80, 79.5, 59.5}, 20, pitch, &told, 1};
+    views = {{{0.1, 0.1, 1.6}, 0.2, pitch},
+             {{2.6, 1.5, 1.6}, 2.9, pitch},
+             {{5.9, 0, 1.5}, 3.1, pitch},
+             {{40, -30, 12}, -1.5, pitch}};
+  }
+
+  // A room of 12 m x 8 m x 5 m with an opening in its wall to the east.
+  void look_around(const Eigen::Vector3d& from) {
+    std::vector<Eigen::Vector3f> points;
+    for (double y = -3.9; y < 4; y += 0.4)
+      for (double z = -0.9; z < 4; z += 0.4) {
+        if (std::abs(y) > 1.2) points.emplace_back(6.1f, static_cast<float>(y), static_cast<float>(z));
+        points.emplace_back(-6.1f, static_cast<float>(y), static_cast<float>(z));
+      }
+    for (double x = -5.9; x < 6; x += 0.4)
+      for (double y = -3.9; y < 4; y += 0.4)
+        points.emplace_back(static_cast<float>(x), static_cast<float>(y), -1.1f);
+    map->integrate(points, from.cast<float>());
+  }
+};
+
+class UtilityCheck {
+ public:
+  UtilityCheck(const ViewUtility& utility, const UtilityWorld& world, Findings& findings)
+      : utility_(utility), world_(world), findings_(findings) {}
+
+  void run() {
+    try {
+      utility_.require_fit(world_.known);
+    } catch (const InputError&) {
+      return;  // trained with another mapping
+    }
+    const std::vector<double> values = asked(1);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      findings_.expect("finite", std::isfinite(values[k]),
+                       [&] { return place(k) + " is worth " + std::to_string(values[k]); });
+    findings_.expect("repeatable", asked(1) == values,
+                     [&] { return world_.name + ": other values when asked again"; });
+    findings_.expect("threads", asked(4) == values,
+                     [&] { return world_.name + ": other values with four threads"; });
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      double alone = 0;
+      utility_.score(world_.known, {&world_.views[k], 1}, {&alone, 1});
+      findings_.expect("alone", alone == values[k],
+                       [&] { return place(k) + " has another value when asked alone"; });
+    }
+    blind();
+  }
+
+ private:
+  std::vector<double> asked(int threads) const {
+    EpisodeView known = world_.known;
+    known.threads = threads;
+    std::vector<double> values(world_.views.size(), std::nan(""));
+    utility_.score(known, world_.views, values);
+    return values;
+  }
+  std::string place(std::size_t k) const {
+    return world_.name + ": view " + std::to_string(k);
+  }
+
+  // Without the truth: the same values, or refused in words.
+  void blind() {
+    EpisodeView known = world_.known;
+    known.truth = nullptr;
+    std::vector<double> values(world_.views.size());
+    try {
+      utility_.score(known, world_.views, values);
+      findings_.expect("truth", values == asked(1), [&] {
+        return world_.name + ": asks the truth, and answers otherwise without it";
+      });
+    } catch (const InputError&) {
+      findings_.expect("truth", true, {});
+    }
+  }
+
+  const ViewUtility& utility_;
+  const UtilityWorld& world_;
+  Findings& findings_;
+};
+
+}  // namespace
+
+std::vector<CheckResult> check_utility(const Specimen<ViewUtility>& subject, const CheckOptions&) {
+  const UtilityWorld nothing("nothing known", 0), room("a room seen twice", 2);
+  return check_every_case(subject, "its values",
+                          [&](const ViewUtility& utility, Findings& findings, bool) {
+                            UtilityCheck(utility, nothing, findings).run();
+                            UtilityCheck(utility, room, findings).run();
+                          });
+}
+
+}  // namespace lapwing

@@ -1,0 +1,391 @@
+#include "framework/explore/episode.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <queue>
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+namespace {
+
+constexpr int kRescored = 4;  // views that are re-scored together; a part of the result
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void require_sense(const EpisodeSettings& s, const Map& map) {
+  check_camera(s.sensor.pinhole, s.sensor.range);
+  const auto above = [](double value, const char* what) {
+    if (!(value > 0 && std::isfinite(value)))
+      throw InputError(std::string(what) + " must be above 0, not " + std::to_string(value));
+  };
+  above(s.step, "the step to a neighbour");
+  above(s.turn, "the turn to a neighbour");
+  above(s.body, "the edge of the body");
+  above(s.speed, "the speed");
+  above(s.turn_rate, "the turn rate");
+  if (!(s.clear >= s.body)) throw InputError("the box cleared at the start must hold the body");
+  if (s.visits < 1 || s.steps < 1) throw InputError("expected at least one visit and one step");
+  if (!map.settings().observations)
+    throw InputError("an exploration needs a map that counts observations");
+  if (std::abs(map.settings().maximum_range - s.sensor.range) > 1e-9)
+    throw InputError("the map's maximum_range must be the camera's range");
+}
+
+// All voxels of the box become free, and are as uncertain as before.
+VoxelBox clear_box(Map& map, const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector3d inside = Eigen::Vector3d::Constant(map.grid().resolution() / 2);
+  const VoxelKey low = map.grid().key(box.min() + inside), high = map.grid().key(box.max() - inside);
+  std::vector<VoxelLeaf> leaves;
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x)
+        leaves.push_back({{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                           static_cast<std::uint16_t>(z)},
+                          0, 0, map.settings().clamp_min});
+  map.import(leaves);
+  return {low, high};
+}
+
+// The viewpoints that could be gone to, by value; values of older maps are upper bounds.
+class Candidates {
+ public:
+  struct Entry {
+    double value;
+    int place;
+    int scored;  // at which step
+    // The highest value on top, of equal ones the one that was known first.
+    bool operator<(const Entry& other) const {
+      return value != other.value ? value < other.value : place > other.place;
+    }
+  };
+  void push(const Entry& entry) { queue_.push(entry); }
+  bool empty() const { return queue_.empty(); }
+  const Entry& top() const { return queue_.top(); }
+  Entry pop() {
+    const Entry entry = queue_.top();
+    queue_.pop();
+    return entry;
+  }
+
+ private:
+  std::priority_queue<Entry> queue_;
+};
+
+class Explorer {
+ public:
+  Explorer(const EpisodeSettings& settings, const GroundTruth& truth, ObservedSurface& observed,
+           const ViewUtility& utility, Map& map, const EpisodeObserver& observer)
+      : settings_(settings), truth_(truth), observed_(observed), utility_(utility), map_(map),
+        observer_(observer), means_(map),
+        graph_(map, Eigen::Vector3d::Constant(settings.body / 2),
+               {settings.speed, settings.turn_rate}) {
+    known_ = {&map, &means_, settings.sensor.pinhole, settings.sensor.range, 0,
+              settings.show_truth ? &observed : nullptr, settings.threads};
+  }
+
+  EpisodeResult run(const Viewpoint& start);
+
+ private:
+  void begin(const Viewpoint& start);
+  // The next viewpoint and the way there; false where the episode ends.
+  bool choose(EpisodeStep& taken, int& place);
+  void look(EpisodeStep& taken, int place);
+  void add_neighbours(int place, std::vector<Viewpoint>& reachable);
+  void score(std::span<const int> places);
+  bool stopped();
+  bool within_bounds(const Viewpoint& view) const {
+    return !settings_.bounds || settings_.bounds->contains(view.position);
+  }
+
+  const EpisodeSettings& settings_;
+  const GroundTruth& truth_;
+  ObservedSurface& observed_;
+  const ViewUtility& utility_;
+  Map& map_;
+  const EpisodeObserver& observer_;
+  MapMeans means_;
+  ViewpointGraph graph_;
+  EpisodeView known_;
+  Candidates candidates_;
+  std::vector<int> visits_;  // by place
+  int at_ = 0;
+  int step_ = 0;
+  int scored_ = 0;
+  double began_ = 0;
+  EpisodeResult result_;
+};
+
+void Explorer::begin(const Viewpoint& start) {
+  known_.pitch = start.pitch;
+  utility_.require_fit(known_);
+  if (!map_.grid().contains(start.position))
+    throw InputError("the start lies outside the largest map");
+  const Eigen::AlignedBox3d cleared = cleared_box(map_.grid(), start.position, settings_.clear);
+  if (truth_.box_blocked(cleared))
+    throw InputError("the start at (" + std::to_string(start.position.x()) + ", " +
+                     std::to_string(start.position.y()) + ", " +
+                     std::to_string(start.position.z()) + ") lies in an obstacle: a box of " +
+                     std::to_string(settings_.clear) + " m about it must be free");
+  means_.touch(clear_box(map_, cleared));
+  int ways = 0;
+  for (const Viewpoint& next : neighbours_of(start, settings_.step, settings_.turn))
+    ways += next.position != start.position && within_bounds(next) && graph_.free(start, next);
+  if (ways == 0)
+    throw InputError("no neighbour of the start could be reached: a step of " +
+                     std::to_string(settings_.step) + " m leaves the box of " +
+                     std::to_string(settings_.clear) +
+                     " m that is known to be free, or the bounds");
+  at_ = graph_.add(start);
+  visits_.push_back(0);
+  score(std::vector<int>{at_});
+}
+
+void Explorer::score(std::span<const int> places) {
+  std::vector<Viewpoint> views;
+  for (const int place : places) views.push_back(graph_[place]);
+  std::vector<double> values(views.size());
+  utility_.score(known_, views, values);
+  scored_ += static_cast<int>(places.size());
+  for (std::size_t k = 0; k < places.size(); ++k)
+    candidates_.push({values[k], places[k], step_});
+}
+
+bool Explorer::choose(EpisodeStep& taken, int& place) {
+  bool blocked = false;
+  std::vector<Candidates::Entry> unreachable;
+  const auto keep = [&] {
+    for (const Candidates::Entry& entry : unreachable) candidates_.push(entry);
+  };
+  while (!candidates_.empty()) {
+    std::vector<int> stale;
+    while (!candidates_.empty() && candidates_.top().scored != step_ &&
+           static_cast<int>(stale.size()) < kRescored) {
+      const int old = candidates_.pop().place;
+      if (visits_[static_cast<std::size_t>(old)] < settings_.visits) stale.push_back(old);
+    }
+    if (!stale.empty()) {
+      score(stale);
+      continue;
+    }
+    if (candidates_.empty()) break;
+    const Candidates::Entry best = candidates_.pop();
+    if (visits_[static_cast<std::size_t>(best.place)] >= settings_.visits) continue;
+    if (!(best.value > 0) && step_ > 0) {
+      candidates_.push(best);
+      keep();
+      result_.end = EpisodeEnd::nothing_to_gain;
+      return false;
+    }
+    const std::vector<int> way = graph_.way(at_, best.place);
+    if ((way.empty() && best.place != at_) || !graph_.free(graph_[best.place], graph_[best.place])) {
+      unreachable.push_back(best);
+      blocked = true;
+      continue;
+    }
+    taken.value = best.value;
+    const MoveTimes times{settings_.speed, settings_.turn_rate};
+    int from = at_;
+    for (const int next : way) {
+      taken.length += (graph_[next].position - graph_[from].position).norm();
+      taken.time += times.of(graph_[from], graph_[next]);
+      taken.way.push_back(graph_[next]);
+      from = next;
+    }
+    keep();
+    if (settings_.budget && taken.time > *settings_.budget) {
+      candidates_.push(best);
+      result_.end = EpisodeEnd::budget;
+      return false;
+    }
+    if (visits_[static_cast<std::size_t>(best.place)] + 1 < settings_.visits)
+      candidates_.push({best.value, best.place, step_});
+    place = best.place;
+    return true;
+  }
+  keep();
+  result_.end = EpisodeEnd::no_way;
+  (void)blocked;
+  return false;
+}
+
+void Explorer::look(EpisodeStep& taken, int place) {
+  taken.view = graph_[place];
+  const double before = wall_seconds();
+  const PosedDepthImage image =
+      settings_.sensor.measure(truth_.scene(), taken.view,
+                               settings_.seed + static_cast<std::uint64_t>(step_),
+                               settings_.threads);
+  const double after = wall_seconds();
+  began_ += after - before;  // the camera's time is not the explorer's
+  map_.integrate(image);
+  means_.touch(reach_box(map_.grid(), taken.view, settings_.sensor.pinhole, settings_.sensor.range));
+  const double mapped = wall_seconds();
+  observed_.update(map_, taken.view);
+  began_ += wall_seconds() - mapped;  // nor is what the truth says of it
+  taken.observed = observed_.observed();
+  ++visits_[static_cast<std::size_t>(place)];
+  at_ = place;
+}
+
+void Explorer::add_neighbours(int place, std::vector<Viewpoint>& reachable) {
+  const Viewpoint here = graph_[place];
+  std::vector<int> fresh;
+  for (const Viewpoint& next : neighbours_of(here, settings_.step, settings_.turn)) {
+    if (!within_bounds(next) || !graph_.free(here, next)) continue;
+    reachable.push_back(next);
+    const bool known = graph_.find(next) >= 0;
+    const int added = graph_.add(next);
+    graph_.join(place, added);
+    if (known) continue;
+    visits_.push_back(0);
+    fresh.push_back(added);
+  }
+  score(fresh);
+}
+
+bool Explorer::stopped() {
+  if (settings_.cancellation && settings_.cancellation->cancelled()) {
+    result_.end = EpisodeEnd::cancelled;
+    return true;
+  }
+  if (settings_.wall_clock_guard && wall_seconds() - began_ > *settings_.wall_clock_guard) {
+    result_.end = EpisodeEnd::time;
+    return true;
+  }
+  return false;
+}
+
+EpisodeResult Explorer::run(const Viewpoint& start) {
+  result_.surface = static_cast<double>(truth_.size());
+  result_.end = EpisodeEnd::steps;
+  began_ = wall_seconds();
+  const double first = began_;
+  double last = began_;
+  begin(start);
+  for (step_ = 0; step_ < settings_.steps; ++step_) {
+    if (stopped()) break;
+    if (settings_.progress)
+      settings_.progress->report(static_cast<double>(step_) / settings_.steps,
+                                 "view " + std::to_string(step_ + 1) + " of " +
+                                     std::to_string(settings_.steps));
+    EpisodeStep taken;
+    if (!result_.steps.empty()) {
+      taken.length = result_.steps.back().length;
+      taken.time = result_.steps.back().time;
+    }
+    int place = 0;
+    if (!choose(taken, place)) break;
+    look(taken, place);
+    std::vector<Viewpoint> reachable;
+    ++step_;  // new views are scored for the map as it is now
+    add_neighbours(place, reachable);
+    --step_;
+    taken.scored = scored_;
+    scored_ = 0;
+    const double now = wall_seconds() - (began_ - first);
+    taken.seconds = now - last;
+    last = now;
+    result_.steps.push_back(std::move(taken));
+    if (observer_) {
+      const double before = wall_seconds();
+      observer_({step_, known_, reachable, result_.steps.back()});
+      began_ += wall_seconds() - before;
+    }
+  }
+  // What is left, all for the last map, in the order in which it became known.
+  std::vector<int> left;
+  for (int place = 0; place < graph_.size(); ++place)
+    if (visits_[static_cast<std::size_t>(place)] < settings_.visits) left.push_back(place);
+  std::vector<Viewpoint> views;
+  for (const int place : left) views.push_back(graph_[place]);
+  std::vector<double> values(views.size());
+  if (result_.end != EpisodeEnd::cancelled && result_.end != EpisodeEnd::time) {
+    utility_.score(known_, views, values);
+    for (std::size_t k = 0; k < views.size(); ++k)
+      result_.candidates.push_back({views[k], values[k]});
+  }
+  return std::move(result_);
+}
+
+}  // namespace
+
+const char* to_string(EpisodeEnd end) {
+  switch (end) {
+    case EpisodeEnd::steps: return "steps";
+    case EpisodeEnd::budget: return "budget";
+    case EpisodeEnd::nothing_to_gain: return "nothing_to_gain";
+    case EpisodeEnd::no_way: return "no_way";
+    case EpisodeEnd::time: return "time";
+    case EpisodeEnd::cancelled: return "cancelled";
+  }
+  return "";
+}
+
+std::string explain(EpisodeEnd end) {
+  switch (end) {
+    case EpisodeEnd::steps: return "all images that were asked for are taken";
+    case EpisodeEnd::budget: return "the next view lies beyond the flight's budget";
+    case EpisodeEnd::nothing_to_gain:
+      return "nothing left to gain: no view that could be reached has a utility above 0";
+    case EpisodeEnd::no_way:
+      return "no view is left that could be reached through known free space";
+    case EpisodeEnd::time: return "stopped by the wall clock's guard";
+    case EpisodeEnd::cancelled: return "cancelled";
+  }
+  return "";
+}
+
+double EpisodeResult::efficiency(int most) const {
+  double sum = 0;
+  for (int t = 0; t < most; ++t) {
+    if (steps.empty()) break;
+    sum += steps[std::min(static_cast<std::size_t>(t), steps.size() - 1)].observed;
+  }
+  return sum;
+}
+
+EpisodeResult explore(const EpisodeSettings& settings, const Viewpoint& start,
+                      const GroundTruth& truth, ObservedSurface& observed,
+                      const ViewUtility& utility, Map& map, const EpisodeObserver& observer) {
+  require_sense(settings, map);
+  map.set_threads(settings.threads);
+  Explorer explorer(settings, truth, observed, utility, map, observer);
+  return explorer.run(start);
+}
+
+std::vector<double> replay(const EpisodeSettings& settings, const EpisodeResult& flown,
+                           const GroundTruth& truth, ObservedSurface& observed, Map& map) {
+  ViewSensor sensor = settings.sensor;
+  sensor.noise.reset();
+  sensor.stereo.reset();
+  map.set_threads(settings.threads);
+  std::vector<double> curve;
+  for (const EpisodeStep& step : flown.steps) {
+    map.integrate(sensor.look(truth.scene(), step.view, settings.threads));
+    observed.update(map, step.view);
+    curve.push_back(observed.observed());
+  }
+  return curve;
+}
+
+std::vector<Viewpoint> neighbours_of(const Viewpoint& view, double step, double turn) {
+  const CameraAxes<double> axes = camera_axes(view.yaw, view.pitch);
+  std::vector<Viewpoint> next;
+  for (const Eigen::Vector3d& axis : {axes.right, axes.down, axes.forward})
+    for (const double sign : {1.0, -1.0}) {
+      next.push_back(view);
+      next.back().position += sign * step * axis;
+    }
+  for (const double by : {turn, -turn, std::numbers::pi}) {
+    next.push_back(view);
+    next.back().yaw = std::remainder(view.yaw + by, 2 * EIGEN_PI);
+  }
+  return next;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,92 @@
+#include "framework/explore/sample_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "framework/core/error.h"
+#include "framework/core/fields.h"
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+
+namespace lapwing {
+namespace {
+
+constexpr std::string_view kMagic = "lapwing samples 1\n";
+constexpr std::size_t kMostBytes = std::size_t{4} << 30;
+
+}  // namespace
+
+void SampleSet::add(std::span<const float> grid, double target) {
+  if (grid.size() != shape.size()) throw Error("a sample of another shape");
+  for (const float value : grid) {
+    if (!(value >= -1e-4f && value <= 1 + 1e-4f)) throw Error("a grid with a value outside 0 to 1");
+    grids.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255)));
+  }
+  targets.push_back(static_cast<float>(target));
+}
+
+void write_samples(const SampleSet& samples, const std::filesystem::path& path) {
+  Value header = Value::map();
+  header.set("world", samples.world);
+  header.set("episode", samples.episode);
+  header.set("samples", static_cast<std::int64_t>(samples.size()));
+  header.set("grid", to_value(samples.shape));
+  header.set("mapping", samples.mapping);
+  std::string bytes(kMagic);
+  bytes += to_json(header, -1);
+  bytes += '\n';
+  const std::size_t begin = bytes.size(), numbers = samples.size() * sizeof(float);
+  bytes.resize(begin + numbers + samples.grids.size());
+  std::memcpy(bytes.data() + begin, samples.targets.data(), numbers);
+  std::memcpy(bytes.data() + begin + numbers, samples.grids.data(), samples.grids.size());
+  write_file_atomically(path, bytes);
+}
+
+SampleSet read_samples(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path, kMostBytes);
+  const auto refuse = [&](const std::string& why) {
+    return InputError("'" + path.string() + "' is no file of samples: " + why);
+  };
+  if (!std::string_view(bytes).starts_with(kMagic)) throw refuse("another first line");
+  const std::size_t line = bytes.find('\n', kMagic.size());
+  if (line == bytes.npos) throw refuse("it ends in its first lines");
+  const Value header = from_json(
+      std::string_view(bytes).substr(kMagic.size(), line - kMagic.size()), path.string());
+  Diagnostics errors;
+  Fields fields(header, "", errors);
+  SampleSet samples;
+  samples.world = fields.text("world");
+  samples.episode = fields.integer("episode");
+  const std::int64_t count = fields.integer("samples");
+  const Value grid = fields.opaque("grid");
+  samples.mapping = fields.opaque("mapping");
+  fields.finish();
+  errors.throw_if_any();
+  samples.shape = grid_shape_from(grid);
+  const std::size_t begin = line + 1, rest = bytes.size() - begin;
+  const std::size_t each = sizeof(float) + samples.shape.size();
+  if (count < 0 || rest / each != static_cast<std::size_t>(count) || rest % each != 0)
+    throw refuse("it says " + std::to_string(count) + " samples, its " + std::to_string(rest) +
+                 " bytes hold another number");
+  samples.targets.resize(static_cast<std::size_t>(count));
+  const std::size_t numbers = samples.targets.size() * sizeof(float);
+  std::memcpy(samples.targets.data(), bytes.data() + begin, numbers);
+  for (const float target : samples.targets)
+    if (!std::isfinite(target)) throw refuse("a target is no finite number");
+  samples.grids.assign(bytes.begin() + static_cast<std::ptrdiff_t>(begin + numbers), bytes.end());
+  return samples;
+}
+
+std::vector<std::filesystem::path> sample_files(const std::filesystem::path& folder) {
+  std::error_code code;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, code))
+    if (entry.path().extension() == ".samples") files.push_back(entry.path());
+  if (code) throw InputError("'" + folder.string() + "': " + code.message());
+  if (files.empty()) throw InputError("'" + folder.string() + "' holds no file NAME.samples");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,34 @@
+// Training samples of one episode: what the map looked like around viewpoints, and what the oracle
+// said of them (thesis 5.4.5).
+//
+// A file is a line "lapwing samples 1", a line of JSON, then the targets (32-bit floats, little
+// endian) and the grids (a byte each, 255 times the value). Files are whole or not there.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "framework/explore/view_grid.h"
+
+namespace lapwing {
+
+struct SampleSet {
+  std::string world;  // "downtown 3": what must not be split between training and validation
+  std::int64_t episode = 0;
+  GridShape shape;
+  Value mapping;                    // as mapping_of gives it
+  std::vector<float> targets;       // (5.3)
+  std::vector<std::uint8_t> grids;  // shape.size() bytes of each sample
+
+  std::size_t size() const { return targets.size(); }
+  // Appends one; values outside [0, 1] are a defect.
+  void add(std::span<const float> grid, double target);
+};
+
+void write_samples(const SampleSet& samples, const std::filesystem::path& path);
+// InputError naming the file: no such file, another format, truncated, contradicting itself.
+SampleSet read_samples(const std::filesystem::path& path);
+// All files NAME.samples of a folder, by name. InputError where there is none.
+std::vector<std::filesystem::path> sample_files(const std::filesystem::path& folder);
+
+}  // namespace lapwing

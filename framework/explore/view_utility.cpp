@@ -1,0 +1,25 @@
+#include "framework/explore/view_utility.h"
+
+#include <cmath>
+
+#include "framework/core/error.h"
+
+namespace lapwing {
+
+void ViewUtility::score(const EpisodeView& known, std::span<const Viewpoint> views,
+                        std::span<double> values) const {
+  if (views.size() != values.size()) throw Error("as many values as views are needed");
+  if (!known.map || !known.means) throw Error("a utility needs a map and its means");
+  if (views.empty()) return;
+  values_of(known, views, values);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (std::isfinite(values[i])) continue;
+    const Viewpoint& view = views[i];
+    throw Error("the utility of the view from (" + std::to_string(view.position.x()) + ", " +
+                std::to_string(view.position.y()) + ", " + std::to_string(view.position.z()) +
+                ") with yaw " + std::to_string(view.yaw) + " is " + std::to_string(values[i]) +
+                ", which is no finite number");
+  }
+}
+
+}  // namespace lapwing

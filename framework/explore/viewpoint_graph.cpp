@@ -1,0 +1,88 @@
+#include "framework/explore/viewpoint_graph.h"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+
+namespace lapwing {
+
+double MoveTimes::of(const Viewpoint& a, const Viewpoint& b) const {
+  const double turned = std::abs(std::remainder(a.yaw - b.yaw, 2 * EIGEN_PI));
+  return (a.position - b.position).norm() / speed + turned / turn_rate;
+}
+
+int ViewpointGraph::add(const Viewpoint& view) {
+  const int place = index_.add(view);
+  if (static_cast<std::size_t>(place) == edges_.size()) edges_.emplace_back();
+  return place;
+}
+
+bool ViewpointGraph::joined(int a, int b) const {
+  const auto& edges = edges_[static_cast<std::size_t>(a)];
+  return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) { return edge.to == b; });
+}
+
+void ViewpointGraph::join(int a, int b) {
+  if (a == b || joined(a, b)) return;
+  const double seconds = times_.of(index_[a], index_[b]);
+  edges_[static_cast<std::size_t>(a)].push_back({b, seconds});
+  edges_[static_cast<std::size_t>(b)].push_back({a, seconds});
+}
+
+void ViewpointGraph::cut(int a, int b) {
+  std::erase_if(edges_[static_cast<std::size_t>(a)], [&](const Edge& e) { return e.to == b; });
+  std::erase_if(edges_[static_cast<std::size_t>(b)], [&](const Edge& e) { return e.to == a; });
+}
+
+bool ViewpointGraph::free(const Viewpoint& a, const Viewpoint& b) const {
+  return map_->swept_box_free(a.position, b.position, half_);
+}
+
+// Dijkstra; of equally quick ways the one found first, in the order of viewpoints.
+std::vector<int> ViewpointGraph::believed_way(int from, int to) const {
+  const auto count = static_cast<std::size_t>(size());
+  std::vector<double> seconds(count, std::numeric_limits<double>::infinity());
+  std::vector<int> before(count, -1);
+  using Open = std::pair<double, int>;
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
+  seconds[static_cast<std::size_t>(from)] = 0;
+  open.push({0, from});
+  while (!open.empty()) {
+    const auto [reached, at] = open.top();
+    open.pop();
+    if (reached > seconds[static_cast<std::size_t>(at)]) continue;
+    if (at == to) break;
+    for (const Edge& edge : edges_[static_cast<std::size_t>(at)]) {
+      const double there = reached + edge.seconds;
+      if (there >= seconds[static_cast<std::size_t>(edge.to)]) continue;
+      seconds[static_cast<std::size_t>(edge.to)] = there;
+      before[static_cast<std::size_t>(edge.to)] = at;
+      open.push({there, edge.to});
+    }
+  }
+  std::vector<int> way;
+  if (before[static_cast<std::size_t>(to)] < 0) return way;
+  for (int at = to; at != from; at = before[static_cast<std::size_t>(at)]) way.push_back(at);
+  std::reverse(way.begin(), way.end());
+  return way;
+}
+
+std::vector<int> ViewpointGraph::way(int from, int to) {
+  if (from == to) return {};
+  for (;;) {
+    std::vector<int> way = believed_way(from, to);
+    int at = from;
+    bool good = true;
+    for (const int next : way) {
+      if (!free(index_[at], index_[next])) {
+        cut(at, next);
+        good = false;
+        break;
+      }
+      at = next;
+    }
+    if (good) return way;
+  }
+}
+
+}  // namespace lapwing

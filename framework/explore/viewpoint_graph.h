@@ -1,0 +1,53 @@
+// The viewpoints of an exploration and the free ways between them.
+#pragma once
+
+#include <vector>
+
+#include "framework/explore/viewpoint_index.h"
+#include "framework/map/map.h"
+
+namespace lapwing {
+
+// How long a move takes: straight ways at a speed, turns on the spot.
+struct MoveTimes {
+  double speed = 1, turn_rate = 1;  // m/s, rad/s
+  double of(const Viewpoint& a, const Viewpoint& b) const;
+};
+
+// Viewpoints, and moves between neighbours that were free when they were added. Shortest ways are
+// asked for in the map as it is now: a move that is no longer free is left out of it for good.
+class ViewpointGraph {
+ public:
+  ViewpointGraph(const Map& map, const Eigen::Vector3d& half, const MoveTimes& times)
+      : map_(&map), half_(half), times_(times) {}
+
+  int find(const Viewpoint& view) const { return index_.find(view); }
+  int add(const Viewpoint& view);
+  // Both ways.
+  void join(int a, int b);
+  bool joined(int a, int b) const;
+  const Viewpoint& operator[](int place) const { return index_[place]; }
+  int size() const { return index_.size(); }
+
+  // Whether the body can move straight there through free voxels.
+  bool free(const Viewpoint& a, const Viewpoint& b) const;
+
+  // The quickest way, `from` left out; empty where there is none or where `from` is `to`.
+  std::vector<int> way(int from, int to);
+
+ private:
+  struct Edge {
+    int to;
+    double seconds;
+  };
+  std::vector<int> believed_way(int from, int to) const;
+  void cut(int a, int b);
+
+  const Map* map_;
+  Eigen::Vector3d half_;
+  MoveTimes times_;
+  ViewpointIndex index_;
+  std::vector<std::vector<Edge>> edges_;
+};
+
+}  // namespace lapwing

@@ -1,0 +1,64 @@
+// The mean entropy of the voxels on the way to surfaces that are already known.
+//
+//   utility: {type: average_entropy, pixel_step: 2}
+#include <cmath>
+
+#include "framework/core/parallel.h"
+#include "framework/explore/view_rays.h"
+#include "framework/plugin/plugin.h"
+
+namespace lapwing {
+namespace {
+
+// Bits; 1 where nothing is known.
+double entropy_of(const VoxelReading& reading) {
+  if (!reading.known) return 1;
+  const double p = probability_of(reading.log_odds);
+  return -p * std::log2(p) - (1 - p) * std::log2(1 - p);
+}
+
+class AverageEntropy final : public ViewUtility {
+ public:
+  static constexpr PluginText kText{
+      "average_entropy", "1.0.0", "mean entropy of the voxels on the way to known surfaces",
+      "Isler et al. 2016; Delmerico et al. 2018, average entropy"};
+  static ParameterTable parameters() {
+    return ParameterTable().integer("pixel_step", 2, "a ray through every so many pixels and rows",
+                                    between(1, 64));
+  }
+  explicit AverageEntropy(const Parameters& p) : step_(static_cast<int>(p.integer("pixel_step"))) {}
+
+ protected:
+  void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
+                 std::span<double> values) const override {
+    parallel_for(views.size(), known.threads,
+                 [&](std::size_t i) { values[i] = mean(known, views[i]); });
+  }
+
+ private:
+  double mean(const EpisodeView& known, const Viewpoint& view) const {
+    double entropy = 0, met = 0;
+    for (const Eigen::Vector3d& direction : view_rays(view, known.pinhole, step_)) {
+      double on_ray = 0, voxels = 0;
+      bool ends = false;
+      walk_ray(*known.map, view.position, direction, known.range,
+               [&](const VoxelReading& reading, double) {
+                 on_ray += entropy_of(reading);
+                 voxels += 1;
+                 ends = reading.state == VoxelState::occupied;
+                 return !ends;
+               });
+      if (!ends) continue;
+      entropy += on_ray;
+      met += voxels;
+    }
+    return met > 0 ? entropy / met : 0;
+  }
+
+  int step_;
+};
+
+}  // namespace
+}  // namespace lapwing
+
+LAPWING_PLUGINS(lapwing::AverageEntropy)

@@ -1,0 +1,344 @@
+#include "plugins/utilities/learned/fit.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "framework/core/error.h"
+#include "framework/core/parallel.h"
+#include "plugins/utilities/learned/model_file.h"
+
+namespace lapwing::learned {
+namespace {
+
+struct Samples {
+  std::vector<SampleSet> sets;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> all;  // set, sample
+
+  const std::uint8_t* grid(std::size_t k) const {
+    const SampleSet& set = sets[all[k].first];
+    return set.grids.data() + all[k].second * set.shape.size();
+  }
+  float target(std::size_t k) const { return sets[all[k].first].targets[all[k].second]; }
+  std::size_t size() const { return all.size(); }
+};
+
+Samples read_all(const std::vector<std::filesystem::path>& files, const GridShape& shape,
+                 Value& mapping) {
+  Samples samples;
+  for (const auto& file : files) {
+    SampleSet set = read_samples(file);
+    if (!(set.shape == shape))
+      throw InputError("'" + file.string() + "' holds grids of another shape than the network's");
+    if (mapping.is_null()) mapping = set.mapping;
+    const std::string difference = mapping_difference(set.mapping, mapping);
+    if (!difference.empty())
+      throw InputError("'" + file.string() + "' was made with another mapping: " + difference);
+    for (std::size_t k = 0; k < set.size(); ++k)
+      samples.all.emplace_back(static_cast<std::uint32_t>(samples.sets.size()),
+                               static_cast<std::uint32_t>(k));
+    samples.sets.push_back(std::move(set));
+  }
+  return samples;
+}
+
+NetworkShape shape_of(const Parameters& p) {
+  NetworkShape shape;
+  shape.grid = fit_shape(p);
+  shape.blocks = static_cast<int>(p.integer("blocks"));
+  shape.units = static_cast<int>(p.integer("units"));
+  shape.growth = static_cast<int>(p.integer("growth"));
+  shape.hidden1 = static_cast<int>(p.integer("hidden1"));
+  shape.hidden2 = static_cast<int>(p.integer("hidden2"));
+  require_sense(shape);
+  return shape;
+}
+
+// What the network says of samples, normalised.
+std::vector<float> answers(const Samples& samples, const Model& model, int threads) {
+  const FoldedNetwork network(NetworkLayout(model.shape), model.state);
+  std::vector<float> values(samples.size());
+  parallel_for(samples.size(), threads,
+               [&](std::size_t k) { values[k] = network.answer(samples.grid(k)); });
+  return values;
+}
+
+struct Judged {
+  double loss = 0, rho = 0;
+};
+
+Judged judge(const Samples& samples, const Model& model, int threads) {
+  const std::vector<float> values = answers(samples, model, threads);
+  std::vector<float> targets(values.size());
+  Judged judged;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    targets[k] = samples.target(k);
+    const double expected =
+        (static_cast<double>(targets[k]) - model.target_mean) / model.target_deviation;
+    const double error = static_cast<double>(values[k]) - expected;
+    judged.loss += error * error / static_cast<double>(values.size());
+  }
+  judged.rho = rank_correlation(values, targets);
+  return judged;
+}
+
+class Training {
+ public:
+  Training(const Parameters& p, const FitRequest& request);
+  Value run();
+
+ private:
+  void begin();
+  void resume();
+  double epoch(std::int64_t number);
+  void note(std::int64_t number, double training, const Judged& judged, double seconds);
+
+  const FitRequest& request_;
+  NetworkShape shape_;
+  NetworkLayout layout_;
+  int batch_, epochs_, patience_;
+  double rate_, dropout_, regularisation_;
+  bool mirror_, cosine_;
+  Samples training_, validation_;
+  Model model_;
+  Judged best_;
+  std::int64_t best_epoch_ = 0, first_ = 1;
+  double seconds_ = 0;
+};
+
+Training::Training(const Parameters& p, const FitRequest& request)
+    : request_(request), shape_(shape_of(p)), layout_(shape_),
+      batch_(static_cast<int>(p.integer("batch"))), epochs_(static_cast<int>(p.integer("epochs"))),
+      patience_(static_cast<int>(p.integer("patience"))), rate_(p.number("rate")),
+      dropout_(p.number("dropout")), regularisation_(p.number("regularisation")),
+      mirror_(p.boolean("mirror")), cosine_(p.text("schedule") == "cosine") {
+  Value mapping;
+  training_ = read_all(request.training, shape_.grid, mapping);
+  validation_ = read_all(request.validation, shape_.grid, mapping);
+  // Evenly over all of them.
+  const auto most = static_cast<std::size_t>(p.integer("validation_samples"));
+  if (validation_.size() > most) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> fewer;
+    for (std::size_t k = 0; k < most; ++k)
+      fewer.push_back(validation_.all[k * validation_.size() / most]);
+    validation_.all = std::move(fewer);
+  }
+  if (training_.size() < 2 * static_cast<std::size_t>(kShards) || validation_.size() < 2)
+    throw InputError("too few samples to train with: " + std::to_string(training_.size()) +
+                     " of training, " + std::to_string(validation_.size()) + " of validation");
+  batch_ = static_cast<int>(std::min(static_cast<std::size_t>(batch_), training_.size()));
+  model_.shape = shape_;
+  model_.mapping = mapping;
+}
+
+void Training::begin() {
+  double sum = 0, squares = 0;
+  for (std::size_t k = 0; k < training_.size(); ++k)
+    sum += static_cast<double>(training_.target(k));
+  const double count = static_cast<double>(training_.size());
+  model_.target_mean = sum / count;
+  for (std::size_t k = 0; k < training_.size(); ++k) {
+    const double d = static_cast<double>(training_.target(k)) - model_.target_mean;
+    squares += d * d;
+  }
+  model_.target_deviation = std::sqrt(squares / count);
+  if (!(model_.target_deviation > 0))
+    throw InputError("every sample of training has the same target: there is nothing to learn");
+  model_.state = initial_state(layout_, Random(request_.seed));
+  model_.adam.emplace(layout_.parameters);
+  best_.loss = HUGE_VAL;
+}
+
+void Training::resume() {
+  Model saved = read_model(request_.checkpoint);
+  if (!saved.adam) throw InputError("'" + request_.checkpoint.string() + "' is no checkpoint");
+  if (!(saved.shape == shape_))
+    throw InputError("the checkpoint has another architecture than asked for");
+  const std::string difference = mapping_difference(model_.mapping, saved.mapping);
+  if (!difference.empty()) throw InputError("the checkpoint has another mapping: " + difference);
+  model_ = std::move(saved);
+  first_ = model_.progress.at("epoch").as_integer() + 1;
+  best_epoch_ = model_.progress.at("best_epoch").as_integer();
+  best_.loss = model_.progress.at("best_loss").as_number();
+  best_.rho = model_.progress.at("best_rho").as_number();
+  seconds_ = model_.progress.at("seconds").as_number();
+}
+
+// One pass over the samples in an order of its own; the mean loss. Of the last, smaller batch the
+// samples wait for another epoch.
+double Training::epoch(std::int64_t number) {
+  std::vector<std::uint32_t> order(training_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  Random random = Random(request_.seed).split(static_cast<std::uint64_t>(number));
+  for (std::size_t k = order.size(); k-- > 1;)
+    std::swap(order[k], order[static_cast<std::size_t>(
+                            random.integer(0, static_cast<std::int64_t>(k)))]);
+  Backpropagation network(layout_, batch_, request_.threads);
+  const std::size_t batches = order.size() / static_cast<std::size_t>(batch_);
+  std::vector<float> gradient(layout_.parameters), targets(static_cast<std::size_t>(batch_));
+  std::vector<std::uint8_t> mirrored(static_cast<std::size_t>(batch_));
+  double sum = 0;
+  for (std::size_t b = 0; b < batches; ++b) {
+    if (request_.cancellation && request_.cancellation->cancelled()) throw Cancelled();
+    for (auto& turned : mirrored) turned = mirror_ && (random.bits() >> 63) != 0;
+    parallel_for(targets.size(), request_.threads, [&](std::size_t i) {
+      const std::size_t k = order[b * targets.size() + i];
+      decode_grid(layout_, training_.grid(k), mirrored[i] != 0, network.input(static_cast<int>(i)));
+      targets[i] = static_cast<float>((static_cast<double>(training_.target(k)) -
+                                       model_.target_mean) /
+                                      model_.target_deviation);
+    });
+    BatchOptions options;
+    options.dropout = dropout_;
+    options.regularisation = regularisation_;
+    options.seed = random.bits();
+    sum += network.loss(model_.state, targets, options, gradient);
+    const double through = (static_cast<double>(number - 1) * static_cast<double>(batches) +
+                            static_cast<double>(b)) /
+                           (static_cast<double>(epochs_) * static_cast<double>(batches));
+    const double rate = cosine_ ? rate_ * 0.5 * (1 + std::cos(EIGEN_PI * std::min(through, 1.0)))
+                                : rate_;
+    model_.adam->step(model_.state.parameters, gradient, rate);
+  }
+  return sum / static_cast<double>(batches);
+}
+
+void Training::note(std::int64_t number, double training, const Judged& judged, double seconds) {
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "epoch %lld: training loss %.4f, validation loss %.4f, rho %.4f, %.0f s",
+                static_cast<long long>(number), training, judged.loss, judged.rho, seconds);
+  request_.log(line);
+}
+
+Value Training::run() {
+  if (request_.resume)
+    resume();
+  else
+    begin();
+  char line[160];
+  std::snprintf(line, sizeof line, "%zu samples of training, %zu of validation, %zu parameters",
+                training_.size(), validation_.size(), layout_.parameters);
+  request_.log(line);
+  for (std::int64_t number = first_; number <= epochs_; ++number) {
+    if (number - 1 - best_epoch_ >= patience_ && best_epoch_ > 0) {
+      request_.log("stopped: no better for " + std::to_string(patience_) + " epochs");
+      break;
+    }
+    const auto begin_time = std::chrono::steady_clock::now();
+    const double loss = epoch(number);
+    const Judged judged = judge(validation_, model_, request_.threads);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_time).count();
+    seconds_ += seconds;
+    note(number, loss, judged, seconds);
+    if (judged.loss < best_.loss) {
+      best_ = judged;
+      best_epoch_ = number;
+      Model kept = model_;
+      kept.adam.reset();
+      Value& from = kept.provenance = Value::map();
+      from.set("samples", static_cast<std::int64_t>(training_.size()));
+      from.set("validation_samples", static_cast<std::int64_t>(validation_.size()));
+      from.set("epoch", number);
+      from.set("seed", static_cast<std::int64_t>(request_.seed));
+      from.set("validation_loss", judged.loss);
+      from.set("validation_rho", std::isfinite(judged.rho) ? Value(judged.rho) : Value());
+      std::vector<std::string> worlds;
+      for (const SampleSet& set : training_.sets)
+        if (std::find(worlds.begin(), worlds.end(), set.world) == worlds.end())
+          worlds.push_back(set.world);
+      Value& list = from.set("worlds", Value::list());
+      for (const std::string& world : worlds) list.push_back(world);
+      write_model(kept, request_.model);
+    }
+    Value& progress = model_.progress = Value::map();
+    progress.set("epoch", number);
+    progress.set("best_epoch", best_epoch_);
+    progress.set("best_loss", best_.loss);
+    progress.set("best_rho", std::isfinite(best_.rho) ? best_.rho : 0.0);
+    progress.set("seconds", seconds_);
+    write_model(model_, request_.checkpoint);
+  }
+  Value figures = Value::map();
+  figures.set("epoch", best_epoch_);
+  figures.set("validation_loss", best_.loss);
+  figures.set("validation_rho", std::isfinite(best_.rho) ? best_.rho : 0.0);
+  figures.set("seconds", seconds_);
+  return figures;
+}
+
+}  // namespace
+
+ParameterTable fit_parameters() {
+  ParameterTable grid;
+  grid.integer("across", 16, "points to the right and left", between(2, 64))
+      .integer("ahead", 16, "points ahead and behind", between(2, 64))
+      .integer("up", 8, "points up and down", between(2, 64))
+      .integer("levels", 3, "scales", between(1, MapMeans::kMostLevels));
+  return ParameterTable()
+      .table("grid", grid, "what the network sees of the map")
+      .integer("blocks", 2, "N_c", between(1, 5))
+      .integer("units", 4, "N_u, convolutions of each block", between(1, 16))
+      .integer("growth", 8, "N_f, maps that every convolution adds", between(8, 1024))
+      .integer("hidden1", 128, "N_h1", between(8, 1024))
+      .integer("hidden2", 32, "N_h2", between(8, 1024))
+      .integer("batch", 128, "samples of a step", between(8, 4096))
+      .integer("epochs", 30, "passes over the samples", between(1, 100000))
+      .integer("patience", 10, "epochs without a better validation, then it stops",
+               between(1, 100000))
+      .number("rate", 1e-4, "", "of Adam", above(0))
+      .choice("schedule", "constant", {"constant", "cosine"},
+              "the rate stays, or falls to 0 with the last epoch")
+      .number("dropout", 0.5, "", "share of hidden numbers left out", between(0, 0.95))
+      .number("regularisation", 1e-4, "", "lambda of (5.4)", between(0, 1))
+      .boolean("mirror", true, "exchange right and left in half of the samples")
+      .integer("validation_samples", 20000, "at most, evenly over all", between(2, 10000000));
+}
+
+GridShape fit_shape(const Parameters& parameters) {
+  const Parameters& grid = parameters.table("grid");
+  return {static_cast<int>(grid.integer("across")), static_cast<int>(grid.integer("ahead")),
+          static_cast<int>(grid.integer("up")), static_cast<int>(grid.integer("levels"))};
+}
+
+Value fit(const Parameters& parameters, const FitRequest& request) {
+  return Training(parameters, request).run();
+}
+
+std::vector<float> predict(const std::filesystem::path& path, const SampleSet& samples,
+                           int threads) {
+  const Model model = read_model(path);
+  if (!(samples.shape == model.shape.grid))
+    throw InputError("the samples hold grids of another shape than the model '" + path.string() +
+                     "' asks for");
+  const std::string difference = mapping_difference(samples.mapping, model.mapping);
+  if (!difference.empty())
+    throw InputError("the samples do not fit the model '" + path.string() + "': " + difference);
+  const FoldedNetwork network(NetworkLayout(model.shape), model.state);
+  std::vector<float> values(samples.size());
+  parallel_for(samples.size(), threads, [&](std::size_t k) {
+    values[k] = static_cast<float>(
+        model.target_mean +
+        model.target_deviation *
+            static_cast<double>(network.answer(samples.grids.data() + k * samples.shape.size())));
+  });
+  return values;
+}
+
+double loss_of(const std::filesystem::path& path, std::span<const float> predicted,
+               std::span<const float> targets) {
+  if (predicted.size() != targets.size()) throw Error("loss: sizes differ");
+  const Model model = read_model(path);
+  double sum = 0;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const double error = (static_cast<double>(predicted[k]) - static_cast<double>(targets[k])) /
+                         model.target_deviation;
+    sum += error * error;
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(targets.size(), 1));
+}
+
+}  // namespace lapwing::learned

@@ -1,0 +1,101 @@
+#include "plugins/utilities/learned/model_file.h"
+
+#include <cstring>
+
+#include "framework/core/checksum.h"
+#include "framework/core/error.h"
+#include "framework/core/fields.h"
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+
+namespace lapwing::learned {
+namespace {
+
+constexpr std::string_view kMagic = "lapwing model 1\n";
+constexpr std::size_t kMostBytes = std::size_t{1} << 28;
+
+void append(std::string& bytes, const std::vector<float>& numbers) {
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
+}
+
+}  // namespace
+
+void write_model(const Model& model, const std::filesystem::path& path) {
+  std::string numbers;
+  append(numbers, model.state.parameters);
+  append(numbers, model.state.statistics);
+  if (model.adam) {
+    append(numbers, model.adam->first);
+    append(numbers, model.adam->second);
+  }
+  Value header = Value::map();
+  header.set("network", to_value(model.shape));
+  header.set("mapping", model.mapping);
+  Value& targets = header.set("targets", Value::map());
+  targets.set("mean", model.target_mean);
+  targets.set("deviation", model.target_deviation);
+  header.set("provenance", model.provenance);
+  if (model.adam) {
+    header.set("adam_steps", model.adam->steps);
+    header.set("progress", model.progress);
+  }
+  header.set("sha256", sha256(numbers));
+  write_file_atomically(path, std::string(kMagic) + to_json(header, -1) + "\n" + numbers);
+}
+
+Model read_model(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path, kMostBytes);
+  const auto refuse = [&](const std::string& why) {
+    return InputError("'" + path.string() + "' is no model of a learned utility: " + why);
+  };
+  const std::string_view all(bytes);
+  if (!all.starts_with(kMagic)) throw refuse("another first line");
+  const std::size_t line = bytes.find('\n', kMagic.size());
+  if (line == bytes.npos) throw refuse("it ends in its first lines");
+  const Value header = from_json(all.substr(kMagic.size(), line - kMagic.size()), path.string());
+  Diagnostics errors;
+  Fields fields(header, "", errors);
+  Model model;
+  const Value shape = fields.opaque("network");
+  model.mapping = fields.opaque("mapping");
+  Fields targets = fields.table("targets");
+  model.target_mean = targets.number("mean");
+  model.target_deviation = targets.number("deviation");
+  targets.finish();
+  model.provenance = fields.opaque("provenance");
+  const bool checkpoint = fields.has("adam_steps");
+  const std::int64_t steps = checkpoint ? fields.integer("adam_steps") : 0;
+  if (checkpoint) model.progress = fields.opaque("progress");
+  const std::string checksum = fields.text("sha256");
+  fields.finish();
+  errors.throw_if_any();
+  if (!model.mapping.is_map()) throw refuse("it has no mapping");
+  if (!(model.target_deviation > 0)) throw refuse("its deviation of targets is not above 0");
+  model.shape = network_shape_from(shape);
+  const NetworkLayout layout(model.shape);
+  const std::string_view numbers = all.substr(line + 1);
+  const std::size_t expected =
+      sizeof(float) * (layout.parameters * (checkpoint ? 3 : 1) + layout.statistics);
+  if (numbers.size() != expected)
+    throw refuse("its network has " + std::to_string(expected) + " bytes of numbers, the file " +
+                 std::to_string(numbers.size()));
+  if (sha256(numbers) != checksum) throw refuse("it is damaged: its checksum does not hold");
+  std::size_t at = 0;
+  const auto take = [&](std::size_t count) {
+    std::vector<float> values(count);
+    std::memcpy(values.data(), numbers.data() + at, count * sizeof(float));
+    at += count * sizeof(float);
+    return values;
+  };
+  model.state.parameters = take(layout.parameters);
+  model.state.statistics = take(layout.statistics);
+  if (checkpoint) {
+    model.adam.emplace(0);
+    model.adam->first = take(layout.parameters);
+    model.adam->second = take(layout.parameters);
+    model.adam->steps = steps;
+  }
+  return model;
+}
+
+}  // namespace lapwing::learned

@@ -1,0 +1,30 @@
+// A trained model as a file: architecture, weights, normalisation, mapping and provenance.
+//
+// A line "lapwing model 1", a line of JSON, then 32-bit floats, little endian: parameters, running
+// statistics and, in a checkpoint, the moments of Adam. The JSON holds their checksum.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "plugins/utilities/learned/backpropagation.h"
+
+namespace lapwing::learned {
+
+struct Model {
+  NetworkShape shape;
+  Value mapping;                      // what it was trained with (reading 5.2)
+  double target_mean = 0, target_deviation = 1;  // of the oracle's values
+  Value provenance;                   // where it comes from, for people
+  NetworkState state;
+  // Of a checkpoint alone.
+  std::optional<Adam> adam;
+  Value progress;
+};
+
+void write_model(const Model& model, const std::filesystem::path& path);
+// InputError naming the file: none there, another format, truncated, a checksum that does not hold,
+// sizes that contradict the architecture.
+Model read_model(const std::filesystem::path& path);
+
+}  // namespace lapwing::learned

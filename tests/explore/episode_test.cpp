@@ -1,0 +1,287 @@
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "tests/explore/explore_fixture.h"
+
+namespace lapwing {
+namespace {
+
+class Oracle final : public ViewUtility {
+ protected:
+  void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
+                 std::span<double> values) const override {
+    for (std::size_t k = 0; k < views.size(); ++k) values[k] = known.truth->gain(views[k]);
+  }
+};
+
+class Constant final : public ViewUtility {
+ public:
+  explicit Constant(double value) : value_(value) {}
+
+ protected:
+  void values_of(const EpisodeView&, std::span<const Viewpoint>,
+                 std::span<double> values) const override {
+    std::fill(values.begin(), values.end(), value_);
+  }
+
+ private:
+  double value_;
+};
+
+std::string refusal(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GroundTruth, HoldsTheSurfaceThatTheSpaceAroundTouches) {
+  const YardWorld world;
+  EXPECT_TRUE(world.truth.in_space({0, 0, 4}));
+  EXPECT_FALSE(world.truth.in_space({10, -3, 3}));  // in a house
+  std::size_t ground = 0;
+  for (const VoxelKey& key : world.truth.surface()) {
+    const Eigen::Vector3d p = world.truth.grid().center(key);
+    const bool under = p.x() > 6.6 && p.x() < 13.6 && p.y() > -7.6 && p.y() < 1.6 && p.z() < 0.4;
+    EXPECT_FALSE(under) << "the floor of a house is seen by nobody: " << p.transpose();
+    ground += p.z() < 0.4;
+  }
+  EXPECT_GT(ground, 7000u);  // of the 101 x 101 voxels
+  EXPECT_LT(ground, 101u * 101u);
+}
+
+TEST(GroundTruth, RefusesARegionWithoutSpaceAndAWorldTooLarge) {
+  EXPECT_NE(refusal([] { GroundTruth(yard(), {}, 0.01); }).find("2^29"), std::string::npos);
+}
+
+// The oracle's gain is what an image really adds to what was observed.
+TEST(ObservedSurface, GainIsWhatTheImageAdds) {
+  const YardWorld world;
+  ObservedSurface observed(world.truth, world.settings.sensor, YardWorld::new_map);
+  const auto map = YardWorld::new_map();
+  double before = 0;
+  for (const Viewpoint& view : {world.start, Viewpoint{{2, 1, 3}, 1.2, world.pitch}, world.start,
+                                Viewpoint{{-3, 2, 5}, 2.9, world.pitch}}) {
+    const double told = observed.gain(view);
+    map->integrate(world.settings.sensor.look(world.truth.scene(), view, 1));
+    observed.update(*map, view);
+    EXPECT_GT(told, 10);
+    EXPECT_NEAR(observed.observed() - before, told, 1e-6 * told);
+    before = observed.observed();
+  }
+  // By hand: each voxel's certainty, summed up.
+  double sum = 0;
+  for (const VoxelKey& key : world.truth.surface())
+    sum += 1 - std::exp(-0.5 * map->read(key).observations);
+  EXPECT_NEAR(sum, observed.observed(), 1e-6 * sum);
+}
+
+TEST(Neighbours, AreNineAlongTheCamerasAxes) {
+  const Viewpoint view{{1, 2, 3}, 0.5, -0.2};
+  const std::vector<Viewpoint> next = neighbours_of(view, 2.5, 0.4);
+  ASSERT_EQ(next.size(), 9u);
+  const CameraAxes<double> axes = camera_axes(0.5, -0.2);
+  EXPECT_NEAR((next[4].position - view.position - 2.5 * axes.forward).norm(), 0, 1e-12);
+  EXPECT_NEAR((next[1].position - view.position + 2.5 * axes.right).norm(), 0, 1e-12);
+  EXPECT_NEAR(next[6].yaw, 0.9, 1e-12);
+  EXPECT_NEAR(std::abs(std::remainder(next[8].yaw - 0.5, 2 * EIGEN_PI)), EIGEN_PI, 1e-12);
+  for (const Viewpoint& one : next) EXPECT_EQ(one.pitch, -0.2);
+}
+
+// Every viewpoint of a growing set asked anew at each step: what lazy values must come to.
+TEST(Episode, TheOracleTakesTheBestOfAllAtEveryStep) {
+  YardWorld world(10);
+  world.settings.show_truth = true;
+  const Oracle oracle;
+  ObservedSurface truth_of_test(world.truth, world.settings.sensor, YardWorld::new_map);
+  const auto map = YardWorld::new_map();
+  std::vector<Viewpoint> reachable{world.start};
+  std::vector<int> visits{0};
+  ViewpointIndex index;
+  index.add(world.start);
+  const EpisodeResult result = world.run(oracle, [&](const EpisodeMoment& moment) {
+    double best = 0;
+    for (std::size_t k = 0; k < reachable.size(); ++k)
+      if (visits[k] < 2) best = std::max(best, truth_of_test.gain(reachable[k]));
+    EXPECT_DOUBLE_EQ(moment.taken.value, best) << "step " << moment.step;
+    const auto place = static_cast<std::size_t>(index.find(moment.taken.view));
+    ASSERT_LT(place, reachable.size());
+    EXPECT_NEAR(truth_of_test.gain(moment.taken.view), best, 1e-9 * best);
+    ++visits[place];
+    map->integrate(world.settings.sensor.look(world.truth.scene(), moment.taken.view, 1));
+    truth_of_test.update(*map, moment.taken.view);
+    EXPECT_NEAR(moment.taken.observed, truth_of_test.observed(), 1e-6);
+    for (const Viewpoint& next : moment.neighbours)
+      if (index.add(next) == static_cast<int>(reachable.size())) {
+        reachable.push_back(next);
+        visits.push_back(0);
+      }
+  });
+  ASSERT_EQ(result.steps.size(), 10u);
+  EXPECT_EQ(result.end, EpisodeEnd::steps);
+  for (const int count : visits) EXPECT_LE(count, 2);
+}
+
+TEST(Episode, EfficiencyIsTheSumOfWhatWasObserved) {
+  YardWorld world(5);
+  world.settings.show_truth = true;
+  const EpisodeResult result = world.run(Oracle());
+  double sum = 0;
+  for (const EpisodeStep& step : result.steps) sum += step.observed;
+  EXPECT_DOUBLE_EQ(result.efficiency(5), sum);
+  EXPECT_DOUBLE_EQ(result.efficiency(7), sum + 2 * result.observed());  // it stays as it is
+  EXPECT_DOUBLE_EQ(result.efficiency(1), result.steps.front().observed);
+}
+
+// Flown ways lie in what was known to be free before the image at their end.
+TEST(Episode, TravelsThroughKnownFreeSpaceAlone) {
+  YardWorld world(25);
+  world.settings.show_truth = true;
+  const auto map = YardWorld::new_map();
+  const Eigen::AlignedBox3d cleared = cleared_box(map->grid(), world.start.position, 6);
+  std::vector<VoxelLeaf> leaves;
+  for (double x = cleared.min().x() + 0.2; x < cleared.max().x(); x += 0.4)
+    for (double y = cleared.min().y() + 0.2; y < cleared.max().y(); y += 0.4)
+      for (double z = cleared.min().z() + 0.2; z < cleared.max().z(); z += 0.4)
+        leaves.push_back({map->grid().key({x, y, z}), 0, 0, -2});
+  map->import(leaves);
+  Viewpoint at = world.start;
+  double length = 0;
+  world.run(Oracle(), [&](const EpisodeMoment& moment) {
+    for (const Viewpoint& next : moment.taken.way) {
+      EXPECT_TRUE(map->swept_box_free(at.position, next.position, Eigen::Vector3d::Constant(0.5)))
+          << "step " << moment.step;
+      length += (next.position - at.position).norm();
+      at = next;
+    }
+    EXPECT_EQ(at.position, moment.taken.view.position);
+    EXPECT_NEAR(moment.taken.length, length, 1e-9);
+    map->integrate(world.settings.sensor.look(world.truth.scene(), moment.taken.view, 1));
+  });
+  EXPECT_GT(length, 10);
+}
+
+TEST(Episode, IsTheSameForAnyNumberOfThreads) {
+  YardWorld world(6);
+  world.settings.show_truth = true;
+  const EpisodeResult one = world.run(Oracle());
+  world.settings.threads = 4;
+  const EpisodeResult four = world.run(Oracle());
+  ASSERT_EQ(one.steps.size(), four.steps.size());
+  for (std::size_t k = 0; k < one.steps.size(); ++k) {
+    EXPECT_EQ(one.steps[k].value, four.steps[k].value);
+    EXPECT_EQ(one.steps[k].observed, four.steps[k].observed);
+    EXPECT_EQ(one.steps[k].view.position, four.steps[k].view.position);
+  }
+  ASSERT_EQ(one.candidates.size(), four.candidates.size());
+  for (std::size_t k = 0; k < one.candidates.size(); ++k)
+    EXPECT_EQ(one.candidates[k].value, four.candidates[k].value);
+}
+
+TEST(Episode, EndsAndSaysWhy) {
+  YardWorld world(30);
+  EXPECT_EQ(world.run(Constant(0)).end, EpisodeEnd::nothing_to_gain);
+  EXPECT_EQ(world.run(Constant(0)).steps.size(), 1u);  // the first look is always taken
+  world.settings.budget = 4;
+  const EpisodeResult short_flight = world.run(Constant(1));
+  EXPECT_EQ(short_flight.end, EpisodeEnd::budget);
+  EXPECT_LE(short_flight.steps.back().time, 4);
+  world.settings.budget.reset();
+  CancellationToken token;
+  token.cancel();
+  world.settings.cancellation = &token;
+  EXPECT_EQ(world.run(Constant(1)).end, EpisodeEnd::cancelled);
+  world.settings.cancellation = nullptr;
+  world.settings.wall_clock_guard = 0;
+  EXPECT_EQ(world.run(Constant(1)).end, EpisodeEnd::time);
+}
+
+// In a box that nothing leaves there are no more than so many viewpoints.
+TEST(Episode, EndsWhereNoViewIsLeft) {
+  YardWorld world(2000);
+  world.start.pitch = 0;
+  world.settings.turn = EIGEN_PI / 2;  // 27 places, four ways to look, twice each
+  world.settings.bounds = Eigen::AlignedBox3d(world.start.position.array() - 0.1,
+                                              world.start.position.array() + 0.1);
+  EXPECT_NE(refusal([&] { world.run(Constant(1)); }).find("no neighbour"), std::string::npos);
+  world.settings.bounds = Eigen::AlignedBox3d(world.start.position.array() - 2.6,
+                                              world.start.position.array() + 2.6);
+  world.settings.sensor.pinhole = {8, 6, 4, 4, 3.5, 2.5};
+  const EpisodeResult result = world.run(Constant(1));
+  EXPECT_EQ(result.end, EpisodeEnd::no_way);
+  EXPECT_LE(result.steps.size(), 27u * 4 * 2);
+  EXPECT_GE(result.steps.size(), 9u * 4 * 2);
+}
+
+TEST(Episode, RefusesWhatMakesNoSense) {
+  YardWorld world(3);
+  const auto run = [&] { world.run(Constant(1)); };
+  world.start.position = {8, -6, 3};  // the box reaches into a house
+  EXPECT_NE(refusal(run).find("obstacle"), std::string::npos);
+  world.start.position = {0, 0, 4};
+  world.settings.step = 5;
+  EXPECT_NE(refusal(run).find("no neighbour"), std::string::npos);
+  world.settings.step = 2.5;
+  world.settings.sensor.range = 15;
+  EXPECT_NE(refusal(run).find("maximum_range"), std::string::npos);
+  world.settings.sensor.range = 20;
+  world.settings.steps = 0;
+  EXPECT_NE(refusal(run).find("at least one"), std::string::npos);
+}
+
+TEST(Episode, NamesTheViewWhoseValueIsNoNumber) {
+  const YardWorld world(3);
+  const std::string message = refusal([&] { world.run(Constant(std::nan(""))); });
+  EXPECT_NE(message.find("(0.0"), std::string::npos) << message;
+  EXPECT_NE(message.find("nan"), std::string::npos);
+}
+
+TEST(Episode, AUtilityGetsTheTruthOnlyWhenShown) {
+  const YardWorld world(2);
+  class Curious final : public ViewUtility {
+    void values_of(const EpisodeView& known, std::span<const Viewpoint>,
+                   std::span<double> values) const override {
+      std::fill(values.begin(), values.end(), known.truth ? 1.0 : 2.0);
+    }
+  };
+  EXPECT_EQ(world.run(Curious()).steps.front().value, 2);
+}
+
+TEST(Episode, NoiseIsReplayedWithoutIt) {
+  YardWorld world(4);
+  world.settings.sensor.noise = DepthNoise{0.4, 0.5};
+  world.settings.show_truth = true;
+  const EpisodeResult noisy = world.run(Oracle());
+  ObservedSurface observed(world.truth, world.settings.sensor, YardWorld::new_map);
+  const auto map = YardWorld::new_map();
+  const std::vector<double> curve = replay(world.settings, noisy, world.truth, observed, *map);
+  ASSERT_EQ(curve.size(), noisy.steps.size());
+  world.settings.sensor.noise.reset();
+  ObservedSurface again(world.truth, world.settings.sensor, YardWorld::new_map);
+  const auto clean = YardWorld::new_map();
+  double sum = 0;
+  for (const EpisodeStep& step : noisy.steps) {
+    sum += again.gain(step.view);
+    clean->integrate(world.settings.sensor.look(world.truth.scene(), step.view, 1));
+    again.update(*clean, step.view);
+  }
+  EXPECT_NEAR(curve.back(), sum, 1e-6 * sum);
+}
+
+TEST(RandomStart, LiesWhereTheBoxIsFree) {
+  const YardWorld world;
+  Random random(3);
+  for (int k = 0; k < 20; ++k) {
+    const Viewpoint start = random_start(world.truth, 6, 10, world.pitch, random);
+    EXPECT_TRUE(world.truth.in_space(start.position));
+    EXPECT_FALSE(world.truth.scene().box_blocked(start.position, start.position,
+                                                 Eigen::Vector3d::Constant(3)));
+  }
+  EXPECT_NE(refusal([&] { random_start(world.truth, 60, 10, world.pitch, random); }).find("100,000"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace lapwing
