@@ -24,21 +24,37 @@ if $cold && [ "$lapwing_build_seconds" -gt "$build_budget" ]; then
   echo "test.sh: the cold build took ${lapwing_build_seconds} s, its budget is ${build_budget} s" >&2
   exit 1
 fi
-# A source that took longer than its budget beside other work is compiled once more by itself, and
-# its processor time counts. .ninja_log: start, end (ms), time stamp, output, command hash.
+# What took longer than the budget beside other work is compiled once more by itself, and its
+# processor time counts; of several sources that were joined, each by itself. .ninja_log: start, end
+# (ms), time stamp, output, command hash.
 mapfile -t candidates < <(awk -v limit=$((source_budget * 1000)) \
   '$4 ~ /\.c(pp|xx)\.o$/ { took[$4] = $2 - $1 } END { for (o in took) if (took[o] > limit) print o }' \
   build/release/.ninja_log)
 slow=()
+# Processor seconds of a compiler's command; the better of two: a shared machine's speed goes up
+# and down.
+compile_seconds() {
+  local TIMEFORMAT=%U
+  for _ in 1 2; do
+    { time (cd build/release && CCACHE_DISABLE=1 bash -c "$1" >/dev/null 2>&1); } 2>&1
+  done | sort -n | head -n 1
+}
+over_budget() { awk -v s="$1" -v limit="$source_budget" 'BEGIN { exit !(s > limit) }'; }
 for object in "${candidates[@]}"; do
   command=$(ninja -C build/release -t commands "$object" 2>/dev/null | tail -n 1)
   [[ "$command" == *" -c "* ]] || continue  # a source that is gone
-  TIMEFORMAT=%U
-  seconds=$(for _ in 1 2; do  # the better of two: a shared machine's speed goes up and down
-    { time (cd build/release && CCACHE_DISABLE=1 bash -c "$command" >/dev/null 2>&1); } 2>&1
-  done | sort -n | head -n 1)
-  awk -v s="$seconds" -v limit="$source_budget" 'BEGIN { exit !(s > limit) }' &&
+  seconds=$(compile_seconds "$command")
+  over_budget "$seconds" || continue
+  joined=${command##* -c }
+  mapfile -t sources < <(cd build/release && sed -n 's/^#include "\(.*\)"$/\1/p' "$joined")
+  if [[ "$joined" != *_cxx.cxx ]]; then
     slow+=("$seconds s  $object")
+    continue
+  fi
+  for source in "${sources[@]}"; do
+    seconds=$(compile_seconds "${command% -c *} -o /dev/null -c $source")
+    if over_budget "$seconds"; then slow+=("$seconds s  $source"); fi
+  done
 done
 if [ ${#slow[@]} -gt 0 ]; then
   printf 'test.sh: sources that compile longer than %s s:\n' "$source_budget" >&2

@@ -1,13 +1,10 @@
 #include "framework/mission/environment_source.h"
 
 #include "framework/core/error.h"
+#include "framework/mission/vectors.h"
 
 namespace lapwing {
 namespace {
-
-Eigen::Vector3d vector_of(std::span<const double> numbers) {
-  return {numbers[0], numbers[1], numbers[2]};
-}
 
 Box box_of(const Parameters& given) {
   const Box box{given.text("name"), vector_of(given.numbers("lower")),

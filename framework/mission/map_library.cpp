@@ -9,13 +9,10 @@
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
 #include "framework/mission/scene_script.h"
+#include "framework/mission/vectors.h"
 
 namespace lapwing {
 namespace {
-
-Eigen::Vector3d vector_of(std::span<const double> numbers) {
-  return {numbers[0], numbers[1], numbers[2]};
-}
 
 MapWork work_of(const MissionRun& run) {
   return {run.settings.threads, run.settings.cancellation, run.settings.progress};

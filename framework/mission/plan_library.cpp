@@ -12,6 +12,7 @@
 #include "framework/mission/map_objects.h"
 #include "framework/mission/run.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/mission/vectors.h"
 #include "framework/verify/verify.h"
 
 namespace lapwing {
@@ -192,10 +193,6 @@ int vehicle_field(lua_State* state) {
 
 // -- run:plan
 // --------------------------------------------------------------------------------------
-
-Eigen::Vector3d vector_of(std::span<const double> numbers) {
-  return {numbers[0], numbers[1], numbers[2]};
-}
 
 ParameterTable span_table() {
   ParameterTable table;

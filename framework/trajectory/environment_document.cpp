@@ -61,7 +61,7 @@ Value to_value(const Subject& subject) {
 }
 
 template <class Entry>
-Value list_of(const std::vector<Entry>& entries) {
+Value entries_of(const std::vector<Entry>& entries) {
   Value list = Value::list();
   for (const Entry& entry : entries) list.push_back(to_value(entry));
   return list;
@@ -106,14 +106,14 @@ auto read_all(std::vector<Fields> entries, Read read) {
 Value environment_to_value(const Environment& environment) {
   Value value = Value::map();
   value.set("margin", environment.margin);
-  value.set("spheres", list_of(environment.spheres));
-  value.set("boxes", list_of(environment.boxes));
-  if (!environment.zones.empty()) value.set("zones", list_of(environment.zones));
+  value.set("spheres", entries_of(environment.spheres));
+  value.set("boxes", entries_of(environment.boxes));
+  if (!environment.zones.empty()) value.set("zones", entries_of(environment.zones));
   if (!environment.flight_zones.empty())
-    value.set("flight_zones", list_of(environment.flight_zones));
-  if (!environment.meshes.empty()) value.set("meshes", list_of(environment.meshes));
-  if (!environment.maps.empty()) value.set("maps", list_of(environment.maps));
-  if (!environment.subjects.empty()) value.set("subjects", list_of(environment.subjects));
+    value.set("flight_zones", entries_of(environment.flight_zones));
+  if (!environment.meshes.empty()) value.set("meshes", entries_of(environment.meshes));
+  if (!environment.maps.empty()) value.set("maps", entries_of(environment.maps));
+  if (!environment.subjects.empty()) value.set("subjects", entries_of(environment.subjects));
   return value;
 }
 
