@@ -10,16 +10,17 @@ return race.course {
   laps = 2,
   thrust = 0.6,
   floor = 0.5,
+  margin = 0.6,  -- m, that the planned course leaves pilots at the rims
   gates = {
-    { name = "south", shape = "rectangle", position = { 0, -12, 2 }, normal_yaw = 0, width = 5,
-      height = 3 },
-    { name = "east", shape = "rectangle", position = { 14, 2, 3 }, normal_yaw = 110, width = 5,
-      height = 3 },
-    { name = "west", shape = "rectangle", position = { -14, 2, 3 }, normal_yaw = -110, width = 5,
-      height = 3 },
+    { name = "south", shape = "rectangle", position = { 0, -12, 4 }, normal_yaw = 0, width = 8,
+      height = 6 },
+    { name = "east", shape = "rectangle", position = { 14, 2, 5 }, normal_yaw = 110, width = 8,
+      height = 6 },
+    { name = "west", shape = "rectangle", position = { -14, 2, 5 }, normal_yaw = -110, width = 8,
+      height = 6 },
   },
   players = {
-    { name = "Timid", log = "pilots/timid.csv", strength = 10, reach = 4 },
-    { name = "Cutter", log = "pilots/cutter.csv", strength = 10, reach = 4, handicap = 1 },
+    { name = "Timid", log = "pilots/timid.csv", speed = 0.9, strength = 30, reach = 12 },
+    { name = "Cutter", log = "pilots/cutter.csv", strength = 30, reach = 12, handicap = 1 },
   },
 }

@@ -69,8 +69,9 @@ ExitStatus race_plan(const std::filesystem::path& file, const std::vector<std::s
   std::vector<RacedPilot> raced;
   for (const std::string& text : pilots) {
     Pilot pilot = pilot_from(text);
-    RaceFlight flight = fly_race(plan.trajectory, vehicle, pilot);
-    RaceScore score = score_of(flight, plan.task.gates, pilot.handicap, rules);
+    RaceFlight flight =
+        fly_race(plan.trajectory, vehicle, pilot, race_limits(plan.trajectory, plan.task.gates));
+    RaceScore score = score_of(flight, plan.trajectory, plan.task.gates, pilot.handicap, rules);
     raced.push_back({std::move(pilot), std::move(flight), std::move(score)});
   }
   if (!target.empty()) write_file_atomically(target, render_html(race_report(plan, raced, rules)));

@@ -178,9 +178,10 @@ std::vector<RacedPilot> fly_pilots(const Outcome& outcome, const CancellationTok
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   std::vector<RacedPilot> raced;
   if (token.cancelled()) return raced;
+  const RaceFlightLimits limits = race_limits(plan.trajectory, plan.task.gates);
   for (const Pilot& pilot : outcome.result.pilots) {
-    RaceFlight flight = fly_race(plan.trajectory, vehicle, pilot, {}, &token);
-    RaceScore score = score_of(flight, plan.task.gates, pilot.handicap);
+    RaceFlight flight = fly_race(plan.trajectory, vehicle, pilot, limits, &token);
+    RaceScore score = score_of(flight, plan.trajectory, plan.task.gates, pilot.handicap);
     raced.push_back({pilot, std::move(flight), std::move(score)});
   }
   return raced;

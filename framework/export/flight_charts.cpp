@@ -159,9 +159,13 @@ Section direction_section(const Plan& plan, const Vehicle& vehicle) {
       charts.chart("Yaw", "yaw", "\u00b0",
                    {charts.series("yaw", [](const Sample& s) { return degrees(s.yaw); })}));
   if (plan.trajectory.model != MotionModel::path) {
+    // Of whole quadrotors the limit is that of the body's own axis, however the heading turns.
+    const bool rotors = plan.trajectory.model == MotionModel::rotors;
     section.blocks.push_back(charts.chart(
-        "Yaw rate", "yaw rate", "\u00b0/s",
-        {charts.series("yaw rate", [](const Sample& s) { return degrees(s.yaw_rate); })},
+        rotors ? "Body rate about the thrust" : "Yaw rate", rotors ? "rate" : "yaw rate",
+        "\u00b0/s", {charts.series("rate", [=](const Sample& s) {
+          return degrees(rotors ? s.body_rates.z() : s.yaw_rate);
+        })},
         both_ways(degrees(vehicle.yaw_rate_max))));
   }
   return section;

@@ -118,7 +118,7 @@ std::string race_result(const std::vector<RacedPilot>& pilots) {
             " m from the course on average";
     if (!p.score.missed.empty()) text += ", missed " + listed(p.score.missed);
     text += p.score.finished ? ": score " + number_text(p.score.total()) + " s\n" : ": out\n";
-    if (p.flight.time > p.pilot.log.end())
+    if (p.flight.time > p.pilot.log.end() + StickLog::kLongestGap)
       text += "  (the log of " + p.pilot.name + " ends at " + number_text(p.pilot.log.end()) +
               " s; the stick is centred from there)\n";
   }
@@ -150,8 +150,8 @@ std::vector<Section> race_sections(const Plan& plan, const std::vector<RacedPilo
   Chart forward = chart("Stick forward", "deflection", ""),
         left = chart("Stick left", "deflection", "");
   for (const RacedPilot& pilot : pilots) {
-    const std::vector<double> scores =
-        score_over_time(pilot.flight, plan.task.gates, pilot.score.handicap, rules);
+    const std::vector<double> scores = score_over_time(
+        pilot.flight, plan.trajectory, plan.task.gates, pilot.score.handicap, rules);
     std::size_t at = 0;
     score.series.push_back(series(pilot, [&](const RaceSample&) { return scores[at++]; }));
     deviation.series.push_back(series(pilot, [](const RaceSample& s) { return s.deviation; }));

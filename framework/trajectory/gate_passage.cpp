@@ -18,6 +18,8 @@ double outside_of(const std::vector<Vector2d>& corners, const Vector2d& p) {
 
 namespace {
 
+constexpr double kLeft = 1e-9;  // m: a path that has left a plane lies in it, to rounding
+
 GatePassage through_ball(const GateTask& gate, std::span<const PathPoint> path, std::size_t from,
                          double tolerance) {
   GatePassage best;
@@ -58,6 +60,8 @@ GatePassage through_opening(const GateTask& gate, std::span<const PathPoint> pat
     if (along(next) >= half - (k + 2 == path.size() ? tolerance : 0)) {
       see(at_plane(k, half), path[k].time);
       passage.after = k;
+      const double a = along(path[k].position), b = along(next);
+      passage.share = b > a ? std::clamp((half - a) / (b - a), 0.0, 1.0) : 1.0;
       return passage;
     }
     if (along(next) < -half) break;  // out again where it came in
@@ -70,13 +74,15 @@ GatePassage through_opening(const GateTask& gate, std::span<const PathPoint> pat
 }  // namespace
 
 GatePassage gate_passage(const GateTask& gate, std::span<const PathPoint> path, std::size_t from,
-                         double tolerance) {
+                         double tolerance, double share) {
   if (gate.ball()) return through_ball(gate, path, from, tolerance);
   GatePassage best;
   const double entry = -0.5 * gate.tunnel_length;
   for (std::size_t k = from; k + 1 < path.size(); ++k) {
-    const double a = (path[k].position - gate.position).dot(gate.direction) - entry;
+    double a = (path[k].position - gate.position).dot(gate.direction) - entry;
     const double b = (path[k + 1].position - gate.position).dot(gate.direction) - entry;
+    // Half-way through a chord: one passage is not two.
+    if (k == from && share > 0) a += share * (b - a) + kLeft;
     // A lap that ends in the plane of its gate has come there, to the tolerance.
     const bool last = k + 2 == path.size();
     if (!(a < 0 && b >= (last ? -tolerance : 0))) continue;

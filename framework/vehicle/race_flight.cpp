@@ -167,6 +167,7 @@ RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilo
   const RotorBody body(vehicle);
   BodyState state = starting_state(reference, vehicle, pilot.speed);
   const ReferencePoint finish = end_of(reference);
+  const Vector3d onward = limits.finish_direction.value_or(finish.velocity);
   const double most = limits.time_factor * (reference.finish() - reference.start()) / pilot.speed;
   const auto every = std::max<std::int64_t>(1, std::llround(limits.sample_step / limits.step));
 
@@ -183,7 +184,7 @@ RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilo
     // Past the end of the course, or, where it ends at rest, as good as there.
     const Vector3d beyond = state.position - finish.position;
     const bool past =
-        controller.progress() >= reference.finish() && beyond.dot(finish.velocity) >= 0;
+        controller.progress() >= reference.finish() && beyond.dot(onward) >= 0;
     const bool near = finish.velocity.norm() < kAtRest &&
                       controller.progress() >= reference.finish() - kLastLeg &&
                       beyond.norm() <= limits.finish_radius;

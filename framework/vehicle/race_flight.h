@@ -13,6 +13,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ struct RaceFlightLimits {
   double off_course = 6;       // m, from the course: out of the race
   double time_factor = 3;      // times the pilot's reference: out of the race
   double finish_radius = 0.5;  // m, of the end of a course that ends at rest
+  // Unit vector across the plane in which the course ends; absent: along the course there.
+  std::optional<Eigen::Vector3d> finish_direction = std::nullopt;
 };
 
 struct RaceSample {

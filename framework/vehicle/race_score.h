@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/trajectory/gate.h"
+#include "framework/trajectory/trajectory.h"
 #include "framework/vehicle/race_flight.h"
 
 namespace lapwing {
@@ -25,13 +26,19 @@ struct RaceScore {
   double total() const { return time + straying + gates + handicap; }
 };
 
-// Gates in order, laps written out; a gate that is missed is not waited for.
-RaceScore score_of(const RaceFlight& flight, const std::vector<GateTask>& gates, double handicap,
+// As usual, but that a course which ends in a gate ends in that gate's plane.
+RaceFlightLimits race_limits(const Trajectory& course, const std::vector<GateTask>& gates);
+
+// Gates in order, laps written out, each looked for while the pilot was nearer to it than to its
+// neighbours along the course: one that is missed is not waited for, and costs no other.
+RaceScore score_of(const RaceFlight& flight, const Trajectory& course,
+                   const std::vector<GateTask>& gates, double handicap,
                    const RaceRules& rules = {});
 
 // The score as it stood at each sample, s: what `score_of` would say had the race ended there; a
 // gate counts as missed from when the next one is passed, or the race ends.
-std::vector<double> score_over_time(const RaceFlight& flight, const std::vector<GateTask>& gates,
-                                    double handicap, const RaceRules& rules = {});
+std::vector<double> score_over_time(const RaceFlight& flight, const Trajectory& course,
+                                    const std::vector<GateTask>& gates, double handicap,
+                                    const RaceRules& rules = {});
 
 }  // namespace lapwing

@@ -31,15 +31,18 @@ void check_gates(const Flight& flight, Certificate& certificate) {
   const std::vector<PathPoint> path = path_of(flight);
   GatePassage worst{-std::numeric_limits<double>::infinity(), 0, 0};
   std::size_t from = 0;
+  double share = 0;
   std::string name;
   for (std::size_t g = 0; g < gates.size(); ++g) {
-    const GatePassage passage = gate_passage(gates[g], path, from, tolerances::kClearance);
+    const GatePassage passage =
+        gate_passage(gates[g], path, from, tolerances::kClearance, share);
     if (passage.outside > worst.outside) {
       worst = passage;
       name = "gate " + std::to_string(g + 1) + " (" + gates[g].name + ")";
     }
     if (!std::isfinite(passage.outside)) break;
     from = passage.after;
+    share = passage.share;
   }
   Check check = judged(make_check("gates"), worst.outside, 0.0, tolerances::kClearance, worst.time);
   check.detail = std::isfinite(worst.outside)

@@ -92,7 +92,7 @@ end
 local function plan_of(run, course, solution, notes)
   return run:plan {
     solution = solution, notes = notes, figures = { time = solution.duration },
-    players = run.options.players,
+    players = run.options.players, budget = run.options.time,
     task = { gates = course.task, closed_loop_required = run.options.closed_loop == "required" },
   }
 end
@@ -180,8 +180,8 @@ local function flown(run)
     run:fail("timing", "'profile' is for the model 'quadrotor'; 'quadrotor_full' needs 'optimal'")
   end
   local vehicle = run:vehicle(o.vehicle)
-  if o.model == "quadrotor_full"
-     and o.thrust * 4 * vehicle.rotor_thrust_max <= 9.80665 * vehicle.mass then
+  local most = o.model == "quadrotor_full" and 4 * vehicle.rotor_thrust_max or vehicle.thrust_max
+  if o.thrust * most <= 9.80665 * vehicle.mass then
     run:fail("thrust", string.format("%.3g of the thrust does not carry vehicle '%s'", o.thrust,
                                      vehicle.name))
   end

@@ -24,8 +24,15 @@ end
 
 -- A gate of a file or a script as the constraint and the certificate want it.
 local function gate_of(fail, given, what)
+  if type(given) ~= "table" then
+    fail(string.format("%s: expected a gate {shape, position, ...}, got %s", what,
+                       tostring(given)))
+  end
   local shape = given.shape
   local sizes = SHAPES[shape]
+  if type(shape) ~= "string" then
+    fail(what .. ".shape: expected ball, hexagon, pentagon, rectangle or triangle")
+  end
   if not sizes then
     fail(string.format("%s: no gate has the shape '%s'; there are ball, hexagon, pentagon, "
                        .. "rectangle and triangle", what, tostring(shape)))
@@ -80,8 +87,17 @@ end
 
 local function end_of(fail, given, what)
   if given == nil then return nil end
+  if type(given) ~= "table" then
+    fail(what .. ": expected {x, y, z}, or a position and a velocity, got " .. tostring(given))
+  end
   if #given == 3 then given = { position = given } end
   point(fail, what .. ".position", given.position)
+  for key in pairs(given) do
+    if key ~= "position" and key ~= "velocity" then
+      fail(string.format("%s: there is no '%s'; it has position and velocity", what, key))
+    end
+  end
+  if given.velocity ~= nil then point(fail, what .. ".velocity", given.velocity) end
   for _, v in ipairs(given.velocity or {}) do
     if v ~= 0 then fail(what .. ".velocity: a course begins and ends at rest, or freely") end
   end
@@ -99,9 +115,16 @@ local function check_apart(fail, gates)
   end
 end
 
--- Part of a gate must be above the floor.
-local function check_floor(fail, gates, floor)
+-- Start, finish and part of every gate must be above the floor.
+local function check_floor(fail, made, gates, floor)
   if not floor then return end
+  for _, name in ipairs { "start", "finish" } do
+    local place = made[name]
+    if place and place[3] <= floor then
+      fail(string.format("%s: %g m above the ground, and the flight stays above %g m", name,
+                         place[3], floor))
+    end
+  end
   for _, gate in ipairs(gates) do
     local up = gate.height and gate.height / 2 or gate.radius or gate.side
     if gate.position[3] + up <= floor then
@@ -132,10 +155,24 @@ end
 
 local function read(run)
   local o = run.options
+  local ways = {}
+  for _, way in ipairs { "gates", "keyframes" } do
+    if #o[way] > 0 then ways[#ways + 1] = way end
+  end
+  if o.free_form.length then ways[#ways + 1] = "free_form" end
+  if #ways > 1 then
+    run:fail(ways[2], "a course is given in one way; there are " .. table.concat(ways, " and "))
+  end
+  if o.laps > 1 and not o.closed then
+    run:fail("laps", "laps are flown on a closed course: set closed = true")
+  end
   if not o.input then return o end
   local file = o.input:match("%.json$") and lapwing.read_json(o.input, "tracks")
                or lapwing.read_yaml(o.input, "tracks")
-  for key in pairs(file) do
+  for key, value in pairs(file) do
+    if (key == "gates" or key == "waypoints") and (type(value) ~= "table" or #value == 0) then
+      run:fail("input", string.format("%s: %s: expected a list", o.input, key))
+    end
     if key ~= "start" and key ~= "end" and key ~= "gates" and key ~= "waypoints" then
       run:fail("input", string.format("%s: a course has no '%s'; it has start, end, gates and "
                                       .. "waypoints", o.input, key))
@@ -157,7 +194,7 @@ function course.read(run)
   for i, k in ipairs(given.keyframes or {}) do
     list[#list + 1] = { name = "keyframe " .. i, shape = "ball", radius = o.tolerance,
                         position = point(fail, string.format("keyframes[%d]", i),
-                                         k.position or k) }
+                                         type(k) == "table" and k.position or k) }
   end
   if o.free_form.length then
     for i, gate in ipairs(free_form(o)) do
@@ -167,7 +204,7 @@ function course.read(run)
   end
   local made = { gates = {}, closed = given.closed, start = end_of(fail, given.start, "start"),
                  finish = end_of(fail, given.finish, "finish") }
-  if #list == 0 and not (made.start and made.finish) then
+  if #list == 0 then
     fail("a course needs gates, keyframes, a free_form length, or --set input=FILE")
   end
   if made.closed and (made.start or made.finish) then
@@ -178,7 +215,7 @@ function course.read(run)
     for _, gate in ipairs(list) do made.gates[#made.gates + 1] = gate end
   end
   check_apart(fail, made.gates)
-  check_floor(fail, list, o.floor)
+  check_floor(fail, made, list, o.floor)
   return made
 end
 

@@ -21,6 +21,7 @@ class RaceGame : public Filming {
   std::string error() { return read_file(folder_ / "stderr.txt"); }
 };
 using testing::HasSubstr;
+constexpr double kStrength = 30;  // m/s^2, of a full stick: the bends ask for 20
 
 const std::string kRacing = (kExamples / "../racing").string();
 
@@ -47,16 +48,17 @@ TEST_F(RaceGame, TimidCutterAndLeaverEndAsTheyShould) {
     const Vehicle vehicle = vehicle_from_value(plan.vehicle);
     const ReferenceMotion course(plan.trajectory, vehicle);
     const StickLog centred({{0, {0, 0}}}, "none");
-    const Pilot pilot{.name = "", .log = centred, .strength = 10, .reach = 4};
-    Pilot wild = pilot;
+    const Pilot pilot{.name = "", .log = centred, .strength = kStrength, .reach = 12};
+    Pilot wild = pilot, slow = pilot;
     wild.weight = 1;
+    slow.speed = 0.9;
     const std::filesystem::path to = folder;
     const auto write = [&](const char* name, const Pilot& who, const StickSource& stick) {
       write_file_atomically(to / name, log_of(fly_race(plan.trajectory, vehicle, who, stick)));
     };
-    write("timid.csv", pilot, timid_pilot(course, 10));
-    write("cutter.csv", pilot, corner_cutter(course, 10));
-    write("leaver.csv", wild, leaver(course, 10));
+    write("timid.csv", slow, timid_pilot(course, kStrength, slow.speed));
+    write("cutter.csv", pilot, corner_cutter(course, kStrength));
+    write("leaver.csv", wild, leaver(course, kStrength));
   }
   const Value& pilots = flown.result.at("game").at("pilots");
   ASSERT_EQ(pilots.as_list().size(), 2u);
@@ -66,12 +68,26 @@ TEST_F(RaceGame, TimidCutterAndLeaverEndAsTheyShould) {
   EXPECT_GT(timid.at("time").as_number(), 1.05 * plan.trajectory.duration());
   EXPECT_LT(cutter.at("time").as_number(), timid.at("time").as_number());
   EXPECT_GT(cutter.at("deviation_worst").as_number(), timid.at("deviation_worst").as_number());
+  for (const Value* pilot : {&timid, &cutter})
+    EXPECT_TRUE(pilot->at("missed_gates").as_list().empty()) << to_json(*pilot);
+  // The course turns left: who cuts its corners is left of it.
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  const ReferenceMotion course(plan.trajectory, vehicle);
+  const Pilot cutting{.name = "", .log = read_stick_log(kRacing + "/pilots/cutter.csv"),
+                      .strength = kStrength, .reach = 12};
+  double left = 0;
+  for (const RaceSample& sample : fly_race(plan.trajectory, vehicle, cutting).samples) {
+    const Eigen::Vector3d along = course.at(sample.progress).velocity;
+    const Eigen::Vector3d off = sample.state.position - sample.course;
+    left += off.dot(Eigen::Vector3d(-along.y(), along.x(), 0).normalized()) * 0.02;
+  }
+  EXPECT_GT(left / cutter.at("time").as_number(), 0.1) << "m on average";
   EXPECT_NE(read_file(flown.folder / "report.html").find("Score over time"), std::string::npos);
 
   const std::string page = (folder_ / "race.html").string();
   EXPECT_EQ(command("race '" + (flown.folder / "plan.json").string() + "' --pilot '" + kRacing +
-                    "/pilots/leaver.csv:weight=1,strength=10,reach=4' --pilot '" + kRacing +
-                    "/pilots/timid.csv:name=Ann,strength=10,reach=4' -o '" + page + "'"),
+                    "/pilots/leaver.csv:weight=1,strength=30,reach=12' --pilot '" + kRacing +
+                    "/pilots/timid.csv:name=Ann,strength=30,reach=12' -o '" + page + "'"),
             0);
   for (const char* words : {"left the course", "Ann wins"})
     EXPECT_NE(read_file(page).find(words), std::string::npos) << words;
