@@ -21,6 +21,7 @@ function chartDomain(spec) {
   if (low > 0 && low < 0.5 * high) low = 0;
   if (high < 0 && high > 0.5 * low) high = 0;
   const pad = high > low ? 0.07 * (high - low) : Math.max(Math.abs(high) * 0.1, 0.5);
+  if (high === low) return { x, y: [low - pad, high + pad] };
   return { x, y: [low === 0 ? 0 : low - pad, high === 0 ? 0 : high + pad] };
 }
 

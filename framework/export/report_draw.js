@@ -131,6 +131,14 @@ function drawLegend(figure, entries) {
   });
 }
 
+// What the colours of lines with values stand for.
+function drawRamp(parent, value, least, most) {
+  const ramp = child(parent, "span", "ramp");
+  ramp.append(`${value.label} ${numberText(least, 3)}`);
+  child(ramp, "i", "");
+  ramp.append(withUnit(numberText(most, 3), value.unit));
+}
+
 // Where labels already are, so that a new one is left out rather than written over them.
 function makeLabelSpace() {
   const taken = [];

@@ -33,12 +33,23 @@ function drawingBounds(drawing) {
 }
 const linePoint = (line, i) => [line.x[i], line.y[i], line.z[i]];
 
+const shades = 16;  // of a line that is coloured by its values
+
+// A colour of the ramp for a share of it.
+function shadeColor(share) {
+  const place = clamp(share, 0, 1) * 3, low = Math.min(Math.floor(place), 2);
+  return `color-mix(in srgb, var(--ramp${low + 1}) ${(100 * (place - low)).toFixed(0)}%, ` +
+    `var(--ramp${low}))`;
+}
+
 function makePath(figure, spec) {
   const drawing = spec.drawing, view = projections[spec.projection];
   if (drawing.lines.length > 1) drawLegend(figure, drawing.lines);
   const plot = child(figure, "div", "plot");
   const tip = makeTip(plot);
   const { low, high } = drawingBounds(drawing);
+  const [least, most] = extent(drawing.lines.map((l) => l.values || []));
+  if (drawing.lines.some((l) => l.values)) drawRamp(figure, drawing.value, least, most);
   const flat = (p) => [p[view.across], p[view.up]];
   let svg, sx, sy, cursor;
 
@@ -114,17 +125,26 @@ function makePath(figure, spec) {
   function drawLines() {
     let points = 0;
     drawing.lines.forEach((l, index) => {
-      let d = "", pen = false, lastX = NaN, lastY = NaN;
+      // One path, or one for every shade of the values along it.
+      const shadeOf = (i) => !l.values || !finite(l.values[i]) ? -1
+        : Math.min(shades - 1, Math.floor(shades * (l.values[i] - least) / (most - least || 1)));
+      const paths = new Map();
+      let pen = false, lastX = NaN, lastY = NaN, lastShade = -1;
       for (let i = 0; i < l.x.length; ++i) {
         const p = linePoint(l, i);
         if (!p.every(finite)) { pen = false; continue; }
         ++points;
-        const [a, b] = flat(p), x = sx(a), y = sy(b);
+        const [a, b] = flat(p), x = sx(a), y = sy(b), shade = shadeOf(i);
         if (pen && i + 1 < l.x.length && Math.hypot(x - lastX, y - lastY) < 0.3) continue;
-        d += pen ? `L${x.toFixed(1)} ${y.toFixed(1)}` : `M${x.toFixed(1)} ${y.toFixed(1)}h0`;
-        [pen, lastX, lastY] = [true, x, y];
+        const from = pen ? `M${lastX.toFixed(1)} ${lastY.toFixed(1)}` : "";
+        const here = `${x.toFixed(1)} ${y.toFixed(1)}`;
+        const fresh = pen && (shade !== lastShade || !paths.has(shade)) ? from : "";
+        paths.set(shade, (paths.get(shade) || "") + fresh + (pen ? `L${here}` : `M${here}h0`));
+        [pen, lastX, lastY, lastShade] = [true, x, y, shade];
       }
-      svgChild(svg, "path", { class: "series", d, style: `stroke:${color(index)}` });
+      for (const [shade, d] of paths)
+        svgChild(svg, "path", { class: "series", d, style: "stroke:" +
+          (shade < 0 ? color(index) : shadeColor((shade + 0.5) / shades)) });
     });
     svg.setAttribute("data-samples", points);
   }

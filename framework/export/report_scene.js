@@ -278,12 +278,7 @@ function makeScene(figure, spec) {
   listenScene(canvas, () => view, change, home);
 
   const controls = child(figure, "div", "controls");
-  if (drawing.lines.some((l) => l.values)) {
-    const ramp = child(controls, "span", "ramp");
-    ramp.append(`${drawing.value.label} ${numberText(least, 3)}`);
-    child(ramp, "i", "");
-    ramp.append(withUnit(numberText(most, 3), drawing.value.unit));
-  }
+  if (drawing.lines.some((l) => l.values)) drawRamp(controls, drawing.value, least, most);
   for (const [name, to] of [["reset", home], ["from above", { ...home, turn: 0,
     tilt: Math.PI / 2 }], ["from the south", { ...home, turn: 0, tilt: 0 }]]) {
     child(controls, "button", "", name).addEventListener("click", () => change({ ...to }));

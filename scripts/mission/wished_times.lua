@@ -112,6 +112,7 @@ end
 local function found(run, shot, list, share)
   local o = run.options
   local solution = run:solve(problem_of(run, shot, list, share), o.solver)
+  if solution.status == "unsupported" then run:fail("solver", solution.message) end
   if solution.status ~= "optimal" and solution.status ~= "feasible" then
     return nil, solution.status .. ": " .. solution.message
   end
