@@ -98,7 +98,7 @@ TEST_F(Coverage, RaysOfTheVerifierSeeWhatAWalkInSmallStepsSees) {
   ASSERT_GT(good.task.scan->seen, 200);
   const Check coverage = check(good, "coverage");
   EXPECT_TRUE(coverage.pass);
-  EXPECT_NEAR(coverage.worst, 1, 0.01) << "rays through edges may fall to either side";
+  EXPECT_NEAR(coverage.worst.value(), 1, 0.01) << "rays through edges may fall to either side";
   EXPECT_TRUE(check(good, "view_miss").pass);
   EXPECT_TRUE(check(good, "view_direction").pass);
   EXPECT_TRUE(check(good, "document").pass) << check(good, "document").detail;
@@ -115,7 +115,7 @@ TEST_F(Coverage, AClaimOfMoreIsRefused) {
   Plan behind = plan();
   behind.task.scan->region = {Vector3d(6.5, -2, 3), Vector3d(8, 2, 6)};
   behind.task.scan->seen = 1;
-  EXPECT_EQ(check(behind, "coverage").worst, 0);
+  EXPECT_EQ(check(behind, "coverage").worst.value(), 0);
   EXPECT_FALSE(check(behind, "coverage").pass);
   Plan near = plan();
   near.task.scan->range = 5;  // the wall is 8 m away
@@ -126,16 +126,16 @@ TEST_F(Coverage, ImagesAreTakenWhereTheFlightIs) {
   Plan moved = plan();
   moved.task.scan->views[1].position.z() += 0.5;
   EXPECT_FALSE(check(moved, "view_miss").pass);
-  EXPECT_NEAR(check(moved, "view_miss").worst, 0.5, 1e-9);
+  EXPECT_NEAR(check(moved, "view_miss").worst.value(), 0.5, 1e-9);
   EXPECT_EQ(check(moved, "view_miss").at, 2);
   moved.task.scan->tolerance = 0.6;
   EXPECT_TRUE(check(moved, "view_miss").pass);
   Plan early = plan();
   early.task.scan->views[1].time = 1;
-  EXPECT_NEAR(check(early, "view_miss").worst, 1.5, 1e-9);
+  EXPECT_NEAR(check(early, "view_miss").worst.value(), 1.5, 1e-9);
   Plan turned = plan();
   turned.task.scan->views[2].pitch += 0.1;
-  EXPECT_NEAR(check(turned, "view_direction").worst, 0.1, 1e-9);
+  EXPECT_NEAR(check(turned, "view_direction").worst.value(), 0.1, 1e-9);
   EXPECT_FALSE(check(turned, "view_direction").pass);
   turned = plan();
   turned.task.scan->views[0].yaw += 2 * 3.14159265358979;
