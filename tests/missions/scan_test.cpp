@@ -166,9 +166,11 @@ return require("mission.scan").of_prior {
 TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set start=[0,0,2]"), HasSubstr("no free start"));
   EXPECT_THAT(refused("--set tour.budget=1"), HasSubstr("no tour of 1 s"));
+  EXPECT_THAT(refused("--set region.lower=[15,15,2] --set region.upper=[20,20,6]"),
+              HasSubstr("holds no surface"));
   EXPECT_THAT(refused("--set region.lower=[-6,-5,30] --set region.upper=[6,5,33] "
                       "--set safe_height=9"),
-              HasSubstr("region"));
+              HasSubstr("would have to fly over 32 m"));
   EXPECT_THAT(refused("--set motions.alpha=1"), HasSubstr("joined to the start"));
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
