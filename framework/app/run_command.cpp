@@ -81,7 +81,8 @@ Value json_of(const Outcome& outcome, const Invocation& invocation) {
     Value& notes = object.set("notes", Value::list());
     for (const std::string& note : result.notes) notes.push_back(note);
   }
-  if (result.block.is_map()) object.set(result.plan.kind, result.block);
+  if (result.block.is_map())
+    object.set(result.block_name.empty() ? result.plan.kind : result.block_name, result.block);
   if (!outcome.raced.empty()) object.set("game", to_value(outcome.raced));
   return object;
 }

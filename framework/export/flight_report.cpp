@@ -238,8 +238,11 @@ Section solver_section(const Value& solver) {
   section.blocks.push_back(
       Facts{{{"solver", solver.at("name").as_text(), ""},
              {"status", status, "", solved ? Mark::pass : Mark::fail},
-             {"iterations", number_text(solver.at("iterations").as_number()), ""},
-             {"cost", number_text(solver.at("cost").as_number()), ""}}});
+             {"iterations", number_text(solver.at("iterations").as_number()), ""}}});
+  auto& facts = std::get<Facts>(section.blocks.back()).facts;
+  for (const char* figure : {"cost", "score", "upper_bound", "images", "evaluations"})
+    if (solver.find(figure))
+      facts.push_back({figure, number_text(solver.at(figure).as_number()), ""});
   if (const std::string why = text_or_nothing(solver, "message"); !why.empty()) {
     section.blocks.push_back(TextBlock{why, false, ""});
   }

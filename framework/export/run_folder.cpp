@@ -1,5 +1,6 @@
 #include "framework/export/run_folder.h"
 
+#include <algorithm>
 #include <system_error>
 
 #include "framework/core/error.h"
@@ -16,14 +17,15 @@ void remove_old(const std::filesystem::path& path) {
   if (code) throw InputError(path.string() + ": cannot remove: " + code.message());
 }
 
-// obstacle_N.ply and obstacle_N.ot of an earlier run.
+// obstacle_N.ply, obstacle_N.ot and prior.ply of an earlier run.
 void remove_old_obstacles(const std::filesystem::path& folder) {
   std::error_code code;
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
     const std::string ending = entry.path().extension().string();
-    if (name.starts_with("obstacle_") && (ending == ".ply" || ending == ".ot"))
+    if ((name.starts_with("obstacle_") && (ending == ".ply" || ending == ".ot")) ||
+        name == "prior.ply")
       old.push_back(entry.path());
   }
   for (const auto& path : old) remove_old(path);
@@ -66,6 +68,10 @@ void write_run_folder(const std::filesystem::path& folder, const RunFiles& files
   for (const auto& [name, contents] : files.obstacles)
     write_file_atomically(folder / name, contents);
   for (const auto& [name, contents] : all) {
+    const bool just_written =
+        std::any_of(files.obstacles.begin(), files.obstacles.end(),
+                    [&name = name](const auto& written) { return written.first == name; });
+    if (just_written) continue;
     if (contents) {
       write_file_atomically(folder / name, *contents);
     } else {

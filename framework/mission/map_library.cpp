@@ -60,10 +60,16 @@ int read_surface(lua_State* state) {
   return push_surface(state, name, std::move(file.mesh), bounds);
 }
 
+SurfaceObject& whole_surface(lua_State* state) {
+  SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
+  if (!surface.scene) throw InputError("there is nothing left of '" + surface.name + "'");
+  return surface;
+}
+
 // surface:clearance(p): metres to the nearest triangle, 50 at most.
 int clearance(lua_State* state) {
   constexpr double kReach = 50;
-  const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
+  const SurfaceObject& surface = whole_surface(state);
   const auto nearest = surface.scene->nearest(point_argument(state, 2, "clearance"), kReach);
   lua_pushnumber(state, nearest ? nearest->distance : kReach);
   return 1;
@@ -71,20 +77,52 @@ int clearance(lua_State* state) {
 
 // surface:covered(p): whether there is anything straight above.
 int covered(lua_State* state) {
-  const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
+  const SurfaceObject& surface = whole_surface(state);
   const Eigen::Vector3d p = point_argument(state, 2, "covered");
   lua_pushboolean(state, surface.scene->blocked({.origin = p, .direction = {0, 0, 1}}));
   return 1;
+}
+
+// surface:add_ground(): a plane through its lowest point, 100 m beyond it on every side.
+int add_ground(lua_State* state) {
+  constexpr double kBeyond = 100;
+  SurfaceObject& surface = whole_surface(state);
+  TriangleMesh mesh = surface.scene->mesh();
+  const Eigen::AlignedBox3d bounds = mesh.bounds();
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  const double low_x = bounds.min().x() - kBeyond, high_x = bounds.max().x() + kBeyond;
+  const double low_y = bounds.min().y() - kBeyond, high_y = bounds.max().y() + kBeyond;
+  const double z = bounds.min().z();
+  for (const auto& [x, y] :
+       {std::pair{low_x, low_y}, {high_x, low_y}, {high_x, high_y}, {low_x, high_y}})
+    mesh.vertices.emplace_back(x, y, z);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+  if (!mesh.colors.empty()) mesh.colors.resize(mesh.triangles.size(), Rgb{150, 145, 130});
+  surface.scene = std::make_shared<MeshScene>(std::move(mesh), surface.name);
+  return 0;
+}
+
+// surface:discard(): nothing is left that anything could look at.
+int discard(lua_State* state) {
+  whole_surface(state).scene.reset();
+  return 0;
 }
 
 // Fields: name, triangles, lower and upper (of its bounds), region = {lower =, upper =}.
 int surface_field(lua_State* state) {
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
   const std::string field = text_argument(state, 2, "surface");
-  if (field == "clearance" || field == "covered") {
-    lua_pushcfunction(state, field == "covered" ? &guarded<covered> : &guarded<clearance>);
-    return 1;
-  }
+  static const luaL_Reg methods[] = {{"clearance", &guarded<clearance>},
+                                     {"covered", &guarded<covered>},
+                                     {"add_ground", &guarded<add_ground>},
+                                     {"discard", &guarded<discard>}};
+  for (const luaL_Reg& method : methods)
+    if (field == method.name) {
+      lua_pushcfunction(state, method.func);
+      return 1;
+    }
+  if (!surface.scene) throw InputError("there is nothing left of '" + surface.name + "'");
   const Eigen::AlignedBox3d bounds = surface.scene->mesh().bounds();
   Value region = Value::map(), fields = Value::map();
   region.set("lower", list_of(surface.region.min()));
@@ -148,6 +186,7 @@ int scan(lua_State* state) {
   const Parameters given = table_argument(state, 2, scan_table(), "scan", kObjects);
   lua_getfield(state, 2, "surface");
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, -1, kSurfaceType);
+  if (!surface.scene) throw InputError("there is nothing left of '" + surface.name + "'");
   const Parameters& camera = given.table("camera");
   DepthSensor sensor;
   sensor.range = given.number("range");

@@ -11,7 +11,7 @@ namespace {
 const std::vector<std::string>& known_declaration_keys() {
   static const std::vector<std::string> keys = {
       "name",    "type",    "summary", "unit",  "default", "required", "minimum", "above",
-      "maximum", "choices", "size",    "table", "kind",    "words",    "settled"};
+      "maximum", "choices", "size",    "table", "kind",    "words",    "settled", "under"};
   return keys;
 }
 
@@ -95,7 +95,12 @@ OptionDeclarations OptionDeclarations::from_value(const Value& list) {
     }
     if (!declaration.find("summary")) declaration.set("summary", "");
     if (const Value* settled = declaration.find("settled")) option.settled = *settled;
-    option.declaration = without(declaration, {"kind", "words", "settled"});
+    if (const Value* under = declaration.find("under")) option.under = under->as_text();
+    if (!option.plugin_kind.empty()) {
+      if (const Value* own = declaration.find("table")) option.own = *own;
+      declaration = without(declaration, {"table"});
+    }
+    option.declaration = without(declaration, {"kind", "words", "settled", "under"});
     plain.push_back(option.declaration);
     declarations.options_.push_back(std::move(option));
   }
@@ -114,7 +119,7 @@ OptionDeclarations OptionDeclarations::from_options(const Value& options) {
 Value OptionDeclarations::plugin_entry(const Option& option, Value& given,
                                        const Registry& registry) {
   const Value* value = given.find(option.name);
-  const Value* chosen = value && value->is_map() ? value->find("type") : value;
+  const Value* chosen = value && value->is_map() ? value->find(option.under) : value;
   if (!chosen) chosen = option.declaration.find("default");
   if (!chosen || !chosen->is_text()) {
     throw InputError(chosen ? chosen->origin() : given.origin(),
@@ -125,10 +130,12 @@ Value OptionDeclarations::plugin_entry(const Option& option, Value& given,
   const PluginEntry& plugin = registry.find(option.plugin_kind, type.as_text(), type.origin());
   Value expanded = value && value->is_map() ? *value : Value::map();
   expanded.with_origin(value ? value->origin() : type.origin());
-  expanded.set("type", type);
+  expanded.set(option.under, type);
   given.set(option.name, std::move(expanded));
 
-  Value table = ParameterTable{}.text("type", type.as_text(), "which plugin").to_value();
+  Value table = ParameterTable{}.text(option.under, type.as_text(), "which plugin").to_value();
+  if (option.own.is_list())
+    for (const Value& entry : option.own.as_list()) table.push_back(entry);
   const Value own = plugin.parameters.to_value();
   for (const Value& parameter : own.as_list()) {
     const std::string& name = parameter.at("name").as_text();

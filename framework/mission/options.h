@@ -6,6 +6,8 @@
 //       a plugin's name, or a table with `type` and the plugin's own parameters
 //       settled = { name = "why" }: parameters that the mission itself settles; who sets one is
 //       told why not
+//       under = "solver": the key that names the plugin, in place of `type`
+//       table = {...}: entries of the mission's own beside the plugin's parameters
 //   type = "vehicle"               a vehicle file's name, or a table as in such a file
 //   words = {"auto"}               on a number: these texts are allowed as well
 #pragma once
@@ -32,9 +34,11 @@ class OptionDeclarations {
  private:
   struct Option {
     std::string name;
-    Value declaration;        // an entry of a parameter table as data
-    std::string plugin_kind;  // not empty: a plugin's name or table
-    Value settled;            // of a plugin: parameters that cannot be set, and why
+    Value declaration;           // an entry of a parameter table as data
+    std::string plugin_kind;     // not empty: a plugin's name or table
+    Value settled;               // of a plugin: parameters that cannot be set, and why
+    std::string under = "type";  // of a plugin: the key that names it
+    Value own;                   // of a plugin: entries of the mission's own; null or a list
     bool vehicle = false;
     std::vector<std::string> words;
   };

@@ -11,6 +11,7 @@
 #include "framework/mission/players.h"
 #include "framework/mission/map_objects.h"
 #include "framework/mission/run.h"
+#include "framework/mission/scan_objects.h"
 #include "framework/verify/verify.h"
 
 namespace lapwing {
@@ -344,6 +345,28 @@ int plan(lua_State* state) {
   return 1;
 }
 
+// Fields of a plan: duration, s; of a scan also views = {{position =, yaw =, pitch =}, ...}.
+int plan_field(lua_State* state) {
+  const Plan& plan = object_argument<PlanObject>(state, 1, kPlanType).plan;
+  Value views = Value::list(), fields = Value::map();
+  if (plan.task.scan)
+    for (const PlannedView& view : plan.task.scan->views) {
+      Value entry = Value::map();
+      entry.set("position",
+                Value(Value::List{view.position.x(), view.position.y(), view.position.z()}));
+      entry.set("yaw", view.yaw);
+      entry.set("pitch", view.pitch);
+      views.push_back(std::move(entry));
+    }
+  fields.set("views", std::move(views));
+  fields.set("duration", plan.trajectory.duration());
+  const std::string field = text_argument(state, 2, "plan");
+  const Value* found = fields.find(field);
+  if (!found) refuse_field("a plan", field, fields);
+  push_value(state, *found);
+  return 1;
+}
+
 // run:certify(plan): {feasible =, failures = {"sentence", ...}, checks = {...}}
 int certify(lua_State* state) {
   const PlanObject& object = object_argument<PlanObject>(state, 2, kPlanType);
@@ -439,13 +462,14 @@ int run_field(lua_State* state) {
     }
     known.emplace_back(method.name);
   }
-  for (const luaL_Reg& method : map_methods_of_run()) {
-    if (field == method.name) {
-      lua_pushcfunction(state, method.func);
-      return 1;
+  for (const auto more : {map_methods_of_run(), scan_methods_of_run()})
+    for (const luaL_Reg& method : more) {
+      if (field == method.name) {
+        lua_pushcfunction(state, method.func);
+        return 1;
+      }
+      known.emplace_back(method.name);
     }
-    known.emplace_back(method.name);
-  }
   const std::string nearest = nearest_name(field, known);
   throw InputError("run has no '" + field + "'" +
                    (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
@@ -459,7 +483,7 @@ void open_plan_library(lua_State* state) {
   define_type<RunHandle>(state, kRunType, nullptr, &guarded<run_field>);
   define_type<Vehicle>(state, kVehicleType, nullptr, &guarded<vehicle_field>);
   define_type<SolutionObject>(state, kSolutionType, nullptr, &guarded<solution_field>);
-  define_type<PlanObject>(state, kPlanType, nullptr);
+  define_type<PlanObject>(state, kPlanType, nullptr, &guarded<plan_field>);
 }
 
 void push_run(lua_State* state) {

@@ -24,6 +24,8 @@ struct lua_State;
 
 namespace lapwing {
 
+struct ScanRecord;  // export/scan_report.h
+
 struct MissionSettings {
   SandboxLimits limits;
   std::uint64_t seed = 1;
@@ -58,7 +60,9 @@ struct PlanObject {
   std::string solver;
   std::vector<std::string> notes;  // sentences for the user
   Value block;                     // the kind's own figures; null or a map
+  std::string block_name;          // of them in the answer; "": the kind
   std::vector<Pilot> pilots;       // who fly it by hand
+  std::shared_ptr<const ScanRecord> scan;  // of a scan: what its report shows
 };
 
 struct MissionRun {

@@ -76,6 +76,27 @@ class BothSpaces final : public FreeSpace {
   std::unique_ptr<FreeSpace> a_, b_;
 };
 
+class RoomySpace final : public FreeSpace {
+ public:
+  RoomySpace(std::unique_ptr<FreeSpace> space, double more)
+      : space_(std::move(space)), more_(Vector3d::Constant(more)) {
+    if (!space_ || !(more >= 0)) throw Error("with_room: no space, or less than no room");
+  }
+  bool point_free(const Vector3d& p) const override { return space_->swept_box_free(p, p, more_); }
+  bool segment_free(const Vector3d& from, const Vector3d& to) const override {
+    return space_->swept_box_free(from, to, more_);
+  }
+  bool swept_box_free(const Vector3d& from, const Vector3d& to,
+                      const Vector3d& half) const override {
+    return space_->swept_box_free(from, to, half + more_);
+  }
+  Eigen::AlignedBox3d bounds() const override { return space_->bounds(); }
+
+ private:
+  std::unique_ptr<FreeSpace> space_;
+  Vector3d more_;
+};
+
 }  // namespace
 
 std::unique_ptr<FreeSpace> free_space_of(std::shared_ptr<const MeshScene> scene) {
@@ -89,6 +110,10 @@ std::unique_ptr<FreeSpace> free_space_of(std::shared_ptr<const Map> map) {
 std::unique_ptr<FreeSpace> free_in_both(std::unique_ptr<FreeSpace> a,
                                         std::unique_ptr<FreeSpace> b) {
   return std::make_unique<BothSpaces>(std::move(a), std::move(b));
+}
+
+std::unique_ptr<FreeSpace> with_room(std::unique_ptr<FreeSpace> space, double more) {
+  return std::make_unique<RoomySpace>(std::move(space), more);
 }
 
 }  // namespace lapwing

@@ -33,5 +33,7 @@ std::unique_ptr<FreeSpace> free_space_of(std::shared_ptr<const MeshScene> scene)
 std::unique_ptr<FreeSpace> free_space_of(std::shared_ptr<const Map> map);
 // Free where both are.
 std::unique_ptr<FreeSpace> free_in_both(std::unique_ptr<FreeSpace> a, std::unique_ptr<FreeSpace> b);
+// Free where a body larger by `more` metres on every side is.
+std::unique_ptr<FreeSpace> with_room(std::unique_ptr<FreeSpace> space, double more);
 
 }  // namespace lapwing

@@ -21,9 +21,14 @@ class BlockedVoxels {
   // m to the nearest blocked voxel's cube, 0 within it; at most `farthest`. Exact.
   double distance(const Eigen::Vector3d& p_W, double farthest) const;
 
- private:
+  const VoxelGrid& grid() const { return grid_; }
+  // Along each axis, in the grid's counting: the first voxel that is held, and how many.
+  int first(int axis) const { return low_[axis]; }
+  int count(int axis) const { return size_[axis]; }
+  // Counted from the first one; false for what is not held.
   bool free(int x, int y, int z) const;
 
+ private:
   VoxelGrid grid_;
   int low_[3], size_[3];
   std::vector<std::uint64_t> free_;  // a bit a voxel, x fastest

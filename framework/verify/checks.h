@@ -70,6 +70,8 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"gates", CheckGroup::task, true, "m"},
     CheckKind{"drawing", CheckGroup::task, true, "m"},
     CheckKind{"drawing_flown", CheckGroup::task, true, "m"},
+    CheckKind{"view_miss", CheckGroup::task, true, "m"},
+    CheckKind{"view_direction", CheckGroup::task, true, "rad"},
     CheckKind{"coverage", CheckGroup::task, true, ""},
 };
 
@@ -133,11 +135,14 @@ void check_drawing(const Flight& flight, const std::optional<FlownPath>& flown,
                    Certificate& certificate);
 void check_framing(const Flight& flight, Certificate& certificate);
 void check_gates(const Flight& flight, Certificate& certificate);
+void check_views(const Flight& flight, Certificate& certificate);
+void check_coverage(const Flight& flight, Certificate& certificate);
 
 // What of the environment, the cuts and the framing does not hold together, in words. The spans are
 // judged against a flight that ends at `finish`.
 void list_problems(const Environment& environment, std::vector<std::string>& problems);
 void list_gate_problems(const Task& task, std::vector<std::string>& problems);
+void list_scan_problems(const Plan& plan, std::vector<std::string>& problems);
 void list_problems(const Plan& film, double finish, std::vector<std::string>& problems);
 
 // Whether a figure is one that a plan may hold.

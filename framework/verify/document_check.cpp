@@ -81,8 +81,9 @@ class Reader {
            sound(s.rotor_thrusts[2]) && sound(s.rotor_thrusts[3]);
   }
 
-  // Where the flight comes, as far as clearance is told apart.
-  Eigen::AlignedBox3d surroundings(const Vehicle& vehicle) const {
+  // Where the flight comes, as far as clearance is told apart; of the map in which a scan's views
+  // see also the region, and the places of the views.
+  Eigen::AlignedBox3d surroundings(const Vehicle& vehicle, const std::string& map) const {
     Motion motion(plan_.trajectory, vehicle);
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i <= motion.intervals(); ++i) box.extend(motion.stated(i).position);
@@ -90,7 +91,11 @@ class Reader {
       for (const MotionPoint& point : motion.integrate(i)) box.extend(point.position);
     const Eigen::Vector3d room =
         Eigen::Vector3d::Constant(plan_.environment.margin + tolerances::kMapReach);
-    return {box.min() - room, box.max() + room};
+    box = Eigen::AlignedBox3d(box.min() - room, box.max() + room);
+    const auto& scan = plan_.task.scan;
+    if (!scan || scan->map != map) return box;
+    for (const PlannedView& view : scan->views) box.extend(view.position);
+    return box.merged(scan->region);
   }
 
   void read_maps(const Vehicle& vehicle, std::vector<BlockedVoxels>& maps) {
@@ -102,7 +107,7 @@ class Reader {
           add("map '" + map.name + "': '" + map.file + "' has changed since the plan was made");
           continue;
         }
-        maps.emplace_back(parse_map(bytes, map.file), surroundings(vehicle));
+        maps.emplace_back(parse_map(bytes, map.file), surroundings(vehicle, map.name));
       } catch (const std::exception& error) {
         add("map '" + map.name + "': " + error.what());
       }
@@ -140,6 +145,7 @@ class Reader {
       add("the budget must be above 0");
     }
     list_gate_problems(plan_.task, problems_);
+    if (plan_.task.scan) list_scan_problems(plan_, problems_);
     for (std::size_t i = 0; i < plan_.task.keyframes.size(); ++i) {
       const KeyframeTask& k = plan_.task.keyframes[i];
       const std::string name = "keyframe " + std::to_string(i + 1);

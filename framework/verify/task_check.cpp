@@ -121,7 +121,8 @@ void check_task(const Flight& flight, const std::optional<FlownPath>& flown,
   check_framing(flight, certificate);
   check_gates(flight, certificate);
   check_drawing(flight, flown, certificate);
-  checks.push_back(skipped_check("coverage", "the task has no region to cover"));
+  check_views(flight, certificate);
+  check_coverage(flight, certificate);
 }
 
 }  // namespace lapwing

@@ -48,5 +48,7 @@ inline constexpr double kUnitLength = 1e-6;    // of quaternions and directions
 inline constexpr double kStartTime = 1e-9;     // s, the first sample is at time 0
 inline constexpr double kSpanTime = 1e-6;      // s, that a span may pass the ends of the flight
 inline constexpr int kMostCorners = 1000;      // of a zone
+inline constexpr double kMostRays = 1e9;       // of the images of a scan
+inline constexpr double kLongestRay = 1000;    // m
 
 }  // namespace lapwing::tolerances

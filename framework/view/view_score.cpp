@@ -65,6 +65,15 @@ ViewScoreBuilder::ViewScoreBuilder(std::size_t voxels, std::span<const double> w
   sums_.resize(voxels);
 }
 
+void ViewScoreBuilder::add_voxels(std::size_t count) {
+  const std::size_t voxels = score_.voxels() + count;
+  if (voxels > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError("a view score holds fewer than 2^32 voxels, not " + std::to_string(voxels));
+  }
+  score_.capacities_.resize(voxels, static_cast<Amount>(std::lround(1 / score_.unit_)));
+  sums_.resize(voxels);
+}
+
 void ViewScoreBuilder::add_view(std::span<const ViewScore::Contribution> contributions) {
   sorted_.assign(contributions.begin(), contributions.end());
   std::sort(sorted_.begin(), sorted_.end(),

@@ -58,6 +58,9 @@ class ViewScoreBuilder {
   // Amounts are rounded to 2^-20 of the largest weight's next power of two. InputError otherwise.
   explicit ViewScoreBuilder(std::size_t voxels, std::span<const double> weights = {});
 
+  // More voxels, of weight 1, behind those that there are. InputError for too many.
+  void add_voxels(std::size_t count);
+
   // The next view. Voxels in any order, each at most once. InputError names view and voxel.
   void add_view(std::span<const ViewScore::Contribution> contributions);
 

@@ -1,0 +1,9 @@
+-- A church on a square, from a first flight over it to a tour of views for its 3D model.
+local scan = require "mission.scan"
+
+return scan.of_scene {
+  name  = "church",
+  scene = "church",
+  tour  = { budget = 300 },  -- s of flight
+  flights = { { pattern = "circle", views = 20, reach = 20 } },
+}

@@ -1,0 +1,228 @@
+// From a tour to a plan: stop-and-shoot along its motions, the images that it takes, what it has to
+// keep away from.
+#include <algorithm>
+#include <cmath>
+
+#include <lua.hpp>
+
+#include "framework/core/parallel.h"
+#include "framework/geometry/mesh_file.h"
+#include "framework/map/map_file.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/scan_objects.h"
+#include "framework/mission/scan_record.h"
+
+namespace lapwing {
+namespace {
+
+constexpr const char* kMapName = "known";
+constexpr double kMatchingShare = 0.1;  // of what an image tells on average
+
+// The walk in space: all corners are stops; at some of them a view is taken.
+struct Walk {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<PursuitView> stops;
+  std::vector<double> pitches;  // rad, per stop
+  std::vector<int> views;       // per stop, -1 where there is none or it was taken before
+};
+
+void add_stop(Walk& walk, const Eigen::Vector3d& point, double yaw, double pitch, int view) {
+  walk.stops.push_back({walk.points.size(), yaw});
+  walk.points.push_back(point);
+  walk.pitches.push_back(pitch);
+  walk.views.push_back(view);
+}
+
+Walk walk_of(const TourObject& tour) {
+  const ScanWork& work = *tour.work;
+  const auto at = [&](int v) -> const Viewpoint& {
+    return work.graph.candidates.viewpoints[static_cast<std::size_t>(v)];
+  };
+  std::vector<char> taken(work.graph.candidates.viewpoints.size(), 0);
+  Walk walk;
+  const Viewpoint& start = at(tour.walk.front());
+  taken[static_cast<std::size_t>(tour.walk.front())] = 1;
+  add_stop(walk, start.position, start.yaw, start.pitch, tour.walk.front());
+  for (std::size_t i = 1; i < tour.walk.size(); ++i) {
+    const int a = tour.walk[i - 1], b = tour.walk[i];
+    const ViewMotion& motion = work.graph.motions.motions[work.motion_between(a, b)];
+    std::vector<Eigen::Vector3d> points = motion.points;
+    if (motion.a != a) std::reverse(points.begin(), points.end());
+    const std::vector<PursuitView> stops = stops_of(points, at(a).yaw, at(b).yaw);
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const bool there = k + 1 == points.size();
+      char& done = taken[static_cast<std::size_t>(b)];
+      const int view = there && !done ? b : -1;
+      if (there) done = 1;
+      const double share = static_cast<double>(k) / static_cast<double>(points.size() - 1);
+      add_stop(walk, points[k], stops[k].yaw, at(a).pitch + share * (at(b).pitch - at(a).pitch),
+               view);
+    }
+  }
+  return walk;
+}
+
+// Turns the gimbal at an even rate between two stops, as late as they allow, so that it points
+// where it should when the vehicle comes to rest.
+void turn_gimbal(Trajectory& trajectory, const Walk& walk, const std::vector<ViewPassed>& passed) {
+  trajectory.has_gimbal = true;
+  std::size_t next = 0;
+  double pitch = walk.pitches.front();
+  auto& samples = trajectory.samples;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    Sample& s = samples[k];
+    s.gimbal_pitch = pitch;
+    while (next < passed.size() && passed[next].arrival <= s.time + 1e-9) ++next;
+    if (k + 1 == samples.size() || next == passed.size()) continue;
+    // In the pause of a stop the camera keeps still.
+    if (next > 0 && s.time < passed[next - 1].departure - 1e-9) continue;
+    const double left = passed[next].arrival - s.time, h = samples[k + 1].time - s.time;
+    const double missing = walk.pitches[next] - pitch;
+    s.gimbal_pitch_rate = left > h ? missing / left : missing / h;
+    pitch += h * s.gimbal_pitch_rate;
+  }
+}
+
+// Views that tell next to nothing are there for those before and after them.
+std::vector<ViewKind> kinds_of(const ScanWork& work, const std::vector<int>& views) {
+  ScoreState state(*work.graph.score);
+  for (const int v : views) state.add(v);
+  const double mean = state.score() / static_cast<double>(std::max<std::size_t>(views.size(), 1));
+  std::vector<ViewKind> kinds;
+  for (const int v : views)
+    kinds.push_back(state.loss(v) < kMatchingShare * mean ? ViewKind::matching : ViewKind::planned);
+  return kinds;
+}
+
+ScanTask task_of_scan(const ScanWork& work, const Walk& walk, const Pursuit& flown, int threads) {
+  const SightSettings& sight = work.visible->settings();
+  ScanTask task;
+  task.region = sight.region;
+  task.camera = sight.pinhole;
+  task.range = sight.range;
+  task.map = kMapName;
+  std::vector<int> views;
+  for (std::size_t i = 0; i < walk.stops.size(); ++i) {
+    if (walk.views[i] < 0) continue;
+    const Viewpoint& v = work.graph.candidates.viewpoints[static_cast<std::size_t>(walk.views[i])];
+    views.push_back(walk.views[i]);
+    task.views.push_back({flown.views[i].departure, v.position, v.yaw, v.pitch, {}});
+  }
+  const std::vector<ViewKind> kinds = kinds_of(work, views);
+  for (std::size_t i = 0; i < kinds.size(); ++i) task.views[i].kind = kinds[i];
+  std::vector<std::vector<SeenVoxel>> seen(views.size());
+  parallel_for(views.size(), threads, [&](std::size_t i) {
+    seen[i] = work.visible->seen_from(
+        work.graph.candidates.viewpoints[static_cast<std::size_t>(views[i])]);
+  });
+  std::vector<VoxelKey> all;
+  for (const auto& one : seen)
+    for (const SeenVoxel& voxel : one) all.push_back(voxel.voxel);
+  std::sort(all.begin(), all.end());
+  task.seen = std::unique(all.begin(), all.end()) - all.begin();
+  return task;
+}
+
+SolveStatus status_of(TourStatus status) {
+  switch (status) {
+    case TourStatus::optimal:
+      return SolveStatus::optimal;
+    case TourStatus::feasible:
+      return SolveStatus::feasible;
+    case TourStatus::infeasible:
+      return SolveStatus::infeasible;
+    case TourStatus::iteration_limit:
+      return SolveStatus::iteration_limit;
+    case TourStatus::time_limit:
+      return SolveStatus::time_limit;
+    case TourStatus::cancelled:
+      return SolveStatus::cancelled;
+    case TourStatus::unsupported:
+      return SolveStatus::unsupported;
+    case TourStatus::failed:
+      break;
+  }
+  return SolveStatus::numerical_error;
+}
+
+SolveReport report_of(const TourReport& tour) {
+  SolveReport report;
+  report.status = status_of(tour.status);
+  report.message = tour.message;
+  report.iterations = static_cast<int>(tour.iterations);
+  report.cost = std::numeric_limits<double>::quiet_NaN();
+  report.seconds = tour.wall_seconds;
+  return report;
+}
+
+std::vector<std::string> texts_of(const Value& list) {
+  std::vector<std::string> texts;
+  if (list.is_list())
+    for (const Value& entry : list.as_list()) texts.push_back(entry.as_text());
+  return texts;
+}
+
+}  // namespace
+
+// run:scan_plan{tour =, margin =, budget =, closed_loop_required =, seen_share =, notes =,
+//               figures =}
+int scan_plan_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  ParameterTable table;
+  table.number("margin", 0.4, "m", "kept from what is not free, and from the mesh", at_least(0))
+      .required_number("budget", "s", "of flight", above(0))
+      .number("seen_share", ScanTask{}.seen_share, "", "of the voxels that must be seen again",
+              {0, 1, true})
+      .boolean("closed_loop_required", true, "else tracking under control is reported only");
+  static constexpr std::string_view kObjects[] = {"tour", "notes", "figures"};
+  const Parameters given = table_argument(state, 2, table, "scan_plan", kObjects);
+  lua_getfield(state, 2, "tour");
+  const TourObject& tour = object_argument<TourObject>(state, -1, kTourType);
+  if (tour.walk.size() < 2) throw InputError("scan_plan: a tour of one view is no flight");
+  lua_getfield(state, 2, "notes");
+  const Value notes = value_from_lua(state, lua_gettop(state), origin, "scan_plan.notes");
+  lua_getfield(state, 2, "figures");
+  const ScanWork& work = *tour.work;
+  PlanObject made;
+  made.block = value_from_lua(state, lua_gettop(state), origin, "scan_plan.figures");
+  made.block_name = "tour";
+  made.notes = texts_of(notes);
+  made.report = report_of(tour.report);
+  made.solver = tour.solver;
+  Plan& plan = made.plan;
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    const Walk walk = walk_of(tour);
+    Pursuit flown = pursue(walk.points, walk.stops, work.vehicle, work.flight);
+    plan.mission = run.name;
+    plan.kind = run.kind;
+    plan.vehicle = to_value(work.vehicle);
+    plan.trajectory = std::move(flown.trajectory);
+    if (work.vehicle.gimbal) turn_gimbal(plan.trajectory, walk, flown.views);
+    plan.budget = given.number("budget");
+    plan.task.closed_loop_required = given.boolean("closed_loop_required");
+    plan.task.scan = task_of_scan(work, walk, flown, run.settings.threads);
+    plan.task.scan->seen_share = given.number("seen_share");
+    const Prior& prior = *work.prior;
+    plan.environment.margin = given.number("margin");
+    MapObstacle map;
+    map.name = kMapName;
+    map.file = "map.ot";
+    map.sha256 = run.obstacles.keep(map.file, map_file_bytes(".ot", *prior.mapping.map));
+    plan.environment.maps.push_back(std::move(map));
+    MeshObstacle mesh;
+    mesh.name = "prior";
+    mesh.file = "prior.ply";
+    mesh.sha256 = run.obstacles.keep(mesh.file, ply_bytes(prior.mesh->mesh()));
+    plan.environment.meshes.push_back(std::move(mesh));
+    plan.configuration = run.configuration;
+    plan.solver = to_value(tour.report, tour.solver);
+    made.scan = record_of_scan(tour);
+  }
+  new_object(state, kPlanType, std::move(made));
+  return 1;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,396 @@
+// The graph of views that tours are planned on, and tours.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <lua.hpp>
+
+#include "framework/core/log.h"
+#include "framework/core/parallel.h"
+#include "framework/core/units.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/scan_objects.h"
+
+namespace lapwing {
+
+std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, double yaw_from,
+                                  double yaw_to) {
+  const double turn = std::remainder(yaw_to - yaw_from, 2 * EIGEN_PI);
+  const double length = path_length(points);
+  std::vector<PursuitView> stops;
+  double along = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0) along += (points[i] - points[i - 1]).norm();
+    stops.push_back({i, yaw_from + (length > 0 ? along / length : 1) * turn});
+  }
+  return stops;
+}
+
+std::size_t ScanWork::motion_between(int a, int b) const {
+  const auto& motions = graph.motions.motions;  // by a, then b
+  const std::pair<int, int> wanted = std::minmax(a, b);
+  const auto found = std::lower_bound(motions.begin(), motions.end(), wanted,
+                                      [](const ViewMotion& m, const std::pair<int, int>& pair) {
+                                        return std::pair(m.a, m.b) < pair;
+                                      });
+  if (found == motions.end() || std::pair(found->a, found->b) != wanted)
+    throw Error("a tour passes from view to view without a motion");
+  return static_cast<std::size_t>(found - motions.begin());
+}
+
+namespace {
+
+ParameterTable candidates_table() {
+  const CandidateSettings standard;
+  ParameterTable table;
+  table.integer("most", standard.most, "views", between(1, 100000))
+      .integer("least", standard.least, "where growing finds fewer, free places are drawn as well",
+               between(0, 100000))
+      .number("step", standard.step, "m", "between neighbours at the region", above(0))
+      .number("step_growth", standard.step_growth, "", "m more for every metre away from it",
+              at_least(0))
+      .number("distance_apart", standard.distance_apart, "m", "or so far in angle", above(0))
+      .number("angle_apart_deg", 15, "deg", "or so far in distance", between(0, 180))
+      .number("pitch_min_deg", -90, "deg", "lowest that the camera looks", between(-90, 0))
+      .number("pitch_max_deg", 0, "deg", "highest", between(-90, 90));
+  return table;
+}
+
+ParameterTable motions_table() {
+  const MotionSettings standard;
+  ParameterTable table;
+  table.integer("neighbours", standard.neighbours, "that each view is tried with", between(1, 1000))
+      .number("alpha", standard.alpha, "", "of (4.8): share of what two matchable views both see",
+              between(0, 1))
+      .number("longest_detour", standard.longest_detour, "", "straight lines long", at_least(1))
+      .integer("coarse", ScanGraphSettings{}.coarse_across, "pixels across, of compared views",
+               between(1, 10000));
+  return table;
+}
+
+ParameterTable flight_table() {
+  const PursuitSettings standard;
+  ParameterTable table;
+  table.number("speed", standard.speed, "m/s", "on the way", above(0))
+      .number("view_speed", standard.view_speed, "m/s", "near a view", above(0))
+      .number("slow_within", standard.slow_within, "m", "of a view", above(0))
+      .number("lookahead", standard.lookahead, "m", "of the pursued point", above(0))
+      .number("acceleration", standard.acceleration, "m/s^2", "largest", above(0))
+      .number("pause", 0.5, "s", "at rest in a view, for the image", between(0, 60))
+      .number("view_seconds", 3, "s", "that a view costs at least, beside the way", at_least(0));
+  return table;
+}
+
+ParameterTable graph_table() {
+  ParameterTable table;
+  table.table("region", box_table(), "of interest")
+      .table("allowed", box_table(), "where the vehicle's middle may be")
+      .tables("starts", viewpoint_table(), "known to be free; the first one must be", true)
+      .numbers("body", {1, 1, 0.5}, "m", "half edges of the vehicle's box")
+      .number("mesh_room", 1, "m", "more that is kept from the prior mesh", at_least(0))
+      .table("candidates", candidates_table(), "views worth considering")
+      .table("motions", motions_table(), "ways between them")
+      .table("camera", pinhole_table(), "of the images")
+      .number("range", 60, "m", "of a ray through a pixel", above(0))
+      .table("flight", flight_table(), "speeds along a tour");
+  return table;
+}
+
+Eigen::Vector3d vector3_of(std::span<const double> numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run) {
+  ScanGraphSettings s;
+  const Parameters& candidates = given.table("candidates");
+  s.candidates.region = box_of(given.table("region"), "the region of interest");
+  s.candidates.allowed = box_of(given.table("allowed"), "the room that is allowed");
+  s.candidates.half = vector3_of(given.numbers("body"));
+  s.candidates.step = candidates.number("step");
+  s.candidates.step_growth = candidates.number("step_growth");
+  s.candidates.distance_apart = candidates.number("distance_apart");
+  s.candidates.angle_apart = radians(candidates.number("angle_apart_deg"));
+  s.candidates.pitch_min = radians(candidates.number("pitch_min_deg"));
+  s.candidates.pitch_max = radians(candidates.number("pitch_max_deg"));
+  s.candidates.most = static_cast<int>(candidates.integer("most"));
+  s.candidates.least = static_cast<int>(candidates.integer("least"));
+  const Parameters& motions = given.table("motions");
+  s.motions.allowed = s.candidates.allowed;
+  s.motions.half = s.candidates.half;
+  s.motions.neighbours = static_cast<int>(motions.integer("neighbours"));
+  s.motions.alpha = motions.number("alpha");
+  s.motions.longest_detour = motions.number("longest_detour");
+  s.coarse_across = static_cast<int>(motions.integer("coarse"));
+  s.seed = run.settings.seed;
+  s.threads = run.settings.threads;
+  return s;
+}
+
+// The first start must be free; of the others those count that are.
+std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, const FreeSpace& space,
+                                   const CandidateSettings& settings) {
+  std::vector<Viewpoint> starts;
+  for (const Parameters& entry : given) {
+    const Viewpoint view = viewpoint_of(entry);
+    const Eigen::Vector3d& p = view.position;
+    const bool free = settings.allowed.contains(p) && space.swept_box_free(p, p, settings.half);
+    if (free) starts.push_back(view);
+    if (free || !starts.empty()) continue;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "no free start: at (%.4g, %.4g, %.4g) the map does not show that there is room "
+                  "for a box of %.3g x %.3g x %.3g m%s",
+                  p.x(), p.y(), p.z(), 2 * settings.half.x(), 2 * settings.half.y(),
+                  2 * settings.half.z(),
+                  settings.allowed.contains(p) ? "" : ", and it lies where none may be");
+    throw InputError(entry.origin(), text);
+  }
+  if (starts.empty()) throw InputError("no free start: none was given");
+  return starts;
+}
+
+// What motion k takes, its view at the end included: at least the way at full speed and what a view
+// costs (reading 4.6), and as long as the vehicle needs either way.
+std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
+                                       const CancellationToken* cancellation) {
+  const auto& motions = work.graph.motions.motions;
+  const auto& views = work.graph.candidates.viewpoints;
+  std::vector<double> seconds(motions.size(), 0);
+  parallel_for(motions.size(), threads, [&](std::size_t k) {
+    if (cancellation && cancellation->cancelled()) return;
+    const ViewMotion& motion = motions[k];
+    const double from = views[static_cast<std::size_t>(motion.a)].yaw;
+    const double to = views[static_cast<std::size_t>(motion.b)].yaw;
+    double most = motion.length / work.flight.speed + work.view_seconds;
+    std::vector<Eigen::Vector3d> points = motion.points;
+    if (motion.length > 0)
+      for (const bool back : {false, true}) {
+        if (back) std::reverse(points.begin(), points.end());
+        const auto stops = stops_of(points, back ? to : from, back ? from : to);
+        const Pursuit flown = pursue(points, stops, work.vehicle, work.flight);
+        most = std::max(most, flown.trajectory.duration() - work.flight.pause);
+      }
+    seconds[k] = most;
+  });
+  if (cancellation && cancellation->cancelled()) throw Cancelled();
+  return seconds;
+}
+
+// Which views are joined by motions: each with the lowest number of its island.
+std::vector<int> islands_of(const ScanGraph& graph) {
+  std::vector<int> island(graph.candidates.viewpoints.size());
+  std::iota(island.begin(), island.end(), 0);
+  const auto root = [&](int v) {
+    while (island[static_cast<std::size_t>(v)] != v) v = island[static_cast<std::size_t>(v)];
+    return v;
+  };
+  for (const ViewMotion& m : graph.motions.motions) {
+    const int a = root(m.a), b = root(m.b);
+    island[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  for (int v = 0; v < static_cast<int>(island.size()); ++v)
+    island[static_cast<std::size_t>(v)] = root(v);
+  return island;
+}
+
+const Vehicle& vehicle_argument(lua_State* state, int table) {
+  lua_getfield(state, table, "vehicle");
+  return object_argument<Vehicle>(state, -1, kVehicleType);
+}
+
+PluginChoice choice_at(lua_State* state, int table, const char* key) {
+  lua_getfield(state, table, key);
+  return plugin_choice(state, lua_gettop(state), key);
+}
+
+std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {
+  std::shared_ptr<const Map> map = prior.mapping.map;
+  return free_in_both(free_space_of(map), with_room(free_space_of(prior.mesh), mesh_room));
+}
+
+}  // namespace
+
+// run:scan_graph{prior =, vehicle =, region =, allowed =, starts =, ...}
+int scan_graph_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  static constexpr std::string_view kObjects[] = {"prior", "vehicle", "information", "planner"};
+  const Parameters given = table_argument(state, 2, graph_table(), "scan_graph", kObjects);
+  lua_getfield(state, 2, "prior");
+  auto work = std::make_shared<ScanWork>();
+  work->prior = object_argument<PriorObject>(state, -1, kPriorType).prior;
+  if (!work->prior->mesh) throw InputError("scan_graph: the prior has no mesh; reconstruct it");
+  work->vehicle = vehicle_argument(state, 2);
+  const Registry& registry = *run.settings.registry;
+  const PluginChoice information = choice_at(state, 2, "information");
+  const PluginChoice planner = choice_at(state, 2, "planner");
+  ScanGraphSettings settings = graph_settings(given, run);
+  const auto path_planner =
+      registry.create<PathPlanner>(planner.type, planner.parameters, "planner");
+  settings.motions.planner = path_planner.get();
+  work->information =
+      registry.create<ViewInformation>(information.type, information.parameters, "information");
+  const Parameters& flight = given.table("flight");
+  work->flight = {.speed = flight.number("speed"),
+                  .view_speed = flight.number("view_speed"),
+                  .slow_within = flight.number("slow_within"),
+                  .lookahead = flight.number("lookahead"),
+                  .acceleration = flight.number("acceleration"),
+                  .stop = true,
+                  .pause = flight.number("pause")};
+  work->view_seconds = flight.number("view_seconds");
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  SightSettings sight;
+  sight.pinhole = pinhole_of(given.table("camera"));
+  sight.range = given.number("range");
+  sight.region = settings.candidates.region;
+  work->prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
+  work->visible =
+      std::make_shared<VisibleVoxels>(work->prior->mapping.map, work->prior->mesh, sight);
+  const auto space = space_of(*work->prior, given.number("mesh_room"));
+  const std::vector<Viewpoint> starts =
+      free_starts(given.tables("starts"), *space, settings.candidates);
+  work->graph = make_scan_graph(*space, *work->visible, *work->information, starts, settings,
+                                run.settings.cancellation, run.settings.progress);
+  work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
+  work->island = islands_of(work->graph);
+  const ScanGraph& graph = work->graph;
+  log::info("candidates: " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
+            std::to_string(graph.candidates.blocked) + " places blocked, " +
+            std::to_string(graph.candidates.crowded) + " too near to others); motions: " +
+            std::to_string(graph.motions.motions.size()) + " of " +
+            std::to_string(graph.motions.tried) + " (" + std::to_string(graph.motions.unmatched) +
+            " unmatched, " + std::to_string(graph.motions.blocked) + " blocked, " +
+            std::to_string(graph.motions.planned) +
+            " round obstacles); voxels: " + std::to_string(graph.voxels.size()) +
+            "; score: " + std::to_string(graph.score->bytes() >> 20) + " MiB");
+  new_object(state, kGraphType, GraphObject{std::move(work)});
+  return 1;
+}
+
+namespace {
+
+// "12 of 300 candidates are joined to the start; the largest island of the others has 200"
+std::string reach_in_words(const ScanWork& work, int start) {
+  std::vector<int> sizes(work.island.size(), 0);
+  for (const int island : work.island) ++sizes[static_cast<std::size_t>(island)];
+  const auto own = static_cast<std::size_t>(work.island[static_cast<std::size_t>(start)]);
+  const int joined = sizes[own];
+  sizes[own] = 0;
+  const int other = *std::max_element(sizes.begin(), sizes.end());
+  return std::to_string(joined) + " of " + std::to_string(work.island.size()) +
+         " candidates are joined to the start by motions" +
+         (other > 0 ? "; the largest island of the others has " + std::to_string(other) : "");
+}
+
+int graph_field(lua_State* state) {
+  const ScanWork& work = *object_argument<GraphObject>(state, 1, kGraphType).work;
+  const ScanGraph& graph = work.graph;
+  Value fields = Value::map();
+  fields.set("candidates", static_cast<std::int64_t>(graph.candidates.viewpoints.size()));
+  fields.set("motions", static_cast<std::int64_t>(graph.motions.motions.size()));
+  fields.set("planned", graph.motions.planned);
+  fields.set("unmatched", graph.motions.unmatched);
+  fields.set("blocked", graph.motions.blocked);
+  fields.set("voxels", static_cast<std::int64_t>(graph.voxels.size()));
+  fields.set("total", graph.score->total());
+  fields.set("reach", reach_in_words(work, 0));
+  const std::string field = text_argument(state, 2, "scan graph");
+  const Value* found = fields.find(field);
+  if (!found) refuse_field("a scan graph", field, fields);
+  push_value(state, *found);
+  return 1;
+}
+
+int tour_field(lua_State* state) {
+  const TourObject& tour = object_argument<TourObject>(state, 1, kTourType);
+  Value fields = to_value(tour.report, tour.solver);
+  fields.set("budget", tour.budget);
+  fields.set("visits", static_cast<std::int64_t>(tour.walk.size()));
+  fields.set("upper_bound",
+             std::isfinite(tour.report.upper_bound) ? Value(tour.report.upper_bound) : Value());
+  fields.set("gap", tour.report.gap);
+  const std::string field = text_argument(state, 2, "tour");
+  const Value* found = fields.find(field);
+  if (!found) refuse_field("a tour", field, fields);
+  push_value(state, *found);
+  return 1;
+}
+
+}  // namespace
+
+// run:solve_tour{graph =, solver =, budget =, finish =, images =, initial = tour, iterations =}
+int solve_tour_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  ParameterTable table;
+  table.required_number("budget", "s", "of flight", above(0))
+      .integer("finish", 1, "candidate in which it ends, from 1, the start", at_least(1))
+      .integer("images", 0, "most different images; 0 for any number", at_least(0))
+      .integer("iterations", 0, "of the solver; 0 for its own", at_least(0))
+      .integer("evaluations", 0, "of the score, in all; 0 for any number", at_least(0));
+  static constexpr std::string_view kObjects[] = {"graph", "solver", "initial"};
+  const Parameters given = table_argument(state, 2, table, "solve_tour", kObjects);
+  lua_getfield(state, 2, "graph");
+  TourObject tour;
+  tour.work = object_argument<GraphObject>(state, -1, kGraphType).work;
+  const ScanWork& work = *tour.work;
+  const PluginChoice chosen = choice_at(state, 2, "solver");
+  tour.solver = chosen.type;
+  tour.budget = given.number("budget");
+  TourDefinition definition;
+  definition.score = work.graph.score;
+  definition.view_seconds = {work.view_seconds};
+  for (std::size_t k = 0; k < work.seconds.size(); ++k) {
+    const ViewMotion& m = work.graph.motions.motions[k];
+    definition.motions.push_back({m.a, m.b, work.seconds[k] - work.view_seconds});
+  }
+  const auto count = static_cast<std::int64_t>(work.graph.candidates.viewpoints.size());
+  if (given.integer("finish") > count)
+    throw InputError(given.origin("finish"),
+                     "solve_tour: there are candidates from 1 to " + std::to_string(count));
+  definition.end = static_cast<int>(given.integer("finish") - 1);
+  if (given.integer("images") > 0)
+    definition.image_limit = static_cast<int>(given.integer("images"));
+  definition.budget = tour.budget;
+  TourRequest request;
+  request.seed = run.settings.seed;
+  if (given.integer("iterations") > 0) request.iteration_limit = given.integer("iterations");
+  if (given.integer("evaluations") > 0) request.evaluation_limit = given.integer("evaluations");
+  request.cancellation = run.settings.cancellation;
+  request.progress = run.settings.progress;
+  if (lua_getfield(state, 2, "initial") != LUA_TNIL)
+    request.initial = object_argument<TourObject>(state, -1, kTourType).walk;
+  const auto solver =
+      run.settings.registry->create<TourSolver>(chosen.type, chosen.parameters, "tour.solver");
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    const TourProblem problem(std::move(definition));
+    TourResult result = solver->solve(problem, request);
+    tour.report = result.report;
+    tour.walk = std::move(result.walk);
+  }
+  run.solve_seconds += tour.report.wall_seconds;
+  log::info(chosen.type + ": " + to_string(tour.report.status) + ", score " +
+            std::to_string(tour.report.score) + ", " + std::to_string(tour.report.seconds_used) +
+            " s, " + std::to_string(tour.report.images) + " images, " +
+            std::to_string(tour.report.evaluations) + " evaluations" +
+            (tour.report.message.empty() ? "" : "; " + tour.report.message));
+  new_object(state, kTourType, std::move(tour));
+  return 1;
+}
+
+void open_scan_library(lua_State* state) {
+  open_prior_type(state);
+  define_type<GraphObject>(state, kGraphType, nullptr, &guarded<graph_field>);
+  define_type<TourObject>(state, kTourType, nullptr, &guarded<tour_field>);
+}
+
+std::span<const luaL_Reg> scan_methods_of_run() {
+  static const luaL_Reg methods[] = {{"prior", &guarded<prior_of_run>},
+                                     {"scan_graph", &guarded<scan_graph_of_run>},
+                                     {"solve_tour", &guarded<solve_tour_of_run>},
+                                     {"scan_plan", &guarded<scan_plan_of_run>}};
+  return methods;
+}
+
+}  // namespace lapwing

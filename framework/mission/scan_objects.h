@@ -1,0 +1,95 @@
+// What scan missions hold: what is known of a place, the graph of views made from it, tours.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "framework/geometry/point_fusion.h"
+#include "framework/geometry/render.h"
+#include "framework/mission/map_objects.h"
+#include "framework/vehicle/pursuit.h"
+#include "framework/view/scan_graph.h"
+#include "framework/view/tour_solver.h"
+
+struct luaL_Reg;
+
+namespace lapwing {
+
+// All that planning may know: made from depth images or files, never from the scene itself
+// (reading 4.9).
+struct Prior {
+  Mapping mapping;
+  FusionOptions fusion_options;
+  std::optional<PointFusion> fusion;
+  std::vector<FusedPoint> earlier;        // of the mesh of an earlier flight
+  std::shared_ptr<const MeshScene> mesh;  // null until it is made or read
+  std::vector<Viewpoint> views;           // from which depth images were taken
+  std::optional<Picture> scene;           // of the scene flown in, for the report alone
+};
+
+struct PriorObject {
+  std::shared_ptr<Prior> prior;
+};
+
+// A graph, and what its tours take in seconds.
+struct ScanWork {
+  std::shared_ptr<Prior> prior;
+  Vehicle vehicle;
+  PursuitSettings flight;
+  double view_seconds = 0;
+  std::shared_ptr<const VisibleVoxels> visible;
+  std::shared_ptr<const ViewInformation> information;
+  ScanGraph graph;
+  std::vector<double> seconds;  // of each motion, a view's own included
+  std::vector<int> island;      // of the views that are joined by motions, per view
+
+  // The place of the motion between two views; Error where there is none.
+  std::size_t motion_between(int a, int b) const;
+  double leg_seconds(int a, int b) const { return seconds[motion_between(a, b)]; }
+};
+
+struct GraphObject {
+  std::shared_ptr<const ScanWork> work;
+};
+
+struct TourObject {
+  std::shared_ptr<const ScanWork> work;
+  std::string solver;
+  double budget = 0;
+  TourReport report;
+  std::vector<int> walk;
+};
+
+inline constexpr const char* kPriorType = "prior";
+inline constexpr const char* kGraphType = "scan graph";
+inline constexpr const char* kTourType = "tour";
+
+void open_scan_library(lua_State* state);
+// prior, scan_graph, solve_tour, scan_plan.
+std::span<const luaL_Reg> scan_methods_of_run();
+
+// Each is a method of `run`; see README.md.
+int prior_of_run(lua_State* state);
+int scan_graph_of_run(lua_State* state);
+int solve_tour_of_run(lua_State* state);
+int scan_plan_of_run(lua_State* state);
+void open_prior_type(lua_State* state);
+
+// Arguments that several of them take: {position =, yaw =, pitch =}; {lower =, upper =};
+// {width =, height =, focal =}.
+ParameterTable viewpoint_table();
+Viewpoint viewpoint_of(const Parameters& given);
+ParameterTable box_table();
+Eigen::AlignedBox3d box_of(const Parameters& given, const std::string& what);
+ParameterTable pinhole_table();
+Pinhole pinhole_of(const Parameters& given);
+
+// The stops of a way from view to view: its corners, each with a heading on the way from the first
+// one's to the last one's.
+std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, double yaw_from,
+                                  double yaw_to);
+
+}  // namespace lapwing

@@ -1,0 +1,269 @@
+// The images of a scan: whether the flight is where they are taken, and what of the region they
+// see, by rays of this room's own through the map that the plan names.
+#include <algorithm>
+#include <atomic>
+
+#include "framework/core/parallel.h"
+#include "framework/verify/checks.h"
+
+namespace lapwing {
+namespace {
+
+constexpr int kBlock = 8;  // voxels, edge of what a ray passes in one go where all of it is free
+
+// What is free in a map, to be looked through.
+class SeeThrough {
+ public:
+  explicit SeeThrough(const BlockedVoxels& voxels) : voxels_(voxels) {
+    std::size_t count = 1;
+    for (int i = 0; i < 3; ++i) {
+      blocks_[i] = (voxels.count(i) + kBlock - 1) / kBlock;
+      count *= static_cast<std::size_t>(blocks_[i]);
+    }
+    open_.assign(count, 0);
+    parallel_for(static_cast<std::size_t>(blocks_[2]), 0, [&](std::size_t z) {
+      for (int y = 0; y < blocks_[1]; ++y)
+        for (int x = 0; x < blocks_[0]; ++x)
+          open_[place(x, y, static_cast<int>(z))] = all_free(x, y, static_cast<int>(z));
+    });
+  }
+
+  // The first voxel on a ray that is not free, counted from the first one held; false where there
+  // is none within `range` metres, or the ray leaves what is held.
+  bool meet(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double range,
+            int hit[3]) const {
+    const VoxelGrid& grid = voxels_.grid();
+    const double edge = grid.resolution();
+    if (!grid.contains(from)) return false;
+    int at[3];
+    for (int i = 0; i < 3; ++i) {
+      at[i] = grid.index(from(i)) - voxels_.first(i);
+      if (at[i] < 0 || at[i] >= voxels_.count(i)) return false;
+    }
+    double along = 0;
+    while (along < range) {
+      const int block[3] = {at[0] / kBlock, at[1] / kBlock, at[2] / kBlock};
+      const bool open = open_[place(block[0], block[1], block[2])];
+      if (!open && !voxels_.free(at[0], at[1], at[2])) {
+        std::copy_n(at, 3, hit);
+        return true;
+      }
+      // To the nearest face ahead, of the block or of the voxel.
+      const int size = open ? kBlock : 1;
+      double nearest = std::numeric_limits<double>::infinity();
+      int through = 0;
+      for (int i = 0; i < 3; ++i) {
+        if (direction(i) == 0) continue;
+        const int low = at[i] / size * size, next = direction(i) > 0 ? low + size : low;
+        const double face = grid.face(voxels_.first(i) + next);
+        const double distance = (face - from(i)) / direction(i);
+        if (distance < nearest) nearest = distance, through = i;
+      }
+      along = std::max(along, nearest);
+      const int step = direction(through) > 0 ? 1 : -1;
+      const int low = at[through] / size * size;
+      const int entered = step > 0 ? low + size : low - 1;
+      // Across the block the other two have moved on as well; rounding must not leave it.
+      if (open)
+        for (int i = 0; i < 3; ++i) {
+          if (i == through) continue;
+          const int first = at[i] / size * size;
+          const double reached = from(i) + along * direction(i);
+          at[i] = std::clamp(
+              static_cast<int>(std::floor(reached / edge)) + kCenterKey - voxels_.first(i), first,
+              std::min(first + size, voxels_.count(i)) - 1);
+        }
+      at[through] = entered;
+      if (entered < 0 || entered >= voxels_.count(through)) return false;
+    }
+    return false;
+  }
+
+ private:
+  std::size_t place(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(blocks_[1]) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(blocks_[0]) +
+           static_cast<std::size_t>(x);
+  }
+  bool all_free(int bx, int by, int bz) const {
+    for (int z = bz * kBlock; z < std::min((bz + 1) * kBlock, voxels_.count(2)); ++z)
+      for (int y = by * kBlock; y < std::min((by + 1) * kBlock, voxels_.count(1)); ++y)
+        for (int x = bx * kBlock; x < std::min((bx + 1) * kBlock, voxels_.count(0)); ++x)
+          if (!voxels_.free(x, y, z)) return false;
+    return true;
+  }
+
+  const BlockedVoxels& voxels_;
+  int blocks_[3];
+  std::vector<char> open_;
+};
+
+// Voxels with their middle in the region, one by one, as seen or not.
+class SeenVoxels {
+ public:
+  SeenVoxels(const BlockedVoxels& voxels, const Eigen::AlignedBox3d& region) {
+    std::size_t count = 1;
+    for (int i = 0; i < 3; ++i) {
+      const VoxelGrid& grid = voxels.grid();
+      const double lowest = std::clamp(region.min()(i), -grid.reach(), grid.reach());
+      const double highest = std::clamp(region.max()(i), -grid.reach(), grid.reach());
+      low_[i] = grid.index(lowest);
+      if (grid.center(low_[i]) < lowest) ++low_[i];
+      int high = grid.index(highest);
+      if (grid.center(high) > highest) --high;
+      size_[i] = std::max(0, high - low_[i] + 1);
+      low_[i] -= voxels.first(i);
+      count *= static_cast<std::size_t>(size_[i]);
+    }
+    seen_.assign(count, 0);
+  }
+
+  // Several threads may see the same voxel: all of them write the same.
+  void see(const int at[3]) {
+    std::size_t place = 0;
+    for (int i = 2; i >= 0; --i) {
+      const int k = at[i] - low_[i];
+      if (k < 0 || k >= size_[i]) return;
+      place = place * static_cast<std::size_t>(size_[i]) + static_cast<std::size_t>(k);
+    }
+    std::atomic_ref(seen_[place]).store(1, std::memory_order_relaxed);
+  }
+  std::int64_t count() const { return std::count(seen_.begin(), seen_.end(), 1); }
+
+ private:
+  int low_[3], size_[3];
+  std::vector<char> seen_;
+};
+
+Eigen::Vector3d ahead_of(double yaw, double pitch) {
+  return {std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch)};
+}
+
+void look(const PlannedView& view, const ScanTask& scan, const SeeThrough& space,
+          SeenVoxels& seen) {
+  const Eigen::Vector3d ahead = ahead_of(view.yaw, view.pitch);
+  const Eigen::Vector3d right(std::sin(view.yaw), -std::cos(view.yaw), 0);
+  const Eigen::Vector3d down = ahead.cross(right);
+  const Pinhole& camera = scan.camera;
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const Eigen::Vector3d way = ahead + (x - camera.principal_x) / camera.focal_x * right +
+                                  (y - camera.principal_y) / camera.focal_y * down;
+      int hit[3];
+      if (space.meet(view.position, way.normalized(), scan.range, hit)) seen.see(hit);
+    }
+}
+
+const BlockedVoxels& map_of_scan(const Flight& flight) {
+  const auto& maps = flight.plan.environment.maps;
+  for (std::size_t i = 0; i < maps.size(); ++i)
+    if (maps[i].name == flight.plan.task.scan->map) return flight.maps[i];
+  throw Error("a scan without its map was let through");
+}
+
+// The motion at a time within the flight, straight between integrated points.
+MotionPoint motion_at(Motion& motion, double time) {
+  std::size_t low = 0, high = motion.intervals();
+  while (low + 1 < high) {
+    const std::size_t middle = (low + high) / 2;
+    (motion.stated(middle).time <= time ? low : high) = middle;
+  }
+  if (motion.intervals() == 0) return motion.stated(0);
+  const auto points = motion.integrate(low);
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    if (points[k].time < time && k + 1 < points.size()) continue;
+    MotionPoint p = points[k - 1];
+    const double h = points[k].time - p.time;
+    const double share = h > 0 ? std::clamp((time - p.time) / h, 0.0, 1.0) : 0;
+    p.position += share * (points[k].position - p.position);
+    p.yaw += share * (points[k].yaw - p.yaw);
+    p.gimbal_yaw += share * (points[k].gimbal_yaw - p.gimbal_yaw);
+    p.gimbal_pitch += share * (points[k].gimbal_pitch - p.gimbal_pitch);
+    return p;
+  }
+  return points.back();
+}
+
+}  // namespace
+
+void list_scan_problems(const Plan& plan, std::vector<std::string>& problems) {
+  const ScanTask& scan = *plan.task.scan;
+  const auto add = [&](const std::string& text) { problems.push_back("the scan " + text); };
+  if (!sound(scan.region.min()) || !sound(scan.region.max()) ||
+      !(scan.region.min().array() < scan.region.max().array()).all())
+    add("must have a region with its lower corner below its upper one");
+  const Pinhole& camera = scan.camera;
+  if (camera.width < 1 || camera.height < 1 || !(camera.focal_x > 0) || !(camera.focal_y > 0) ||
+      !sound(camera.focal_x) || !sound(camera.focal_y) || !sound(camera.principal_x) ||
+      !sound(camera.principal_y))
+    add("must have a camera with pixels and focal lengths");
+  if (!(scan.range > 0 && scan.range <= tolerances::kLongestRay))
+    add("must have rays longer than 0 m and of 1000 m at most");
+  if (!(scan.tolerance > 0 && sound(scan.tolerance)) ||
+      !(scan.angle_tolerance > 0 && sound(scan.angle_tolerance)))
+    add("needs tolerances above 0");
+  if (!(scan.seen_share > 0 && scan.seen_share <= 1) || scan.seen < 1)
+    add("must say how many voxels are seen, and which share of them again");
+  if (scan.views.empty()) add("must have a view");
+  if (static_cast<double>(camera.width) * camera.height * static_cast<double>(scan.views.size()) >
+      tolerances::kMostRays)
+    add("has more than 10^9 pixels in all");
+  const auto& maps = plan.environment.maps;
+  if (std::none_of(maps.begin(), maps.end(),
+                   [&](const MapObstacle& map) { return map.name == scan.map; }))
+    add("sees in a map '" + scan.map + "' that the environment does not name");
+  const double finish = plan.trajectory.samples.empty() ? 0 : plan.trajectory.samples.back().time;
+  for (std::size_t i = 0; i < scan.views.size(); ++i) {
+    const PlannedView& view = scan.views[i];
+    const std::string name = "'s view " + std::to_string(i + 1);
+    if (!sound(view.time) || !sound(view.position) || !sound(view.yaw) || !sound(view.pitch))
+      return add(name + " holds a number that is not finite or beyond 1e7");
+    if (view.time < 0 || view.time > finish + tolerances::kSpanTime)
+      return add(name + " is not within the flight");
+    if (i > 0 && !(view.time > scan.views[i - 1].time))
+      return add(name + " is not later than the one before it");
+  }
+}
+
+void check_views(const Flight& flight, Certificate& certificate) {
+  const auto& scan = flight.plan.task.scan;
+  if (!scan) {
+    for (const char* name : {"view_miss", "view_direction"})
+      certificate.checks.push_back(skipped_check(name, "the task has no views"));
+    return;
+  }
+  Worst miss("view_miss", scan->tolerance), direction("view_direction", scan->angle_tolerance);
+  for (const PlannedView& view : scan->views) {
+    const MotionPoint at = motion_at(flight.motion, view.time);
+    miss.see((at.position - view.position).norm(), view.time);
+    const Eigen::Vector3d flown = ahead_of(at.yaw + at.gimbal_yaw, at.gimbal_pitch);
+    const Eigen::Vector3d wanted = ahead_of(view.yaw, view.pitch);
+    direction.see(std::atan2(flown.cross(wanted).norm(), flown.dot(wanted)), view.time);
+  }
+  certificate.checks.push_back(miss.check());
+  certificate.checks.push_back(direction.check());
+}
+
+void check_coverage(const Flight& flight, Certificate& certificate) {
+  const auto& scan = flight.plan.task.scan;
+  if (!scan) {
+    certificate.checks.push_back(skipped_check("coverage", "the task has no region to cover"));
+    return;
+  }
+  const BlockedVoxels& voxels = map_of_scan(flight);
+  const SeeThrough space(voxels);
+  SeenVoxels seen(voxels, scan->region);
+  parallel_for(scan->views.size(), 0,
+               [&](std::size_t i) { look(scan->views[i], *scan, space, seen); });
+  const std::int64_t count = seen.count();
+  Check check =
+      judged(make_check("coverage"), static_cast<double>(count) / static_cast<double>(scan->seen),
+             scan->seen_share, 0, scan->views.back().time, true);
+  const std::string said = std::to_string(count) + " of the " + std::to_string(scan->seen) +
+                           " voxels that the plan says its views see";
+  check.detail = check.detail.empty() ? said : check.detail + "; " + said;
+  certificate.checks.push_back(check);
+}
+
+}  // namespace lapwing

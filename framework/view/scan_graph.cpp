@@ -1,0 +1,194 @@
+#include "framework/view/scan_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/core/error.h"
+#include "framework/core/parallel.h"
+#include "framework/core/random.h"
+
+namespace lapwing {
+namespace {
+
+constexpr std::size_t kChunk = 64;  // views that are held unpacked
+constexpr double kMostRegionVoxels = 268435456.0;
+constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
+
+// Numbers for the voxels of a box, given in the order in which they are first asked for.
+class VoxelNumbers {
+ public:
+  VoxelNumbers(const Eigen::AlignedBox3d& region, const VoxelGrid& grid) {
+    double count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      low_[axis] = grid.index(region.min()[axis]);
+      size_[axis] = static_cast<std::size_t>(grid.index(region.max()[axis]) - low_[axis] + 1);
+      count *= static_cast<double>(size_[axis]);
+    }
+    if (count > kMostRegionVoxels)
+      throw InputError("the region of interest holds more than 2^28 voxels; take larger ones");
+    numbers_.assign(static_cast<std::size_t>(count), kUnseen);
+  }
+
+  std::uint32_t number(const VoxelKey& key) {
+    std::uint32_t& number = numbers_[place(key)];
+    if (number == kUnseen) {
+      number = static_cast<std::uint32_t>(voxels_.size());
+      voxels_.push_back(key);
+    }
+    return number;
+  }
+  std::size_t count() const { return voxels_.size(); }
+  std::vector<VoxelKey> take() { return std::move(voxels_); }
+
+ private:
+  std::size_t place(const VoxelKey& key) const {
+    const auto at = [&](int axis) { return static_cast<std::size_t>(key[axis] - low_[axis]); };
+    return (at(2) * size_[1] + at(1)) * size_[0] + at(0);
+  }
+
+  int low_[3];
+  std::size_t size_[3];
+  std::vector<std::uint32_t> numbers_;
+  std::vector<VoxelKey> voxels_;
+};
+
+struct Told {
+  VoxelKey voxel;
+  float amount;
+};
+
+// The part of the work from `from` to `to` that is done.
+class Share {
+ public:
+  Share(Progress* progress, double from, double to) : progress_(progress), from_(from), to_(to) {}
+  void report(std::size_t done, std::size_t of, const char* what) const {
+    if (!progress_) return;
+    progress_->report(from_ + (to_ - from_) * static_cast<double>(done) / static_cast<double>(of),
+                      std::string(what) + " " + std::to_string(done) + " of " + std::to_string(of));
+  }
+
+ private:
+  Progress* progress_;
+  double from_, to_;
+};
+
+void throw_if_cancelled(const CancellationToken* cancellation) {
+  if (cancellation && cancellation->cancelled()) throw Cancelled();
+}
+
+// Calls look(k) for every view, chunk by chunk, and keep(k) in their order.
+template <class Look, class Keep>
+void in_chunks(std::size_t count, int threads, const CancellationToken* cancellation,
+               const Share& share, const char* what, Look look, Keep keep) {
+  for (std::size_t first = 0; first < count; first += kChunk) {
+    const std::size_t size = std::min(kChunk, count - first);
+    parallel_for(size, threads, [&](std::size_t k) {
+      if (!(cancellation && cancellation->cancelled())) look(first + k, k);
+    });
+    throw_if_cancelled(cancellation);
+    for (std::size_t k = 0; k < size; ++k) keep(k);
+    share.report(first + size, count, what);
+  }
+}
+
+std::shared_ptr<const ViewScore> score_views(const VisibleVoxels& visible,
+                                             const ViewInformation& information,
+                                             const ScanGraphSettings& settings,
+                                             const CancellationToken* cancellation,
+                                             const Share& share, ScanGraph& graph) {
+  const std::vector<Viewpoint>& views = graph.candidates.viewpoints;
+  VoxelNumbers numbers(visible.settings().region, visible.map().grid());
+  ViewScoreBuilder builder(0);
+  std::vector<std::vector<Told>> told(kChunk);
+  std::vector<ViewScore::Contribution> contributions;
+  const auto look = [&](std::size_t view, std::size_t place) {
+    const std::vector<SeenVoxel> seen = visible.seen_from(views[view]);
+    const std::vector<float> amounts = contributions_of(seen, information);
+    told[place].clear();
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (amounts[i] > 0) told[place].push_back({seen[i].voxel, amounts[i]});
+  };
+  const auto keep = [&](std::size_t place) {
+    contributions.clear();
+    const std::size_t before = numbers.count();
+    for (const Told& t : told[place])
+      contributions.push_back({numbers.number(t.voxel), std::min(t.amount, 1.0f)});
+    builder.add_voxels(numbers.count() - before);
+    builder.add_view(contributions);
+  };
+  in_chunks(views.size(), settings.threads, cancellation, share, "view", look, keep);
+  graph.voxels = numbers.take();
+  return std::make_shared<const ViewScore>(std::move(builder).take());
+}
+
+// The level of the cubes in which coarse views are compared.
+int coarse_level(const VisibleVoxels& visible, int across) {
+  const SightSettings& sight = visible.settings();
+  const double share = static_cast<double>(across) / sight.pinhole.width;
+  const double shown = sight.range / (share * sight.pinhole.focal_x);
+  int level = 0;
+  while (level < kTreeDepth - 1 && std::ldexp(visible.map().grid().resolution(), level) < shown)
+    ++level;
+  return level;
+}
+
+// In the order of keys, each once.
+std::vector<VoxelKey> in_cubes(std::vector<VoxelKey> keys, int level) {
+  for (VoxelKey& key : keys)
+    key = {static_cast<std::uint16_t>(key.x >> level), static_cast<std::uint16_t>(key.y >> level),
+           static_cast<std::uint16_t>(key.z >> level)};
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  keys.shrink_to_fit();
+  return keys;
+}
+
+}  // namespace
+
+std::vector<float> contributions_of(const std::vector<SeenVoxel>& seen,
+                                    const ViewInformation& information) {
+  std::vector<VoxelSight> sights;
+  sights.reserve(seen.size());
+  for (const SeenVoxel& voxel : seen) sights.push_back(voxel.sight);
+  std::vector<float> values(sights.size(), 0.0f);
+  information.contributions(sights, values);
+  return values;
+}
+
+ScanGraph make_scan_graph(const FreeSpace& space, const VisibleVoxels& visible,
+                          const ViewInformation& information, const std::vector<Viewpoint>& given,
+                          const ScanGraphSettings& settings, const CancellationToken* cancellation,
+                          Progress* progress) {
+  constexpr double kGrown = 0.02, kSeen = 0.85, kCompared = 0.95;  // shares of the work
+  const Random seeds(settings.seed);
+  ScanGraph graph;
+  graph.candidates =
+      generate_candidates(space, given, settings.candidates, seeds.split(0).bits(), cancellation);
+  const std::vector<Viewpoint>& views = graph.candidates.viewpoints;
+  graph.score = score_views(visible, information, settings, cancellation,
+                            Share(progress, kGrown, kSeen), graph);
+  if (graph.voxels.empty())
+    throw InputError("none of " + std::to_string(views.size()) +
+                     " candidates sees anything of the region of interest: it holds no surface, or "
+                     "lies beyond the range of the rays");
+  std::vector<std::vector<VoxelKey>> coarse(views.size()), chunk(kChunk);
+  if (settings.motions.alpha > 0) {
+    std::size_t next = 0;
+    const int level = coarse_level(visible, settings.coarse_across);
+    in_chunks(
+        views.size(), settings.threads, cancellation, Share(progress, kSeen, kCompared),
+        "coarse view",
+        [&](std::size_t view, std::size_t place) {
+          chunk[place] =
+              in_cubes(visible.seen_coarsely_from(views[view], settings.coarse_across), level);
+        },
+        [&](std::size_t place) { coarse[next++] = std::move(chunk[place]); });
+  }
+  if (progress) progress->report(kCompared, "ways between views");
+  graph.motions = find_motions(space, views, coarse, settings.motions, seeds.split(1).bits(),
+                               settings.threads, cancellation);
+  return graph;
+}
+
+}  // namespace lapwing

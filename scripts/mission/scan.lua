@@ -1,0 +1,147 @@
+-- Scans (thesis chapter 4): which images to take of a region, and in which order, so that one
+-- battery gives the best model.
+--
+--   local scan = require "mission.scan"
+--   return scan.of_scene { name = "church", scene = "church", tour = { budget = 300 } }
+--
+-- A first flight at a safe height gives depth images; from these come a map and a mesh, and nothing
+-- else is known to what follows (reading 4.9). Views that lie in free space are tried out on the
+-- map, ways between those whose images match are searched, and a tour through them is found within
+-- the budget and flown from view to view.
+local first = require "mission.scan_first"
+local DECLARATIONS = require "mission.scan_options"
+
+local M = {}
+
+local OWN_OF_TOUR = { solver = true, budget = true, budget_metres = true, images = true,
+                      begin = true }
+local METRES_A_SECOND = 3  -- of a budget in metres (reading 4.6)
+local TIGHTER = 4          -- times that a tour which flies too long is planned on less
+
+local function solver_of(tour)
+  local chosen = { type = tour.solver }
+  for key, value in pairs(tour) do
+    if not OWN_OF_TOUR[key] then chosen[key] = value end
+  end
+  return chosen
+end
+
+local function budget_of(run)
+  local tour = run.options.tour
+  return tour.budget_metres and tour.budget_metres / METRES_A_SECOND or tour.budget
+end
+
+-- Round the region, and where the first flight was.
+local function room_of(run, starts)
+  local o, region = run.options, first.region_of(run)
+  local lower, upper = {}, {}
+  for axis = 1, 3 do lower[axis], upper[axis] = region.lower[axis], region.upper[axis] end
+  for axis = 1, 2 do
+    lower[axis], upper[axis] = lower[axis] - o.reach, upper[axis] + o.reach
+    for _, start in ipairs(starts) do
+      lower[axis] = math.min(lower[axis], start.position[axis])
+      upper[axis] = math.max(upper[axis], start.position[axis])
+    end
+  end
+  lower[3], upper[3] = lower[3] + o.floor, first.ceiling_of(run)
+  return { lower = lower, upper = upper }
+end
+
+local function graph_of(run, known, vehicle, starts)
+  local o = run.options
+  local region = first.region_of(run)
+  local gimbal = vehicle.gimbal
+  local c = o.candidates
+  return run:scan_graph {
+    prior = known, vehicle = vehicle, region = region,
+    allowed = room_of(run, starts),
+    starts = starts, body = o.body, mesh_room = o.mesh_room,
+    candidates = {
+      most = c.most, least = c.least, step = c.step, step_growth = c.step_growth,
+      distance_apart = c.distance_apart, angle_apart_deg = c.angle_apart_deg,
+      pitch_min_deg = gimbal and math.max(-90, math.deg(gimbal.pitch_min)) or -90,
+      pitch_max_deg = gimbal and math.min(0, math.deg(gimbal.pitch_max)) or 0 },
+    motions = o.motions, camera = o.camera, range = o.range, flight = o.flight,
+    information = o.information, planner = o.planner,
+  }
+end
+
+-- What the mission was asked for, and what could have been had.
+local function refuse(run, graph, tour, budget)
+  run:fail("tour", string.format(
+    "no tour of %.4g s: %s. From the start (the first of %d candidates) %s; %d views lie within "
+    .. "the budget", budget, tour.message ~= "" and tour.message or tour.status, graph.candidates,
+    graph.reach, tour.reachable))
+end
+
+-- A tour within `budget` seconds by the solver that is asked for, begun with another one's.
+local function solved(run, graph, budget)
+  local o = run.options.tour
+  local initial
+  if o.begin ~= "none" and o.begin ~= o.solver and o.solver == "local_search" then
+    local begun = run:solve_tour { graph = graph, solver = o.begin, budget = budget,
+                                   images = o.images }
+    if begun.images > 1 then initial = begun end
+  end
+  local tour = run:solve_tour { graph = graph, solver = solver_of(o), budget = budget,
+                                images = o.images, initial = initial }
+  if tour.images < 2 then
+    if run:cancelled() and initial then return initial end
+    refuse(run, graph, tour, budget)
+  end
+  return tour
+end
+
+local function plan_of(run, graph, known)
+  local o = run.options
+  local asked = budget_of(run)
+  local budget = asked
+  for round = 1, TIGHTER do
+    local tour = solved(run, graph, budget)
+    local plan = run:scan_plan {
+      tour = tour, margin = o.margin, budget = asked,
+      closed_loop_required = o.closed_loop == "required",
+      notes = { string.format("%d depth images of the first flight, %d candidates, %d motions",
+                              known.images, graph.candidates, graph.motions) },
+      figures = { score = tour.score, upper_bound = tour.upper_bound, gap = tour.gap,
+                  seconds = tour.seconds, budget = asked, images = tour.images,
+                  candidates = graph.candidates, motions = graph.motions,
+                  reachable_score = tour.reachable_score, evaluations = tour.evaluations },
+    }
+    -- Corners and rests may take a little more than the legs one by one.
+    local over = plan.duration - asked
+    if over <= 0 or round == TIGHTER then return plan, tour end
+    budget = budget - 1.5 * over
+  end
+end
+
+local function planned(run)
+  local o = run.options
+  local vehicle = run:vehicle(o.vehicle)
+  local known, poses, surface = first.knowledge(run)
+  local starts = first.starts(run, poses)
+  local plan
+  for round = 1, o.rounds do
+    local graph = graph_of(run, known, vehicle, starts)
+    plan = plan_of(run, graph, known)
+    if round < o.rounds and not run:cancelled() then
+      -- The tour is flown, and what it sees is known from then on.
+      first.look(run, known, surface, plan.views)
+      known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
+    end
+  end
+  return plan
+end
+
+local function mission(given)
+  local name = given.name
+  given.name = nil
+  return { kind = "scan", name = name, options = lapwing.options(DECLARATIONS, given),
+           plan = planned }
+end
+
+-- A scene of scripts/scene, a mesh of the user's (`--set input=PATH`), or files of a real flight
+-- (`prior`).
+M.of_scene, M.of_mesh, M.of_prior = mission, mission, mission
+
+return M

@@ -1,0 +1,160 @@
+-- The first flight of a scan, and what is known after it (thesis 4.3): a map, a mesh, places that
+-- are free. What was flown in is asked by the simulator alone.
+local patterns = require "mission.scan_patterns"
+
+local M = {}
+
+local SAFE_ABOVE = 4      -- m of a region, unless said otherwise
+local FLIGHT_ABOVE = 15   -- m of the safe height, likewise
+local OVERHEAD = 2        -- m of free air above the highest first flight
+
+local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
+
+-- What the first flight is flown in, or nothing with files of an earlier one.
+local function surface_of(run)
+  if surfaces[run] then return surfaces[run] end
+  local o = run.options
+  local surface
+  if o.input then
+    surface = run:read_surface(o.input)
+    if o.ground then surface:add_ground() end
+  elseif o.scene then
+    local make = require("scene." .. o.scene)
+    if type(make) ~= "function" then
+      run:fail("scene", string.format("'%s' is a part of scenes, no scene", o.scene))
+    end
+    surface = run:surface(make { seed = o.scene_seed })
+  end
+  surfaces[run] = surface
+  return surface
+end
+
+local function prior_files(run)
+  local files = run.options.prior
+  if not files.map and not files.mesh then return nil end
+  if not (files.map and files.mesh) then
+    run:fail("prior", "expected both a map and a mesh of an earlier flight")
+  end
+  return files
+end
+
+-- The box of interest: as given, or the scene's own.
+function M.region_of(run)
+  local given = run.options.region
+  if given.lower and given.upper then return given end
+  if given.lower or given.upper then run:fail("region", "expected both lower and upper") end
+  local surface = surface_of(run)
+  if not surface then
+    run:fail("region", "files of an earlier flight do not say which region is of interest: give "
+                       .. "region = { lower = {x, y, z}, upper = {x, y, z} }")
+  end
+  return surface.region
+end
+
+local function safe_height(run)
+  return run.options.safe_height or M.region_of(run).upper[3] + SAFE_ABOVE
+end
+
+local function flights_of(run)
+  local o = run.options
+  if #o.flights > 0 then return o.flights end
+  return { { pattern = "meander", views = 30, pitch_deg = -60, reach = 5 } }
+end
+
+local function height_of(run, flight)
+  local height = flight.height or safe_height(run) + FLIGHT_ABOVE
+  if height < safe_height(run) then
+    run:fail("flights", string.format("a first flight at %.4g m is below safe_height, %.4g m",
+                                      height, safe_height(run)))
+  end
+  return height
+end
+
+-- The highest that anything flies.
+function M.ceiling_of(run)
+  if run.options.ceiling then return run.options.ceiling end
+  local ceiling = safe_height(run) + OVERHEAD
+  if not prior_files(run) then
+    for _, flight in ipairs(flights_of(run)) do
+      ceiling = math.max(ceiling, height_of(run, flight) + OVERHEAD)
+    end
+  end
+  return ceiling
+end
+
+-- Depth images from the poses, into the map and the surface.
+function M.look(run, known, surface, poses)
+  local o = run.options
+  known:look { surface = surface, poses = poses, camera = o.camera, range = o.range,
+               noise = o.noise }
+end
+
+local function new_prior(run)
+  local o = run.options
+  local map = type(o.map) == "table" and o.map or { type = o.map }
+  map.resolution, map.maximum_range = o.resolution, o.range
+  return run:prior { map = map, spacing = o.surface.spacing, range = o.range,
+                     stride = o.surface.stride }
+end
+
+-- The air that the user says is free: from the safe height up, round the region and the patterns.
+local function open_air(run, known, surface, poses)
+  local o, region = run.options, M.region_of(run)
+  local margin = o.body[1] + 1
+  local lower = { region.lower[1] - o.reach, region.lower[2] - o.reach, safe_height(run) }
+  local upper = { region.upper[1] + o.reach, region.upper[2] + o.reach, M.ceiling_of(run) }
+  for _, pose in ipairs(poses) do
+    for axis = 1, 2 do
+      lower[axis] = math.min(lower[axis], pose.position[axis])
+      upper[axis] = math.max(upper[axis], pose.position[axis])
+    end
+  end
+  for axis = 1, 2 do lower[axis], upper[axis] = lower[axis] - margin, upper[axis] + margin end
+  upper[3] = upper[3] + o.body[3]
+  known:open_air { lower = lower, upper = upper, surface = surface }
+end
+
+-- What is known (a prior with its mesh), the poses of the first flights, and what they were flown
+-- in, if anything.
+function M.knowledge(run)
+  local o = run.options
+  local files, surface = prior_files(run), surface_of(run)
+  if not surface and not files then
+    lapwing.fail("nothing to scan: name a scene, a mesh with --set input=PATH (.obj, .ply, .dae, "
+                 .. "...), or the files of an earlier flight with prior = { map =, mesh = }")
+  end
+  local known, poses = new_prior(run), {}
+  if files then known:load { map = files.map, mesh = files.mesh } end
+  if surface and not (files and #o.flights == 0) then
+    for _, flight in ipairs(flights_of(run)) do
+      local made = patterns.over(M.region_of(run), flight.pattern, height_of(run, flight),
+                                 flight.views, math.rad(flight.pitch_deg), flight.reach)
+      for _, pose in ipairs(made) do poses[#poses + 1] = pose end
+    end
+    open_air(run, known, surface, poses)
+    M.look(run, known, surface, poses)
+    known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
+  end
+  return known, poses, surface
+end
+
+-- Where the tour may begin, the start first; all of it was flown through or is said to be free.
+function M.starts(run, poses)
+  local o = run.options
+  local starts = {}
+  if o.start then
+    local region = M.region_of(run)
+    local dx = (region.lower[1] + region.upper[1]) / 2 - o.start[1]
+    local dy = (region.lower[2] + region.upper[2]) / 2 - o.start[2]
+    local dz = (region.lower[3] + region.upper[3]) / 2 - o.start[3]
+    starts[1] = { position = o.start, yaw = math.atan(dy, dx),
+                  pitch = math.min(0, math.atan(dz, math.sqrt(dx * dx + dy * dy))) }
+  end
+  for _, pose in ipairs(poses) do starts[#starts + 1] = pose end
+  if #starts == 0 then
+    run:fail("start", "with files of an earlier flight alone, say where the tour begins")
+  end
+  return starts
+end
+
+return M

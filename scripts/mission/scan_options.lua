@@ -1,0 +1,106 @@
+-- What a scan can be told (readings 4.3, 4.6, 4.11 for defaults that the thesis never gives).
+local function number(name, default, unit, summary, more)
+  local entry = { name = name, type = "number", default = default, unit = unit, summary = summary }
+  for key, value in pairs(more or {}) do entry[key] = value end
+  return entry
+end
+
+local function integer(name, default, least, most, summary)
+  return { name = name, type = "integer", default = default, minimum = least, maximum = most,
+           summary = summary }
+end
+
+local function place(name, summary)
+  return { name = name, type = "numbers", size = 3, unit = "m", summary = summary }
+end
+
+local POSITIVE, NOT_NEGATIVE = { above = 0, maximum = 1e6 }, { minimum = 0, maximum = 1e6 }
+
+local CAMERA = {
+  integer("width", 600, 1, 10000, "pixels"), integer("height", 450, 1, 10000, "pixels"),
+  number("focal", 345, "px", "focal length", { above = 0, maximum = 1e5 }),
+}
+
+local PATTERN = {
+  { name = "pattern", type = "choice", choices = { "circle", "ellipse", "meander" },
+    default = "meander", summary = "over the region" },
+  number("height", nil, "m", "of flight, world; absent: 15 m above safe_height", { maximum = 1e5 }),
+  integer("views", 30, 1, 10000, "depth images"),
+  number("pitch_deg", -60, "deg", "of the camera; a circle's looks in, no higher than this",
+         { minimum = -90, maximum = 0 }),
+  number("reach", 5, "m", "beyond the region", NOT_NEGATIVE),
+}
+
+local DECLARATIONS = {
+  { name = "scene", type = "text", summary = "a scene of scripts/scene to be flown in" },
+  integer("scene_seed", 1, 0, 9007199254740991, "of the scene"),
+  { name = "input", type = "text", summary = "a mesh file in place of a scene" },
+  { name = "ground", type = "boolean", default = false,
+    summary = "put a plane under the mesh file" },
+  { name = "prior", type = "table", summary = "files of an earlier flight", table = {
+    { name = "map", type = "text", summary = "a map, .ot or .bt" },
+    { name = "mesh", type = "text", summary = "a mesh in the map's frame" } } },
+  { name = "region", type = "table", summary = "of interest; absent: the scene's", table = {
+    place("lower", "lowest corner, world"), place("upper", "highest corner, world") } },
+  place("start", "where the tour begins and ends; absent: the first flight's first view"),
+  number("safe_height", nil, "m", "above it the air is free, world; absent: 4 m over the region",
+         { minimum = -1e5, maximum = 1e5 }),
+  number("ceiling", nil, "m", "highest flight, world; absent: just over the first one",
+         { maximum = 1e5 }),
+  number("floor", 2, "m", "lowest flight, over the region's lower corner", NOT_NEGATIVE),
+  number("reach", 20, "m", "how far round the region the tour may go", NOT_NEGATIVE),
+  number("margin", 0.4, "m", "that the certificate wants kept", NOT_NEGATIVE),
+  { name = "body", type = "numbers", size = 3, unit = "m", default = { 1, 1, 0.5 },
+    summary = "half edges of the box that must be free" },
+  number("mesh_room", 1, "m", "more that is kept from the prior mesh", NOT_NEGATIVE),
+  { name = "flights", type = "tables", table = PATTERN,
+    summary = "first flights, into one map; absent: one meander" },
+  { name = "camera", type = "table", table = CAMERA, summary = "of all images" },
+  { name = "noise", type = "table", summary = "of measured depth", table = {
+    number("dropped", 0, "", "share of pixels without a measurement", { minimum = 0, maximum = 1 }),
+    number("sigma", 0, "m", "deviation", { minimum = 0, maximum = 100 }) } },
+  number("range", 60, "m", "of depth and of rays", POSITIVE),
+  number("resolution", 0.2, "m", "edge of a voxel", { minimum = 0.01, maximum = 10 }),
+  { name = "surface", type = "table", summary = "the prior mesh", table = {
+    number("spacing", 0.4, "m", "between fused points", POSITIVE),
+    number("cell", 0.5, "m", "of the reconstruction", POSITIVE),
+    number("trim", 1, "m", "surface farther from every point is left out", POSITIVE),
+    integer("stride", 2, 1, 64, "every so many pixels are fused") } },
+  { name = "candidates", type = "table", summary = "views worth considering", table = {
+    integer("most", 2000, 1, 100000, "views"),
+    integer("least", 0, 0, 100000, "where growing finds fewer, free places are drawn as well"),
+    number("step", 1.5, "m", "between neighbours at the region", POSITIVE),
+    number("step_growth", 0.2, "", "m more for every metre away from it", NOT_NEGATIVE),
+    number("distance_apart", 1, "m", "or so far in angle", POSITIVE),
+    number("angle_apart_deg", 15, "deg", "or so far in distance", { minimum = 0, maximum = 180 }) } },
+  { name = "motions", type = "table", summary = "ways between views", table = {
+    integer("neighbours", 12, 1, 1000, "that each view is tried with"),
+    number("alpha", 0.4, "", "share that matchable views see in common", { minimum = 0,
+           maximum = 1 }),
+    integer("coarse", 120, 1, 10000, "pixels across, of compared views") } },
+  { name = "flight", type = "table", summary = "along the tour", table = {
+    number("speed", 3, "m/s", "on the way", POSITIVE),
+    number("view_speed", 0.5, "m/s", "near a view", POSITIVE),
+    number("slow_within", 3, "m", "of a view", POSITIVE),
+    number("pause", 0.5, "s", "in a view, for the image", { minimum = 0, maximum = 60 }),
+    number("view_seconds", 3, "s", "that a view costs at least", { minimum = 0, maximum = 60 }) } },
+  { name = "closed_loop", type = "choice", default = "required",
+    choices = { "required", "reported" }, summary = "whether tracking under control must hold" },
+  integer("rounds", 1, 1, 5, "of planning; each but the first sees what the one before flew"),
+  { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "file or table" },
+  { name = "map", type = "plugin", kind = "map", default = "brick", summary = "the map's backend",
+    settled = { resolution = "set resolution instead", maximum_range = "set range instead" } },
+  { name = "information", type = "plugin", kind = "information", default = "fronto_parallel",
+    summary = "what a view tells of a voxel" },
+  { name = "planner", type = "plugin", kind = "path_planner", default = "rrt_connect",
+    summary = "where the straight way between two views is blocked" },
+  { name = "tour", type = "plugin", kind = "tour_solver", under = "solver",
+    default = "local_search", summary = "how the tour is found", table = {
+      number("budget", 300, "s", "of flight", POSITIVE),
+      number("budget_metres", nil, "m", "in place of seconds, at 3 m/s", POSITIVE),
+      integer("images", 0, 0, 100000, "most images; 0 for any number"),
+      { name = "begin", type = "text", default = "cost_benefit",
+        summary = "the solver whose tour it improves, where it can; none" } } },
+}
+
+return DECLARATIONS
