@@ -5,5 +5,6 @@ return scan.of_scene {
   name  = "church",
   scene = "church",
   tour  = { budget = 300 },  -- s of flight
-  flights = { { pattern = "circle", views = 20, reach = 20 } },
+  flights = { { pattern = "ellipse", views = 20, reach = 12, pitch_deg = -40 },
+              { pattern = "meander", views = 20, reach = 5 } },
 }

@@ -16,6 +16,7 @@
 #include "framework/export/light_painting.h"
 #include "framework/export/race_report.h"
 #include "framework/export/run_folder.h"
+#include "framework/export/scan_report.h"
 #include "framework/geometry/png.h"
 #include "framework/verify/verify.h"
 
@@ -142,6 +143,10 @@ std::string report_page(const Outcome& outcome) {
   if (outcome.long_exposure) {
     Image image{*outcome.long_exposure, "What a camera with an open shutter sees of the flight"};
     report.sections.insert(report.sections.begin() + 1, Section{"Long exposure", {image}});
+  }
+  if (outcome.result.scan) {
+    const std::vector<Section> scan = scan_sections(outcome.result.plan, *outcome.result.scan);
+    report.sections.insert(report.sections.begin() + 1, scan.begin(), scan.end());
   }
   if (!outcome.raced.empty()) {
     std::vector<Section> race = race_sections(outcome.result.plan, outcome.raced, {});

@@ -268,7 +268,8 @@ std::vector<Section> flight_sections(const Plan& plan, const std::filesystem::pa
   if (plan.trajectory.samples.empty()) throw Error("a flight without samples has no report");
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   std::vector<Section> sections{summary_section(plan, vehicle), path_section(plan, folder)};
-  if (plan.trajectory.has_gimbal) sections.push_back(camera_section(plan, vehicle));
+  if (plan.trajectory.has_gimbal && !plan.task.scan)
+    sections.push_back(camera_section(plan, vehicle));
   sections.push_back(motion_section(plan, vehicle));
   if (Section inputs = input_section(plan, vehicle); !inputs.blocks.empty()) {
     sections.push_back(std::move(inputs));

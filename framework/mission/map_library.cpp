@@ -122,15 +122,17 @@ int surface_field(lua_State* state) {
       lua_pushcfunction(state, method.func);
       return 1;
     }
-  if (!surface.scene) throw InputError("there is nothing left of '" + surface.name + "'");
-  const Eigen::AlignedBox3d bounds = surface.scene->mesh().bounds();
   Value region = Value::map(), fields = Value::map();
   region.set("lower", list_of(surface.region.min()));
   region.set("upper", list_of(surface.region.max()));
   fields.set("name", surface.name);
-  fields.set("triangles", static_cast<std::int64_t>(surface.scene->mesh().triangles.size()));
-  fields.set("lower", list_of(bounds.min()));
-  fields.set("upper", list_of(bounds.max()));
+  if (surface.scene) {
+    const TriangleMesh& mesh = surface.scene->mesh();
+    const Eigen::AlignedBox3d bounds = mesh.bounds();
+    fields.set("triangles", static_cast<std::int64_t>(mesh.triangles.size()));
+    fields.set("lower", list_of(bounds.min()));
+    fields.set("upper", list_of(bounds.max()));
+  }
   fields.set("region", std::move(region));
   const Value* found = fields.find(field);
   if (!found) refuse_field("a surface", field, fields);

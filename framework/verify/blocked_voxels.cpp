@@ -44,15 +44,6 @@ BlockedVoxels::BlockedVoxels(const MapFile& file, const Eigen::AlignedBox3d& box
   }
 }
 
-bool BlockedVoxels::free(int x, int y, int z) const {
-  if (x < 0 || y < 0 || z < 0 || x >= size_[0] || y >= size_[1] || z >= size_[2]) return false;
-  const std::size_t bit = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) +
-                           static_cast<std::size_t>(y)) *
-                              static_cast<std::size_t>(size_[0]) +
-                          static_cast<std::size_t>(x);
-  return free_[bit / 64] >> (bit % 64) & 1;
-}
-
 double BlockedVoxels::distance(const Eigen::Vector3d& p_W, double farthest) const {
   int at[3];
   for (int i = 0; i < 3; ++i) {

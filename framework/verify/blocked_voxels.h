@@ -26,7 +26,14 @@ class BlockedVoxels {
   int first(int axis) const { return low_[axis]; }
   int count(int axis) const { return size_[axis]; }
   // Counted from the first one; false for what is not held.
-  bool free(int x, int y, int z) const;
+  bool free(int x, int y, int z) const {
+    if (x < 0 || y < 0 || z < 0 || x >= size_[0] || y >= size_[1] || z >= size_[2]) return false;
+    const std::size_t bit = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) +
+                             static_cast<std::size_t>(y)) *
+                                static_cast<std::size_t>(size_[0]) +
+                            static_cast<std::size_t>(x);
+    return free_[bit / 64] >> (bit % 64) & 1;
+  }
 
  private:
   VoxelGrid grid_;

@@ -59,9 +59,9 @@ struct MeshBody {
   double reach;
 };
 
-double distance(const MeshBody& mesh, const Eigen::Vector3d& p) {
-  const auto nearest = mesh.scene.nearest(p, mesh.reach);
-  return nearest ? nearest->distance : mesh.reach;
+double distance(const MeshBody& mesh, const Eigen::Vector3d& p, double more = 0) {
+  const auto nearest = mesh.scene.nearest(p, mesh.reach + more);
+  return nearest ? nearest->distance : mesh.reach + more;
 }
 
 // Likewise a map.
@@ -71,8 +71,17 @@ struct MapBody {
   double reach;
 };
 
-double distance(const MapBody& map, const Eigen::Vector3d& p) {
-  return map.voxels.distance(p, map.reach);
+double distance(const MapBody& map, const Eigen::Vector3d& p, double more = 0) {
+  return map.voxels.distance(p, map.reach + more);
+}
+
+// The distance told apart `more` metres farther than otherwise, where it has an end.
+template <class Obstacle>
+double far_distance(const Obstacle& obstacle, const Eigen::Vector3d& p, double more) {
+  if constexpr (requires { obstacle.reach; })
+    return distance(obstacle, p, more);
+  else
+    return distance(obstacle, p);
 }
 
 // How far inside a flight zone a point is; negative outside.
@@ -165,7 +174,8 @@ class Clearance {
            double time, double duration) {
     // Distances change by no more than the way travelled, so most chords need one evaluation.
     const double length = (chord.to - chord.from).norm();
-    const double lowest = distance(obstacle, chord.at(0.5)) - length / 2 - chord.bulge;
+    const double around = length / 2 + chord.bulge;
+    const double lowest = far_distance(obstacle, chord.at(0.5), around) - around;
     if (seen_ && lowest >= worst_.value()) return;
     seen_ = true;
     const Nearest best = nearest(obstacle, chord);

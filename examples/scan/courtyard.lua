@@ -1,0 +1,10 @@
+-- Houses round a court that is seen from above and from within.
+local scan = require "mission.scan"
+
+return scan.of_scene {
+  name  = "courtyard",
+  scene = "courtyard",
+  tour  = { budget_metres = 2700 },  -- m at 3 m/s
+  flights = { { pattern = "meander", views = 30, reach = 10 } },
+  candidates = { most = 5000 },
+}

@@ -1,0 +1,10 @@
+-- A street between tall houses: most of it can be seen from between the buildings only.
+local scan = require "mission.scan"
+
+return scan.of_scene {
+  name  = "street",
+  scene = "street",
+  tour  = { budget_metres = 2700 },  -- m at 3 m/s
+  flights = { { pattern = "meander", views = 30, reach = 10 } },
+  candidates = { most = 5000 },
+}

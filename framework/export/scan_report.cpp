@@ -1,0 +1,239 @@
+#include "framework/export/scan_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "framework/export/map_pictures.h"
+#include "framework/geometry/depth_camera.h"
+#include "framework/geometry/mesh_builder.h"
+#include "framework/geometry/mesh_picture.h"
+#include "framework/geometry/png.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr Pinhole kOverview{900, 560, 900, 900, 449.5, 279.5};
+constexpr int kMostMapPixels = 700, kMostMotions = 2500, kMostCubes = 60'000;
+constexpr Rgb kPlainSurface = {176, 174, 168}, kCameraLines = {214, 60, 40};
+const Vector3d kGap = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+
+// From dark violet over green to yellow (viridis, a few stops of it).
+Rgb color_of_share(double share) {
+  constexpr double kStops[5][3] = {
+      {68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
+  const double at = std::clamp(share, 0.0, 1.0) * 4;
+  const int k = std::min(3, static_cast<int>(at));
+  Rgb color;
+  for (std::size_t c = 0; c < 3; ++c)
+    color[c] =
+        static_cast<std::uint8_t>(kStops[k][c] + (at - k) * (kStops[k + 1][c] - kStops[k][c]));
+  return color;
+}
+
+Image overview_image(const MeshScene& scene, const Eigen::AlignedBox3d& box, double yaw,
+                     const std::string& caption) {
+  return {encode_png(mesh_picture(scene, overview(box, kOverview, yaw, -0.6), 0)), caption};
+}
+
+Section known_section(const ScanRecord& record, const Eigen::AlignedBox3d& region) {
+  Section section{"What the first flight knew", {}};
+  if (record.scene)
+    section.blocks.push_back(
+        Image{encode_png(*record.scene),
+              "The scene that was flown in; planning never sees it, only what follows"});
+  const MapPicture heights = height_picture(*record.map, kMostMapPixels);
+  section.blocks.push_back(
+      Image{encode_png(heights.picture), "The map from above: highest occupied voxels from " +
+                                             number_text(heights.lowest, 3) + " m (blue) to " +
+                                             number_text(heights.highest, 3) +
+                                             " m (yellow); free is light, unknown is dark"});
+  const double low = region.min().z() + 0.25 * region.sizes().z();
+  section.blocks.push_back(
+      Image{encode_png(cut_picture(*record.map, low, kMostMapPixels).picture),
+            "The map at " + number_text(low, 3) +
+                " m: black is occupied, light is free to fly, grey and dark are unknown"});
+  section.blocks.push_back(overview_image(*record.prior, region, 1.05,
+                                          "The prior mesh, made of the first flight's images"));
+  return section;
+}
+
+Section candidates_section(const ScanRecord& record) {
+  Polyline motions{"motions", {}, {}, {}}, first{"first flight", {}, {}, {}};
+  const std::size_t every = record.motions.size() / kMostMotions + 1;
+  for (std::size_t k = 0; k < record.motions.size(); k += every) {
+    const auto [a, b] = record.motions[k];
+    for (const Vector3d& p : {record.candidates[static_cast<std::size_t>(a)],
+                              record.candidates[static_cast<std::size_t>(b)], kGap})
+      motions.points.push_back(p);
+  }
+  first.points = record.first_views;
+  Drawing drawing;
+  drawing.lines.push_back(std::move(motions));
+  if (first.points.size() > 1) drawing.lines.push_back(std::move(first));
+  std::string title = std::to_string(record.candidates.size()) + " candidates and " +
+                      (every > 1 ? "one in " + std::to_string(every) + " of the " : "the ") +
+                      std::to_string(record.motions.size()) + " motions between them";
+  return {"Candidates",
+          {PathView{title + ", from above", Projection::above, drawing},
+           PathView{"The same from the south", Projection::from_south, drawing}}};
+}
+
+// The corners of what a view has in its image, `deep` metres away, and where it is.
+void add_camera(const PlannedView& view, const Pinhole& camera, double deep, MeshBuilder& builder) {
+  builder.set_color(kCameraLines);
+  const Pose pose = camera_pose(view.position, view.yaw, view.pitch);
+  std::array<Vector3d, 4> corners;
+  const double right = camera.width - 0.5, bottom = camera.height - 0.5;
+  const std::array<std::pair<double, double>, 4> pixels = {
+      {{-0.5, -0.5}, {right, -0.5}, {right, bottom}, {-0.5, bottom}}};
+  for (std::size_t i = 0; i < 4; ++i)
+    corners[i] = pose.position +
+                 deep * (pose.orientation * pixel_ray(camera, pixels[i].first, pixels[i].second));
+  const double thick = 0.012 * deep;
+  for (std::size_t i = 0; i < 4; ++i) {
+    builder.tube(view.position, corners[i], thick, thick, 5);
+    builder.tube(corners[i], corners[(i + 1) % 4], thick, thick, 5);
+  }
+}
+
+// The prior in grey, and cubes in the colours of their shares.
+MeshScene colored_voxels(const ScanRecord& record, const std::vector<VoxelShare>& voxels,
+                         const ScanTask& scan) {
+  const VoxelGrid& grid = record.map->grid();
+  const Vector3d half = Vector3d::Constant(0.55 * grid.resolution());
+  MeshBuilder builder;
+  const std::size_t every = voxels.size() / kMostCubes + 1;
+  for (std::size_t k = 0; k < voxels.size(); k += every) {
+    builder.set_color(color_of_share(3 * voxels[k].share));  // a third is what one view may tell
+    const Vector3d middle = grid.center(voxels[k].voxel);
+    builder.box(middle - half, middle + half);
+  }
+  add_camera(record.shown, scan.camera, 0.12 * scan.region.diagonal().norm(), builder);
+  TriangleMesh mesh = builder.take();
+  const TriangleMesh& prior = record.prior->mesh();
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), prior.vertices.begin(), prior.vertices.end());
+  for (const auto& t : prior.triangles)
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  mesh.colors.resize(mesh.triangles.size(), kPlainSurface);
+  return MeshScene(std::move(mesh));
+}
+
+Section view_section(const ScanRecord& record, const ScanTask& scan) {
+  const double yaw = record.shown.yaw + 0.7;
+  return {"One view",
+          {overview_image(colored_voxels(record, record.told, scan), scan.region, yaw,
+                          "The view of the tour that tells most by itself (red), and the voxels "
+                          "that its rays meet: from nothing (violet) to a third of all there is to "
+                          "know of a voxel (yellow); grey is the prior mesh")}};
+}
+
+struct KeyHash {
+  std::size_t operator()(const VoxelKey& key) const {
+    return static_cast<std::size_t>(key.morton() * 0x9e3779b97f4a7c15ull >> 16);
+  }
+};
+
+// The prior mesh, every triangle by the best known voxel about its middle.
+MeshScene colored_surface(const ScanRecord& record) {
+  std::unordered_map<VoxelKey, float, KeyHash> shares;
+  for (const VoxelShare& v : record.coverage) shares[v.voxel] = v.share;
+  TriangleMesh mesh = record.prior->mesh();
+  mesh.colors.assign(mesh.triangles.size(), kPlainSurface);
+  const VoxelGrid& grid = record.map->grid();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vector3d middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
+    if (!grid.contains(middle)) continue;
+    const VoxelKey at = grid.key(middle);
+    float best = -1;
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -1; z <= 1; ++z) {
+          const VoxelKey near{static_cast<std::uint16_t>(at.x + x),
+                              static_cast<std::uint16_t>(at.y + y),
+                              static_cast<std::uint16_t>(at.z + z)};
+          if (const auto found = shares.find(near); found != shares.end())
+            best = std::max(best, found->second);
+        }
+    if (best >= 0) mesh.colors[t] = color_of_share(best);
+  }
+  return MeshScene(std::move(mesh));
+}
+
+Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
+  double sum = 0;
+  std::size_t seen = 0;
+  for (const VoxelShare& v : record.coverage) sum += v.share, seen += v.share > 0;
+  const auto all = static_cast<double>(std::max<std::size_t>(record.coverage.size(), 1));
+  Facts facts{
+      {{"voxels that any candidate tells of", std::to_string(record.coverage.size()), ""},
+       {"of them the tour tells of", number_text(100 * static_cast<double>(seen) / all, 3), "%"},
+       {"on average it tells", number_text(100 * sum / all, 3), "% of what there is"}}};
+  const MeshScene scene = colored_surface(record);
+  const std::string caption =
+      "What the tour tells of the surface, from nothing (violet) to all (yellow); of grey no "
+      "candidate tells anything";
+  return {"Coverage",
+          {std::move(facts), overview_image(scene, scan.region, 1.05, caption),
+           overview_image(scene, scan.region, 1.05 + 3.14159, "The same from the other side")}};
+}
+
+Section tour_section(const Plan& plan, const ScanRecord& record) {
+  const ScanTask& scan = *plan.task.scan;
+  Drawing drawing;
+  drawing.along = {"time", "s"};
+  drawing.value = {"time", "s"};
+  Polyline path{"tour", {}, {}, {}};
+  for (const Sample& s : plan.trajectory.samples) {
+    path.points.push_back(s.position);
+    path.along.push_back(s.time);
+    path.values.push_back(s.time);
+  }
+  drawing.lines.push_back(std::move(path));
+  const double length = 0.02 * scan.region.diagonal().norm();
+  for (const ViewKind kind : {ViewKind::planned, ViewKind::matching}) {
+    Polyline views{kind == ViewKind::planned ? "planned views" : "matching views", {}, {}, {}};
+    for (const PlannedView& view : scan.views) {
+      if (view.kind != kind) continue;
+      const Vector3d ahead(std::cos(view.pitch) * std::cos(view.yaw),
+                           std::cos(view.pitch) * std::sin(view.yaw), std::sin(view.pitch));
+      for (const Vector3d& p : {view.position, Vector3d(view.position + length * ahead), kGap})
+        views.points.push_back(p);
+    }
+    if (!views.points.empty()) drawing.lines.push_back(std::move(views));
+  }
+  const auto planned = std::count_if(scan.views.begin(), scan.views.end(), [](const auto& view) {
+    return view.kind == ViewKind::planned;
+  });
+  Chart chart;
+  chart.title = "Information over the budget";
+  chart.x = {"time", "s"};
+  chart.y = {"score", "voxels"};
+  chart.series = {{"tour", record.seconds, record.score, true}};
+  chart.limits = {{"all views within the budget", record.reachable}};
+  if (std::isfinite(record.upper_bound))
+    chart.limits.push_back({"no tour tells more", record.upper_bound});
+  Facts facts{{{"images", std::to_string(scan.views.size()), ""},
+               {"planned for what they show", std::to_string(planned), ""},
+               {"there to keep images matchable",
+                std::to_string(static_cast<long>(scan.views.size()) - planned), ""}}};
+  return {"Tour",
+          {std::move(facts), PathView{"The tour from above", Projection::above, drawing},
+           PathView{"The tour from the south", Projection::from_south, drawing},
+           Scene3D{"The tour in space", drawing}, std::move(chart)}};
+}
+
+}  // namespace
+
+std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record) {
+  const ScanTask& scan = *plan.task.scan;
+  return {known_section(record, scan.region), candidates_section(record),
+          view_section(record, scan), tour_section(plan, record), coverage_section(record, scan)};
+}
+
+}  // namespace lapwing

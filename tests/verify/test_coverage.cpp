@@ -1,0 +1,168 @@
+// Scans: images taken where the plan says, and what they see, against a walk in small steps.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <set>
+
+#include "framework/core/checksum.h"
+#include "framework/core/files.h"
+#include "framework/geometry/depth_camera.h"
+#include "framework/map/map_file.h"
+#include "framework/verify/verify.h"
+#include "tests/verify/reference_plan.h"
+#include "tests/view/view_world.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::Vector3d;
+namespace fs = std::filesystem;
+
+class Coverage : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("lapwing_coverage_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    map_ = walled_room();
+    const std::string bytes = map_file_bytes(".ot", *map_);
+    write_file_atomically(folder_ / "map.ot", bytes);
+    sum_ = sha256(bytes);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // Along y before the wall, three images of it.
+  Plan plan() const {
+    Plan plan;
+    plan.mission = "wall";
+    plan.kind = "scan";
+    plan.vehicle = to_value(reference_vehicle());
+    plan.trajectory.model = MotionModel::path;
+    plan.trajectory.has_gimbal = true;
+    ScanTask scan;
+    scan.region = {Vector3d(4, -4, 1), Vector3d(6, 4, 9)};
+    scan.camera = {60, 45, 34.5, 34.5, 29.5, 22};
+    scan.range = 15;
+    scan.map = "known";
+    for (int i = 0; i < 3; ++i) {
+      Sample s;
+      s.time = 2 * i;
+      s.position = {-3, -3 + 3.0 * i, 5};
+      s.yaw = 0.3 - 0.3 * i;
+      s.gimbal_pitch = -0.2 * i;
+      plan.trajectory.samples.push_back(s);
+      scan.views.push_back({s.time, s.position, s.yaw, s.gimbal_pitch, {}});
+    }
+    scan.seen = static_cast<std::int64_t>(seen(scan).size());
+    plan.environment.maps = {{"known", "map.ot", sum_}};
+    plan.environment.margin = 0.5;
+    plan.task.scan = scan;
+    return plan;
+  }
+
+  // Step by step along every ray.
+  std::set<VoxelKey> seen(const ScanTask& scan) const {
+    constexpr double kStep = 0.002;
+    std::set<VoxelKey> all;
+    for (const PlannedView& view : scan.views) {
+      const Pose pose = camera_pose(view.position, view.yaw, view.pitch);
+      for (int y = 0; y < scan.camera.height; ++y)
+        for (int x = 0; x < scan.camera.width; ++x) {
+          const Vector3d way = (pose.orientation * pixel_ray(scan.camera, x, y)).normalized();
+          for (double along = 0; along < scan.range; along += kStep) {
+            const Vector3d p = view.position + along * way;
+            const VoxelKey key = map_->grid().key(p);
+            if (map_->read(key).state == VoxelState::free) continue;
+            if (scan.region.contains(map_->grid().center(key))) all.insert(key);
+            break;
+          }
+        }
+    }
+    return all;
+  }
+
+  Check check(const Plan& plan, const std::string& name) const {
+    const Certificate certificate = verify(plan, folder_);
+    for (const Check& c : certificate.checks)
+      if (c.name == name) return c;
+    throw std::runtime_error("no check " + name);
+  }
+
+  fs::path folder_;
+  std::shared_ptr<Map> map_;
+  std::string sum_;
+};
+
+TEST_F(Coverage, RaysOfTheVerifierSeeWhatAWalkInSmallStepsSees) {
+  const Plan good = plan();
+  ASSERT_GT(good.task.scan->seen, 200);
+  const Check coverage = check(good, "coverage");
+  EXPECT_TRUE(coverage.pass);
+  EXPECT_NEAR(coverage.worst.value(), 1, 0.01) << "rays through edges may fall to either side";
+  EXPECT_TRUE(check(good, "view_miss").pass);
+  EXPECT_TRUE(check(good, "view_direction").pass);
+  EXPECT_TRUE(check(good, "document").pass) << check(good, "document").detail;
+  EXPECT_TRUE(verify(good, folder_).feasible());
+}
+
+TEST_F(Coverage, AClaimOfMoreIsRefused) {
+  Plan claimed = plan();
+  claimed.task.scan->seen = claimed.task.scan->seen * 11 / 10;
+  EXPECT_FALSE(check(claimed, "coverage").pass);
+  claimed.task.scan->seen_share = 0.85;
+  EXPECT_TRUE(check(claimed, "coverage").pass);
+  // What the wall hides is not seen: a region behind it.
+  Plan behind = plan();
+  behind.task.scan->region = {Vector3d(6.5, -2, 3), Vector3d(8, 2, 6)};
+  behind.task.scan->seen = 1;
+  EXPECT_EQ(check(behind, "coverage").worst.value(), 0);
+  EXPECT_FALSE(check(behind, "coverage").pass);
+  Plan near = plan();
+  near.task.scan->range = 5;  // the wall is 8 m away
+  EXPECT_FALSE(check(near, "coverage").pass);
+}
+
+TEST_F(Coverage, ImagesAreTakenWhereTheFlightIs) {
+  Plan moved = plan();
+  moved.task.scan->views[1].position.z() += 0.5;
+  EXPECT_FALSE(check(moved, "view_miss").pass);
+  EXPECT_NEAR(check(moved, "view_miss").worst.value(), 0.5, 1e-9);
+  EXPECT_EQ(check(moved, "view_miss").at, 2);
+  moved.task.scan->tolerance = 0.6;
+  EXPECT_TRUE(check(moved, "view_miss").pass);
+  Plan early = plan();
+  early.task.scan->views[1].time = 1;
+  EXPECT_NEAR(check(early, "view_miss").worst.value(), 1.5, 1e-9);
+  Plan turned = plan();
+  turned.task.scan->views[2].pitch += 0.1;
+  EXPECT_NEAR(check(turned, "view_direction").worst.value(), 0.1, 1e-9);
+  EXPECT_FALSE(check(turned, "view_direction").pass);
+  turned = plan();
+  turned.task.scan->views[0].yaw += 2 * 3.14159265358979;
+  EXPECT_TRUE(check(turned, "view_direction").pass) << "a whole turn is none";
+}
+
+TEST_F(Coverage, WhatMakesNoSenseIsSaid) {
+  const auto said = [&](const std::function<void(Plan&)>& spoil) {
+    Plan spoilt = plan();
+    spoil(spoilt);
+    const Check document = check(spoilt, "document");
+    EXPECT_FALSE(document.pass);
+    return document.detail;
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->map = "other"; }), HasSubstr("map 'other'"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->views.clear(); }), HasSubstr("must have a view"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->views[1].time = 9; }), HasSubstr("view 2 is not"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->views[2].time = 0; }), HasSubstr("not later"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->seen = 0; }), HasSubstr("how many voxels"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->range = 1e6; }), HasSubstr("rays"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->camera.width = 0; }), HasSubstr("camera"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->camera.width = 1 << 30; }), HasSubstr("10^9"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->views[0].yaw = std::nan(""); }),
+              HasSubstr("not finite"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->region.max().x() = -9; }), HasSubstr("region"));
+}
+
+}  // namespace
+}  // namespace lapwing
