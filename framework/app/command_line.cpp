@@ -277,6 +277,8 @@ void add_evaluate_commands(CLI::App& app, Invocation& invocation, ScanEvaluation
            });
   add_text(*scan, "--guard", "S", "of wall clock that one solver may take; else 300",
            [&](const std::string& text) { asked.guard = read_number("--guard", text); });
+  scan->add_flag("--photos", asked.photos,
+                 "render photographs along each tour and ask COLMAP how many fit into one model");
   scan->add_flag("--resume", asked.resume, "go on with a study that was ended");
   add_repeated(*scan, "--config", "FILE", invocation.configs,
                "a configuration file or its name in configs/, of all missions");

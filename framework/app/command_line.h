@@ -69,7 +69,8 @@ struct ScanEvaluation {
   std::vector<std::uint64_t> seeds{1};
   std::vector<double> budgets;  // s; none: each mission's own
   std::optional<DepthNoise> noise;
-  double guard = 300;  // s of wall clock for one solver
+  double guard = 300;   // s of wall clock for one solver
+  bool photos = false;  // render photographs and ask COLMAP to register them
   bool resume = false;
 };
 ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocation);

@@ -6,6 +6,7 @@
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
+#include "framework/app/scan_photos.h"
 #include "framework/app/scan_study.h"
 #include "framework/app/scan_tables.h"
 #include "framework/core/checksum.h"
@@ -131,6 +132,8 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
   }
   study.noise = asked.noise;
   study.guard = asked.guard;
+  study.photos = asked.photos;
+  if (asked.photos) require_colmap();
   study.statement = statement_of(asked.missions, invocation);
   study.threads = invocation.threads > 0 ? invocation.threads : available_threads();
   study.prepare = [&](std::size_t mission, std::size_t seed) {
@@ -150,6 +153,7 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
   write_file_atomically(folder / "tables.csv", tables_csv(summaries));
   write_file_atomically(folder / "tables.txt", tables);
   write_file_atomically(folder / "times.txt", times_text(folder / "times"));
+  if (asked.photos) write_file_atomically(folder / "photos.txt", photos_text(folder / "photos"));
   write_file_atomically(folder / "report.html", render_html(study_report(summaries, rows)));
   if (invocation.json) {
     Value object = Value::map();

@@ -127,6 +127,42 @@ TEST_F(EvaluateScan, KilledAtAnyMomentItGoesOnToTheSameBytes) {
   }
 }
 
+// A stand-in for COLMAP that finds five of the images: what is asked of it, and what is made of its
+// answer. Without any the error says what is missing.
+TEST_F(EvaluateScan, PhotographsAreRegisteredByColmap) {
+  const std::string path = std::getenv("PATH");
+  write_file_atomically(base_ / "bin" / "colmap",
+                        "#!/bin/sh\n"
+                        "echo \"$@\" >> calls.txt\n"
+                        "if [ $1 = mapper ]; then\n"
+                        "  while [ $1 != --output_path ]; do shift; done\n"
+                        "  mkdir -p $2/0 $2/1\n"
+                        "  printf '\\003\\000\\000\\000\\000\\000\\000\\000' > $2/0/images.bin\n"
+                        "  printf '\\005\\000\\000\\000\\000\\000\\000\\000' > $2/1/images.bin\n"
+                        "fi\n");
+  fs::permissions(base_ / "bin" / "colmap", fs::perms::owner_all);
+  ::setenv("PATH", "/nowhere", 1);
+  EXPECT_EQ(run("none", {"--method", "greedy", "--photos"}), 2);
+  ::setenv("PATH", ((base_ / "bin").string() + ":" + path).c_str(), 1);
+  EXPECT_EQ(run("photos", {"--method", "greedy", "--photos"}), 0) << log("photos");
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_NE(log("none").find("package colmap"), std::string::npos) << log("none");
+  EXPECT_FALSE(fs::exists(base_ / "none"));
+  const Value row =
+      from_json(read_file(base_ / "photos" / "rows" / "hut_seed1_greedy.json"), "row");
+  const auto images = row.at("images").as_integer();
+  const fs::path folder = base_ / "photos" / "photos" / "hut_seed1_greedy";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "images"), fs::directory_iterator()),
+            images);
+  EXPECT_TRUE(read_file(folder / "images" / "view_0001.png").starts_with("\x89PNG"));
+  EXPECT_NE(read_file(base_ / "photos" / "photos.txt")
+                .find("greedy: 5 of " + std::to_string(images) + ", 2 models"),
+            std::string::npos);
+  const std::string calls = read_file(base_ / "calls.txt");
+  EXPECT_NE(calls.find("PINHOLE --ImageReader.camera_params 70,70,60,45"), std::string::npos)
+      << calls;
+}
+
 TEST_F(EvaluateScan, BadInputIsRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(run("a", {"--method", "greedie"}), 2);
   EXPECT_NE(log("a").find("greedy"), std::string::npos) << log("a");
