@@ -24,8 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPhotoRange = 300;       // m, beyond which a photograph shows sky
-constexpr useconds_t kPatience = 20'000;  // between looks at a running program
+constexpr double kPhotoRange = 300;            // m, beyond which a photograph shows sky
+constexpr const char* kMostFeatures = "2000";  // of an image: matching takes their square
+constexpr useconds_t kPatience = 20'000;       // between looks at a running program
 
 std::string number(double value) {
   char text[32];
@@ -129,7 +130,8 @@ Registered register_photos(const MeshScene& surface, const std::vector<Pose>& ca
   run_colmap("feature_extractor",
              {"--database_path", database, "--image_path", images, "--ImageReader.single_camera",
               "1", "--ImageReader.camera_model", "PINHOLE", "--ImageReader.camera_params", camera,
-              "--SiftExtraction.use_gpu", "0", "--SiftExtraction.num_threads", count},
+              "--SiftExtraction.use_gpu", "0", "--SiftExtraction.num_threads", count,
+              "--SiftExtraction.max_num_features", kMostFeatures},
              folder, cancellation);
   run_colmap("exhaustive_matcher",
              {"--database_path", database, "--SiftMatching.use_gpu", "0",
