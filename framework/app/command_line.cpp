@@ -236,6 +236,72 @@ void add_race_command(CLI::App& app, Invocation& invocation, std::filesystem::pa
       [&] { command = [&] { return race_plan(plan, pilots, rules, target, invocation); }; });
 }
 
+// "1,2,5": each entry is read by `take`.
+void read_list(const std::string& text, const std::function<void(const std::string&)>& take) {
+  std::istringstream rest(text);
+  for (std::string part; std::getline(rest, part, ',');) take(part);
+}
+
+std::uint64_t read_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size() || seed > kLargestSeed)
+    throw CLI::ValidationError("--seeds", "expected whole numbers, not '" + text + "'");
+  return seed;
+}
+
+void add_evaluate_commands(CLI::App& app, Invocation& invocation, ScanEvaluation& asked,
+                           Command& command) {
+  CLI::App* evaluate = app.add_subcommand("evaluate", "studies: methods against each other");
+  evaluate->require_subcommand(1);
+  CLI::App* scan = evaluate->add_subcommand(
+      "scan", "scan tours and their rivals, judged by the models that their images would make");
+  add_text(*scan, "missions", "MISSION.lua...", "scans to plan by every method",
+           [&](const std::string& path) { asked.missions.emplace_back(path); })
+      ->required()
+      ->expected(1, 1000);
+  add_repeated(*scan, "--method", "NAME", asked.methods,
+               "a tour solver (milp, milp:nodes=100, cost_benefit+local_search) or a pattern "
+               "(circle_50, ellipse_60x40, meander_85x100, hemisphere_60); else all");
+  add_text(*scan, "--seeds", "N,N,...", "of the missions; else 1", [&](const std::string& text) {
+    asked.seeds.clear();
+    read_list(text, [&](const std::string& part) { asked.seeds.push_back(read_seed(part)); });
+  });
+  add_text(*scan, "--budgets", "S,S,...", "of flight; else each mission's own",
+           [&](const std::string& text) {
+             read_list(text, [&](const std::string& part) {
+               asked.budgets.push_back(read_number("--budgets", part));
+             });
+           });
+  add_text(*scan, "--noise", "SIGMA[,DROPPED]",
+           "of the judged depth: m, and the share of pixels without any; else ideal",
+           [&](const std::string& text) {
+             std::vector<double> numbers;
+             read_list(text, [&](const std::string& part) {
+               numbers.push_back(read_number("--noise", part));
+             });
+             if (numbers.empty() || numbers.size() > 2)
+               throw CLI::ValidationError("--noise", "expected SIGMA or SIGMA,DROPPED");
+             asked.noise = DepthNoise{numbers.size() > 1 ? numbers[1] : 0, numbers[0]};
+           });
+  add_text(*scan, "--guard", "S", "of wall clock that one solver may take; else 300",
+           [&](const std::string& text) { asked.guard = read_number("--guard", text); });
+  scan->add_flag("--photos", asked.photos,
+                 "render photographs along each tour and ask COLMAP how many fit into one model");
+  scan->add_flag("--resume", asked.resume, "go on with a study that was ended");
+  add_repeated(*scan, "--config", "FILE", invocation.configs,
+               "a configuration file or its name in configs/, of all missions");
+  add_repeated(*scan, "--set", "KEY=VALUE", invocation.overrides, "set one option of all missions");
+  add_repeated(*scan, "--data", "DIR", invocation.data, "a folder that the scripts may read");
+  add_text(*scan, "--out", "DIR", "folder of the results; else out/evaluate_scan",
+           [&](const std::string& path) { invocation.out = path; });
+  add_count(*scan, "--threads", 1, kMostThreads, "rows at once; else one per core",
+            [&](std::uint64_t threads) { invocation.threads = static_cast<int>(threads); });
+  scan->add_flag("--quiet", invocation.quiet, "no progress, no tables");
+  add_json(*scan, invocation);
+  scan->callback([&] { command = [&] { return evaluate_scan(asked, invocation); }; });
+}
+
 void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
                          Command& command) {
   CLI::App* plugins = app.add_subcommand("plugins", "what plugins there are");
@@ -362,6 +428,7 @@ int run_command_line(int argc, const char* const* argv) {
   std::vector<std::string> pilots;
   RaceRules rules;
   TrainRequest training;
+  ScanEvaluation asked;
   Command command;
   add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
                "a folder of plugins, searched first");
@@ -371,6 +438,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_map_commands(app, invocation, plan, target, command);
   add_scene_commands(app, invocation, plan, stated, target, command);
   add_race_command(app, invocation, plan, pilots, rules, target, command);
+  add_evaluate_commands(app, invocation, asked, command);
   add_plugin_commands(app, invocation, name, command);
   add_train_commands(app, invocation, training, command);
   try {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/core/value.h"
+#include "framework/geometry/depth_camera.h"
 #include "framework/plugin/registry.h"
 #include "framework/vehicle/race_score.h"
 
@@ -60,6 +61,19 @@ ExitStatus view_map(const std::filesystem::path& file, const std::filesystem::pa
 ExitStatus race_plan(const std::filesystem::path& plan, const std::vector<std::string>& pilots,
                      const RaceRules& rules, const std::filesystem::path& target,
                      const Invocation& invocation);
+
+// What a study of scan tours compares; see app/scan_study.h.
+struct ScanEvaluation {
+  std::vector<std::filesystem::path> missions;
+  std::vector<std::string> methods;  // none: all
+  std::vector<std::uint64_t> seeds{1};
+  std::vector<double> budgets;  // s; none: each mission's own
+  std::optional<DepthNoise> noise;
+  double guard = 300;   // s of wall clock for one solver
+  bool photos = false;  // render photographs and ask COLMAP to register them
+  bool resume = false;
+};
+ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocation);
 
 // What is said of a scene beside its name.
 struct SceneStatement {

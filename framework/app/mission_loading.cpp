@@ -43,7 +43,8 @@ std::vector<fs::path> data_folders(const Invocation& invocation) {
 std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& invocation,
                                       const Registry& registry,
                                       const CancellationToken* cancellation, Progress* progress,
-                                      std::function<void()> before_print) {
+                                      std::function<void()> before_print,
+                                      const MissionObservers& observers) {
   MissionSettings settings;
   settings.scripts = shipped_folder("scripts");
   settings.configs = shipped_folder("configs");
@@ -60,6 +61,8 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
   settings.registry = &registry;
   settings.cancellation = cancellation;
   settings.progress = progress;
+  settings.observe_surface = observers.surface;
+  settings.observe_tour = observers.tour;
   settings.print = [quiet = invocation.quiet, before_print](const std::string& line) {
     log::info(line);
     if (quiet) return;

@@ -8,12 +8,25 @@
 
 namespace lapwing {
 
+struct ScanWork;
+struct TourDefinition;
+
+// Who looks on while a mission plans; each may be missing. What they throw ends the plan, and comes
+// out of it.
+struct MissionObservers {
+  // The surface that a first flight looks at, which planning itself never sees.
+  std::function<void(std::shared_ptr<const MeshScene>)> surface;
+  // Every tour problem before it is solved.
+  std::function<void(const ScanWork&, const TourDefinition&)> tour;
+};
+
 // InputError when script, configurations, overrides or data folders are wrong. `registry`, and what
 // `cancellation` and `progress` point to, outlive the mission.
 std::unique_ptr<Mission> load_mission(const std::filesystem::path& script,
                                       const Invocation& invocation, const Registry& registry,
                                       const CancellationToken* cancellation = nullptr,
                                       Progress* progress = nullptr,
-                                      std::function<void()> before_print = {});
+                                      std::function<void()> before_print = {},
+                                      const MissionObservers& observers = {});
 
 }  // namespace lapwing

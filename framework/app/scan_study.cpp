@@ -6,6 +6,7 @@
 #include <set>
 
 #include "framework/app/progress_line.h"
+#include "framework/app/scan_photos.h"
 #include "framework/config/overrides.h"
 #include "framework/core/checksum.h"
 #include "framework/core/error.h"
@@ -199,6 +200,16 @@ class Measuring {
 
   ScanRow row() && { return std::move(row_); }
 
+  // Each view of the walk takes one image, when it is first there.
+  std::vector<Pose> cameras() const {
+    std::vector<Pose> poses;
+    std::set<int> taken;
+    for (const int view : walk_) {
+      if (taken.insert(view).second) poses.push_back(scan_.viewpoints[view].camera());
+    }
+    return poses;
+  }
+
  private:
   // A pattern at a safe height needs no first flight, and has no images of one (tables 4.2 to 4.7).
   bool one_shot() const { return method_.pattern && !method_.name.starts_with("hemisphere"); }
@@ -255,16 +266,6 @@ class Measuring {
     return sum(walk_) >= sum(least.walk);
   }
 
-  // Each view of the walk takes one image, when it is first there.
-  std::vector<Pose> cameras() const {
-    std::vector<Pose> poses;
-    std::set<int> taken;
-    for (const int view : walk_) {
-      if (taken.insert(view).second) poses.push_back(scan_.viewpoints[view].camera());
-    }
-    return poses;
-  }
-
   const ScanCase& scan_;
   const TourProblem& problem_;
   const ScanMethod& method_;
@@ -281,12 +282,13 @@ class Measuring {
 ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceSample& surface,
                 const ScanMethod& method, const ScanStudy& study, std::uint64_t seed,
                 const Registry& registry, const CancellationToken* cancellation,
-                double& work_seconds) {
+                double& work_seconds, std::vector<Pose>& cameras) {
   Measuring measuring(scan, problem, method, study, seed, registry, cancellation);
   const double begin = steady_seconds();
   measuring.plan();
   work_seconds = steady_seconds() - begin;
   measuring.judge(surface);
+  cameras = measuring.cameras();
   return std::move(measuring).row();
 }
 
@@ -368,6 +370,7 @@ class StudyRun {
       noise.set("sigma", study_.noise->sigma);
     }
     if (study_.guard) value.set("guard", *study_.guard);
+    if (study_.photos) value.set("photos", true);
     value.set("from", study_.statement);
     return value;
   }
@@ -412,8 +415,9 @@ class StudyRun {
       if (cancellation_ && cancellation_->cancelled()) throw Cancelled();
       const RowPlace& at = missing[i];
       double seconds = 0;
+      std::vector<Pose> cameras;
       ScanRow row = measure(scan, problems[at.budget], surface, study_.methods[at.method], study_,
-                            study_.seeds[s], registry_, cancellation_, seconds);
+                            study_.seeds[s], registry_, cancellation_, seconds, cameras);
       row.mission = study_.missions[m];
       Value time = Value::map();
       time.set("mission", row.mission);
@@ -425,12 +429,33 @@ class StudyRun {
       time.set("prepare", prepared);
       time.set("plan", seconds);
       write_file_atomically(file_of(at, "times"), to_json(time) + "\n");
+      if (study_.photos && row.found) take_photos(at, scan, cameras, row);
       write_file_atomically(file_of(at, "rows"), to_json(to_value(row)) + "\n");
       char text[120];
       std::snprintf(text, sizeof text, ": F %.2f %%, score %.1f %%, %d images, %.0f s",
                     100 * row.with_first.f, 100 * row.score_share, row.images, row.seconds);
       say_(name + ", " + row.method + (row.found ? text : ": no tour (" + row.message + ")"));
     });
+  }
+
+  // Before the row is written: where there is a row there is what its photographs came to.
+  void take_photos(const RowPlace& at, const ScanCase& scan, const std::vector<Pose>& cameras,
+                   const ScanRow& row) const {
+    fs::path folder = file_of(at, "photos");
+    folder.replace_extension();
+    const Registered found =
+        register_photos(*scan.surface, cameras, scan.camera, folder, 1, cancellation_);
+    Value value = Value::map();
+    value.set("mission", row.mission);
+    value.set("method", row.method);
+    value.set("budget", row.budget);
+    value.set("seed", static_cast<std::int64_t>(row.seed));
+    value.set("images", found.images);
+    value.set("largest", found.largest);
+    value.set("models", found.models);
+    write_file_atomically(folder / "registered.json", to_json(value) + "\n");
+    say_(row.mission + ", " + row.method + ": " + std::to_string(found.largest) + " of " +
+         std::to_string(found.images) + " photographs in one model");
   }
 
   const ScanStudy& study_;

@@ -57,8 +57,9 @@ struct ScanStudy {
   std::optional<DepthNoise> noise;        // of the judged depth; absent: ideal
   std::optional<double> guard = 300;      // s of wall clock for one solver
   ReconstructionSettings reconstruction;  // its region is the case's
-  Value statement;  // of all else that rows depend on: scripts, configurations
-  int threads = 1;  // rows at once; results are the same
+  Value statement;      // of all else that rows depend on: scripts, configurations
+  bool photos = false;  // whether COLMAP is asked to register photographs (app/scan_photos.h)
+  int threads = 1;      // rows at once; results are the same
   // Makes a case: mission and seed, by their places. Called once for each that lacks a row.
   std::function<ScanCase(std::size_t mission, std::size_t seed)> prepare;
 };
@@ -81,15 +82,16 @@ struct ScanRow {
 Value to_value(const ScanRow& row);
 ScanRow scan_row_from(const Value& value);
 
-// One row; `work_seconds` is set to what planning took.
+// One row; `work_seconds` is set to what planning took, `cameras` to the tour's images.
 ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceSample& surface,
                 const ScanMethod& method, const ScanStudy& study, std::uint64_t seed,
                 const Registry& registry, const CancellationToken* cancellation,
-                double& work_seconds);
+                double& work_seconds, std::vector<Pose>& cameras);
 
 // Rows of the whole study in their order: mission, budget, method, seed. Files go to `folder`:
-// study.json, rows/. Without `resume` a folder with another study's rows is refused, with it one of
-// a study that differs. InputError; Cancelled when told to stop, rows so far are kept.
+// study.json, rows/, times/ and, with photographs, photos/. Without `resume` a folder with another
+// study's rows is refused, with it one of a study that differs. InputError; Cancelled when told to
+// stop, rows so far are kept.
 std::vector<ScanRow> run_study(const ScanStudy& study, const std::filesystem::path& folder,
                                bool resume, const Registry& registry,
                                const CancellationToken* cancellation,

@@ -371,4 +371,25 @@ std::string times_text(const std::filesystem::path& folder) {
   return out;
 }
 
+std::string photos_text(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& item : std::filesystem::directory_iterator(folder)) {
+    if (std::filesystem::exists(item.path() / "registered.json")) {
+      files.push_back(item.path() / "registered.json");
+    }
+  }
+  std::sort(files.begin(), files.end());
+  std::string out = "photographs that COLMAP registers into its largest model, and its models\n";
+  for (const auto& file : files) {
+    const Value value = from_json(read_file(file), file.string());
+    out += value.at("mission").as_text() + ", seed " +
+           std::to_string(value.at("seed").as_integer()) + ", " +
+           text_of("%g", value.at("budget").as_number()) + " s, " + value.at("method").as_text() +
+           ": " + std::to_string(value.at("largest").as_integer()) + " of " +
+           std::to_string(value.at("images").as_integer()) + ", " +
+           std::to_string(value.at("models").as_integer()) + " models\n";
+  }
+  return out;
+}
+
 }  // namespace lapwing

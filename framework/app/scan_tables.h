@@ -39,4 +39,7 @@ Report study_report(const std::vector<ScanSummary>& summaries, const std::vector
 // The wall clock has a part in it.
 std::string times_text(const std::filesystem::path& folder);
 
+// How many photographs COLMAP registered, from the folder `photos` of a study.
+std::string photos_text(const std::filesystem::path& folder);
+
 }  // namespace lapwing

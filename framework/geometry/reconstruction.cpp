@@ -14,6 +14,8 @@ constexpr int kShardBits = 6, kShards = 1 << kShardBits;
 constexpr int kBatch = 16;          // images measured before they are put in
 constexpr double kMostArea = 0.25;  // m^2, of a triangle that gives points (reading 4.7)
 constexpr int kEdgeParts = 10;      // 100 points to a triangle: the middles of as many parts of it
+constexpr int kMostParts = 8;       // of a pixel, across
+constexpr double kLeastTowards = 0.5;  // a ray beside a pixel's middle is nearly as steep as that
 constexpr double kMostPlaces = 1 << 20;
 // The grids do not begin at round numbers of metres, where walls and floors are wont to lie: the
 // rounding of a depth would strew one surface over two layers of places.
@@ -287,6 +289,7 @@ struct Reconstruction::Parts {
   struct Measured {
     GridKey cube;
     Eigen::Vector3f point;
+    bool middle = true;  // of a pixel; else only the cube counts
   };
   using Image = std::vector<std::vector<Measured>>;  // by shard
 
@@ -339,7 +342,26 @@ Reconstruction::Parts::Image Reconstruction::Parts::measure(const MeshScene& sce
       if (!wide.contains(p)) continue;
       if (-ray.dot(view.normals[i].cast<double>()) < least * ray.norm()) continue;
       const GridKey key = cube.of(p);
-      image[shard_of(key)].push_back({key, p.cast<float>()});
+      image[shard_of(key)].push_back({key, p.cast<float>(), true});
+      // A pixel that is larger than a cube measures all cubes that it covers of the surface.
+      const Eigen::Vector3d normal = view.normals[i].cast<double>();
+      const double facing = -ray.dot(normal);
+      const double across = depth / std::min(pinhole.focal_x, pinhole.focal_y);
+      const double slant = std::max(facing / ray.norm(), least);
+      const int parts =
+          std::clamp(static_cast<int>(std::ceil(across / (slant * settings.near))), 1, kMostParts);
+      for (int part = 0; parts > 1 && part < parts * parts; ++part) {
+        const double sub_x = x + (part % parts + 0.5) / parts - 0.5;
+        const double sub_y = y + (part / parts + 0.5) / parts - 0.5;
+        const Eigen::Vector3d beside = turned * pixel_ray(pinhole, sub_x, sub_y);
+        const double towards = -beside.dot(normal);
+        if (towards < kLeastTowards * facing) continue;
+        const Eigen::Vector3d q = camera.position + depth * facing / towards * beside;
+        const GridKey other = cube.of(q);
+        if (other != key && wide.contains(q)) {
+          image[shard_of(other)].push_back({other, q.cast<float>(), false});
+        }
+      }
     }
   }
   return image;
@@ -355,6 +377,7 @@ void Reconstruction::Parts::put(const std::vector<Image>& batch, int shard) {
         agreement.last = number;
         ++agreement.images;
       }
+      if (!measured.middle) continue;
       SumInCube& sum = means[shard][grid.of(measured.point.cast<double>())];
       sum.add(measured.point.cast<double>());
       sum.cube = measured.cube;

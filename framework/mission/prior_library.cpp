@@ -89,6 +89,7 @@ int look(lua_State* state) {
   const DepthNoise sensor{errors.number("dropped"), errors.number("sigma")};
   const auto poses = given.tables("poses");
   if (poses.empty()) throw InputError(given.origin("poses"), "look: no pose to look from");
+  if (run.settings.observe_surface) run.settings.observe_surface(surface.scene);
   const Sandbox::ClockPause pause(Sandbox::of(state));
   prior.mapping.map->set_threads(run.settings.threads);
   if (!prior.scene)

@@ -26,6 +26,10 @@ namespace lapwing {
 
 struct ScanRecord;  // export/scan_report.h
 
+struct ScanWork;  // scan_objects.h
+struct TourDefinition;
+class MeshScene;
+
 struct MissionSettings {
   SandboxLimits limits;
   std::uint64_t seed = 1;
@@ -39,6 +43,10 @@ struct MissionSettings {
   std::function<void(const std::string&)> print = [](const std::string&) {};
   // Sees every problem before it is solved, so that a study of solvers can keep it; may be null.
   std::function<void(std::shared_ptr<const TrajectoryProblem>)> observe_problem;
+  // Sees the surfaces that depth images are taken of, which planning never does, and every tour
+  // problem before it is solved; for studies of scans. What they throw ends the plan. May be null.
+  std::function<void(std::shared_ptr<const MeshScene>)> observe_surface;
+  std::function<void(const ScanWork&, const TourDefinition&)> observe_tour;
 };
 
 // A problem being stated, then solved; Lua holds one or more references to it.

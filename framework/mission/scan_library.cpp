@@ -370,6 +370,7 @@ int solve_tour_of_run(lua_State* state) {
       run.settings.registry->create<TourSolver>(chosen.type, chosen.parameters, "tour.solver");
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
+    if (run.settings.observe_tour) run.settings.observe_tour(work, definition);
     const TourProblem problem(std::move(definition));
     TourResult result = solver->solve(problem, request);
     tour.report = result.report;

@@ -64,6 +64,30 @@ TEST(Reconstructions, ThreeViewsMakeAPlaneAndTwoDoNot) {
   EXPECT_GE(truth.score(points_of(plane, above(2), two), 1).recall, 0.999);
 }
 
+// Pixels of 17 cm: no two images measure the same places, and still they agree.
+TEST(Reconstructions, FarImagesAgreeWherePixelsOverlap) {
+  const TriangleMesh plane = square(0);
+  const SurfaceSample truth(plane, settings(), 1);
+  const MeshScene scene(plane);
+  std::vector<Pose> cameras;
+  for (int i = 0; i < 3; ++i) {
+    cameras.push_back(camera_pose({0.13 * i, 0.07 * i, 20}, 0.5 * i, -1.5707963267948966));
+  }
+  for (const std::size_t views : {2u, 3u}) {
+    Reconstruction reconstruction(settings());
+    reconstruction.add(scene, std::span(cameras).first(views), kWide, std::nullopt, 1, 1);
+    const GridPoints points = reconstruction.points(1);
+    if (views == 2) {
+      EXPECT_TRUE(points.empty());
+      continue;
+    }
+    EXPECT_GE(points.size(), 3 * 33u * 33u);  // most pixels of each image
+    const ReconstructionScore score = truth.score(points, 1);
+    EXPECT_EQ(score.precision, 1);
+    EXPECT_GE(score.recall, 0.9);
+  }
+}
+
 TEST(Reconstructions, AShiftedSurfaceIsWrong) {
   const SurfaceSample truth(square(0), settings(), 1);
   const GridPoints near = points_of(square(0.09), above(3), settings());

@@ -1,0 +1,171 @@
+// lapwing evaluate scan: rivals on the same candidates, judged by what their images would make.
+#include <algorithm>
+#include <iostream>
+
+#include "framework/app/command_line.h"
+#include "framework/app/interruption.h"
+#include "framework/app/mission_loading.h"
+#include "framework/app/progress_line.h"
+#include "framework/app/scan_photos.h"
+#include "framework/app/scan_study.h"
+#include "framework/app/scan_tables.h"
+#include "framework/core/checksum.h"
+#include "framework/core/files.h"
+#include "framework/core/parallel.h"
+#include "framework/mission/scan_objects.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Ours first, then its rivals, then the patterns in the two sizes of thesis table 4.3.
+constexpr const char* kMethods[] = {"cost_benefit+local_search",
+                                    "recursive_greedy",
+                                    "cost_benefit",
+                                    "greedy",
+                                    "milp",
+                                    "hemisphere_60",
+                                    "hemisphere_75",
+                                    "circle_50",
+                                    "circle_75",
+                                    "meander_85x100",
+                                    "meander_100x115"};
+constexpr double kFirstSpeed = 3, kFirstView = 3;  // m/s and s a view, of a first flight
+constexpr double kAboveRegion = 5;  // m, where patterns fly that no first flight tells a height
+
+// Thrown where a mission is about to solve its tour: all that a study needs of it is there.
+class TourStated : public Error {
+ public:
+  TourStated() : Error("a tour was stated") {}
+};
+
+double height_of_patterns(const ScanCase& scan) {
+  const double floor = scan.region.min().z();
+  if (scan.first_flight.empty()) return scan.region.max().z() + kAboveRegion - floor;
+  double sum = 0;
+  for (const Pose& camera : scan.first_flight) sum += camera.position.z();
+  return sum / static_cast<double>(scan.first_flight.size()) - floor;
+}
+
+double seconds_of_first_flight(const std::vector<Pose>& cameras) {
+  double length = 0;
+  for (std::size_t i = 1; i < cameras.size(); ++i) {
+    length += (cameras[i].position - cameras[i - 1].position).norm();
+  }
+  return length / kFirstSpeed + kFirstView * static_cast<double>(cameras.size());
+}
+
+// Runs a mission as far as its first tour problem.
+ScanCase case_of(const fs::path& script, std::uint64_t seed, const Invocation& given,
+                 const Registry& registry, const CancellationToken& cancellation) {
+  Invocation invocation = given;
+  invocation.seed = seed;
+  invocation.quiet = true;
+  std::optional<ScanCase> found;
+  std::shared_ptr<const MeshScene> surface;
+  MissionObservers observers;
+  observers.surface = [&](std::shared_ptr<const MeshScene> seen) { surface = std::move(seen); };
+  observers.tour = [&](const ScanWork& work, const TourDefinition& definition) {
+    ScanCase& scan = found.emplace();
+    scan.definition = definition;
+    scan.viewpoints = work.graph.candidates.viewpoints;
+    for (const Viewpoint& view : work.prior->views) scan.first_flight.push_back(view.camera());
+    scan.first_seconds = seconds_of_first_flight(scan.first_flight);
+    scan.camera = work.visible->settings().pinhole;
+    scan.region = work.visible->settings().region;
+    scan.pattern_height = height_of_patterns(scan);
+    throw TourStated();
+  };
+  const auto mission =
+      load_mission(script, invocation, registry, &cancellation, nullptr, {}, observers);
+  if (mission->kind() != "scan") {
+    throw InputError(script.string() + ": a mission of kind " + mission->kind() +
+                     "; evaluate scan takes scans");
+  }
+  try {
+    mission->plan();
+  } catch (const TourStated&) {
+  }
+  if (cancellation.cancelled()) throw Cancelled();
+  if (!found) throw InputError(script.string() + ": the mission states no tour");
+  if (!surface) {
+    throw InputError(script.string() +
+                     ": nothing is known of the true surface, only files of a flight; a study "
+                     "needs a scene or a mesh to judge by");
+  }
+  found->surface = surface;
+  return std::move(*found);
+}
+
+// What rows depend on beside the study's own lists.
+Value statement_of(const std::vector<fs::path>& scripts, const Invocation& invocation) {
+  Value value = Value::map();
+  Value& list = value.set("scripts", Value::list());
+  for (const fs::path& script : scripts) list.push_back(sha256(read_file(script)));
+  Value& configs = value.set("configs", Value::list());
+  for (const std::string& name : invocation.configs) configs.push_back(name);
+  Value& overrides = value.set("set", Value::list());
+  for (const std::string& text : invocation.overrides) overrides.push_back(text);
+  return value;
+}
+
+}  // namespace
+
+ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocation) {
+  const Interruption interruption;
+  const Registry registry = invocation.registry();
+  ScanStudy study;
+  std::vector<std::string> methods = asked.methods;
+  if (methods.empty()) methods.assign(std::begin(kMethods), std::end(kMethods));
+  for (const std::string& method : methods) {
+    study.methods.push_back(scan_method(method, registry));
+  }
+  for (const fs::path& script : asked.missions) {
+    if (!fs::is_regular_file(script)) throw InputError("'" + script.string() + "' not found");
+    study.missions.push_back(script.stem().string());
+  }
+  study.seeds = asked.seeds;
+  study.budgets = asked.budgets;
+  for (const double budget : asked.budgets) {
+    if (!(budget > 0)) throw InputError("--budgets: a budget must be above 0 s");
+  }
+  study.noise = asked.noise;
+  study.guard = asked.guard;
+  study.photos = asked.photos;
+  if (asked.photos) require_colmap();
+  study.statement = statement_of(asked.missions, invocation);
+  study.threads = invocation.threads > 0 ? invocation.threads : available_threads();
+  study.prepare = [&](std::size_t mission, std::size_t seed) {
+    return case_of(asked.missions[mission], study.seeds[seed], invocation, registry,
+                   interruption.token());
+  };
+  const auto say = [&](const std::string& line) {
+    if (!invocation.quiet) std::cerr << line << std::endl;
+  };
+  const fs::path folder =
+      invocation.out.empty() ? fs::path("out") / "evaluate_scan" : invocation.out;
+  const std::vector<ScanRow> rows =
+      run_study(study, folder, asked.resume, registry, &interruption.token(), say);
+  const std::vector<ScanSummary> summaries = summarise(rows);
+  const std::string tables = tables_text(summaries);
+  write_file_atomically(folder / "rows.csv", rows_csv(rows));
+  write_file_atomically(folder / "tables.csv", tables_csv(summaries));
+  write_file_atomically(folder / "tables.txt", tables);
+  write_file_atomically(folder / "times.txt", times_text(folder / "times"));
+  if (asked.photos) write_file_atomically(folder / "photos.txt", photos_text(folder / "photos"));
+  write_file_atomically(folder / "report.html", render_html(study_report(summaries, rows)));
+  if (invocation.json) {
+    Value object = Value::map();
+    object.set("status", "ok");
+    object.set("report", (folder / "report.html").string());
+    Value& list = object.set("rows", Value::list());
+    for (const ScanRow& row : rows) list.push_back(to_value(row));
+    print_json(object);
+  } else if (!invocation.quiet) {
+    std::cout << tables << "\nreport: " << (folder / "report.html").string() << std::endl;
+  }
+  return ExitStatus::done;
+}
+
+}  // namespace lapwing
