@@ -81,7 +81,8 @@ Value json_of(const Outcome& outcome, const Invocation& invocation) {
     Value& notes = object.set("notes", Value::list());
     for (const std::string& note : result.notes) notes.push_back(note);
   }
-  if (result.block.is_map()) object.set(result.plan.kind, result.block);
+  if (result.block.is_map())
+    object.set(result.block_name.empty() ? result.plan.kind : result.block_name, result.block);
   if (!outcome.raced.empty()) object.set("game", to_value(outcome.raced));
   return object;
 }
@@ -142,6 +143,8 @@ std::string report_page(const Outcome& outcome) {
     Image image{*outcome.long_exposure, "What a camera with an open shutter sees of the flight"};
     report.sections.insert(report.sections.begin() + 1, Section{"Long exposure", {image}});
   }
+  report.sections.insert(report.sections.begin() + 1, outcome.result.sections.begin(),
+                         outcome.result.sections.end());
   if (!outcome.raced.empty()) {
     std::vector<Section> race = race_sections(outcome.result.plan, outcome.raced, {});
     report.sections.insert(report.sections.begin() + 1, race.begin(), race.end());
@@ -160,8 +163,13 @@ void write_files(const Outcome& outcome, const Registry& registry, const log::Ca
   for (const Check& check : outcome.certificate.failures()) log::info("fails: " + to_line(check));
   files.log = capture.text();
   files.long_exposure = outcome.long_exposure;
-  for (const std::string& name : outcome.result.obstacle_files)
-    files.obstacles.emplace_back(name, read_file(outcome.result.obstacle_folder / name));
+  for (const std::string& name : outcome.result.obstacle_files) {
+    std::string bytes = read_file(outcome.result.obstacle_folder / name);
+    if (name == "map.ot")
+      files.map = std::move(bytes);
+    else
+      files.obstacles.emplace_back(name, std::move(bytes));
+  }
   write_run_folder(outcome.folder, files);
 }
 

@@ -28,6 +28,7 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
   above(s.body, "the edge of the body");
   above(s.speed, "the speed");
   above(s.turn_rate, "the turn rate");
+  if (!(s.pause >= 0)) throw InputError("the pause for an image must be at least 0 s");
   if (!(s.clear >= s.body)) throw InputError("the box cleared at the start must hold the body");
   if (s.visits < 1 || s.steps < 1) throw InputError("expected at least one visit and one step");
   if (!map.settings().observations)
@@ -196,6 +197,7 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
       taken.way.push_back(graph_[next]);
       from = next;
     }
+    taken.time += settings_.pause;
     keep();
     if (settings_.budget && taken.time > *settings_.budget) {
       candidates_.push(best);

@@ -29,6 +29,7 @@ struct EpisodeSettings {
   int steps = 200;                      // images
   double speed = 2;                     // m/s
   double turn_rate = EIGEN_PI / 2;      // rad/s
+  double pause = 0.5;                   // s, at rest for an image
   std::optional<double> budget;         // s of flight
   std::optional<double> wall_clock_guard;  // s
   std::optional<Eigen::AlignedBox3d> bounds;  // the explorer stays inside
@@ -57,7 +58,7 @@ struct EpisodeStep {
   double value = 0;        // the utility's when it was chosen
   double observed = 0;     // ObsSurf (5.2) afterwards; 0 without a truth
   double length = 0;       // m flown so far
-  double time = 0;         // s flown so far
+  double time = 0;         // s flown so far, until the image is taken
   double seconds = 0;      // wall clock of choosing and mapping, without the simulated camera
   int scored = 0;          // views scored for it
   std::vector<Viewpoint> way;  // from the view before (left out) to this one

@@ -28,7 +28,9 @@ struct MissionResult {
   double solve_seconds = 0;        // wall clock, all solves together
   std::vector<std::string> notes;  // sentences for the user
   Value block;                     // the kind's own figures, null or a map
+  std::string block_name = {};     // of them in the answer; "": the kind
   std::vector<Pilot> pilots;       // who fly it by hand, in simulation
+  std::vector<Section> sections = {};  // of the report, beside those of every flight
   // Where the files lie that the plan's environment names, as long as the mission lives; and their
   // names.
   std::filesystem::path obstacle_folder = {};

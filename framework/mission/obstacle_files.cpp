@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <system_error>
 
@@ -60,13 +61,17 @@ struct ObstacleFiles::State {
     if (!folder.empty()) fs::remove_all(folder, ignored);
   }
 
-  Copy keep(const std::string& bytes, const char* ending) {
+  void make_folder() {
     if (folder.empty()) {
       std::string pattern = (fs::temp_directory_path() / "lapwing_obstacles_XXXXXX").string();
       if (!::mkdtemp(pattern.data()))
         throw InputError(pattern + ": cannot make a folder for copies of obstacles");
       folder = pattern;
     }
+  }
+
+  Copy keep(const std::string& bytes, const char* ending) {
+    make_folder();
     const std::string name = "obstacle_" + std::to_string(files.size() + 1) + ending;
     write_file_atomically(folder / name, bytes);
     files.push_back(name);
@@ -77,6 +82,14 @@ struct ObstacleFiles::State {
 ObstacleFiles::ObstacleFiles() : state_(std::make_unique<State>()) {}
 ObstacleFiles::~ObstacleFiles() = default;
 ObstacleFiles::ObstacleFiles(ObstacleFiles&&) noexcept = default;
+
+std::string ObstacleFiles::keep(const std::string& name, const std::string& bytes) {
+  state_->make_folder();
+  write_file_atomically(state_->folder / name, bytes);
+  if (std::find(state_->files.begin(), state_->files.end(), name) == state_->files.end())
+    state_->files.push_back(name);
+  return sha256(bytes);
+}
 
 const fs::path& ObstacleFiles::folder() const {
   return state_->folder;

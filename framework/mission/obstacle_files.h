@@ -32,6 +32,9 @@ class ObstacleFiles {
                   const Eigen::AlignedBox3d& box, const std::string& plugin,
                   const Registry& registry);
 
+  // Keeps the bytes under a name of the caller's own, in place of what had it: their SHA-256.
+  std::string keep(const std::string& name, const std::string& bytes);
+
   // Holds obstacle_1.ply, obstacle_2.ot and so on. Empty while there is none.
   const std::filesystem::path& folder() const;
   const std::vector<std::string>& files() const;

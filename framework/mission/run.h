@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "framework/core/progress.h"
+#include "framework/export/report.h"
 #include "framework/mission/data_files.h"
 #include "framework/mission/obstacle_files.h"
 #include "framework/mission/sandbox.h"
@@ -58,7 +59,9 @@ struct PlanObject {
   std::string solver;
   std::vector<std::string> notes;  // sentences for the user
   Value block;                     // the kind's own figures; null or a map
+  std::string block_name;          // of them in the answer; "": the kind
   std::vector<Pilot> pilots;       // who fly it by hand
+  std::vector<Section> sections = {};  // of the report, beside those of every flight
 };
 
 struct MissionRun {
