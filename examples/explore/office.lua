@@ -4,4 +4,5 @@ local explore = require "mission.explore"
 return explore.of_scene {
   name = "explore office", scene = "office",
   moves = { step = 0.7, body = 0.6, clear = 2, speed = 0.7 },
+  margin = 0.2,
 }

@@ -1,6 +1,7 @@
 #include "framework/export/exploration_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "framework/geometry/png.h"
@@ -72,17 +73,19 @@ Section candidates(const ExplorationRecord& record) {
   Section section{"Candidates at the last step", {}};
   Drawing drawing;
   drawing.value = {"utility", ""};
+  Polyline ticks;
+  ticks.name = "candidates";
   Series values;
   values.name = record.utility;
+  const Eigen::Vector3d gap = Eigen::Vector3d::Constant(std::nan(""));
   for (std::size_t k = 0; k < sorted.size(); ++k) {
     const ExplorationCandidate& c = sorted[k];
-    drawing.lines.push_back({"candidate " + std::to_string(k + 1),
-                             {c.position, c.position + kTick * c.direction},
-                             {},
-                             {c.value, c.value}});
+    ticks.points.insert(ticks.points.end(), {c.position, c.position + kTick * c.direction, gap});
+    ticks.values.insert(ticks.values.end(), {c.value, c.value, c.value});
     values.x.push_back(static_cast<double>(k + 1));
     values.y.push_back(c.value);
   }
+  drawing.lines.push_back(std::move(ticks));
   section.blocks.push_back(
       PathView{"Where they stand and look, coloured by utility", Projection::above, drawing});
   Chart chart;

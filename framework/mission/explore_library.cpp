@@ -166,13 +166,19 @@ Trajectory trajectory_of(const Exploration& e, bool gimbal) {
   return trajectory;
 }
 
-// exploration:plan{vehicle =, notes = {...}}
+// exploration:plan{vehicle =, margin =}
 int plan_exploration(lua_State* state) {
   MissionRun& run = run_of(state);
   const Exploration& e =
       *object_argument<ExplorationObject>(state, 1, kExplorationType).exploration;
   static constexpr std::string_view kVehicle[] = {"vehicle"};
-  table_argument(state, 2, {}, "plan", kVehicle);
+  ParameterTable table;
+  table.number("margin", 0.4, "m", "that the certificate asks for", at_least(0));
+  const Parameters given = table_argument(state, 2, table, "plan", kVehicle);
+  // A ball within the box that was kept free.
+  if (given.number("margin") > e.settings.body / 2)
+    throw InputError(given.origin("margin"), "margin: at most half of the body's edge, " +
+                                                 std::to_string(e.settings.body / 2) + " m");
   lua_getfield(state, 2, "vehicle");
   const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
   PlanObject made;
@@ -208,8 +214,7 @@ int plan_exploration(lua_State* state) {
   obstacle.file = "map.ot";
   obstacle.sha256 = run.obstacles.keep(obstacle.file, map_file_bytes(".ot", *e.map));
   document.environment.maps.push_back(std::move(obstacle));
-  // A ball within the box that was kept free.
-  document.environment.margin = e.settings.body / 2;
+  document.environment.margin = given.number("margin");
   new_object(state, kPlanType, std::move(made));
   return 1;
 }

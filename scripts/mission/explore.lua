@@ -67,6 +67,8 @@ local OPTIONS = {
   { name = "moves", type = "table", table = MOVES, summary = "where it can go from a viewpoint" },
   { name = "steps", type = "integer", default = 200, minimum = 1, maximum = 1000000,
     summary = "images at most" },
+  { name = "margin", type = "number", unit = "m", default = 0.4, minimum = 0,
+    summary = "kept from what the map holds at the end, as the certificate judges it" },
   { name = "budget", type = "number", unit = "s", above = 0, summary = "of flight; absent: none" },
   { name = "wall_clock_guard", type = "number", unit = "s", above = 0,
     summary = "of computing; a run that it ends may not repeat" },
@@ -98,6 +100,9 @@ end
 -- Explores the surface, and what came of it as a plan.
 function M.explore(run, surface)
   local o = run.options
+  if o.margin > o.moves.body / 2 then
+    run:fail("margin", "at most half of moves.body: a ball within the box that is kept free")
+  end
   if (o.lower == nil) ~= (o.upper == nil) then
     run:fail(o.lower and "lower" or "upper", "lower and upper belong together")
   end
@@ -116,7 +121,7 @@ function M.explore(run, surface)
     bounds = o.lower and { { lower = o.lower, upper = o.upper } } or {},
     start = o.start and { { position = o.start, yaw = math.rad(o.start_yaw_deg) } } or {},
   }
-  return done:plan { vehicle = vehicle }
+  return done:plan { vehicle = vehicle, margin = o.margin }
 end
 
 local function mission(given, more, surface_of)
