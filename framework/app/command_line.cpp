@@ -1,4 +1,5 @@
 #include "framework/app/command_line.h"
+#include "framework/app/evaluate_explore.h"
 #include "framework/app/train_command.h"
 
 #include <CLI/CLI.hpp>
@@ -295,6 +296,31 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   score->callback([&] { command = [&] { return score_model(request, invocation); }; });
 }
 
+void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,
+                          Command& command) {
+  CLI::App* made = evaluate.add_subcommand("explore", "utilities against the oracle, tables 5.1 on");
+  add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds,
+               "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
+  add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; else every one");
+  add_count(*made, "--episodes", 1, 10'000, "of each world",
+            [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
+  add_count(*made, "--steps", 1, 100'000, "of each episode",
+            [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
+  add_text(*made, "--sigma", "M", "noise of the depth; the views are replayed without",
+           [&](const std::string& text) { request.sigma = read_number("--sigma", text); });
+  add_text(*made, "--dropped", "SHARE", "of the pixels without a measurement",
+           [&](const std::string& text) { request.dropped = read_number("--dropped", text); });
+  add_text(*made, "-o,--output", "DIR", "folder of the results; else out/evaluate_explore",
+           [&](const std::string& path) { request.folder = path; });
+  add_count(*made, "--threads", 1, kMostThreads, "threads to use; else one per core",
+            [&](std::uint64_t threads) { invocation.threads = static_cast<int>(threads); });
+  add_count(*made, "--seed", 0, kLargestSeed, "of the starts",
+            [&](std::uint64_t seed) { invocation.seed = seed; });
+  made->add_flag("--resume", request.resume, "keep the episodes that are there");
+  made->add_flag("--quiet", invocation.quiet, "no lines of progress");
+  made->callback([&] { command = [&] { return evaluate_explore(request, invocation); }; });
+}
+
 // What to say of a first word that is no command; empty where there is none.
 std::string unknown_command(const CLI::App& app) {
   const CLI::App* at = &app;
@@ -356,6 +382,7 @@ int run_command_line(int argc, const char* const* argv) {
   std::vector<std::string> pilots;
   RaceRules rules;
   TrainRequest training;
+  ExploreEvaluation exploring;
   Command command;
   add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
                "a folder of plugins, searched first");
@@ -367,6 +394,9 @@ int run_command_line(int argc, const char* const* argv) {
   add_race_command(app, invocation, plan, pilots, rules, target, command);
   add_plugin_commands(app, invocation, name, command);
   add_train_commands(app, invocation, training, command);
+  CLI::App* evaluate = app.add_subcommand("evaluate", "tables of methods in many worlds");
+  evaluate->require_subcommand(1);
+  add_evaluate_explore(*evaluate, invocation, exploring, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
