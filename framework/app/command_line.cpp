@@ -298,7 +298,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
 
 void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,
                           Command& command) {
-  CLI::App* made = evaluate.add_subcommand("explore", "utilities against the oracle, tables 5.1 on");
+  CLI::App* made =
+      evaluate.add_subcommand("explore", "utilities against the oracle, tables 5.1 on");
   add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds,
                "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
   add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; else every one");

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Job {
+struct Trial {
   std::string world, utility;
   std::int64_t episode = 0;
 
@@ -53,17 +53,17 @@ bool asks_truth(const Registry& registry, const std::string& utility) {
   return std::find(extensions.begin(), extensions.end(), kNeedsGroundTruth) != extensions.end();
 }
 
-void run_job(const Job& job, const World& world, const GroundTruth& truth,
-             const ExplorationSetup& setup, const Registry& registry, std::uint64_t seed,
-             const fs::path& folder) {
-  Random random = Random(seed).split(static_cast<std::uint64_t>(job.episode));
-  const Viewpoint start = random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2,
-                                       setup.pitch, random);
+void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
+               const ExplorationSetup& setup, const Registry& registry, std::uint64_t seed,
+               const fs::path& folder) {
+  Random random = Random(seed).split(static_cast<std::uint64_t>(trial.episode));
+  const Viewpoint start =
+      random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2, setup.pitch, random);
   EpisodeSettings settings = setup.episode;
-  settings.show_truth = asks_truth(registry, job.utility);
-  settings.seed = seed + static_cast<std::uint64_t>(job.episode) * 1'000'003;
+  settings.show_truth = asks_truth(registry, trial.utility);
+  settings.seed = seed + static_cast<std::uint64_t>(trial.episode) * 1'000'003;
   const auto new_map = setup.new_map(registry);
-  const auto utility = registry.create<ViewUtility>(job.utility);
+  const auto utility = registry.create<ViewUtility>(trial.utility);
   ObservedSurface observed(truth, settings.sensor, new_map);
   const auto map = new_map();
   EpisodeResult result = explore(settings, start, truth, observed, *utility, *map);
@@ -81,21 +81,22 @@ void run_job(const Job& job, const World& world, const GroundTruth& truth,
   }
   Value object = Value::map();
   object.set("world", world.name);
-  object.set("utility", job.utility);
-  object.set("episode", job.episode);
+  object.set("utility", trial.utility);
+  object.set("episode", trial.episode);
   object.set("end", to_string(result.end));
   object.set("surface", result.surface);
   object.set("length", result.length());
   object.set("observed", Value(Value::List(curve.begin(), curve.end())));
   Value time = Value::map();
-  time.set("seconds_per_step", seconds / static_cast<double>(std::max<std::size_t>(1, curve.size())));
-  write_file_atomically(folder / "seconds" / (job.name() + ".json"), to_json(time) + "\n");
-  write_file_atomically(folder / "episodes" / (job.name() + ".json"), to_json(object) + "\n");
+  time.set("seconds_per_step",
+           seconds / static_cast<double>(std::max<std::size_t>(1, curve.size())));
+  write_file_atomically(folder / "seconds" / (trial.name() + ".json"), to_json(time) + "\n");
+  write_file_atomically(folder / "episodes" / (trial.name() + ".json"), to_json(object) + "\n");
 }
 
 // Observed after each image; it stays as it is after an early end.
-std::vector<double> curve_of(const Job& job, const fs::path& folder, int steps) {
-  const fs::path path = folder / "episodes" / (job.name() + ".json");
+std::vector<double> curve_of(const Trial& trial, const fs::path& folder, int steps) {
+  const fs::path path = folder / "episodes" / (trial.name() + ".json");
   const Value object = from_json(read_file(path), path.string());
   std::vector<double> curve;
   for (const Value& value : object.at("observed").as_list()) curve.push_back(value.as_number());
@@ -112,8 +113,9 @@ std::string number(double value) {
 }
 
 struct Summary {
-  std::string table = "world,utility,episodes,efficiency,efficiency_deviation,relative,"
-                      "relative_deviation,relative_interval\n";
+  std::string table =
+      "world,utility,episodes,efficiency,efficiency_deviation,relative,"
+      "relative_deviation,relative_interval\n";
   std::string curves = "world,utility,images,observed,observed_deviation\n";
   Report report;
   Table shown;
@@ -176,7 +178,9 @@ void print_table(const Table& table) {
     std::printf("%-22s %-18s", std::get<std::string>(row.cells[0]).c_str(),
                 std::get<std::string>(row.cells[1]).c_str());
     for (std::size_t k = 2; k < row.cells.size(); ++k)
-      std::printf(k == 2 ? " %12.0f" : k == 3 ? " %10.0f" : " %9.3f",
+      std::printf(k == 2   ? " %12.0f"
+                  : k == 3 ? " %10.0f"
+                           : " %9.3f",
                   std::get<double>(row.cells[k]));
     std::printf("\n");
   }
@@ -215,23 +219,24 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   write_file_atomically(settings_file, to_json(stated) + "\n");
 
   for (const WorldName& name : names) {
-    std::vector<Job> jobs;
+    std::vector<Trial> trials;
     for (std::int64_t episode = 1; episode <= request.episodes; ++episode)
       for (const std::string& utility : utilities) {
-        const Job job{name.text(), utility, episode};
-        if (!fs::exists(request.folder / "episodes" / (job.name() + ".json"))) jobs.push_back(job);
+        const Trial trial{name.text(), utility, episode};
+        if (!fs::exists(request.folder / "episodes" / (trial.name() + ".json")))
+          trials.push_back(trial);
       }
-    if (jobs.empty()) continue;
+    if (trials.empty()) continue;
     const World world = load_world(name, registry, invocation);
     const GroundTruth truth(world.scene, world.region, setup.map.at("resolution").as_number());
     std::atomic<std::size_t> done{0};
-    parallel_for(jobs.size(), invocation.threads, [&](std::size_t k) {
+    parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
       if (interruption.token().cancelled()) return;
-      run_job(jobs[k], world, truth, setup, registry, invocation.seed, request.folder);
+      run_trial(trials[k], world, truth, setup, registry, invocation.seed, request.folder);
       const std::size_t count = ++done;
       if (!invocation.quiet)
         std::cerr << name.text() + ": " + std::to_string(count) + " of " +
-                         std::to_string(jobs.size()) + " episodes\n";
+                         std::to_string(trials.size()) + " episodes\n";
     });
     if (interruption.token().cancelled()) throw Cancelled();
   }
@@ -240,8 +245,9 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   summary.report.subtitle = std::to_string(request.episodes) + " episodes of " +
                             std::to_string(request.steps) + " images in each world";
   summary.shown.title = "Efficiency (5.6), and relative to the oracle's from the same start";
-  summary.shown.columns = {{"world", ""},    {"utility", ""},   {"efficiency", ""}, {"deviation", ""},
-                           {"relative", ""}, {"deviation", ""}, {"95 % interval, half", ""}};
+  summary.shown.columns = {
+      {"world", ""},    {"utility", ""},   {"efficiency", ""},         {"deviation", ""},
+      {"relative", ""}, {"deviation", ""}, {"95 % interval, half", ""}};
   for (const WorldName& name : names) summarise_world(summary, name.text(), utilities, request);
   summary.report.sections.insert(summary.report.sections.begin(), {"Table", {summary.shown}});
   write_file_atomically(request.folder / "table.csv", summary.table);

@@ -10,9 +10,9 @@ struct ExploreEvaluation {
   std::vector<std::string> utilities;  // empty: all that are shipped
   std::int64_t episodes = 10;          // of each world, with the same starts for every utility
   int steps = 200;
-  double sigma = 0, dropped = 0;       // of the camera's depth (table 5.4); replayed without
+  double sigma = 0, dropped = 0;  // of the camera's depth (table 5.4); replayed without
   std::filesystem::path folder = "out/evaluate_explore";
-  bool resume = false;                 // keep the episodes that are there
+  bool resume = false;  // keep the episodes that are there
 };
 
 // Every episode is a file in FOLDER/episodes, whole or not there; from these come table.csv

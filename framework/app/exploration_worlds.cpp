@@ -89,7 +89,8 @@ ExplorationSetup::ExplorationSetup() : map(Value::map()) {
   constexpr int kWidth = 160, kHeight = 120;
   constexpr double kFocal = kWidth / 2.0;  // 90 degrees across
   pitch = -10 * EIGEN_PI / 180;
-  episode.sensor.pinhole = {kWidth, kHeight, kFocal, kFocal, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
+  episode.sensor.pinhole = {
+      kWidth, kHeight, kFocal, kFocal, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
   map.set("resolution", 0.4);
   map.set("hit", 0.9);
   map.set("miss", 0.1);

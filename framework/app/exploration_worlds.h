@@ -7,11 +7,12 @@
 namespace lapwing {
 
 struct WorldName {
-  std::string scene;       // of scripts/scene, or a mesh file
-  std::uint64_t seed = 1;  // of a script
+  std::string scene;         // of scripts/scene, or a mesh file
+  std::uint64_t seed = 1;    // of a script
   std::string text() const;  // "downtown 3", "delft_block.obj"
 };
-// "downtown", "downtown:3", "downtown:3-6", "meshes/block.obj". InputError for a range that is none.
+// "downtown", "downtown:3", "downtown:3-6", "meshes/block.obj". InputError for a range that is
+// none.
 std::vector<WorldName> world_names(const std::string& given);
 
 struct World {

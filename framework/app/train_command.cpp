@@ -39,8 +39,8 @@ std::string file_name(const std::string& world, std::int64_t episode) {
 // A utility explores; what every neighbour looked like, and its value to the oracle, is kept.
 SampleSet sampled_episode(const World& world, const GroundTruth& truth,
                           const ExplorationSetup& setup, const Registry& registry,
-                          const std::string& explorer, const GridShape& shape,
-                          std::int64_t episode, std::uint64_t seed) {
+                          const std::string& explorer, const GridShape& shape, std::int64_t episode,
+                          std::uint64_t seed) {
   SampleSet samples;
   samples.world = world.name;
   samples.episode = episode;
@@ -48,8 +48,8 @@ SampleSet sampled_episode(const World& world, const GroundTruth& truth,
   const auto utility = registry.create<ViewUtility>(explorer);
   const auto new_map = setup.new_map(registry);
   Random random = Random(seed).split(static_cast<std::uint64_t>(episode));
-  const Viewpoint start = random_start(truth, setup.episode.clear,
-                                       setup.episode.sensor.range / 2, setup.pitch, random);
+  const Viewpoint start =
+      random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2, setup.pitch, random);
   ObservedSurface observed(truth, setup.episode.sensor, new_map);
   const std::unique_ptr<Map> map = new_map();
   std::vector<float> grid(shape.size());
@@ -137,8 +137,7 @@ ExitStatus score_model(const TrainRequest& request, const Invocation& invocation
   std::map<std::string, Sums> worlds;
   for (const fs::path& file : sample_files(request.samples)) {
     const SampleSet set = read_samples(file);
-    const std::vector<float> predicted =
-        trainable.predict(request.target, set, invocation.threads);
+    const std::vector<float> predicted = trainable.predict(request.target, set, invocation.threads);
     Sums& sums = worlds[set.world];
     sums.predicted.insert(sums.predicted.end(), predicted.begin(), predicted.end());
     sums.targets.insert(sums.targets.end(), set.targets.begin(), set.targets.end());

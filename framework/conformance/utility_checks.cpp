@@ -52,7 +52,8 @@ struct UtilityWorld {
     std::vector<Eigen::Vector3f> points;
     for (double y = -3.9; y < 4; y += 0.4)
       for (double z = -0.9; z < 4; z += 0.4) {
-        if (std::abs(y) > 1.2) points.emplace_back(6.1f, static_cast<float>(y), static_cast<float>(z));
+        if (std::abs(y) > 1.2)
+          points.emplace_back(6.1f, static_cast<float>(y), static_cast<float>(z));
         points.emplace_back(-6.1f, static_cast<float>(y), static_cast<float>(z));
       }
     for (double x = -5.9; x < 6; x += 0.4)
@@ -98,9 +99,7 @@ class UtilityCheck {
     utility_.score(known, world_.views, values);
     return values;
   }
-  std::string place(std::size_t k) const {
-    return world_.name + ": view " + std::to_string(k);
-  }
+  std::string place(std::size_t k) const { return world_.name + ": view " + std::to_string(k); }
 
   // Without the truth: the same values, or refused in words.
   void blind() {

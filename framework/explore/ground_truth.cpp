@@ -90,7 +90,8 @@ void GroundTruth::lay_out() {
 
 void GroundTruth::find_space(std::span<const VoxelKey> all) {
   SpaceFill fill(size_);
-  for (const VoxelKey& key : all) fill.at(key.x - low_[0], key.y - low_[1], key.z - low_[2]) = kSurface;
+  for (const VoxelKey& key : all)
+    fill.at(key.x - low_[0], key.y - low_[1], key.z - low_[2]) = kSurface;
   int from[3], to[3];
   for (int i = 0; i < 3; ++i) {
     from[i] = std::clamp(grid_.index(region_.min()[i]) - low_[i], 0, size_[i] - 1);
@@ -108,12 +109,13 @@ void GroundTruth::find_space(std::span<const VoxelKey> all) {
         }
         if (fill.at(x, y, z) != kUnreached) ++held[fill.at(x, y, z)];
       }
-  const auto label = static_cast<std::uint16_t>(
-      std::max_element(held.begin() + 1, held.end()) - held.begin());
+  const auto label =
+      static_cast<std::uint16_t>(std::max_element(held.begin() + 1, held.end()) - held.begin());
   if (held.size() < 2) throw InputError("the region of interest is full: there is no space in it");
   for (std::size_t k = 0; k < space_.size(); ++k) space_[k] = fill.labels()[k] == label;
 
-  constexpr int kFaces[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  constexpr int kFaces[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
   for (const VoxelKey& key : all) {
     const int at[3] = {key.x - low_[0], key.y - low_[1], key.z - low_[2]};
     const bool seen = std::any_of(std::begin(kFaces), std::end(kFaces), [&](const int* d) {
@@ -193,18 +195,18 @@ ObservedSurface::ObservedSurface(const GroundTruth& truth, const ViewSensor& sen
 
 void ObservedSurface::update(const Map& map, const Viewpoint& view) {
   const std::span<const VoxelKey> surface = truth_->surface();
-  truth_->for_each_run(
-      reach_box(truth_->grid(), view, sensor_.pinhole, sensor_.range),
-      [&](std::uint32_t first, std::uint32_t last) {
-        for (std::uint32_t k = first; k < last; ++k) {
-          const std::uint16_t now = map.read(surface[k]).observations;
-          if (now == counts_[k]) continue;
-          const std::size_t most = std::max(now, counts_[k]);
-          while (certainty_.size() <= most)
-            certainty_.push_back(1 - map.uncertainty(static_cast<std::uint16_t>(certainty_.size())));
-          counts_[k] = now;
-        }
-      });
+  truth_->for_each_run(reach_box(truth_->grid(), view, sensor_.pinhole, sensor_.range),
+                       [&](std::uint32_t first, std::uint32_t last) {
+                         for (std::uint32_t k = first; k < last; ++k) {
+                           const std::uint16_t now = map.read(surface[k]).observations;
+                           if (now == counts_[k]) continue;
+                           const std::size_t most = std::max(now, counts_[k]);
+                           while (certainty_.size() <= most)
+                             certainty_.push_back(1 - map.uncertainty(static_cast<std::uint16_t>(
+                                                          certainty_.size())));
+                           counts_[k] = now;
+                         }
+                       });
   // Summed up anew by how often each was observed, so that no rounding adds up.
   std::vector<std::size_t> seen(certainty_.size() + 1, 0);
   for (const std::uint16_t count : counts_) ++seen[count];

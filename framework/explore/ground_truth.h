@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "framework/core/random.h"
-#include "framework/explore/viewpoint_index.h"
 #include "framework/explore/view_sensor.h"
 #include "framework/explore/view_utility.h"
+#include "framework/explore/viewpoint_index.h"
 #include "framework/geometry/mesh_scene.h"
 
 namespace lapwing {

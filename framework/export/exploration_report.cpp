@@ -49,8 +49,11 @@ Section growth(const ExplorationRecord& record) {
   FilmStrip strip;
   strip.title = "Seen from above: height from blue to yellow, light is free, dark unknown";
   for (const ExplorationMoment& moment : record.moments) {
-    strip.frames.push_back({encode_png(moment.map), moment.map.width, moment.map.height,
-                            "after " + std::to_string(moment.images) + " images", {}});
+    strip.frames.push_back({encode_png(moment.map),
+                            moment.map.width,
+                            moment.map.height,
+                            "after " + std::to_string(moment.images) + " images",
+                            {}});
   }
   return {"Growth of the map", {strip}};
 }

@@ -15,7 +15,7 @@ struct ExplorationMoment {
 };
 
 struct ExplorationCandidate {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   // m, world
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();    // m, world
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  // unit
   double value = 0;
 };

@@ -297,8 +297,7 @@ int explore_surface(lua_State* state) {
   record.length = e->result.length();
   record.efficiency = e->result.efficiency(e->settings.steps);
   record_path(*e);
-  const bool stopped =
-      e->result.end == EpisodeEnd::cancelled || e->result.end == EpisodeEnd::time;
+  const bool stopped = e->result.end == EpisodeEnd::cancelled || e->result.end == EpisodeEnd::time;
   if (given.boolean("compare") && !stopped) {
     EpisodeSettings settings = e->settings;
     settings.show_truth = true;

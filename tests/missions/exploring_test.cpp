@@ -40,8 +40,9 @@ class Exploring : public Filming {
   std::string refusal(const std::string& more) {
     const std::string errors = (folder_ / "errors.txt").string();
     const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing run '" +
-                             (kExamples / "../explore/own_mesh.lua").string() + "' --quiet --out '" +
-                             (folder_ / "refused").string() + "' " + more + " 2> '" + errors + "'";
+                             (kExamples / "../explore/own_mesh.lua").string() +
+                             "' --quiet --out '" + (folder_ / "refused").string() + "' " + more +
+                             " 2> '" + errors + "'";
     return WEXITSTATUS(std::system(line.c_str())) == 2 ? read_file(errors) : "";
   }
 };
@@ -57,14 +58,16 @@ TEST_F(Exploring, AMeshIsExploredTheSameByAnyNumberOfThreads) {
   EXPECT_EQ(read_file(one.folder / "plan.json"), read_file(two.folder / "plan.json"));
   EXPECT_EQ(read_file(one.folder / "map.ot"), read_file(two.folder / "map.ot"));
   const std::string report = read_file(one.folder / "report.html");
-  for (const char* section : {"Growth of the map", "Candidates at the last step",
-                              "relative to the oracle"})
+  for (const char* section :
+       {"Growth of the map", "Candidates at the last step", "relative to the oracle"})
     EXPECT_NE(report.find(section), std::string::npos) << section;
 }
 
 TEST_F(Exploring, UtilitiesAreSwappedByConfiguration) {
   const double oracle = explore("--set utility=oracle", "oracle")
-                            .result.at("exploration").at("relative_efficiency").as_number();
+                            .result.at("exploration")
+                            .at("relative_efficiency")
+                            .as_number();
   EXPECT_DOUBLE_EQ(oracle, 1);
   for (const char* utility : {"average_entropy", "proximity_count"}) {
     const Flown flown = explore(std::string("--set utility=") + utility, utility);
@@ -83,8 +86,8 @@ TEST_F(Exploring, BadInputIsNamed) {
       {"--set map.resolution=0.2", "resolution"},
       {"--set utility=frontiers", "frontier"}};
   for (const auto& [more, expected] : cases)
-    EXPECT_NE(refusal(few(more)).find(expected), std::string::npos) << more << ": "
-                                                                    << refusal(few(more));
+    EXPECT_NE(refusal(few(more)).find(expected), std::string::npos)
+        << more << ": " << refusal(few(more));
   EXPECT_NE(refusal("").find("--set input=PATH"), std::string::npos);
 }
 
@@ -95,6 +98,33 @@ TEST_F(Exploring, NothingToGainEndsItAndSaysSo) {
       "small");
   const std::string end = flown.result.at("exploration").at("end").as_text();
   EXPECT_TRUE(end == "nothing_to_gain" || end == "no_way") << end;
+}
+
+// What was there is kept, what is missing is made again, and the tables are the same.
+TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
+  few("");  // writes the yard
+  const auto evaluate = [&](const std::string& more, const fs::path& out) {
+    const std::string line = std::string(LAPWING_BUILD_DIR) +
+                             "/bin/lapwing evaluate explore --world '" +
+                             (folder_ / "yard.obj").string() +
+                             "' --utility frontier --utility oracle --episodes 2 --steps 3 "
+                             "--quiet -o '" +
+                             out.string() + "' " + more;
+    return WEXITSTATUS(std::system(line.c_str()));
+  };
+  const fs::path whole = folder_ / "whole", broken = folder_ / "broken";
+  ASSERT_EQ(evaluate("--threads 2", whole), 0);
+  ASSERT_EQ(evaluate("--threads 1", broken), 0);
+  int removed = 0;
+  for (const auto& entry : fs::directory_iterator(broken / "episodes"))
+    if (++removed % 2 == 0) fs::remove(entry.path());
+  EXPECT_EQ(removed, 4);
+  fs::remove(broken / "table.csv");
+  ASSERT_EQ(evaluate("--resume", broken), 0);
+  for (const char* file : {"table.csv", "curves.csv", "report.html"})
+    EXPECT_EQ(read_file(whole / file), read_file(broken / file)) << file;
+  EXPECT_NE(read_file(whole / "table.csv").find("yard.obj,oracle,2"), std::string::npos);
+  EXPECT_EQ(evaluate("--resume --seed 5", broken), 2);  // other settings
 }
 
 }  // namespace

@@ -74,13 +74,13 @@ TEST(AverageEntropy, DividesByTheVoxelsMet) {
     return -p * std::log2(p) - (1 - p) * std::log2(1 - p);
   };
   Corridor known(4, VoxelState::occupied);
-  EXPECT_NEAR(known.told("average_entropy", one_ray_each()),
-              (4 * entropy(-2) + entropy(2)) / 5, 1e-5);
+  EXPECT_NEAR(known.told("average_entropy", one_ray_each()), (4 * entropy(-2) + entropy(2)) / 5,
+              1e-5);
   // Behind two unknown voxels: they count as one bit each.
   Corridor gap(4, VoxelState::unknown);
   gap.add(6, 2);
-  EXPECT_NEAR(gap.told("average_entropy", one_ray_each()),
-              (4 * entropy(-2) + 2 + entropy(2)) / 7, 1e-5);
+  EXPECT_NEAR(gap.told("average_entropy", one_ray_each()), (4 * entropy(-2) + 2 + entropy(2)) / 7,
+              1e-5);
   // A ray without an end does not count.
   EXPECT_EQ(Corridor(4, VoxelState::unknown).told("average_entropy", one_ray_each()), 0);
 }
