@@ -106,17 +106,6 @@ TEST(Oracle, SaysThatItNeedsTheTruth) {
   EXPECT_TRUE(registry().find("utility", "frontier").extensions.empty());
 }
 
-TEST(Utilities, EveryPluginPassesTheChecks) {
-  int count = 0;
-  for (const PluginEntry& entry : registry().entries()) {
-    if (entry.kind != ViewUtility::kKind) continue;
-    ++count;
-    for (const CheckResult& result : check_plugin(registry(), entry))
-      EXPECT_NE(result.outcome, Outcome::failed) << entry.name << ": " << result.message;
-  }
-  EXPECT_GE(count, 4);
-}
-
 // Another value for every question.
 class Fickle final : public ViewUtility {
   void values_of(const EpisodeView&, std::span<const Viewpoint>,
