@@ -20,7 +20,7 @@ struct World {
   std::shared_ptr<const MeshScene> scene;
   Eigen::AlignedBox3d region;
 };
-// A mesh file without a floor gets one: the level of its lowest point, ten metres beyond its sides.
+// A mesh file gets a floor (explore/ground_truth.h, with_floor).
 World load_world(const WorldName& name, const Registry& registry, const Invocation& invocation);
 
 // How all of them are explored, if nothing else is said (readings 2.3, 5.2): camera, range, map.

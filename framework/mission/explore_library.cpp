@@ -64,6 +64,7 @@ ParameterTable explore_table() {
       .optional_number("wall_clock_guard", "s", "of computing", above(0))
       .tables("bounds", bounds, "a box that the explorer stays in, at most one")
       .tables("start", start, "where it begins, at most one; none: drawn by the run's seed")
+      .boolean("ground", false, "lay a floor under the surface, and explore above it")
       .boolean("compare", false, "let the oracle explore from the same start");
   return table;
 }
@@ -265,10 +266,19 @@ int explore_surface(lua_State* state) {
   const auto new_map = [&] { return registry.create<Map>(map.type, map.parameters, "map"); };
   e->map = new_map();
   const Sandbox::ClockPause pause(Sandbox::of(state));
-  const GroundTruth truth(surface.scene, surface.region, e->map->grid().resolution());
   const double pitch = radians(given.table("camera").number("pitch_deg"));
   const auto& starts = given.tables("start");
   if (starts.size() > 1) throw InputError(given.origin("start"), "start: at most one");
+  std::shared_ptr<const MeshScene> scene = surface.scene;
+  Eigen::AlignedBox3d region = surface.region;
+  if (given.boolean("ground")) {
+    OpenWorld open = with_floor(scene->mesh());
+    scene = std::make_shared<MeshScene>(std::move(open.mesh), surface.name);
+    region = open.region;
+  }
+  std::optional<Eigen::Vector3d> inside;
+  if (!starts.empty()) inside = vector_of(starts[0].numbers("position"));
+  const GroundTruth truth(scene, region, e->map->grid().resolution(), inside);
   if (starts.empty()) {
     Random random(run.settings.seed);
     e->start = random_start(truth, e->settings.clear, e->settings.sensor.range / 2, pitch, random);

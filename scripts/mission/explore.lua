@@ -117,7 +117,7 @@ function M.explore(run, surface)
     step = m.step, turn_deg = m.turn_deg, body = m.body, clear = m.clear, visits = m.visits,
     speed = m.speed, turn_rate_deg = m.turn_rate_deg, pause = m.pause,
     steps = o.steps, budget = o.budget, wall_clock_guard = o.wall_clock_guard,
-    compare = o.compare,
+    compare = o.compare, ground = o.ground or false,
     bounds = o.lower and { { lower = o.lower, upper = o.upper } } or {},
     start = o.start and { { position = o.start, yaw = math.rad(o.start_yaw_deg) } } or {},
   }
@@ -154,8 +154,11 @@ end
 
 -- A mesh file.
 function M.of_mesh(given)
-  return mission(given, { { name = "input", type = "text", summary = "a mesh of the user's own" } },
-    function(run)
+  return mission(given, {
+      { name = "input", type = "text", summary = "a mesh of the user's own" },
+      { name = "ground", type = "boolean", default = true,
+        summary = "lay a floor under it and explore above; false: a mesh that is gone into" },
+    }, function(run)
       if not run.options.input then
         lapwing.fail("a mesh: say which with --set input=PATH (.obj, .dae, .ply, ...)")
       end
