@@ -1,4 +1,5 @@
 #include "framework/app/command_line.h"
+#include "framework/app/evaluate_explore.h"
 #include "framework/app/train_command.h"
 
 #include <CLI/CLI.hpp>
@@ -250,11 +251,9 @@ std::uint64_t read_seed(const std::string& text) {
   return seed;
 }
 
-void add_evaluate_commands(CLI::App& app, Invocation& invocation, ScanEvaluation& asked,
-                           Command& command) {
-  CLI::App* evaluate = app.add_subcommand("evaluate", "studies: methods against each other");
-  evaluate->require_subcommand(1);
-  CLI::App* scan = evaluate->add_subcommand(
+void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluation& asked,
+                       Command& command) {
+  CLI::App* scan = evaluate.add_subcommand(
       "scan", "scan tours and their rivals, judged by the models that their images would make");
   add_text(*scan, "missions", "MISSION.lua...", "scans to plan by every method",
            [&](const std::string& path) { asked.missions.emplace_back(path); })
@@ -349,6 +348,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   CLI::App* dataset = add("dataset", "samples from episodes of the oracle", "a folder");
   add_repeated(*dataset, "--world", "NAME[:FIRST-LAST]", request.worlds,
                "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
+  add_text(*dataset, "--explorer", "NAME", "the utility that explores; else the oracle",
+           [&](const std::string& given) { request.explorer = given; });
   add_count(*dataset, "--episodes", 1, 100'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*dataset, "--steps", 1, 100'000, "of each episode",
@@ -365,6 +366,32 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   dataset->callback([&] { command = [&] { return make_dataset(request, invocation); }; });
   fit->callback([&] { command = [&] { return fit_model(request, invocation); }; });
   score->callback([&] { command = [&] { return score_model(request, invocation); }; });
+}
+
+void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,
+                          Command& command) {
+  CLI::App* made =
+      evaluate.add_subcommand("explore", "utilities against the oracle, tables 5.1 on");
+  add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds,
+               "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
+  add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; else every one");
+  add_count(*made, "--episodes", 1, 10'000, "of each world",
+            [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
+  add_count(*made, "--steps", 1, 100'000, "of each episode",
+            [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
+  add_text(*made, "--sigma", "M", "noise of the depth; the views are replayed without",
+           [&](const std::string& text) { request.sigma = read_number("--sigma", text); });
+  add_text(*made, "--dropped", "SHARE", "of the pixels without a measurement",
+           [&](const std::string& text) { request.dropped = read_number("--dropped", text); });
+  add_text(*made, "-o,--output", "DIR", "folder of the results; else out/evaluate_explore",
+           [&](const std::string& path) { request.folder = path; });
+  add_count(*made, "--threads", 1, kMostThreads, "threads to use; else one per core",
+            [&](std::uint64_t threads) { invocation.threads = static_cast<int>(threads); });
+  add_count(*made, "--seed", 0, kLargestSeed, "of the starts",
+            [&](std::uint64_t seed) { invocation.seed = seed; });
+  made->add_flag("--resume", request.resume, "keep the episodes that are there");
+  made->add_flag("--quiet", invocation.quiet, "no lines of progress");
+  made->callback([&] { command = [&] { return evaluate_explore(request, invocation); }; });
 }
 
 // What to say of a first word that is no command; empty where there is none.
@@ -429,6 +456,7 @@ int run_command_line(int argc, const char* const* argv) {
   RaceRules rules;
   TrainRequest training;
   ScanEvaluation asked;
+  ExploreEvaluation exploring;
   Command command;
   add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
                "a folder of plugins, searched first");
@@ -438,9 +466,12 @@ int run_command_line(int argc, const char* const* argv) {
   add_map_commands(app, invocation, plan, target, command);
   add_scene_commands(app, invocation, plan, stated, target, command);
   add_race_command(app, invocation, plan, pilots, rules, target, command);
-  add_evaluate_commands(app, invocation, asked, command);
   add_plugin_commands(app, invocation, name, command);
   add_train_commands(app, invocation, training, command);
+  CLI::App* evaluate = app.add_subcommand("evaluate", "studies: methods against each other");
+  evaluate->require_subcommand(1);
+  add_evaluate_scan(*evaluate, invocation, asked, command);
+  add_evaluate_explore(*evaluate, invocation, exploring, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

@@ -20,24 +20,6 @@ std::uint64_t seed_of(const std::string& text, const std::string& given) {
   return seed;
 }
 
-// Two triangles under the mesh where nothing lies there yet.
-void lay_floor(TriangleMesh& mesh) {
-  constexpr double kBeyond = 10;  // m
-  const Eigen::AlignedBox3d box = mesh.bounds();
-  const Eigen::Vector3d low = box.min(), high = box.max();
-  const auto corner = [&](double x, double y) {
-    mesh.vertices.emplace_back(x, y, low.z());
-    return static_cast<std::int32_t>(mesh.vertices.size() - 1);
-  };
-  const auto a = corner(low.x() - kBeyond, low.y() - kBeyond),
-             b = corner(high.x() + kBeyond, low.y() - kBeyond),
-             c = corner(high.x() + kBeyond, high.y() + kBeyond),
-             d = corner(low.x() - kBeyond, high.y() + kBeyond);
-  mesh.triangles.push_back({a, b, c});
-  mesh.triangles.push_back({a, c, d});
-  if (!mesh.colors.empty()) mesh.colors.resize(mesh.triangles.size(), Rgb{160, 160, 160});
-}
-
 }  // namespace
 
 std::string WorldName::text() const {
@@ -62,10 +44,9 @@ std::vector<WorldName> world_names(const std::string& given) {
 World load_world(const WorldName& name, const Registry& registry, const Invocation& invocation) {
   const fs::path file(name.scene);
   if (file.has_extension() && file.extension() != ".lua") {
-    TriangleMesh mesh = read_mesh(file).mesh;
-    lay_floor(mesh);
-    const Eigen::AlignedBox3d bounds = mesh.bounds();
-    return {name.text(), std::make_shared<MeshScene>(std::move(mesh), name.text()), bounds};
+    OpenWorld open = with_floor(read_mesh(file).mesh);
+    return {name.text(), std::make_shared<MeshScene>(std::move(open.mesh), name.text()),
+            open.region};
   }
   fs::path script = file;
   if (!file.has_extension()) {
@@ -89,7 +70,8 @@ ExplorationSetup::ExplorationSetup() : map(Value::map()) {
   constexpr int kWidth = 160, kHeight = 120;
   constexpr double kFocal = kWidth / 2.0;  // 90 degrees across
   pitch = -10 * EIGEN_PI / 180;
-  episode.sensor.pinhole = {kWidth, kHeight, kFocal, kFocal, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
+  episode.sensor.pinhole = {
+      kWidth, kHeight, kFocal, kFocal, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
   map.set("resolution", 0.4);
   map.set("hit", 0.9);
   map.set("miss", 0.1);

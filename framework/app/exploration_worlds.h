@@ -7,11 +7,12 @@
 namespace lapwing {
 
 struct WorldName {
-  std::string scene;       // of scripts/scene, or a mesh file
-  std::uint64_t seed = 1;  // of a script
+  std::string scene;         // of scripts/scene, or a mesh file
+  std::uint64_t seed = 1;    // of a script
   std::string text() const;  // "downtown 3", "delft_block.obj"
 };
-// "downtown", "downtown:3", "downtown:3-6", "meshes/block.obj". InputError for a range that is none.
+// "downtown", "downtown:3", "downtown:3-6", "meshes/block.obj". InputError for a range that is
+// none.
 std::vector<WorldName> world_names(const std::string& given);
 
 struct World {
@@ -19,7 +20,7 @@ struct World {
   std::shared_ptr<const MeshScene> scene;
   Eigen::AlignedBox3d region;
 };
-// A mesh file without a floor gets one: the level of its lowest point, ten metres beyond its sides.
+// A mesh file gets a floor (explore/ground_truth.h, with_floor).
 World load_world(const WorldName& name, const Registry& registry, const Invocation& invocation);
 
 // How all of them are explored, if nothing else is said (readings 2.3, 5.2): camera, range, map.

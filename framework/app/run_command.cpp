@@ -148,6 +148,8 @@ std::string report_page(const Outcome& outcome) {
     const std::vector<Section> scan = scan_sections(outcome.result.plan, *outcome.result.scan);
     report.sections.insert(report.sections.begin() + 1, scan.begin(), scan.end());
   }
+  report.sections.insert(report.sections.begin() + 1, outcome.result.sections.begin(),
+                         outcome.result.sections.end());
   if (!outcome.raced.empty()) {
     std::vector<Section> race = race_sections(outcome.result.plan, outcome.raced, {});
     report.sections.insert(report.sections.begin() + 1, race.begin(), race.end());
@@ -166,8 +168,13 @@ void write_files(const Outcome& outcome, const Registry& registry, const log::Ca
   for (const Check& check : outcome.certificate.failures()) log::info("fails: " + to_line(check));
   files.log = capture.text();
   files.long_exposure = outcome.long_exposure;
-  for (const std::string& name : outcome.result.obstacle_files)
-    files.obstacles.emplace_back(name, read_file(outcome.result.obstacle_folder / name));
+  for (const std::string& name : outcome.result.obstacle_files) {
+    std::string bytes = read_file(outcome.result.obstacle_folder / name);
+    if (name == "map.ot")
+      files.map = std::move(bytes);
+    else
+      files.obstacles.emplace_back(name, std::move(bytes));
+  }
   write_run_folder(outcome.folder, files);
 }
 

@@ -36,23 +36,24 @@ std::string file_name(const std::string& world, std::int64_t episode) {
   return name + "_" + std::to_string(episode) + ".samples";
 }
 
-// The oracle explores; what every neighbour looked like, and its value, is kept.
+// A utility explores; what every neighbour looked like, and its value to the oracle, is kept.
 SampleSet sampled_episode(const World& world, const GroundTruth& truth,
                           const ExplorationSetup& setup, const Registry& registry,
-                          const GridShape& shape, std::int64_t episode, std::uint64_t seed) {
+                          const std::string& explorer, const GridShape& shape, std::int64_t episode,
+                          std::uint64_t seed) {
   SampleSet samples;
   samples.world = world.name;
   samples.episode = episode;
   samples.shape = shape;
-  const auto oracle = registry.create<ViewUtility>("oracle");
+  const auto utility = registry.create<ViewUtility>(explorer);
   const auto new_map = setup.new_map(registry);
   Random random = Random(seed).split(static_cast<std::uint64_t>(episode));
-  const Viewpoint start = random_start(truth, setup.episode.clear,
-                                       setup.episode.sensor.range / 2, setup.pitch, random);
+  const Viewpoint start =
+      random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2, setup.pitch, random);
   ObservedSurface observed(truth, setup.episode.sensor, new_map);
   const std::unique_ptr<Map> map = new_map();
   std::vector<float> grid(shape.size());
-  explore(setup.episode, start, truth, observed, *oracle, *map, [&](const EpisodeMoment& moment) {
+  explore(setup.episode, start, truth, observed, *utility, *map, [&](const EpisodeMoment& moment) {
     if (samples.mapping.is_null()) samples.mapping = mapping_of(moment.known);
     moment.known.means->refresh(shape.levels);
     for (const Viewpoint& view : moment.neighbours) {
@@ -76,7 +77,7 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   if (names.empty()) throw InputError("train dataset: name a world with --world NAME:FIRST-LAST");
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
-  setup.episode.show_truth = true;
+  setup.episode.show_truth = request.explorer == "oracle";
   setup.episode.cancellation = &interruption.token();
   std::size_t samples = 0;
   for (const WorldName& name : names) {
@@ -90,8 +91,8 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
     std::vector<std::size_t> made(missing.size());
     parallel_for(missing.size(), invocation.threads, [&](std::size_t k) {
       if (interruption.token().cancelled()) return;
-      const SampleSet set = sampled_episode(world, truth, setup, registry, shape, missing[k],
-                                            invocation.seed);
+      const SampleSet set = sampled_episode(world, truth, setup, registry, request.explorer, shape,
+                                            missing[k], invocation.seed);
       if (interruption.token().cancelled()) return;
       write_samples(set, request.target / file_name(name.text(), missing[k]));
       made[k] = set.size();
@@ -136,8 +137,7 @@ ExitStatus score_model(const TrainRequest& request, const Invocation& invocation
   std::map<std::string, Sums> worlds;
   for (const fs::path& file : sample_files(request.samples)) {
     const SampleSet set = read_samples(file);
-    const std::vector<float> predicted =
-        trainable.predict(request.target, set, invocation.threads);
+    const std::vector<float> predicted = trainable.predict(request.target, set, invocation.threads);
     Sums& sums = worlds[set.world];
     sums.predicted.insert(sums.predicted.end(), predicted.begin(), predicted.end());
     sums.targets.insert(sums.targets.end(), set.targets.begin(), set.targets.end());

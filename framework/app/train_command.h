@@ -7,12 +7,13 @@ namespace lapwing {
 
 struct TrainRequest {
   std::string utility = "learned";
-  std::vector<std::string> worlds;    // dataset: "downtown:1-8", files
-  std::int64_t episodes = 4;          // dataset: of each world
-  int steps = 200;                    // dataset: of each episode
-  std::filesystem::path samples;      // fit, score: a folder
-  std::filesystem::path validation;   // fit: a folder of other worlds or episodes
-  std::filesystem::path target;       // dataset: a folder; fit, score: a model
+  std::string explorer = "oracle";   // dataset: the utility that chooses; the oracle judges
+  std::vector<std::string> worlds;   // dataset: "downtown:1-8", files
+  std::int64_t episodes = 4;         // dataset: of each world
+  int steps = 200;                   // dataset: of each episode
+  std::filesystem::path samples;     // fit, score: a folder
+  std::filesystem::path validation;  // fit: a folder of other worlds or episodes
+  std::filesystem::path target;      // dataset: a folder; fit, score: a model
   bool resume = false;
 };
 

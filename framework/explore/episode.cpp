@@ -28,6 +28,7 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
   above(s.body, "the edge of the body");
   above(s.speed, "the speed");
   above(s.turn_rate, "the turn rate");
+  if (!(s.pause >= 0)) throw InputError("the pause for an image must be at least 0 s");
   if (!(s.clear >= s.body)) throw InputError("the box cleared at the start must hold the body");
   if (s.visits < 1 || s.steps < 1) throw InputError("expected at least one visit and one step");
   if (!map.settings().observations)
@@ -39,14 +40,17 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
 // All voxels of the box become free, and are as uncertain as before.
 VoxelBox clear_box(Map& map, const Eigen::AlignedBox3d& box) {
   const Eigen::Vector3d inside = Eigen::Vector3d::Constant(map.grid().resolution() / 2);
-  const VoxelKey low = map.grid().key(box.min() + inside), high = map.grid().key(box.max() - inside);
+  const VoxelKey low = map.grid().key(box.min() + inside),
+                 high = map.grid().key(box.max() - inside);
   std::vector<VoxelLeaf> leaves;
   for (int z = low.z; z <= high.z; ++z)
     for (int y = low.y; y <= high.y; ++y)
       for (int x = low.x; x <= high.x; ++x)
         leaves.push_back({{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                            static_cast<std::uint16_t>(z)},
-                          0, 0, map.settings().clamp_min});
+                          0,
+                          0,
+                          map.settings().clamp_min});
   map.import(leaves);
   return {low, high};
 }
@@ -80,12 +84,22 @@ class Explorer {
  public:
   Explorer(const EpisodeSettings& settings, const GroundTruth& truth, ObservedSurface& observed,
            const ViewUtility& utility, Map& map, const EpisodeObserver& observer)
-      : settings_(settings), truth_(truth), observed_(observed), utility_(utility), map_(map),
-        observer_(observer), means_(map),
+      : settings_(settings),
+        truth_(truth),
+        observed_(observed),
+        utility_(utility),
+        map_(map),
+        observer_(observer),
+        means_(map),
         graph_(map, Eigen::Vector3d::Constant(settings.body / 2),
                {settings.speed, settings.turn_rate}) {
-    known_ = {&map, &means_, settings.sensor.pinhole, settings.sensor.range, 0,
-              settings.show_truth ? &observed : nullptr, settings.threads};
+    known_ = {&map,
+              &means_,
+              settings.sensor.pinhole,
+              settings.sensor.range,
+              0,
+              settings.show_truth ? &observed : nullptr,
+              settings.threads};
   }
 
   EpisodeResult run(const Viewpoint& start);
@@ -151,12 +165,10 @@ void Explorer::score(std::span<const int> places) {
   std::vector<double> values(views.size());
   utility_.score(known_, views, values);
   scored_ += static_cast<int>(places.size());
-  for (std::size_t k = 0; k < places.size(); ++k)
-    candidates_.push({values[k], places[k], step_});
+  for (std::size_t k = 0; k < places.size(); ++k) candidates_.push({values[k], places[k], step_});
 }
 
 bool Explorer::choose(EpisodeStep& taken, int& place) {
-  bool blocked = false;
   std::vector<Candidates::Entry> unreachable;
   const auto keep = [&] {
     for (const Candidates::Entry& entry : unreachable) candidates_.push(entry);
@@ -182,9 +194,9 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
       return false;
     }
     const std::vector<int> way = graph_.way(at_, best.place);
-    if ((way.empty() && best.place != at_) || !graph_.free(graph_[best.place], graph_[best.place])) {
+    if ((way.empty() && best.place != at_) ||
+        !graph_.free(graph_[best.place], graph_[best.place])) {
       unreachable.push_back(best);
-      blocked = true;
       continue;
     }
     taken.value = best.value;
@@ -196,6 +208,7 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
       taken.way.push_back(graph_[next]);
       from = next;
     }
+    taken.time += settings_.pause;
     keep();
     if (settings_.budget && taken.time > *settings_.budget) {
       candidates_.push(best);
@@ -209,21 +222,20 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
   }
   keep();
   result_.end = EpisodeEnd::no_way;
-  (void)blocked;
   return false;
 }
 
 void Explorer::look(EpisodeStep& taken, int place) {
   taken.view = graph_[place];
   const double before = wall_seconds();
-  const PosedDepthImage image =
-      settings_.sensor.measure(truth_.scene(), taken.view,
-                               settings_.seed + static_cast<std::uint64_t>(step_),
-                               settings_.threads);
+  const PosedDepthImage image = settings_.sensor.measure(
+      truth_.scene(), taken.view, settings_.seed + static_cast<std::uint64_t>(step_),
+      settings_.threads);
   const double after = wall_seconds();
   began_ += after - before;  // the camera's time is not the explorer's
   map_.integrate(image);
-  means_.touch(reach_box(map_.grid(), taken.view, settings_.sensor.pinhole, settings_.sensor.range));
+  means_.touch(
+      reach_box(map_.grid(), taken.view, settings_.sensor.pinhole, settings_.sensor.range));
   const double mapped = wall_seconds();
   observed_.update(map_, taken.view);
   began_ += wall_seconds() - mapped;  // nor is what the truth says of it
@@ -270,9 +282,9 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
   for (step_ = 0; step_ < settings_.steps; ++step_) {
     if (stopped()) break;
     if (settings_.progress)
-      settings_.progress->report(static_cast<double>(step_) / settings_.steps,
-                                 "view " + std::to_string(step_ + 1) + " of " +
-                                     std::to_string(settings_.steps));
+      settings_.progress->report(
+          static_cast<double>(step_) / settings_.steps,
+          "view " + std::to_string(step_ + 1) + " of " + std::to_string(settings_.steps));
     EpisodeStep taken;
     if (!result_.steps.empty()) {
       taken.length = result_.steps.back().length;
@@ -316,26 +328,36 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
 
 const char* to_string(EpisodeEnd end) {
   switch (end) {
-    case EpisodeEnd::steps: return "steps";
-    case EpisodeEnd::budget: return "budget";
-    case EpisodeEnd::nothing_to_gain: return "nothing_to_gain";
-    case EpisodeEnd::no_way: return "no_way";
-    case EpisodeEnd::time: return "time";
-    case EpisodeEnd::cancelled: return "cancelled";
+    case EpisodeEnd::steps:
+      return "steps";
+    case EpisodeEnd::budget:
+      return "budget";
+    case EpisodeEnd::nothing_to_gain:
+      return "nothing_to_gain";
+    case EpisodeEnd::no_way:
+      return "no_way";
+    case EpisodeEnd::time:
+      return "time";
+    case EpisodeEnd::cancelled:
+      return "cancelled";
   }
   return "";
 }
 
 std::string explain(EpisodeEnd end) {
   switch (end) {
-    case EpisodeEnd::steps: return "all images that were asked for are taken";
-    case EpisodeEnd::budget: return "the next view lies beyond the flight's budget";
+    case EpisodeEnd::steps:
+      return "all images that were asked for are taken";
+    case EpisodeEnd::budget:
+      return "the next view lies beyond the flight's budget";
     case EpisodeEnd::nothing_to_gain:
       return "nothing left to gain: no view that could be reached has a utility above 0";
     case EpisodeEnd::no_way:
       return "no view is left that could be reached through known free space";
-    case EpisodeEnd::time: return "stopped by the wall clock's guard";
-    case EpisodeEnd::cancelled: return "cancelled";
+    case EpisodeEnd::time:
+      return "stopped by the wall clock's guard";
+    case EpisodeEnd::cancelled:
+      return "cancelled";
   }
   return "";
 }

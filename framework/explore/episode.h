@@ -21,30 +21,31 @@ namespace lapwing {
 
 struct EpisodeSettings {
   ViewSensor sensor;
-  double step = 2.5;                    // m, to a neighbour
-  double turn = 25 * EIGEN_PI / 180;    // rad, to a neighbour
-  double body = 1;                      // m, edge of the box that must be free
-  double clear = 6;                     // m, edge of the box that is free at the start
-  int visits = 2;                       // images from a viewpoint, then it is left out
-  int steps = 200;                      // images
-  double speed = 2;                     // m/s
-  double turn_rate = EIGEN_PI / 2;      // rad/s
-  std::optional<double> budget;         // s of flight
-  std::optional<double> wall_clock_guard;  // s
+  double step = 2.5;                          // m, to a neighbour
+  double turn = 0.4363323129985824;           // rad, to a neighbour: 25 degrees
+  double body = 1;                            // m, edge of the box that must be free
+  double clear = 6;                           // m, edge of the box that is free at the start
+  int visits = 2;                             // images from a viewpoint, then it is left out
+  int steps = 200;                            // images
+  double speed = 2;                           // m/s
+  double turn_rate = 1;                       // rad/s
+  double pause = 0.5;                         // s, at rest for an image
+  std::optional<double> budget;               // s of flight
+  std::optional<double> wall_clock_guard;     // s
   std::optional<Eigen::AlignedBox3d> bounds;  // the explorer stays inside
-  bool show_truth = false;              // to a utility that needs it
-  std::uint64_t seed = 1;               // of the sensor's noise
-  int threads = 1;                      // results are the same for any number
+  bool show_truth = false;                    // to a utility that needs it
+  std::uint64_t seed = 1;                     // of the sensor's noise
+  int threads = 1;                            // results are the same for any number
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
 };
 
 enum class EpisodeEnd {
-  steps,             // all that were asked for
-  budget,            // the next view is beyond the seconds of flight
-  nothing_to_gain,   // no view that could be reached has a value above 0
-  no_way,            // no view that could be reached is left
-  time,              // the wall clock's guard: another run may end elsewhere
+  steps,            // all that were asked for
+  budget,           // the next view is beyond the seconds of flight
+  nothing_to_gain,  // no view that could be reached has a value above 0
+  no_way,           // no view that could be reached is left
+  time,             // the wall clock's guard: another run may end elsewhere
   cancelled,
 };
 const char* to_string(EpisodeEnd end);
@@ -54,12 +55,12 @@ std::string explain(EpisodeEnd end);
 // One image.
 struct EpisodeStep {
   Viewpoint view;
-  double value = 0;        // the utility's when it was chosen
-  double observed = 0;     // ObsSurf (5.2) afterwards; 0 without a truth
-  double length = 0;       // m flown so far
-  double time = 0;         // s flown so far
-  double seconds = 0;      // wall clock of choosing and mapping, without the simulated camera
-  int scored = 0;          // views scored for it
+  double value = 0;            // the utility's when it was chosen
+  double observed = 0;         // ObsSurf (5.2) afterwards; 0 without a truth
+  double length = 0;           // m flown so far
+  double time = 0;             // s flown so far, until the image is taken
+  double seconds = 0;          // wall clock of choosing and mapping, without the simulated camera
+  int scored = 0;              // views scored for it
   std::vector<Viewpoint> way;  // from the view before (left out) to this one
 };
 
@@ -98,16 +99,15 @@ using EpisodeObserver = std::function<void(const EpisodeMoment&)>;
 // whatever the utility's require_fit throws; settings without sense.
 EpisodeResult explore(const EpisodeSettings& settings, const Viewpoint& start,
                       const GroundTruth& truth, ObservedSurface& observed,
-                      const ViewUtility& utility, Map& map,
-                      const EpisodeObserver& observer = {});
+                      const ViewUtility& utility, Map& map, const EpisodeObserver& observer = {});
 
-// The same viewpoints again with a camera without noise, as table 5.4 does: what of the surface they
-// would have observed after each image.
+// The same viewpoints again with a camera without noise, as table 5.4 does: what of the surface
+// they would have observed after each image.
 std::vector<double> replay(const EpisodeSettings& settings, const EpisodeResult& flown,
                            const GroundTruth& truth, ObservedSurface& observed, Map& map);
 
-// The nine neighbours of a viewpoint, in their fixed order: right, left, down, up, ahead, back, left
-// turn, right turn, about.
+// The nine neighbours of a viewpoint, in their fixed order: right, left, down, up, ahead, back,
+// left turn, right turn, about.
 std::vector<Viewpoint> neighbours_of(const Viewpoint& view, double step, double turn);
 
 }  // namespace lapwing

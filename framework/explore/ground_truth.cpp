@@ -60,14 +60,14 @@ class SpaceFill {
 }  // namespace
 
 GroundTruth::GroundTruth(std::shared_ptr<const MeshScene> scene, const Eigen::AlignedBox3d& region,
-                         double resolution)
+                         double resolution, const std::optional<Eigen::Vector3d>& inside)
     : scene_(std::move(scene)), grid_(resolution), region_(region) {
   if (!scene_) throw Error("ground truth of no scene");
   if (!(resolution > 0)) throw InputError("voxels must have an edge above 0 m");
   const TriangleMesh& mesh = scene_->mesh();
   if (region_.isEmpty()) region_ = mesh.bounds();
   lay_out();
-  find_space(surface_voxels(mesh.vertices, mesh.triangles, resolution));
+  find_space(surface_voxels(mesh.vertices, mesh.triangles, resolution), inside);
   if (surface_.empty())
     throw InputError("the scene has no surface that could be seen from the space around it");
 }
@@ -88,13 +88,17 @@ void GroundTruth::lay_out() {
   space_.resize(voxels);
 }
 
-void GroundTruth::find_space(std::span<const VoxelKey> all) {
+void GroundTruth::find_space(std::span<const VoxelKey> all,
+                             const std::optional<Eigen::Vector3d>& inside) {
   SpaceFill fill(size_);
-  for (const VoxelKey& key : all) fill.at(key.x - low_[0], key.y - low_[1], key.z - low_[2]) = kSurface;
+  for (const VoxelKey& key : all)
+    fill.at(key.x - low_[0], key.y - low_[1], key.z - low_[2]) = kSurface;
   int from[3], to[3];
   for (int i = 0; i < 3; ++i) {
-    from[i] = std::clamp(grid_.index(region_.min()[i]) - low_[i], 0, size_[i] - 1);
-    to[i] = std::clamp(grid_.index(region_.max()[i]) - low_[i], 0, size_[i] - 1);
+    const double low = inside ? (*inside)[i] : region_.min()[i];
+    const double high = inside ? (*inside)[i] : region_.max()[i];
+    from[i] = std::clamp(grid_.index(low) - low_[i], 0, size_[i] - 1);
+    to[i] = std::clamp(grid_.index(high) - low_[i], 0, size_[i] - 1);
   }
   // Spaces in the order in which the region meets them; how many of its voxels each one holds.
   std::vector<std::size_t> held{0};
@@ -108,12 +112,15 @@ void GroundTruth::find_space(std::span<const VoxelKey> all) {
         }
         if (fill.at(x, y, z) != kUnreached) ++held[fill.at(x, y, z)];
       }
-  const auto label = static_cast<std::uint16_t>(
-      std::max_element(held.begin() + 1, held.end()) - held.begin());
-  if (held.size() < 2) throw InputError("the region of interest is full: there is no space in it");
+  if (held.size() < 2)
+    throw InputError(inside ? "the start lies in a voxel of the surface: in an obstacle"
+                            : "the region of interest is full: there is no space in it");
+  const auto label =
+      static_cast<std::uint16_t>(std::max_element(held.begin() + 1, held.end()) - held.begin());
   for (std::size_t k = 0; k < space_.size(); ++k) space_[k] = fill.labels()[k] == label;
 
-  constexpr int kFaces[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  constexpr int kFaces[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
   for (const VoxelKey& key : all) {
     const int at[3] = {key.x - low_[0], key.y - low_[1], key.z - low_[2]};
     const bool seen = std::any_of(std::begin(kFaces), std::end(kFaces), [&](const int* d) {
@@ -136,6 +143,23 @@ void GroundTruth::find_space(std::span<const VoxelKey> all) {
     if (cell.last == 0) cell = {cell_of(surface_[k]), static_cast<std::uint32_t>(k), 0};
     cell.last = static_cast<std::uint32_t>(k + 1);
   }
+}
+
+OpenWorld with_floor(TriangleMesh mesh) {
+  constexpr double kBeyond = 10, kOver = 6;  // m
+  const Eigen::AlignedBox3d box = mesh.bounds();
+  const Eigen::Vector3d beyond(kBeyond, kBeyond, 0);
+  const Eigen::Vector3d low = box.min() - beyond, high = box.max() + beyond;
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const auto& [x, y] : {std::pair{low.x(), low.y()},
+                             {high.x(), low.y()},
+                             {high.x(), high.y()},
+                             {low.x(), high.y()}})
+    mesh.vertices.emplace_back(x, y, low.z());
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+  if (!mesh.colors.empty()) mesh.colors.resize(mesh.triangles.size(), Rgb{160, 160, 160});
+  return {std::move(mesh), {low, high + Eigen::Vector3d(0, 0, kOver)}};
 }
 
 bool GroundTruth::in_space(const Eigen::Vector3d& p_W) const {
@@ -193,18 +217,18 @@ ObservedSurface::ObservedSurface(const GroundTruth& truth, const ViewSensor& sen
 
 void ObservedSurface::update(const Map& map, const Viewpoint& view) {
   const std::span<const VoxelKey> surface = truth_->surface();
-  truth_->for_each_run(
-      reach_box(truth_->grid(), view, sensor_.pinhole, sensor_.range),
-      [&](std::uint32_t first, std::uint32_t last) {
-        for (std::uint32_t k = first; k < last; ++k) {
-          const std::uint16_t now = map.read(surface[k]).observations;
-          if (now == counts_[k]) continue;
-          const std::size_t most = std::max(now, counts_[k]);
-          while (certainty_.size() <= most)
-            certainty_.push_back(1 - map.uncertainty(static_cast<std::uint16_t>(certainty_.size())));
-          counts_[k] = now;
-        }
-      });
+  truth_->for_each_run(reach_box(truth_->grid(), view, sensor_.pinhole, sensor_.range),
+                       [&](std::uint32_t first, std::uint32_t last) {
+                         for (std::uint32_t k = first; k < last; ++k) {
+                           const std::uint16_t now = map.read(surface[k]).observations;
+                           if (now == counts_[k]) continue;
+                           const std::size_t most = std::max(now, counts_[k]);
+                           while (certainty_.size() <= most)
+                             certainty_.push_back(1 - map.uncertainty(static_cast<std::uint16_t>(
+                                                          certainty_.size())));
+                           counts_[k] = now;
+                         }
+                       });
   // Summed up anew by how often each was observed, so that no rounding adds up.
   std::vector<std::size_t> seen(certainty_.size() + 1, 0);
   for (const std::uint16_t count : counts_) ++seen[count];

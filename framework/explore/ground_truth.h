@@ -5,14 +5,15 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "framework/core/random.h"
-#include "framework/explore/viewpoint_index.h"
 #include "framework/explore/view_sensor.h"
 #include "framework/explore/view_utility.h"
+#include "framework/explore/viewpoint_index.h"
 #include "framework/geometry/mesh_scene.h"
 
 namespace lapwing {
@@ -28,8 +29,9 @@ class GroundTruth {
 
   // InputError: a scene with no surface in reach, more than 2^29 voxels, a resolution that is not
   // above 0.
+  // With `inside` it is the space that holds that place.
   GroundTruth(std::shared_ptr<const MeshScene> scene, const Eigen::AlignedBox3d& region,
-              double resolution);
+              double resolution, const std::optional<Eigen::Vector3d>& inside = std::nullopt);
 
   const MeshScene& scene() const { return *scene_; }
   const VoxelGrid& grid() const { return grid_; }
@@ -58,7 +60,7 @@ class GroundTruth {
            static_cast<std::uint64_t>(z) << 40;
   }
   void lay_out();
-  void find_space(std::span<const VoxelKey> all);
+  void find_space(std::span<const VoxelKey> all, const std::optional<Eigen::Vector3d>& inside);
   std::size_t place_of(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) +
             static_cast<std::size_t>(y)) *
@@ -84,6 +86,14 @@ void GroundTruth::for_each_run(const VoxelBox& box, Visit visit) const {
         if (found != cells_.end()) visit(found->second.first, found->second.last);
       }
 }
+
+// A mesh that stands in the open: with a floor at the level of its lowest point, ten metres beyond
+// its sides, and as the region all that is above the floor, up to six metres above the mesh.
+struct OpenWorld {
+  TriangleMesh mesh;
+  Eigen::AlignedBox3d region;
+};
+OpenWorld with_floor(TriangleMesh mesh);
 
 // The voxels that the inside of a box with such an edge meets, as a box: what is taken to be free
 // where an exploration starts.

@@ -85,15 +85,13 @@ void MapMeans::halve(int level, const VoxelBox& box) const {
     for (int y = low[1]; y <= high[1]; ++y)
       for (int x = low[0]; x <= high[0]; ++x) {
         // The eight cubes below lie in one block.
-        const Block* below =
-            find(level - 1, 2 * x / kEdge, 2 * y / kEdge, 2 * z / kEdge);
+        const Block* below = find(level - 1, 2 * x / kEdge, 2 * y / kEdge, 2 * z / kEdge);
         if (!below) continue;
         MeanReading mean{0, 0};
-        const int corner =
-            2 * x % kEdge + kEdge * (2 * y % kEdge + kEdge * (2 * z % kEdge));
+        const int corner = 2 * x % kEdge + kEdge * (2 * y % kEdge + kEdge * (2 * z % kEdge));
         for (int k = 0; k < 8; ++k) {
-          const MeanReading& part = below->cubes[corner + (k & 1) + kEdge * (k >> 1 & 1) +
-                                                 kEdge * kEdge * (k >> 2)];
+          const MeanReading& part =
+              below->cubes[corner + (k & 1) + kEdge * (k >> 1 & 1) + kEdge * kEdge * (k >> 2)];
           mean.occupancy += part.occupancy;
           mean.uncertainty += part.uncertainty;
         }

@@ -1,8 +1,8 @@
 // Means of a map at several scales, kept up to date while the map grows (thesis 5.4.3).
 //
-// Level l holds the mean occupancy and uncertainty of aligned cubes of (2^l)^3 voxels (reading 5.4),
-// as Map::read_means gives them, to single precision: level 1 is read from the map, each further
-// one is the mean of the one below. Only what changed is read again.
+// Level l holds the mean occupancy and uncertainty of aligned cubes of (2^l)^3 voxels (reading
+// 5.4), as Map::read_means gives them, to single precision: level 1 is read from the map, each
+// further one is the mean of the one below. Only what changed is read again.
 #pragma once
 
 #include <cstdint>
@@ -54,8 +54,8 @@ class MapMeans {
   void halve(int level, const VoxelBox& box) const;
 
   const Map* map_;
-  std::vector<VoxelBox> touched_;                // all of them, for levels made later
-  mutable std::size_t done_[kMostLevels] = {};   // of `touched_`, by level
+  std::vector<VoxelBox> touched_;               // all of them, for levels made later
+  mutable std::size_t done_[kMostLevels] = {};  // of `touched_`, by level
   mutable Level levels_[kMostLevels];
   mutable std::mutex mutex_;
 };

@@ -51,8 +51,8 @@ SampleSet read_samples(const std::filesystem::path& path) {
   if (!std::string_view(bytes).starts_with(kMagic)) throw refuse("another first line");
   const std::size_t line = bytes.find('\n', kMagic.size());
   if (line == bytes.npos) throw refuse("it ends in its first lines");
-  const Value header = from_json(
-      std::string_view(bytes).substr(kMagic.size(), line - kMagic.size()), path.string());
+  const Value header =
+      from_json(std::string_view(bytes).substr(kMagic.size(), line - kMagic.size()), path.string());
   Diagnostics errors;
   Fields fields(header, "", errors);
   SampleSet samples;

@@ -17,7 +17,7 @@ struct FitRequest {
   std::filesystem::path checkpoint;  // is written after every epoch
   bool resume = false;               // go on from the checkpoint, with the same result
   std::uint64_t seed = 1;
-  int threads = 1;                   // the result is the same for any number
+  int threads = 1;  // the result is the same for any number
   const CancellationToken* cancellation = nullptr;
   std::function<void(const std::string&)> log = [](const std::string&) {};
 };

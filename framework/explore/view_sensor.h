@@ -20,9 +20,8 @@ struct ViewSensor {
   PosedDepthImage measure(const MeshScene& scene, const Viewpoint& view, std::uint64_t seed,
                           int threads) const {
     PosedDepthImage image{view.camera(), {}};
-    image.image = stereo
-                      ? stereo_depth(scene, image.camera, pinhole, range, *stereo, threads)
-                      : render_depth(scene, image.camera, pinhole, range, threads);
+    image.image = stereo ? stereo_depth(scene, image.camera, pinhole, range, *stereo, threads)
+                         : render_depth(scene, image.camera, pinhole, range, threads);
     if (noise) add_noise(image.image, *noise, seed);
     return image;
   }

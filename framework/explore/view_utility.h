@@ -28,13 +28,13 @@ class TrueGain {
 
 // What an exploration knows when it asks. Everything outlives the call; nothing changes during it.
 struct EpisodeView {
-  const Map* map = nullptr;           // counts observations
-  const MapMeans* means = nullptr;    // of that map
-  Pinhole pinhole;                    // of the camera
-  double range = 0;                   // m, of the camera
-  double pitch = 0;                   // rad, of the camera; the same for every view
-  const TrueGain* truth = nullptr;    // null but for a utility that needs it
-  int threads = 1;                    // results are the same for any number
+  const Map* map = nullptr;         // counts observations
+  const MapMeans* means = nullptr;  // of that map
+  Pinhole pinhole;                  // of the camera
+  double range = 0;                 // m, of the camera
+  double pitch = 0;                 // rad, of the camera; the same for every view
+  const TrueGain* truth = nullptr;  // null but for a utility that needs it
+  int threads = 1;                  // results are the same for any number
 };
 
 class ViewUtility {

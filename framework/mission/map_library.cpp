@@ -5,6 +5,7 @@
 
 #include "framework/geometry/mesh_file.h"
 #include "framework/map/map_file.h"
+#include "framework/mission/explore_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
@@ -276,7 +277,8 @@ std::span<const luaL_Reg> map_methods_of_run() {
   static const luaL_Reg methods[] = {{"surface", &guarded<surface>},
                                      {"read_surface", &guarded<read_surface>},
                                      {"map", &guarded<map>},
-                                     {"map_resolution", &guarded<map_resolution>}};
+                                     {"map_resolution", &guarded<map_resolution>},
+                                     {"explore", &guarded<explore_surface>}};
   return methods;
 }
 

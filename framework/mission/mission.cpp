@@ -4,6 +4,7 @@
 
 #include "framework/config/overrides.h"
 #include "framework/mission/guard.h"
+#include "framework/mission/explore_library.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
 #include "framework/mission/options.h"
@@ -56,6 +57,7 @@ void Mission::Impl::load() {
     open_plan_library(state);
     open_map_library(state);
     open_scan_library(state);
+    open_explore_library(state);
     open_scene_library(state);
     sandbox.run_script(state, script);
     read_mission(state);
@@ -170,6 +172,7 @@ MissionResult Mission::plan() {
     result.block = planned->block;
     result.block_name = planned->block_name;
     result.scan = planned->scan;
+    result.sections = planned->sections;
   });
   result.solve_seconds = impl.run.solve_seconds;
   result.obstacle_folder = impl.run.obstacles.folder();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "framework/core/progress.h"
+#include "framework/export/report.h"
 #include "framework/mission/data_files.h"
 #include "framework/mission/obstacle_files.h"
 #include "framework/mission/sandbox.h"
@@ -71,6 +72,7 @@ struct PlanObject {
   std::string block_name;          // of them in the answer; "": the kind
   std::vector<Pilot> pilots;       // who fly it by hand
   std::shared_ptr<const ScanRecord> scan;  // of a scan: what its report shows
+  std::vector<Section> sections = {};  // of the report, beside those of every flight
 };
 
 struct MissionRun {

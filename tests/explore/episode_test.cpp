@@ -203,11 +203,11 @@ TEST(Episode, EndsWhereNoViewIsLeft) {
   YardWorld world(2000);
   world.start.pitch = 0;
   world.settings.turn = EIGEN_PI / 2;  // 27 places, four ways to look, twice each
-  world.settings.bounds = Eigen::AlignedBox3d(world.start.position.array() - 0.1,
-                                              world.start.position.array() + 0.1);
+  world.settings.bounds =
+      Eigen::AlignedBox3d(world.start.position.array() - 0.1, world.start.position.array() + 0.1);
   EXPECT_NE(refusal([&] { world.run(Constant(1)); }).find("no neighbour"), std::string::npos);
-  world.settings.bounds = Eigen::AlignedBox3d(world.start.position.array() - 2.6,
-                                              world.start.position.array() + 2.6);
+  world.settings.bounds =
+      Eigen::AlignedBox3d(world.start.position.array() - 2.6, world.start.position.array() + 2.6);
   world.settings.sensor.pinhole = {8, 6, 4, 4, 3.5, 2.5};
   const EpisodeResult result = world.run(Constant(1));
   EXPECT_EQ(result.end, EpisodeEnd::no_way);
@@ -279,8 +279,9 @@ TEST(RandomStart, LiesWhereTheBoxIsFree) {
     EXPECT_FALSE(world.truth.scene().box_blocked(start.position, start.position,
                                                  Eigen::Vector3d::Constant(3)));
   }
-  EXPECT_NE(refusal([&] { random_start(world.truth, 60, 10, world.pitch, random); }).find("100,000"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal([&] { random_start(world.truth, 60, 10, world.pitch, random); }).find("100,000"),
+      std::string::npos);
 }
 
 }  // namespace

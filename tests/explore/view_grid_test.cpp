@@ -75,7 +75,8 @@ TEST(ReachBox, HoldsAllThatAnImageMeasures) {
   Random random(4);
   for (int k = 0; k < 12; ++k) {
     const Viewpoint view{{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(2, 6)},
-                         random.uniform(-3, 3), random.uniform(-1.2, 0.5)};
+                         random.uniform(-3, 3),
+                         random.uniform(-1.2, 0.5)};
     const auto map = YardWorld::new_map();
     map->integrate(world.settings.sensor.look(world.truth.scene(), view, 1));
     const VoxelBox box = reach_box(map->grid(), view, world.settings.sensor.pinhole, 20);
@@ -109,9 +110,9 @@ TEST(ViewGrid, InterpolatesTheMeansAroundTheCamera) {
       for (int j = 0; j < shape.ahead; ++j)
         for (int i = 0; i < shape.across; ++i) {
           const double edge = 0.4 * (1 << level);
-          const Eigen::Vector3d p = view.position + edge * ((i - 2.5) * axes.right +
-                                                            (j - 1.5) * axes.forward -
-                                                            (k - 1.5) * axes.down);
+          const Eigen::Vector3d p =
+              view.position +
+              edge * ((i - 2.5) * axes.right + (j - 1.5) * axes.forward - (k - 1.5) * axes.down);
           double expected = 0;
           for (int corner = 0; corner < 8; ++corner) {
             Eigen::Vector3d middle;

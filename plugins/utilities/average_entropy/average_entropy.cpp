@@ -19,9 +19,9 @@ double entropy_of(const VoxelReading& reading) {
 
 class AverageEntropy final : public ViewUtility {
  public:
-  static constexpr PluginText kText{
-      "average_entropy", "1.0.0", "mean entropy of the voxels on the way to known surfaces",
-      "Isler et al. 2016; Delmerico et al. 2018, average entropy"};
+  static constexpr PluginText kText{"average_entropy", "1.0.0",
+                                    "mean entropy of the voxels on the way to known surfaces",
+                                    "Isler et al. 2016; Delmerico et al. 2018, average entropy"};
   static ParameterTable parameters() {
     return ParameterTable().integer("pixel_step", 2, "a ray through every so many pixels and rows",
                                     between(1, 64));

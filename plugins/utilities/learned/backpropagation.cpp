@@ -10,8 +10,8 @@
 namespace lapwing::learned {
 namespace {
 
-constexpr float kVariance = 1e-5f;   // added to variances
-constexpr double kMomentum = 0.05;   // of a batch in the running statistics
+constexpr float kVariance = 1e-5f;  // added to variances
+constexpr double kMomentum = 0.05;  // of a batch in the running statistics
 
 // A number from 0 to 1 for one place of one batch.
 double place_uniform(std::uint64_t seed, std::uint64_t place) {
@@ -33,7 +33,10 @@ struct Backpropagation::Unit {
 };
 
 Backpropagation::Backpropagation(const NetworkLayout& layout, int batch, int threads)
-    : layout_(layout), batch_(batch), threads_(threads), units_(layout.units.size()),
+    : layout_(layout),
+      batch_(batch),
+      threads_(threads),
+      units_(layout.units.size()),
       shard_sums_(kShards) {
   const auto n = static_cast<std::size_t>(batch);
   std::size_t most_points = 0, most_weights = 0;
@@ -84,8 +87,8 @@ void Backpropagation::for_shards(const Body& body) {
 void Backpropagation::forward_unit(std::size_t k, NetworkState& state, bool keep) {
   const UnitPlace& place = layout_.units[k];
   Unit& unit = units_[k];
-  const auto out = static_cast<std::size_t>(place.out), points =
-      static_cast<std::size_t>(place.points());
+  const auto out = static_cast<std::size_t>(place.out),
+             points = static_cast<std::size_t>(place.points());
   const std::size_t each_in = place.padded() * static_cast<std::size_t>(place.in);
   for_samples([&](std::size_t n) {
     convolve(place, unit.input.data() + n * each_in, place.in,
@@ -140,8 +143,7 @@ void Backpropagation::forward_unit(std::size_t k, NetworkState& state, bool keep
         for (std::size_t c = 0; c < out; ++c)
           active[p * out + c] = std::max(y[p * out + c] * factor[c] + shift[c], 0.0f);
       float* to = last ? flat_.data() + n * static_cast<std::size_t>(layout_.flat)
-                       : units_[k + 1].input.data() +
-                             n * layout_.units[k + 1].padded() * out;
+                       : units_[k + 1].input.data() + n * layout_.units[k + 1].padded() * out;
       pool(place.size, place.out, active, !last, to, unit.place.data() + n * points / 8 * out);
       return;
     }
@@ -157,8 +159,8 @@ void Backpropagation::forward_unit(std::size_t k, NetworkState& state, bool keep
   });
 }
 
-// `points_gradient_` holds the gradient of the unit's rectified results; afterwards that of the unit
-// before, or of what was pooled before it.
+// `points_gradient_` holds the gradient of the unit's rectified results; afterwards that of the
+// unit before, or of what was pooled before it.
 void Backpropagation::backward_unit(std::size_t k, const NetworkState& state,
                                     std::span<float> gradient) {
   const UnitPlace& place = layout_.units[k];
@@ -293,7 +295,8 @@ double Backpropagation::dense_layers(const NetworkState& state, std::span<const 
     for (std::size_t k = 0; k < n * w; ++k) {
       float& at = layers[layer][k];
       const std::uint64_t place = k + (static_cast<std::uint64_t>(layer) << 40);
-      const bool stays = options.dropout <= 0 || place_uniform(options.seed, place) >= options.dropout;
+      const bool stays =
+          options.dropout <= 0 || place_uniform(options.seed, place) >= options.dropout;
       slopes[layer][k] = at > 0 && stays ? kept : 0.0f;
       at = stays ? at * kept : 0.0f;
     }
@@ -330,8 +333,8 @@ double Backpropagation::dense_layers(const NetworkState& state, std::span<const 
     const float* gp = g.data();
     float* d = gradient.data() + weights[layer];
     std::fill_n(d, wide * narrow, 0.0f);
-    accumulate({&a, &gp, 1, batch_, width[layer], width[layer + 1], width[layer], width[layer + 1],
-                d});
+    accumulate(
+        {&a, &gp, 1, batch_, width[layer], width[layer + 1], width[layer], width[layer + 1], d});
     for (std::size_t c = 0; c < narrow; ++c) {
       double sum = 0;
       for (std::size_t i = 0; i < n; ++i) sum += static_cast<double>(g[i * narrow + c]);
@@ -408,8 +411,8 @@ void Adam::step(std::span<float> parameters, std::span<const float> gradient, do
   constexpr double kFirst = 0.9, kSecond = 0.999, kSmall = 1e-8;
   ++steps;
   const double t = static_cast<double>(steps);
-  const float factor = static_cast<float>(rate * std::sqrt(1 - std::pow(kSecond, t)) /
-                                          (1 - std::pow(kFirst, t)));
+  const float factor =
+      static_cast<float>(rate * std::sqrt(1 - std::pow(kSecond, t)) / (1 - std::pow(kFirst, t)));
   const float small = static_cast<float>(kSmall * std::sqrt(1 - std::pow(kSecond, t)));
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const float g = gradient[k];

@@ -10,9 +10,9 @@ namespace lapwing::learned {
 inline constexpr int kShards = 8;
 
 struct BatchOptions {
-  double dropout = 0.5;       // share of hidden numbers that become 0
-  double regularisation = 0;  // lambda
-  std::uint64_t seed = 1;     // of the dropout
+  double dropout = 0.5;         // share of hidden numbers that become 0
+  double regularisation = 0;    // lambda
+  std::uint64_t seed = 1;       // of the dropout
   bool keep_statistics = true;  // running statistics follow the batch's
 };
 

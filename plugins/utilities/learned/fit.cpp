@@ -109,11 +109,17 @@ class Training {
 };
 
 Training::Training(const Parameters& p, const FitRequest& request)
-    : request_(request), shape_(shape_of(p)), layout_(shape_),
-      batch_(static_cast<int>(p.integer("batch"))), epochs_(static_cast<int>(p.integer("epochs"))),
-      patience_(static_cast<int>(p.integer("patience"))), rate_(p.number("rate")),
-      dropout_(p.number("dropout")), regularisation_(p.number("regularisation")),
-      mirror_(p.boolean("mirror")), cosine_(p.text("schedule") == "cosine") {
+    : request_(request),
+      shape_(shape_of(p)),
+      layout_(shape_),
+      batch_(static_cast<int>(p.integer("batch"))),
+      epochs_(static_cast<int>(p.integer("epochs"))),
+      patience_(static_cast<int>(p.integer("patience"))),
+      rate_(p.number("rate")),
+      dropout_(p.number("dropout")),
+      regularisation_(p.number("regularisation")),
+      mirror_(p.boolean("mirror")),
+      cosine_(p.text("schedule") == "cosine") {
   Value mapping;
   training_ = read_all(request.training, shape_.grid, mapping);
   validation_ = read_all(request.validation, shape_.grid, mapping);
@@ -173,8 +179,8 @@ double Training::epoch(std::int64_t number) {
   std::iota(order.begin(), order.end(), 0u);
   Random random = Random(request_.seed).split(static_cast<std::uint64_t>(number));
   for (std::size_t k = order.size(); k-- > 1;)
-    std::swap(order[k], order[static_cast<std::size_t>(
-                            random.integer(0, static_cast<std::int64_t>(k)))]);
+    std::swap(order[k],
+              order[static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(k)))]);
   Backpropagation network(layout_, batch_, request_.threads);
   const std::size_t batches = order.size() / static_cast<std::size_t>(batch_);
   std::vector<float> gradient(layout_.parameters), targets(static_cast<std::size_t>(batch_));
@@ -186,20 +192,20 @@ double Training::epoch(std::int64_t number) {
     parallel_for(targets.size(), request_.threads, [&](std::size_t i) {
       const std::size_t k = order[b * targets.size() + i];
       decode_grid(layout_, training_.grid(k), mirrored[i] != 0, network.input(static_cast<int>(i)));
-      targets[i] = static_cast<float>((static_cast<double>(training_.target(k)) -
-                                       model_.target_mean) /
-                                      model_.target_deviation);
+      targets[i] =
+          static_cast<float>((static_cast<double>(training_.target(k)) - model_.target_mean) /
+                             model_.target_deviation);
     });
     BatchOptions options;
     options.dropout = dropout_;
     options.regularisation = regularisation_;
     options.seed = random.bits();
     sum += network.loss(model_.state, targets, options, gradient);
-    const double through = (static_cast<double>(number - 1) * static_cast<double>(batches) +
-                            static_cast<double>(b)) /
-                           (static_cast<double>(epochs_) * static_cast<double>(batches));
-    const double rate = cosine_ ? rate_ * 0.5 * (1 + std::cos(EIGEN_PI * std::min(through, 1.0)))
-                                : rate_;
+    const double through =
+        (static_cast<double>(number - 1) * static_cast<double>(batches) + static_cast<double>(b)) /
+        (static_cast<double>(epochs_) * static_cast<double>(batches));
+    const double rate =
+        cosine_ ? rate_ * 0.5 * (1 + std::cos(EIGEN_PI * std::min(through, 1.0))) : rate_;
     model_.adam->step(model_.state.parameters, gradient, rate);
   }
   return sum / static_cast<double>(batches);

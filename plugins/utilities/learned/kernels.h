@@ -10,8 +10,8 @@ namespace lapwing::learned {
 
 inline constexpr int kLanes = 8;
 
-// c[i][j] = bias[j] + sum over parts p and k of a[p][i * stride + k] * b[p][k][j], for `rows` rows i
-// and `columns` columns j; b is parts * depth rows of `columns` numbers; bias may be null. With
+// c[i][j] = bias[j] + sum over parts p and k of a[p][i * stride + k] * b[p][k][j], for `rows` rows
+// i and `columns` columns j; b is parts * depth rows of `columns` numbers; bias may be null. With
 // `rectified` negative results become 0.
 struct Product {
   const float* const* a = nullptr;

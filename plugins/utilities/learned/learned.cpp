@@ -21,8 +21,9 @@ std::filesystem::path shipped_model() {
     const auto path = folder / tree / "utilities" / "learned.model";
     if (std::filesystem::exists(path)) return path;
   }
-  throw InputError("utility 'learned': the shipped model is not beside its library; name one "
-                   "with model: FILE");
+  throw InputError(
+      "utility 'learned': the shipped model is not beside its library; name one "
+      "with model: FILE");
 }
 
 class Learned final : public ViewUtility {
@@ -42,10 +43,10 @@ class Learned final : public ViewUtility {
     return all;
   }
   explicit Learned(const Parameters& p)
-      : model_(learned::read_model(p.text("model").empty()
-                                       ? shipped_model()
-                                       : std::filesystem::path(p.text("model")))),
-        network_(learned::NetworkLayout(model_.shape), model_.state), blank_(p.boolean("blank")) {}
+      : model_(learned::read_model(
+            p.text("model").empty() ? shipped_model() : std::filesystem::path(p.text("model")))),
+        network_(learned::NetworkLayout(model_.shape), model_.state),
+        blank_(p.boolean("blank")) {}
 
   void require_fit(const EpisodeView& known) const override {
     const std::string difference = mapping_difference(mapping_of(known), model_.mapping);
@@ -65,8 +66,8 @@ class Learned final : public ViewUtility {
         for (std::size_t k = 0; k < grid.size(); ++k) grid[k] = k % 2 == 0 ? 0.5f : 1.0f;
       else
         sample_grid(known, views[i], shape, grid);
-      values[i] = model_.target_mean +
-                  model_.target_deviation * static_cast<double>(network_.answer(grid));
+      values[i] =
+          model_.target_mean + model_.target_deviation * static_cast<double>(network_.answer(grid));
     });
   }
 

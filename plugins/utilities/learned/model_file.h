@@ -13,9 +13,9 @@ namespace lapwing::learned {
 
 struct Model {
   NetworkShape shape;
-  Value mapping;                      // what it was trained with (reading 5.2)
+  Value mapping;                                 // what it was trained with (reading 5.2)
   double target_mean = 0, target_deviation = 1;  // of the oracle's values
-  Value provenance;                   // where it comes from, for people
+  Value provenance;                              // where it comes from, for people
   NetworkState state;
   // Of a checkpoint alone.
   std::optional<Adam> adam;

@@ -163,7 +163,8 @@ void convolve(const UnitPlace& unit, const float* in, int maps_in, const float* 
   for (int z = 0; z < unit.size[2]; ++z)
     for (int y = 0; y < unit.size[1]; ++y) {
       for (int k = 0; k < 9; ++k) parts[k] = in + unit.row(y + k % 3 - 1, z + k / 3 - 1, maps_in);
-      product.c = out + static_cast<std::ptrdiff_t>((z * unit.size[1] + y) * unit.size[0]) * maps_out;
+      product.c =
+          out + static_cast<std::ptrdiff_t>((z * unit.size[1] + y) * unit.size[0]) * maps_out;
       multiply(product);
     }
 }
@@ -180,9 +181,9 @@ void pool(const int size[3], int maps, const float* in, bool border, float* out,
                               maps;
         for (int k = 0; k < 8; ++k) {
           const float* from =
-              in + static_cast<std::ptrdiff_t>(((2 * z + (k >> 2)) * size[1] + 2 * y + (k >> 1 & 1)) *
-                                                   size[0] +
-                                               2 * x + (k & 1)) *
+              in + static_cast<std::ptrdiff_t>(
+                       ((2 * z + (k >> 2)) * size[1] + 2 * y + (k >> 1 & 1)) * size[0] + 2 * x +
+                       (k & 1)) *
                        maps;
           if (k == 0) {
             std::copy(from, from + maps, to);
@@ -248,8 +249,8 @@ float FoldedNetwork::run(Scratch& s) const {
              biases_[k].data(), true, unit.out, s.points.data());
     const bool last = k + 1 == layout_.units.size();
     if (unit.last_of_block) {
-      pool(unit.size, unit.out, s.points.data(), !last, last ? s.flat.data() : s.inputs[k + 1].data(),
-           nullptr);
+      pool(unit.size, unit.out, s.points.data(), !last,
+           last ? s.flat.data() : s.inputs[k + 1].data(), nullptr);
       continue;
     }
     const int row = unit.size[0] * unit.out;

@@ -18,8 +18,8 @@ namespace lapwing::learned {
 
 struct NetworkShape {
   GridShape grid;
-  int blocks = 2, units = 4;  // units of each block
-  int growth = 8;             // maps that every convolution adds; a multiple of 8
+  int blocks = 2, units = 4;        // units of each block
+  int growth = 8;                   // maps that every convolution adds; a multiple of 8
   int hidden1 = 128, hidden2 = 32;  // multiples of 8
 
   bool operator==(const NetworkShape&) const = default;
@@ -31,8 +31,8 @@ NetworkShape network_shape_from(const Value& value);
 
 // Where everything lies in the one vector of parameters, and in that of running statistics.
 struct UnitPlace {
-  int in = 0, out = 0;           // maps
-  int size[3] = {};              // points
+  int in = 0, out = 0;  // maps
+  int size[3] = {};     // points
   bool last_of_block = false;
   std::size_t weights = 0, scale = 0, shift = 0;  // in the parameters
   std::size_t mean = 0, variance = 0;             // in the statistics
@@ -89,8 +89,8 @@ class FoldedNetwork {
   float run(Scratch& scratch) const;
 
   NetworkLayout layout_;
-  std::vector<float> parameters_;            // scaled weights in their places
-  std::vector<std::vector<float>> biases_;   // of the units
+  std::vector<float> parameters_;           // scaled weights in their places
+  std::vector<std::vector<float>> biases_;  // of the units
 };
 
 // Convolution of one sample: `in` padded, `out` not padded with `out_stride` numbers from point to

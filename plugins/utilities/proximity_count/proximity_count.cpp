@@ -10,9 +10,9 @@ namespace {
 
 class ProximityCount final : public ViewUtility {
  public:
-  static constexpr PluginText kText{
-      "proximity_count", "1.0.0", "counts unmeasured voxels behind seen surfaces, near ones more",
-      "Isler et al. 2016; Delmerico et al. 2018, proximity count"};
+  static constexpr PluginText kText{"proximity_count", "1.0.0",
+                                    "counts unmeasured voxels behind seen surfaces, near ones more",
+                                    "Isler et al. 2016; Delmerico et al. 2018, proximity count"};
   static ParameterTable parameters() {
     return ParameterTable()
         .integer("pixel_step", 2, "a ray through every so many pixels and rows", between(1, 64))

@@ -1,0 +1,5 @@
+-- A drone that knows nothing of a city centre maps as much of it as 200 images can show.
+--   --set utility=frontier (average_entropy, proximity_count, learned, oracle)
+local explore = require "mission.explore"
+
+return explore.of_scene { name = "explore city", scene = "downtown", scene_seed = 101 }

@@ -1,0 +1,260 @@
+#include "framework/app/evaluate_explore.h"
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "framework/app/exploration_worlds.h"
+#include "framework/app/interruption.h"
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+#include "framework/core/parallel.h"
+#include "framework/export/report.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Trial {
+  std::string world, utility;
+  std::int64_t episode = 0;
+
+  std::string name() const {
+    std::string text = world + "_" + utility + "_" + std::to_string(episode);
+    for (char& c : text)
+      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+    return text;
+  }
+};
+
+struct Mean {
+  double mean = 0, deviation = 0;
+  std::size_t count = 0;
+  // Half the width of the 95 % interval of the mean, by the normal distribution.
+  double interval() const {
+    return count > 1 ? 1.96 * deviation / std::sqrt(static_cast<double>(count)) : std::nan("");
+  }
+};
+
+Mean mean_of(const std::vector<double>& values) {
+  Mean result;
+  result.count = values.size();
+  for (const double v : values) result.mean += v / static_cast<double>(values.size());
+  double squares = 0;
+  for (const double v : values) squares += (v - result.mean) * (v - result.mean);
+  result.deviation =
+      values.size() > 1 ? std::sqrt(squares / static_cast<double>(values.size() - 1)) : 0;
+  return result;
+}
+
+bool asks_truth(const Registry& registry, const std::string& utility) {
+  const auto& extensions = registry.find("utility", utility).extensions;
+  return std::find(extensions.begin(), extensions.end(), kNeedsGroundTruth) != extensions.end();
+}
+
+void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
+               const ExplorationSetup& setup, const Registry& registry, std::uint64_t seed,
+               const fs::path& folder) {
+  Random random = Random(seed).split(static_cast<std::uint64_t>(trial.episode));
+  const Viewpoint start =
+      random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2, setup.pitch, random);
+  EpisodeSettings settings = setup.episode;
+  settings.show_truth = asks_truth(registry, trial.utility);
+  settings.seed = seed + static_cast<std::uint64_t>(trial.episode) * 1'000'003;
+  const auto new_map = setup.new_map(registry);
+  const auto utility = registry.create<ViewUtility>(trial.utility);
+  ObservedSurface observed(truth, settings.sensor, new_map);
+  const auto map = new_map();
+  EpisodeResult result = explore(settings, start, truth, observed, *utility, *map);
+  if (result.end == EpisodeEnd::cancelled) return;
+  std::vector<double> curve;
+  double seconds = 0;
+  for (const EpisodeStep& step : result.steps) {
+    curve.push_back(step.observed);
+    seconds += step.seconds;
+  }
+  if (settings.sensor.noise) {
+    ObservedSurface anew(truth, settings.sensor, new_map);
+    const auto clean = new_map();
+    curve = replay(settings, result, truth, anew, *clean);
+  }
+  Value object = Value::map();
+  object.set("world", world.name);
+  object.set("utility", trial.utility);
+  object.set("episode", trial.episode);
+  object.set("end", to_string(result.end));
+  object.set("surface", result.surface);
+  object.set("length", result.length());
+  object.set("observed", Value(Value::List(curve.begin(), curve.end())));
+  Value time = Value::map();
+  time.set("seconds_per_step",
+           seconds / static_cast<double>(std::max<std::size_t>(1, curve.size())));
+  write_file_atomically(folder / "seconds" / (trial.name() + ".json"), to_json(time) + "\n");
+  write_file_atomically(folder / "episodes" / (trial.name() + ".json"), to_json(object) + "\n");
+}
+
+// Observed after each image; it stays as it is after an early end.
+std::vector<double> curve_of(const Trial& trial, const fs::path& folder, int steps) {
+  const fs::path path = folder / "episodes" / (trial.name() + ".json");
+  const Value object = from_json(read_file(path), path.string());
+  std::vector<double> curve;
+  for (const Value& value : object.at("observed").as_list()) curve.push_back(value.as_number());
+  if (curve.empty()) curve.push_back(0);
+  curve.resize(static_cast<std::size_t>(steps), curve.back());
+  return curve;
+}
+
+std::string number(double value) {
+  if (!std::isfinite(value)) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+struct Summary {
+  std::string table =
+      "world,utility,episodes,efficiency,efficiency_deviation,relative,"
+      "relative_deviation,relative_interval\n";
+  std::string curves = "world,utility,images,observed,observed_deviation\n";
+  Report report;
+  Table shown;
+};
+
+void summarise_world(Summary& summary, const std::string& world,
+                     const std::vector<std::string>& utilities, const ExploreEvaluation& request) {
+  Chart chart;
+  chart.title = world;
+  chart.x = {"images", "", false, true};
+  chart.y = {"observed surface", "voxels"};
+  const auto curves = [&](const std::string& utility) {
+    std::vector<std::vector<double>> all;
+    for (std::int64_t e = 1; e <= request.episodes; ++e)
+      all.push_back(curve_of({world, utility, e}, request.folder, request.steps));
+    return all;
+  };
+  const auto efficiency = [](const std::vector<double>& curve) {
+    double sum = 0;
+    for (const double v : curve) sum += v;
+    return sum;
+  };
+  std::vector<double> oracle;
+  if (std::find(utilities.begin(), utilities.end(), "oracle") != utilities.end())
+    for (const auto& curve : curves("oracle")) oracle.push_back(efficiency(curve));
+  for (const std::string& utility : utilities) {
+    const auto all = curves(utility);
+    std::vector<double> raw, relative;
+    for (std::size_t e = 0; e < all.size(); ++e) {
+      raw.push_back(efficiency(all[e]));
+      if (e < oracle.size() && oracle[e] > 0) relative.push_back(raw.back() / oracle[e]);
+    }
+    const Mean efficiencies = mean_of(raw);
+    const Mean shares = relative.empty() ? Mean{std::nan(""), std::nan(""), 0} : mean_of(relative);
+    summary.table += world + "," + utility + "," + std::to_string(raw.size()) + "," +
+                     number(efficiencies.mean) + "," + number(efficiencies.deviation) + "," +
+                     number(shares.mean) + "," + number(shares.deviation) + "," +
+                     number(shares.interval()) + "\n";
+    summary.shown.rows.push_back({{world, utility, efficiencies.mean, efficiencies.deviation,
+                                   shares.mean, shares.deviation, shares.interval()}});
+    Series series{utility, {0}, {0}};
+    for (int t = 0; t < request.steps; ++t) {
+      std::vector<double> at;
+      for (const auto& curve : all) at.push_back(curve[static_cast<std::size_t>(t)]);
+      const Mean mean = mean_of(at);
+      summary.curves += world + "," + utility + "," + std::to_string(t + 1) + "," +
+                        number(mean.mean) + "," + number(mean.deviation) + "\n";
+      series.x.push_back(t + 1);
+      series.y.push_back(mean.mean);
+    }
+    chart.series.push_back(std::move(series));
+  }
+  summary.report.sections.push_back({world, {chart}});
+}
+
+void print_table(const Table& table) {
+  std::printf("%-22s %-18s %12s %10s %9s %9s %9s\n", "world", "utility", "efficiency", "deviation",
+              "relative", "deviation", "95 % +-");
+  for (const TableRow& row : table.rows) {
+    std::printf("%-22s %-18s", std::get<std::string>(row.cells[0]).c_str(),
+                std::get<std::string>(row.cells[1]).c_str());
+    for (std::size_t k = 2; k < row.cells.size(); ++k)
+      std::printf(k == 2   ? " %12.0f"
+                  : k == 3 ? " %10.0f"
+                           : " %9.3f",
+                  std::get<double>(row.cells[k]));
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+
+ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  const Interruption interruption;
+  std::vector<std::string> utilities = request.utilities;
+  if (utilities.empty())
+    for (const PluginEntry& entry : registry.entries())
+      if (entry.kind == ViewUtility::kKind) utilities.push_back(entry.name);
+  for (const std::string& utility : utilities) registry.find("utility", utility);
+  std::vector<WorldName> names;
+  for (const std::string& given : request.worlds)
+    for (WorldName& name : world_names(given)) names.push_back(std::move(name));
+  if (names.empty()) throw InputError("evaluate explore: name a world with --world");
+  ExplorationSetup setup;
+  setup.episode.steps = request.steps;
+  setup.episode.cancellation = &interruption.token();
+  if (request.sigma > 0 || request.dropped > 0)
+    setup.episode.sensor.noise = DepthNoise{request.dropped, request.sigma};
+  // What another run of other settings left would be taken for this one's.
+  Value stated = Value::map();
+  stated.set("steps", request.steps);
+  stated.set("seed", static_cast<std::int64_t>(invocation.seed));
+  stated.set("sigma", request.sigma);
+  stated.set("dropped", request.dropped);
+  const fs::path settings_file = request.folder / "settings.json";
+  if (request.resume && fs::exists(settings_file) &&
+      !(from_json(read_file(settings_file), settings_file.string()) == stated))
+    throw InputError("'" + settings_file.string() + "': the evaluation there has other settings");
+  if (!request.resume) fs::remove_all(request.folder / "episodes");
+  write_file_atomically(settings_file, to_json(stated) + "\n");
+
+  for (const WorldName& name : names) {
+    std::vector<Trial> trials;
+    for (std::int64_t episode = 1; episode <= request.episodes; ++episode)
+      for (const std::string& utility : utilities) {
+        const Trial trial{name.text(), utility, episode};
+        if (!fs::exists(request.folder / "episodes" / (trial.name() + ".json")))
+          trials.push_back(trial);
+      }
+    if (trials.empty()) continue;
+    const World world = load_world(name, registry, invocation);
+    const GroundTruth truth(world.scene, world.region, setup.map.at("resolution").as_number());
+    std::atomic<std::size_t> done{0};
+    parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
+      if (interruption.token().cancelled()) return;
+      run_trial(trials[k], world, truth, setup, registry, invocation.seed, request.folder);
+      const std::size_t count = ++done;
+      if (!invocation.quiet)
+        std::cerr << name.text() + ": " + std::to_string(count) + " of " +
+                         std::to_string(trials.size()) + " episodes\n";
+    });
+    if (interruption.token().cancelled()) throw Cancelled();
+  }
+  Summary summary;
+  summary.report.title = "Exploration";
+  summary.report.subtitle = std::to_string(request.episodes) + " episodes of " +
+                            std::to_string(request.steps) + " images in each world";
+  summary.shown.title = "Efficiency (5.6), and relative to the oracle's from the same start";
+  summary.shown.columns = {
+      {"world", ""},    {"utility", ""},   {"efficiency", ""},         {"deviation", ""},
+      {"relative", ""}, {"deviation", ""}, {"95 % interval, half", ""}};
+  for (const WorldName& name : names) summarise_world(summary, name.text(), utilities, request);
+  summary.report.sections.insert(summary.report.sections.begin(), {"Table", {summary.shown}});
+  write_file_atomically(request.folder / "table.csv", summary.table);
+  write_file_atomically(request.folder / "curves.csv", summary.curves);
+  write_file_atomically(request.folder / "report.html", render_html(summary.report));
+  if (!invocation.quiet) print_table(summary.shown);
+  return ExitStatus::done;
+}
+
+}  // namespace lapwing

@@ -1,0 +1,127 @@
+#include "framework/export/exploration_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "framework/geometry/png.h"
+
+namespace lapwing {
+namespace {
+
+constexpr std::size_t kListed = 15;  // candidates in the table
+constexpr double kTick = 1.2;        // m, of the line that shows where a candidate looks
+
+std::vector<double> from_zero(const std::vector<double>& observed) {
+  std::vector<double> curve{0};
+  curve.insert(curve.end(), observed.begin(), observed.end());
+  return curve;
+}
+
+Series series_of(std::string name, const std::vector<double>& observed) {
+  Series series;
+  series.name = std::move(name);
+  series.y = from_zero(observed);
+  series.x.resize(series.y.size());
+  std::iota(series.x.begin(), series.x.end(), 0.0);
+  return series;
+}
+
+Facts summary(const ExplorationRecord& record) {
+  Facts facts;
+  const auto add = [&](std::string label, std::string value, std::string unit = "") {
+    facts.facts.push_back({std::move(label), std::move(value), std::move(unit)});
+  };
+  const double observed = record.observed.empty() ? 0 : record.observed.back();
+  add("utility", record.utility);
+  add("ended", record.end);
+  add("images", std::to_string(record.observed.size()));
+  add("way", number_text(record.length), "m");
+  add("observed surface", number_text(observed),
+      "of " + number_text(record.surface, 6) + " voxels");
+  add("efficiency", number_text(record.efficiency, 6), "voxel images");
+  if (record.oracle_efficiency > 0)
+    add("relative to the oracle", number_text(record.efficiency / record.oracle_efficiency, 3));
+  return facts;
+}
+
+Section growth(const ExplorationRecord& record) {
+  FilmStrip strip;
+  strip.title = "Seen from above: height from blue to yellow, light is free, dark unknown";
+  for (const ExplorationMoment& moment : record.moments) {
+    strip.frames.push_back({encode_png(moment.map),
+                            moment.map.width,
+                            moment.map.height,
+                            "after " + std::to_string(moment.images) + " images",
+                            {}});
+  }
+  return {"Growth of the map", {strip}};
+}
+
+Section path(const ExplorationRecord& record) {
+  Drawing drawing;
+  drawing.along = {"images", "", false, true};
+  drawing.value = {"images", ""};
+  drawing.lines.push_back({"path", record.path, record.path_images, record.path_images});
+  if (!record.path.empty()) drawing.points.push_back({"start", record.path.front()});
+  Scene3D scene{"The path, coloured by the number of images", drawing};
+  PathView above{"The same from above", Projection::above, drawing};
+  return {"Exploration's path", {scene, above}};
+}
+
+Section candidates(const ExplorationRecord& record) {
+  std::vector<ExplorationCandidate> sorted = record.candidates;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.value > b.value; });
+  Section section{"Candidates at the last step", {}};
+  Drawing drawing;
+  drawing.value = {"utility", ""};
+  Polyline ticks;
+  ticks.name = "candidates";
+  Series values;
+  values.name = record.utility;
+  const Eigen::Vector3d gap = Eigen::Vector3d::Constant(std::nan(""));
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    const ExplorationCandidate& c = sorted[k];
+    ticks.points.insert(ticks.points.end(), {c.position, c.position + kTick * c.direction, gap});
+    ticks.values.insert(ticks.values.end(), {c.value, c.value, c.value});
+    values.x.push_back(static_cast<double>(k + 1));
+    values.y.push_back(c.value);
+  }
+  drawing.lines.push_back(std::move(ticks));
+  section.blocks.push_back(
+      PathView{"Where they stand and look, coloured by utility", Projection::above, drawing});
+  Chart chart;
+  chart.title = "Utility of each of the " + std::to_string(sorted.size()) + " candidates";
+  chart.x = {"candidates, best first", "", false, true};
+  chart.y = {"utility", ""};
+  chart.series.push_back(std::move(values));
+  section.blocks.push_back(std::move(chart));
+  Table table;
+  table.title = "The best of them";
+  table.columns = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"utility", ""}};
+  for (std::size_t k = 0; k < std::min(kListed, sorted.size()); ++k)
+    table.rows.push_back({{sorted[k].position.x(), sorted[k].position.y(), sorted[k].position.z(),
+                           sorted[k].value}});
+  section.blocks.push_back(std::move(table));
+  return section;
+}
+
+}  // namespace
+
+std::vector<Section> exploration_sections(const ExplorationRecord& record) {
+  std::vector<Section> sections;
+  Chart chart;
+  chart.title = "Observed surface";
+  chart.x = {"images", "", false, true};
+  chart.y = {"observed surface", "voxels"};
+  chart.series.push_back(series_of(record.utility, record.observed));
+  if (!record.oracle.empty()) chart.series.push_back(series_of("oracle", record.oracle));
+  sections.push_back({"Exploration", {summary(record), chart}});
+  if (!record.moments.empty()) sections.push_back(growth(record));
+  if (record.path.size() > 1) sections.push_back(path(record));
+  if (!record.candidates.empty()) sections.push_back(candidates(record));
+  return sections;
+}
+
+}  // namespace lapwing

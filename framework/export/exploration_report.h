@@ -1,0 +1,41 @@
+// What the report of an exploration shows beside its flight.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/export/report.h"
+#include "framework/geometry/render.h"
+
+namespace lapwing {
+
+struct ExplorationMoment {
+  int images = 0;  // taken so far
+  Picture map;
+};
+
+struct ExplorationCandidate {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();    // m, world
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  // unit
+  double value = 0;
+};
+
+struct ExplorationRecord {
+  std::string utility;
+  std::string end;                         // a sentence
+  double surface = 0;                      // voxels there were to find
+  double efficiency = 0;                   // (5.6)
+  double oracle_efficiency = 0;            // 0: not compared
+  double length = 0;                       // m
+  std::vector<double> observed;            // (5.2), after each image
+  std::vector<double> oracle;              // likewise, of the oracle; empty where not compared
+  std::vector<Eigen::Vector3d> path;       // m, world
+  std::vector<double> path_images;         // taken so far, at each place of the path
+  std::vector<ExplorationMoment> moments;  // in time
+  std::vector<ExplorationCandidate> candidates;  // at the end
+};
+
+// Summary, growth of the map, path, observed surface over images, candidates.
+std::vector<Section> exploration_sections(const ExplorationRecord& record);
+
+}  // namespace lapwing

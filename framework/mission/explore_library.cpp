@@ -1,0 +1,329 @@
+#include "framework/mission/explore_library.h"
+
+#include <cmath>
+
+#include <lua.hpp>
+
+#include "framework/core/units.h"
+#include "framework/explore/episode.h"
+#include "framework/export/exploration_report.h"
+#include "framework/export/map_pictures.h"
+#include "framework/map/map_file.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/map_objects.h"
+
+namespace lapwing {
+namespace {
+
+constexpr const char* kExplorationType = "exploration";
+constexpr int kMomentPixels = 480;
+
+struct Exploration {
+  EpisodeSettings settings;
+  EpisodeResult result;
+  std::shared_ptr<Map> map;
+  Viewpoint start;
+  ExplorationRecord record;
+  double seconds = 0;  // wall clock of choosing and mapping
+};
+
+struct ExplorationObject {
+  std::shared_ptr<Exploration> exploration;
+};
+
+ParameterTable explore_table() {
+  ParameterTable camera;
+  camera.integer("width", 160, "pixels", between(1, 10000))
+      .integer("height", 120, "pixels", between(1, 10000))
+      .number("view_deg", 90, "deg", "angle across", {1, 170})
+      .number("pitch_deg", -10, "deg", "positive up", between(-89, 89));
+  ParameterTable noise;
+  noise.number("dropped", 0, "", "share of the pixels without a measurement", between(0, 1))
+      .number("sigma", 0, "m", "of the depth, normal", between(0, 100));
+  ParameterTable start;
+  start.required_numbers("position", 3, "m", "world").number("yaw", 0, "rad", "heading");
+  ParameterTable bounds;
+  bounds.required_numbers("lower", 3, "m", "corner").required_numbers("upper", 3, "m", "corner");
+  const EpisodeSettings standard;
+  ParameterTable table;
+  table.table("camera", camera, "a pinhole in the middle of its image")
+      .table("noise", noise, "of the sensor")
+      .optional_number("stereo_baseline", "m", "depth by a pair of cameras", above(0))
+      .number("range", standard.sensor.range, "m", "largest depth", above(0))
+      .number("step", standard.step, "m", "to a neighbour", above(0))
+      .number("turn_deg", 25, "deg", "to a neighbour", between(1, 180))
+      .number("body", standard.body, "m", "edge of the box that must be free", above(0))
+      .number("clear", standard.clear, "m", "edge of the box that is free at the start", above(0))
+      .integer("visits", standard.visits, "images from a viewpoint", between(1, 100))
+      .integer("steps", standard.steps, "images", between(1, 1000000))
+      .number("speed", standard.speed, "m/s", "between viewpoints", above(0))
+      .number("turn_rate_deg", 60, "deg/s", "on the spot", above(0))
+      .number("pause", standard.pause, "s", "for an image", at_least(0))
+      .optional_number("budget", "s", "of flight", above(0))
+      .optional_number("wall_clock_guard", "s", "of computing", above(0))
+      .tables("bounds", bounds, "a box that the explorer stays in, at most one")
+      .tables("start", start, "where it begins, at most one; none: drawn by the run's seed")
+      .boolean("ground", false, "lay a floor under the surface, and explore above it")
+      .boolean("compare", false, "let the oracle explore from the same start");
+  return table;
+}
+
+Eigen::Vector3d vector_of(std::span<const double> numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
+  EpisodeSettings s;
+  const Parameters& camera = given.table("camera");
+  const int width = static_cast<int>(camera.integer("width"));
+  const int height = static_cast<int>(camera.integer("height"));
+  const double focal = width / 2.0 / std::tan(radians(camera.number("view_deg")) / 2);
+  s.sensor.pinhole = {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
+  s.sensor.range = given.number("range");
+  const Parameters& noise = given.table("noise");
+  if (noise.number("dropped") > 0 || noise.number("sigma") > 0)
+    s.sensor.noise = DepthNoise{noise.number("dropped"), noise.number("sigma")};
+  if (given.has("stereo_baseline")) {
+    s.sensor.stereo.emplace();
+    s.sensor.stereo->baseline = given.number("stereo_baseline");
+  }
+  s.step = given.number("step");
+  s.turn = radians(given.number("turn_deg"));
+  s.body = given.number("body");
+  s.clear = given.number("clear");
+  s.visits = static_cast<int>(given.integer("visits"));
+  s.steps = static_cast<int>(given.integer("steps"));
+  s.speed = given.number("speed");
+  s.turn_rate = radians(given.number("turn_rate_deg"));
+  s.pause = given.number("pause");
+  if (given.has("budget")) s.budget = given.number("budget");
+  if (given.has("wall_clock_guard")) s.wall_clock_guard = given.number("wall_clock_guard");
+  const auto& bounds = given.tables("bounds");
+  if (bounds.size() > 1) throw InputError(given.origin("bounds"), "bounds: at most one box");
+  if (bounds.size() == 1)
+    s.bounds = Eigen::AlignedBox3d(vector_of(bounds[0].numbers("lower")),
+                                   vector_of(bounds[0].numbers("upper")));
+  s.seed = run.settings.seed;
+  s.threads = run.settings.threads;
+  s.cancellation = run.settings.cancellation;
+  s.progress = run.settings.progress;
+  return s;
+}
+
+bool needs_truth(const Registry& registry, const std::string& utility) {
+  const auto& extensions = registry.find("utility", utility).extensions;
+  return std::find(extensions.begin(), extensions.end(), kNeedsGroundTruth) != extensions.end();
+}
+
+// Whether the map is shown after this many images.
+bool is_moment(int images, int steps) {
+  return images == std::max(1, steps / 10) || images == std::max(1, steps / 4) ||
+         images == std::max(1, steps / 2);
+}
+
+void record_path(Exploration& e) {
+  ExplorationRecord& record = e.record;
+  record.path = {e.start.position};
+  record.path_images = {0};
+  for (std::size_t k = 0; k < e.result.steps.size(); ++k)
+    for (const Viewpoint& view : e.result.steps[k].way) {
+      if (view.position == record.path.back()) continue;
+      record.path.push_back(view.position);
+      record.path_images.push_back(static_cast<double>(k));
+    }
+  for (const ScoredView& view : e.result.candidates)
+    record.candidates.push_back({view.view.position, view.view.direction(), view.value});
+}
+
+// -- exploration:plan ----------------------------------------------------------------------------
+
+Trajectory trajectory_of(const Exploration& e, bool gimbal) {
+  Trajectory trajectory;
+  trajectory.model = MotionModel::path;
+  trajectory.has_gimbal = gimbal;
+  const MoveTimes times{e.settings.speed, e.settings.turn_rate};
+  const auto add = [&](const Viewpoint& view, double time) {
+    Sample sample;
+    sample.time = time;
+    sample.position = view.position;
+    const double before = trajectory.samples.empty() ? view.yaw : trajectory.samples.back().yaw;
+    sample.yaw = before + std::remainder(view.yaw - before, 2 * EIGEN_PI);
+    sample.gimbal_pitch = view.pitch;
+    trajectory.samples.push_back(sample);
+  };
+  Viewpoint at = e.start;
+  double time = 0;
+  add(at, 0);
+  for (const EpisodeStep& step : e.result.steps) {
+    for (const Viewpoint& next : step.way) {
+      time += times.of(at, next);
+      add(next, time);
+      at = next;
+    }
+    time += e.settings.pause;
+    if (e.settings.pause > 0) add(at, time);
+  }
+  return trajectory;
+}
+
+// exploration:plan{vehicle =, margin =}
+int plan_exploration(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Exploration& e =
+      *object_argument<ExplorationObject>(state, 1, kExplorationType).exploration;
+  static constexpr std::string_view kVehicle[] = {"vehicle"};
+  ParameterTable table;
+  table.number("margin", 0.4, "m", "that the certificate asks for", at_least(0));
+  const Parameters given = table_argument(state, 2, table, "plan", kVehicle);
+  // A ball within the box that was kept free.
+  if (given.number("margin") > e.settings.body / 2)
+    throw InputError(given.origin("margin"), "margin: at most half of the body's edge, " +
+                                                 std::to_string(e.settings.body / 2) + " m");
+  lua_getfield(state, 2, "vehicle");
+  const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
+  PlanObject made;
+  made.solver = e.record.utility;
+  made.report.status = e.result.end == EpisodeEnd::cancelled ? SolveStatus::cancelled
+                       : e.result.end == EpisodeEnd::time    ? SolveStatus::time_limit
+                                                             : SolveStatus::feasible;
+  made.report.iterations = static_cast<int>(e.result.steps.size());
+  made.report.message = explain(e.result.end);
+  made.notes.push_back(std::to_string(e.result.steps.size()) + " images: " + explain(e.result.end));
+  made.block_name = "exploration";
+  made.block = Value::map();
+  made.block.set("efficiency", e.record.efficiency);
+  made.block.set("observed_surface", e.result.observed());
+  made.block.set("surface", e.result.surface);
+  made.block.set("images", static_cast<std::int64_t>(e.result.steps.size()));
+  made.block.set("length", e.result.length());
+  made.block.set("end", to_string(e.result.end));
+  if (e.record.oracle_efficiency > 0)
+    made.block.set("relative_efficiency", e.record.efficiency / e.record.oracle_efficiency);
+  made.sections = exploration_sections(e.record);
+
+  Plan& document = made.plan;
+  document.mission = run.name;
+  document.kind = run.kind;
+  document.vehicle = to_value(vehicle);
+  document.trajectory = trajectory_of(e, vehicle.gimbal.has_value());
+  document.budget = e.settings.budget;
+  document.configuration = run.configuration;
+  document.solver = to_value(made.report, made.solver);
+  MapObstacle obstacle;
+  obstacle.name = "explored map";
+  obstacle.file = "map.ot";
+  obstacle.sha256 = run.obstacles.keep(obstacle.file, map_file_bytes(".ot", *e.map));
+  document.environment.maps.push_back(std::move(obstacle));
+  document.environment.margin = given.number("margin");
+  new_object(state, kPlanType, std::move(made));
+  return 1;
+}
+
+int exploration_field(lua_State* state) {
+  const Exploration& e =
+      *object_argument<ExplorationObject>(state, 1, kExplorationType).exploration;
+  const std::string field = text_argument(state, 2, "exploration");
+  if (field == "plan") {
+    lua_pushcfunction(state, &guarded<plan_exploration>);
+    return 1;
+  }
+  Value fields = Value::map();
+  fields.set("end", to_string(e.result.end));
+  fields.set("reason", explain(e.result.end));
+  fields.set("images", static_cast<std::int64_t>(e.result.steps.size()));
+  fields.set("efficiency", e.record.efficiency);
+  fields.set("observed_surface", e.result.observed());
+  fields.set("surface", e.result.surface);
+  fields.set("length", e.result.length());
+  fields.set("seconds", e.seconds);
+  fields.set("relative", e.record.oracle_efficiency > 0
+                             ? Value(e.record.efficiency / e.record.oracle_efficiency)
+                             : Value());
+  const Value* found = fields.find(field);
+  if (!found) refuse_field("an exploration", field, fields);
+  push_value(state, *found);
+  return 1;
+}
+
+}  // namespace
+
+int explore_surface(lua_State* state) {
+  MissionRun& run = run_of(state);
+  static constexpr std::string_view kObjects[] = {"surface", "map", "utility"};
+  const Parameters given = table_argument(state, 2, explore_table(), "explore", kObjects);
+  lua_getfield(state, 2, "surface");
+  const SurfaceObject& surface = object_argument<SurfaceObject>(state, -1, kSurfaceType);
+  lua_getfield(state, 2, "map");
+  const PluginChoice map = plugin_choice(state, -1, "map");
+  lua_getfield(state, 2, "utility");
+  const PluginChoice chosen = plugin_choice(state, -1, "utility");
+  const Registry& registry = *run.settings.registry;
+  auto e = std::make_shared<Exploration>();
+  e->settings = settings_of(given, run);
+  e->settings.show_truth = needs_truth(registry, chosen.type);
+  const auto utility = registry.create<ViewUtility>(chosen.type, chosen.parameters, "utility");
+  const auto new_map = [&] { return registry.create<Map>(map.type, map.parameters, "map"); };
+  e->map = new_map();
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  const double pitch = radians(given.table("camera").number("pitch_deg"));
+  const auto& starts = given.tables("start");
+  if (starts.size() > 1) throw InputError(given.origin("start"), "start: at most one");
+  std::shared_ptr<const MeshScene> scene = surface.scene;
+  Eigen::AlignedBox3d region = surface.region;
+  if (given.boolean("ground")) {
+    OpenWorld open = with_floor(scene->mesh());
+    scene = std::make_shared<MeshScene>(std::move(open.mesh), surface.name);
+    region = open.region;
+  }
+  std::optional<Eigen::Vector3d> inside;
+  if (!starts.empty()) inside = vector_of(starts[0].numbers("position"));
+  const GroundTruth truth(scene, region, e->map->grid().resolution(), inside);
+  if (starts.empty()) {
+    Random random(run.settings.seed);
+    e->start = random_start(truth, e->settings.clear, e->settings.sensor.range / 2, pitch, random);
+  } else {
+    e->start = {vector_of(starts[0].numbers("position")), starts[0].number("yaw"), pitch};
+  }
+  ObservedSurface observed(truth, e->settings.sensor, new_map);
+  ExplorationRecord& record = e->record;
+  record.utility = chosen.type;
+  e->result = explore(e->settings, e->start, truth, observed, *utility, *e->map,
+                      [&](const EpisodeMoment& moment) {
+                        if (is_moment(moment.step + 1, e->settings.steps))
+                          record.moments.push_back(
+                              {moment.step + 1, height_picture(*e->map, kMomentPixels).picture});
+                      });
+  const auto images = static_cast<int>(e->result.steps.size());
+  if (images > 0 && (record.moments.empty() || record.moments.back().images < images))
+    record.moments.push_back({images, height_picture(*e->map, kMomentPixels).picture});
+  for (const EpisodeStep& step : e->result.steps) {
+    record.observed.push_back(step.observed);
+    e->seconds += step.seconds;
+  }
+  run.solve_seconds += e->seconds;
+  record.end = explain(e->result.end);
+  record.surface = e->result.surface;
+  record.length = e->result.length();
+  record.efficiency = e->result.efficiency(e->settings.steps);
+  record_path(*e);
+  const bool stopped = e->result.end == EpisodeEnd::cancelled || e->result.end == EpisodeEnd::time;
+  if (given.boolean("compare") && !stopped) {
+    EpisodeSettings settings = e->settings;
+    settings.show_truth = true;
+    const auto oracle = registry.create<ViewUtility>("oracle");
+    ObservedSurface anew(truth, settings.sensor, new_map);
+    const auto other = new_map();
+    const EpisodeResult best = explore(settings, e->start, truth, anew, *oracle, *other);
+    record.oracle_efficiency = best.efficiency(settings.steps);
+    for (const EpisodeStep& step : best.steps) record.oracle.push_back(step.observed);
+  }
+  new_object(state, kExplorationType, ExplorationObject{std::move(e)});
+  return 1;
+}
+
+void open_explore_library(lua_State* state) {
+  define_type<ExplorationObject>(state, kExplorationType, nullptr, &guarded<exploration_field>);
+}
+
+}  // namespace lapwing

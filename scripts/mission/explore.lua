@@ -1,0 +1,169 @@
+-- Exploration: an agent that knows nothing looks, maps what it sees, scores the views that it could
+-- reach, goes to the best one, looks again (thesis chapter 5).
+--
+--   local explore = require "mission.explore"
+--   return explore.of_scene { name = "city", scene = "downtown" }
+--   return explore.of_mesh { name = "my mesh" }           -- --set input=FILE
+--
+-- `utility` says what a good view is: frontier, average_entropy, proximity_count, learned, or the
+-- oracle, who knows the surface. `map` is the backend alone; what every backend takes is settled
+-- here, since a learned utility is good for one mapping only.
+local M = {}
+
+local CAMERA = {
+  { name = "width", type = "integer", default = 160, minimum = 1, maximum = 10000,
+    summary = "pixels" },
+  { name = "height", type = "integer", default = 120, minimum = 1, maximum = 10000,
+    summary = "pixels" },
+  { name = "view_deg", type = "number", unit = "deg", default = 90, minimum = 1, maximum = 170,
+    summary = "angle across the image" },
+  { name = "pitch_deg", type = "number", unit = "deg", default = -10, minimum = -89, maximum = 89,
+    summary = "of every view, positive up" },
+  { name = "range", type = "number", unit = "m", default = 20, minimum = 0.1, maximum = 1000,
+    summary = "largest depth" },
+  { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
+    summary = "share of the pixels without a measurement" },
+  { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
+    summary = "noise of the depth" },
+  { name = "stereo_baseline", type = "number", unit = "m", above = 0,
+    summary = "depth by a pair of cameras so far apart; absent: as a depth camera has it" },
+}
+
+local MOVES = {
+  { name = "step", type = "number", unit = "m", default = 2.5, above = 0,
+    summary = "to a neighbour, along the camera's axes" },
+  { name = "turn_deg", type = "number", unit = "deg", default = 25, minimum = 1, maximum = 180,
+    summary = "to a neighbour" },
+  { name = "body", type = "number", unit = "m", default = 1, above = 0,
+    summary = "edge of the box that must be free" },
+  { name = "clear", type = "number", unit = "m", default = 6, above = 0,
+    summary = "edge of the box that is taken to be free at the start" },
+  { name = "visits", type = "integer", default = 2, minimum = 1, maximum = 100,
+    summary = "images from a viewpoint, then it is left out" },
+  { name = "speed", type = "number", unit = "m/s", default = 2, above = 0,
+    summary = "between viewpoints" },
+  { name = "turn_rate_deg", type = "number", unit = "deg/s", default = 60, above = 0,
+    summary = "on the spot" },
+  { name = "pause", type = "number", unit = "s", default = 0.5, minimum = 0,
+    summary = "at rest for an image" },
+}
+
+local SETTLED = "it is the exploration's: set "
+local OPTIONS = {
+  { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "what flies" },
+  { name = "utility", type = "plugin", kind = "utility", default = "learned",
+    summary = "how useful a view is" },
+  { name = "map", type = "plugin", kind = "map", default = "brick", summary = "the map's backend",
+    settled = { resolution = SETTLED .. "resolution", hit = SETTLED .. "hit",
+                miss = SETTLED .. "miss", maximum_range = SETTLED .. "camera.range",
+                observations = "an exploration needs them" } },
+  { name = "resolution", type = "number", unit = "m", default = 0.4, minimum = 0.01,
+    maximum = 10, summary = "edge of a voxel" },
+  { name = "hit", type = "number", default = 0.9, minimum = 0.501, maximum = 0.999,
+    summary = "probability that a voxel with a measured point is occupied" },
+  { name = "miss", type = "number", default = 0.1, minimum = 0.001, maximum = 0.499,
+    summary = "probability that a voxel that a ray passed is occupied" },
+  { name = "camera", type = "table", table = CAMERA, summary = "the depth camera" },
+  { name = "moves", type = "table", table = MOVES, summary = "where it can go from a viewpoint" },
+  { name = "steps", type = "integer", default = 200, minimum = 1, maximum = 1000000,
+    summary = "images at most" },
+  { name = "margin", type = "number", unit = "m", default = 0.4, minimum = 0,
+    summary = "kept from what the map holds at the end, as the certificate judges it" },
+  { name = "budget", type = "number", unit = "s", above = 0, summary = "of flight; absent: none" },
+  { name = "wall_clock_guard", type = "number", unit = "s", above = 0,
+    summary = "of computing; a run that it ends may not repeat" },
+  { name = "compare", type = "boolean", default = true,
+    summary = "let the oracle explore from the same start, for the report" },
+  { name = "start", type = "numbers", size = 3, unit = "m",
+    summary = "where it begins; absent: drawn by the run's seed" },
+  { name = "start_yaw_deg", type = "number", unit = "deg", default = 0, summary = "heading there" },
+  { name = "lower", type = "numbers", size = 3, unit = "m",
+    summary = "corner of a box that it stays in; with upper" },
+  { name = "upper", type = "numbers", size = 3, unit = "m", summary = "the other corner" },
+}
+
+local function options_with(more)
+  local all = {}
+  for _, list in ipairs { more, OPTIONS } do
+    for _, declared in ipairs(list) do all[#all + 1] = declared end
+  end
+  return all
+end
+
+local function map_of(o)
+  local made = type(o.map) == "table" and o.map or { type = o.map }
+  made.resolution, made.hit, made.miss = o.resolution, o.hit, o.miss
+  made.maximum_range, made.observations = o.camera.range, true
+  return made
+end
+
+-- Explores the surface, and what came of it as a plan.
+function M.explore(run, surface)
+  local o = run.options
+  if o.margin > o.moves.body / 2 then
+    run:fail("margin", "at most half of moves.body: a ball within the box that is kept free")
+  end
+  if (o.lower == nil) ~= (o.upper == nil) then
+    run:fail(o.lower and "lower" or "upper", "lower and upper belong together")
+  end
+  local vehicle = run:vehicle(o.vehicle)
+  local c, m = o.camera, o.moves
+  local done = run:explore {
+    surface = surface, map = map_of(o), utility = o.utility,
+    camera = { width = c.width, height = c.height, view_deg = c.view_deg,
+               pitch_deg = c.pitch_deg },
+    range = c.range, noise = { dropped = c.dropped, sigma = c.sigma },
+    stereo_baseline = c.stereo_baseline,
+    step = m.step, turn_deg = m.turn_deg, body = m.body, clear = m.clear, visits = m.visits,
+    speed = m.speed, turn_rate_deg = m.turn_rate_deg, pause = m.pause,
+    steps = o.steps, budget = o.budget, wall_clock_guard = o.wall_clock_guard,
+    compare = o.compare, ground = o.ground or false,
+    bounds = o.lower and { { lower = o.lower, upper = o.upper } } or {},
+    start = o.start and { { position = o.start, yaw = math.rad(o.start_yaw_deg) } } or {},
+  }
+  return done:plan { vehicle = vehicle, margin = o.margin }
+end
+
+local function mission(given, more, surface_of)
+  local name = given.name
+  given.name = nil
+  return {
+    kind = "explore", name = name,
+    options = lapwing.options(options_with(more), given),
+    plan = function(run) return M.explore(run, surface_of(run)) end,
+  }
+end
+
+-- A scene that scripts/scene makes.
+function M.of_scene(given)
+  return mission(given, {
+    { name = "scene", type = "text", summary = "a scene of scripts/scene: downtown, street, ..." },
+    { name = "scene_seed", type = "integer", default = 1, minimum = 0, maximum = 9007199254740991,
+      summary = "of the scene" },
+  }, function(run)
+    local o = run.options
+    local make = require("scene." .. o.scene)
+    if type(make) ~= "function" then
+      run:fail("scene", string.format(
+        "'%s' is a part of scenes, no scene: expected street, church, courtyard, suburb, "
+        .. "downtown or office", o.scene))
+    end
+    return run:surface(make { seed = o.scene_seed })
+  end)
+end
+
+-- A mesh file.
+function M.of_mesh(given)
+  return mission(given, {
+      { name = "input", type = "text", summary = "a mesh of the user's own" },
+      { name = "ground", type = "boolean", default = true,
+        summary = "lay a floor under it and explore above; false: a mesh that is gone into" },
+    }, function(run)
+      if not run.options.input then
+        lapwing.fail("a mesh: say which with --set input=PATH (.obj, .dae, .ply, ...)")
+      end
+      return run:read_surface(run.options.input)
+    end)
+end
+
+return M

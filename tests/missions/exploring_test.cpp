@@ -1,0 +1,133 @@
+// Explorations end to end.
+#include "tests/missions/flown_film.h"
+
+namespace lapwing {
+namespace {
+
+// A yard with two houses, 40 m wide.
+constexpr const char* kYard = R"(v -20 -20 0.1
+v 20 -20 0.1
+v 20 20 0.1
+v -20 20 0.1
+f 1 2 3 4
+v 6.1 -8.1 0.1
+v 14.1 -8.1 0.1
+v 14.1 2.1 0.1
+v 6.1 2.1 0.1
+v 6.1 -8.1 7.1
+v 14.1 -8.1 7.1
+v 14.1 2.1 7.1
+v 6.1 2.1 7.1
+f 9 10 11 12
+f 5 6 10 9
+f 6 7 11 10
+f 7 8 12 11
+f 8 5 9 12
+)";
+
+class Exploring : public Filming {
+ protected:
+  // The yard, with few images of few pixels.
+  std::string few(const std::string& more) {
+    const fs::path mesh = folder_ / "yard.obj";
+    write_file_atomically(mesh, kYard);
+    return "--config explore/small --set start=[0,0,4] --set input='" + mesh.string() + "' " + more;
+  }
+  Flown explore(const std::string& more, const char* out) {
+    return fly("../explore/own_mesh.lua", few(more), out);
+  }
+  // What is said of bad input; empty where it is taken.
+  std::string refusal(const std::string& more) {
+    const std::string errors = (folder_ / "errors.txt").string();
+    const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing run '" +
+                             (kExamples / "../explore/own_mesh.lua").string() +
+                             "' --quiet --out '" + (folder_ / "refused").string() + "' " + more +
+                             " 2> '" + errors + "'";
+    return WEXITSTATUS(std::system(line.c_str())) == 2 ? read_file(errors) : "";
+  }
+};
+
+TEST_F(Exploring, AMeshIsExploredTheSameByAnyNumberOfThreads) {
+  const Flown one = explore("--threads 1", "one"), two = explore("--threads 2", "two");
+  EXPECT_EQ(one.status, 0);
+  EXPECT_EQ(one.result.at("kind").as_text(), "explore");
+  const Value& figures = one.result.at("exploration");
+  EXPECT_GT(figures.at("efficiency").as_number(), figures.at("observed_surface").as_number());
+  EXPECT_GT(figures.at("observed_surface").as_number(), 50);
+  EXPECT_EQ(figures.at("images").as_integer(), 8);
+  EXPECT_EQ(read_file(one.folder / "plan.json"), read_file(two.folder / "plan.json"));
+  EXPECT_EQ(read_file(one.folder / "map.ot"), read_file(two.folder / "map.ot"));
+  const std::string report = read_file(one.folder / "report.html");
+  for (const char* section :
+       {"Growth of the map", "Candidates at the last step", "relative to the oracle"})
+    EXPECT_NE(report.find(section), std::string::npos) << section;
+}
+
+TEST_F(Exploring, UtilitiesAreSwappedByConfiguration) {
+  const double oracle = explore("--set utility=oracle", "oracle")
+                            .result.at("exploration")
+                            .at("relative_efficiency")
+                            .as_number();
+  EXPECT_DOUBLE_EQ(oracle, 1);
+  for (const char* utility : {"average_entropy", "proximity_count"}) {
+    const Flown flown = explore(std::string("--set utility=") + utility, utility);
+    EXPECT_EQ(flown.result.at("solver").at("name").as_text(), utility);
+  }
+}
+
+TEST_F(Exploring, BadInputIsNamed) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"--set start=[10,-3,3]", "obstacle"},
+      {"--set moves.step=4", "no neighbour"},
+      {"--set utility=learned --set camera.width=160 --set camera.height=120 --set resolution=0.2",
+       "resolution is 0.2, the model's 0.4"},
+      {"--set lower=[0,0,0]", "belong together"},
+      {"--set margin=0.6", "half of moves.body"},
+      {"--set map.resolution=0.2", "resolution"},
+      {"--set utility=frontiers", "frontier"}};
+  for (const auto& [more, expected] : cases)
+    EXPECT_NE(refusal(few(more)).find(expected), std::string::npos)
+        << more << ": " << refusal(few(more));
+  EXPECT_NE(refusal("").find("--set input=PATH"), std::string::npos);
+}
+
+TEST_F(Exploring, NothingToGainEndsItAndSaysSo) {
+  // From nine places it cannot leave; four ways to look, twice each.
+  const Flown flown = explore(
+      "--set steps=100 --set lower=[-2.6,-2.6,3] --set upper=[2.6,2.6,5] --set moves.turn_deg=90 "
+      "--set camera.pitch_deg=0 --set compare=false",
+      "small");
+  const std::string end = flown.result.at("exploration").at("end").as_text();
+  EXPECT_TRUE(end == "nothing_to_gain" || end == "no_way") << end;
+  EXPECT_LE(flown.result.at("exploration").at("images").as_integer(), 72);
+}
+
+// What was there is kept, what is missing is made again, and the tables are the same.
+TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
+  few("");  // writes the yard
+  const auto evaluate = [&](const std::string& more, const fs::path& out) {
+    const std::string line = std::string(LAPWING_BUILD_DIR) +
+                             "/bin/lapwing evaluate explore --world '" +
+                             (folder_ / "yard.obj").string() +
+                             "' --utility frontier --utility oracle --episodes 2 --steps 3 "
+                             "--quiet -o '" +
+                             out.string() + "' " + more;
+    return WEXITSTATUS(std::system(line.c_str()));
+  };
+  const fs::path whole = folder_ / "whole", broken = folder_ / "broken";
+  ASSERT_EQ(evaluate("--threads 2", whole), 0);
+  ASSERT_EQ(evaluate("--threads 1", broken), 0);
+  int removed = 0;
+  for (const auto& entry : fs::directory_iterator(broken / "episodes"))
+    if (++removed % 2 == 0) fs::remove(entry.path());
+  EXPECT_EQ(removed, 4);
+  fs::remove(broken / "table.csv");
+  ASSERT_EQ(evaluate("--resume", broken), 0);
+  for (const char* file : {"table.csv", "curves.csv", "report.html"})
+    EXPECT_EQ(read_file(whole / file), read_file(broken / file)) << file;
+  EXPECT_NE(read_file(whole / "table.csv").find("yard.obj,oracle,2"), std::string::npos);
+  EXPECT_EQ(evaluate("--resume --seed 5", broken), 2);  // other settings
+}
+
+}  // namespace
+}  // namespace lapwing

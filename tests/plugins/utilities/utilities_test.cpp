@@ -1,0 +1,131 @@
+// Hand-made utilities on small maps whose answers can be counted.
+#include <gtest/gtest.h>
+
+#include "framework/conformance/check.h"
+#include "framework/core/error.h"
+#include "tests/map/small_map.h"
+
+namespace lapwing {
+namespace {
+
+const Registry& registry() {
+  static const Registry registry({std::filesystem::path(LAPWING_BUILD_DIR) / "lib/plugins"});
+  return registry;
+}
+
+// A corridor of free voxels of 1 m along x, 1 x 1, from x = 0 to `length`; what is at its end is
+// said by `end`; a camera with so narrow a view that all rays stay in it.
+struct Corridor {
+  SmallMap map{1.0};
+  std::unique_ptr<MapMeans> means;
+  EpisodeView known;
+  Viewpoint view{{0.5, 0.5, 0.5}, 0, 0};
+
+  Corridor(int length, VoxelState end) {
+    std::vector<VoxelLeaf> leaves;
+    for (int x = 0; x < length; ++x) set(leaves, x, -2);
+    if (end == VoxelState::occupied) set(leaves, length, 2);
+    map.import(leaves);
+    refresh();
+  }
+  void set(std::vector<VoxelLeaf>& leaves, int x, float log_odds) {
+    leaves.push_back({map.grid().key({x + 0.5, 0.5, 0.5}), 0, 1, log_odds});
+  }
+  void add(int x, float log_odds) {
+    std::vector<VoxelLeaf> leaves;
+    set(leaves, x, log_odds);
+    map.import(leaves);
+    refresh();
+  }
+  void refresh() {
+    means = std::make_unique<MapMeans>(map);
+    means->touch(*map.bounds());
+    known = {&map, means.get(), {4, 4, 400, 400, 1.5, 1.5}, 10, 0, nullptr, 1};
+  }
+  double told(const std::string& name, const Value& given = Value::map()) const {
+    double value = -1;
+    registry().create<ViewUtility>(name, given)->score(known, {&view, 1}, {&value, 1});
+    return value;
+  }
+};
+
+Value one_ray_each() {
+  Value given = Value::map();
+  given.set("pixel_step", 1);
+  return given;
+}
+
+TEST(Frontier, CountsVoxelsAtTheBorderOnce) {
+  EXPECT_EQ(Corridor(4, VoxelState::unknown).told("frontier", one_ray_each()), 1);
+  EXPECT_EQ(Corridor(4, VoxelState::occupied).told("frontier", one_ray_each()), 0);
+  EXPECT_EQ(Corridor(12, VoxelState::unknown).told("frontier", one_ray_each()), 0);  // out of range
+  // A wide view from the middle of one free voxel meets nothing but its neighbours.
+  Corridor wide(1, VoxelState::unknown);
+  wide.known.pinhole = {40, 40, 20, 20, 19.5, 19.5};
+  const double all = wide.told("frontier", one_ray_each());
+  EXPECT_GE(all, 1);
+  EXPECT_LE(all, 5);
+}
+
+// 16 rays, each meets four free voxels of 2 bits below and the wall.
+TEST(AverageEntropy, DividesByTheVoxelsMet) {
+  const auto entropy = [](double log_odds) {
+    const double p = 1 / (1 + std::exp(-log_odds));
+    return -p * std::log2(p) - (1 - p) * std::log2(1 - p);
+  };
+  Corridor known(4, VoxelState::occupied);
+  EXPECT_NEAR(known.told("average_entropy", one_ray_each()), (4 * entropy(-2) + entropy(2)) / 5,
+              1e-5);
+  // Behind two unknown voxels: they count as one bit each.
+  Corridor gap(4, VoxelState::unknown);
+  gap.add(6, 2);
+  EXPECT_NEAR(gap.told("average_entropy", one_ray_each()), (4 * entropy(-2) + 2 + entropy(2)) / 7,
+              1e-5);
+  // A ray without an end does not count.
+  EXPECT_EQ(Corridor(4, VoxelState::unknown).told("average_entropy", one_ray_each()), 0);
+}
+
+// Behind a wall that is entered 3.5 m away: voxels at 1 m and 2 m behind it, of at most 3 m.
+TEST(ProximityCount, AddsWhatIsLeftOfTheDistance) {
+  Value given = one_ray_each();
+  given.set("maximum_distance", 2.5);
+  const Corridor wall(4, VoxelState::occupied);
+  // Nearly straight rays: 1 m and 2 m behind, 16 of them.
+  EXPECT_NEAR(wall.told("proximity_count", given), 16 * (1.5 + 0.5), 0.01);
+  Corridor measured(4, VoxelState::occupied);
+  measured.add(5, 2);
+  EXPECT_NEAR(measured.told("proximity_count", given), 16 * 0.5, 0.01);
+  EXPECT_EQ(Corridor(4, VoxelState::unknown).told("proximity_count", given), 0);
+}
+
+TEST(Oracle, SaysThatItNeedsTheTruth) {
+  const PluginEntry& entry = registry().find("utility", "oracle");
+  EXPECT_EQ(entry.extensions, std::vector<std::string>{kNeedsGroundTruth});
+  const Corridor corridor(4, VoxelState::occupied);
+  EXPECT_THROW(corridor.told("oracle"), InputError);
+  EXPECT_TRUE(registry().find("utility", "frontier").extensions.empty());
+}
+
+// Another value for every question.
+class Fickle final : public ViewUtility {
+  void values_of(const EpisodeView&, std::span<const Viewpoint>,
+                 std::span<double> values) const override {
+    for (double& value : values) value = ++asked_;
+  }
+  mutable double asked_ = 0;
+};
+
+TEST(Utilities, TheChecksFindWhatIsFickle) {
+  Specimen<ViewUtility> subject{"fickle", ParameterTable(),
+                                [](const Value&) { return std::make_unique<Fickle>(); }};
+  bool repeats = true, alone = true;
+  for (const CheckResult& result : check_utility(subject)) {
+    if (result.name == "repeatable") repeats = result.outcome == Outcome::passed;
+    if (result.name == "alone") alone = result.outcome == Outcome::passed;
+  }
+  EXPECT_FALSE(repeats);
+  EXPECT_FALSE(alone);
+}
+
+}  // namespace
+}  // namespace lapwing
