@@ -12,6 +12,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
+#include "framework/mission/vectors.h"
 
 namespace lapwing {
 namespace {
@@ -67,10 +68,6 @@ ParameterTable explore_table() {
       .boolean("ground", false, "lay a floor under the surface, and explore above it")
       .boolean("compare", false, "let the oracle explore from the same start");
   return table;
-}
-
-Eigen::Vector3d vector_of(std::span<const double> numbers) {
-  return {numbers[0], numbers[1], numbers[2]};
 }
 
 EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
