@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Pinhole kOverview{900, 560, 900, 900, 449.5, 279.5};
+constexpr Pinhole kOverview{720, 450, 720, 720, 359.5, 224.5};
 constexpr int kMostMapPixels = 700, kMostMotions = 2500, kMostCubes = 60'000;
 constexpr Rgb kPlainSurface = {176, 174, 168}, kCameraLines = {214, 60, 40};
 const Vector3d kGap = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());

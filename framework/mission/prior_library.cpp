@@ -60,7 +60,7 @@ Pinhole pinhole_of(const Parameters& given) {
 
 namespace {
 
-constexpr int kPictureWidth = 900, kPictureHeight = 560;  // pixels, of the scene
+constexpr int kPictureWidth = 720, kPictureHeight = 450;  // pixels, of the scene
 
 Prior& prior_argument(lua_State* state) {
   return *object_argument<PriorObject>(state, 1, kPriorType).prior;
@@ -95,7 +95,7 @@ int look(lua_State* state) {
   if (!prior.scene)
     prior.scene = mesh_picture(
         *surface.scene,
-        overview(surface.region, {kPictureWidth, kPictureHeight, 900, 900, 449.5, 279.5},
+        overview(surface.region, {kPictureWidth, kPictureHeight, 720, 720, 359.5, 224.5},
                  radians(60), radians(-35)),
         run.settings.threads);
   std::size_t done = 0;

@@ -247,6 +247,12 @@ int scan_graph_of_run(lua_State* state) {
   work->prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
   work->visible =
       std::make_shared<VisibleVoxels>(work->prior->mapping.map, work->prior->mesh, sight);
+  const TriangleMesh& known = work->prior->mesh->mesh();
+  if (std::none_of(known.vertices.begin(), known.vertices.end(),
+                   [&](const Eigen::Vector3d& p) { return sight.region.contains(p); }))
+    throw InputError(given.origin("region"),
+                     "the region of interest holds no surface: the prior mesh does not come into "
+                     "it, neither from the first flight nor from files");
   const auto space = space_of(*work->prior, given.number("mesh_room"));
   const std::vector<Viewpoint> starts =
       free_starts(given.tables("starts"), *space, settings.candidates);

@@ -44,6 +44,10 @@ local function room_of(run, starts)
     end
   end
   lower[3], upper[3] = lower[3] + o.floor, first.ceiling_of(run)
+  if lower[3] >= upper[3] then
+    run:fail("region", string.format("the tour would have to fly over %.4g m (region and floor) "
+                                     .. "and below %.4g m (ceiling)", lower[3], upper[3]))
+  end
   return { lower = lower, upper = upper }
 end
 

@@ -1,67 +1,8 @@
 // Scans end to end: a hut that is made here, flown over, planned on what that showed, and judged.
-#include <gmock/gmock.h>
-
-#include "tests/missions/flown_film.h"
+#include "tests/missions/scan_hut.h"
 
 namespace lapwing {
 namespace {
-
-using testing::HasSubstr;
-
-class Scanning : public Filming {
- protected:
-  void SetUp() override {
-    fs::create_directories(folder_ / "scene");
-    write_file_atomically(folder_ / "scene/hut.lua", R"(
-return function(options)
-  local scene = lapwing.scene { name = "hut", seed = options.seed }
-  scene:quad({-30, -30, 0}, {30, -30, 0}, {30, 30, 0}, {-30, 30, 0})
-  scene:box({-4, -3, 0}, {4, 3, 4})
-  scene:box({2, -1, 4}, {3, 0, 6})
-  scene:region({-6, -5, -0.4}, {6, 5, 7})
-  return scene
-end
-)");
-    write("hut.lua", "");
-  }
-
-  // The hut's mission, after `before`.
-  void write(const std::string& name, const std::string& before) {
-    write_file_atomically(folder_ / name, before + R"(
-local scan = require "mission.scan"
-return scan.of_scene {
-  name = "hut", scene = "hut", resolution = 0.4, range = 30, reach = 8,
-  tour = { budget = 70, iterations = 60 },
-  camera = { width = 80, height = 60, focal = 46 },
-  flights = { { pattern = "ellipse", views = 8, reach = 3, pitch_deg = -40, height = 14 },
-              { pattern = "meander", views = 12, reach = 1, height = 13 } },
-  safe_height = 9, surface = { spacing = 0.8, cell = 1, trim = 2 },
-  candidates = { most = 60, step = 2.5, distance_apart = 2 },
-  motions = { alpha = 0.3, coarse = 40 },
-}
-)");
-  }
-
-  int run(const std::string& more, const std::string& name = "hut.lua",
-          const std::string& out = "out") {
-    const std::string line =
-        std::string(LAPWING_BUILD_DIR) + "/bin/lapwing run '" + (folder_ / name).string() +
-        "' --json --quiet --out '" + (folder_ / out).string() + "' " + more + " > '" +
-        (folder_ / "stdout.json").string() + "' 2> '" + (folder_ / "stderr.txt").string() + "'";
-    return WEXITSTATUS(std::system(line.c_str()));
-  }
-  Value answer() const { return from_json(read_file(folder_ / "stdout.json"), "stdout"); }
-  std::string error() const { return read_file(folder_ / "stderr.txt"); }
-  std::string plan(const std::string& out = "out") const {
-    return read_file(folder_ / out / "plan.json");
-  }
-  std::string refused(const std::string& more) {
-    const int status = run(more, "hut.lua", "refused");
-    EXPECT_TRUE(status == 1 || status == 2) << status << ": " << more;
-    EXPECT_FALSE(fs::exists(folder_ / "refused/plan.json")) << more;
-    return error();
-  }
-};
 
 TEST_F(Scanning, AHutIsScannedAndCertified) {
   ASSERT_EQ(run(""), 0) << error();
@@ -115,31 +56,6 @@ end
   EXPECT_EQ(read_file(folder_ / "blind/prior.ply"), read_file(folder_ / "out/prior.ply"));
 }
 
-TEST_F(Scanning, SolversAreSwappedByConfigurationAlone) {
-  write_file_atomically(folder_ / "greedy.yaml", "tour: {solver: greedy, lazy: false}\n");
-  write("own.lua", "");
-  ASSERT_EQ(run(""), 0) << error();
-  const double best = answer().at("tour").at("score").as_number();
-  // The script's own `iterations` is none of theirs.
-  const std::string text = read_file(folder_ / "own.lua");
-  write_file_atomically(folder_ / "own.lua",
-                        std::string(text).replace(text.find(", iterations = 60"), 17, ""));
-  for (const std::string& more :
-       {std::string("--config '") + (folder_ / "greedy.yaml").string() + "'",
-        std::string("--set tour.solver=cost_benefit"),
-        std::string("--set tour.solver=recursive_greedy"), std::string("--set tour=greedy"),
-        std::string("--set tour.images=4 --set tour.iterations=30")}) {
-    ASSERT_EQ(run(more, "own.lua"), 0) << more << ": " << error();
-    EXPECT_LE(answer().at("tour").at("score").as_number(), 1.05 * best) << more;
-    EXPECT_GT(answer().at("tour").at("images").as_integer(), 1) << more;
-  }
-  EXPECT_LE(answer().at("tour").at("images").as_integer(), 4);
-  EXPECT_EQ(run("--set tour.solver=gredy", "own.lua"), 2);
-  EXPECT_THAT(error(), HasSubstr("greedy"));
-  EXPECT_EQ(run("--set tour.lazyness=1", "own.lua"), 2);
-  EXPECT_THAT(error(), HasSubstr("tour.lazyness"));
-}
-
 TEST_F(Scanning, ASecondPlanContinuesFromFilesOfTheFirst) {
   ASSERT_EQ(run(""), 0) << error();
   const std::string files =
@@ -166,9 +82,11 @@ return require("mission.scan").of_prior {
 TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set start=[0,0,2]"), HasSubstr("no free start"));
   EXPECT_THAT(refused("--set tour.budget=1"), HasSubstr("no tour of 1 s"));
+  EXPECT_THAT(refused("--set region.lower=[15,15,2] --set region.upper=[20,20,6]"),
+              HasSubstr("holds no surface"));
   EXPECT_THAT(refused("--set region.lower=[-6,-5,30] --set region.upper=[6,5,33] "
                       "--set safe_height=9"),
-              HasSubstr("region"));
+              HasSubstr("would have to fly over 32 m"));
   EXPECT_THAT(refused("--set motions.alpha=1"), HasSubstr("joined to the start"));
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));

@@ -38,14 +38,14 @@ struct World {
     settings.candidates.region = region;
     settings.candidates.allowed = AlignedBox3d(Vector3d(-10, -10, 0), Vector3d(10, 10, 10));
     settings.candidates.half = {0.5, 0.5, 0.25};
-    settings.candidates.most = 90;
+    settings.candidates.most = 40;
     settings.motions.allowed = settings.candidates.allowed;
     settings.motions.half = settings.candidates.half;
-    settings.coarse_across = 30;
+    settings.coarse_across = 20;
   }
   static SightSettings sight(const AlignedBox3d& region) {
     SightSettings s;
-    s.pinhole = {120, 90, 69, 69, 59.5, 44.5};
+    s.pinhole = {40, 30, 23, 23, 19.5, 14.5};
     s.range = 30;
     s.region = region;
     return s;
@@ -59,7 +59,7 @@ struct World {
 TEST(ScanGraph, ScoresWhatEveryViewSees) {
   World world;
   const ScanGraph graph = world.graph();
-  ASSERT_EQ(graph.score->views(), 90);
+  ASSERT_EQ(graph.score->views(), 40);
   ASSERT_EQ(graph.voxels.size(), graph.score->voxels());
   for (int view = 0; view < graph.score->views(); ++view) {
     const Viewpoint& at = graph.candidates.viewpoints[static_cast<std::size_t>(view)];
@@ -96,7 +96,7 @@ TEST(ScanGraph, KeepsARoomFromTheMeshAndJoinsViews) {
     if (std::abs(v.position.y()) < 4 && v.position.x() < 5) {
       EXPECT_LE(v.position.x(), 5 - 0.5 - 0.5 + 1e-9) << "half a body and half a metre";
     }
-  EXPECT_GT(graph.motions.motions.size(), 90u);
+  EXPECT_GT(graph.motions.motions.size(), 20u);
   EXPECT_GT(graph.motions.unmatched, 0);
 }
 
@@ -106,7 +106,7 @@ TEST(ScanGraph, ARegionThatNobodySeesIsSaid) {
     world.graph();
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("none of 90 candidates sees anything"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("none of 40 candidates sees anything"));
   }
 }
 

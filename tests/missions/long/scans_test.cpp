@@ -1,5 +1,5 @@
 // The shipped scans at their full size, and meshes of others.
-#include "tests/missions/flown_film.h"
+#include "tests/missions/scan_hut.h"
 
 namespace lapwing {
 namespace {
@@ -12,6 +12,31 @@ void expect_scan(const Flown& flown, const char* name) {
               tour.at("gap").as_number(), tour.at("seconds").as_number(),
               static_cast<long long>(tour.at("images").as_integer()));
   EXPECT_GT(tour.at("images").as_integer(), 5) << name;
+}
+
+TEST_F(Scanning, SolversAreSwappedByConfigurationAlone) {
+  write_file_atomically(folder_ / "greedy.yaml", "tour: {solver: greedy, lazy: false}\n");
+  write("own.lua", "");
+  ASSERT_EQ(run(""), 0) << error();
+  const double best = answer().at("tour").at("score").as_number();
+  // The script's own `iterations` is none of theirs.
+  const std::string text = read_file(folder_ / "own.lua");
+  write_file_atomically(folder_ / "own.lua",
+                        std::string(text).replace(text.find(", iterations = 60"), 17, ""));
+  for (const std::string& more :
+       {std::string("--config '") + (folder_ / "greedy.yaml").string() + "'",
+        std::string("--set tour.solver=cost_benefit"),
+        std::string("--set tour.solver=recursive_greedy"), std::string("--set tour=greedy"),
+        std::string("--set tour.images=4 --set tour.iterations=30")}) {
+    ASSERT_EQ(run(more, "own.lua"), 0) << more << ": " << error();
+    EXPECT_LE(answer().at("tour").at("score").as_number(), 1.05 * best) << more;
+    EXPECT_GT(answer().at("tour").at("images").as_integer(), 1) << more;
+  }
+  EXPECT_LE(answer().at("tour").at("images").as_integer(), 4);
+  EXPECT_EQ(run("--set tour.solver=gredy", "own.lua"), 2);
+  EXPECT_THAT(error(), HasSubstr("greedy"));
+  EXPECT_EQ(run("--set tour.lazyness=1", "own.lua"), 2);
+  EXPECT_THAT(error(), HasSubstr("tour.lazyness"));
 }
 
 TEST_F(Filming, ShippedScansAreCertified) {
