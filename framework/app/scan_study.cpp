@@ -410,7 +410,9 @@ class StudyRun {
       problems.emplace_back(std::move(definition));
     }
     say_(name + ": " + std::to_string(scan.viewpoints.size()) + " candidates, " +
-         std::to_string(missing.size()) + " rows");
+         std::to_string(problems.back().reachable().size()) +
+         " of them joined to the start within the budget; " + std::to_string(missing.size()) +
+         " rows");
     parallel_for(missing.size(), study_.threads, [&](std::size_t i) {
       if (cancellation_ && cancellation_->cancelled()) throw Cancelled();
       const RowPlace& at = missing[i];
