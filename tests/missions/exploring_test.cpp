@@ -91,18 +91,6 @@ TEST_F(Exploring, BadInputIsNamed) {
   EXPECT_NE(refusal("").find("--set input=PATH"), std::string::npos);
 }
 
-TEST_F(Exploring, NothingToGainEndsItAndSaysSo) {
-  // From nine places it cannot leave; two ways to look, once each.
-  const Flown flown = explore(
-      "--set steps=40 --set moves.visits=1 --set lower=[-2.6,-2.6,3] --set upper=[2.6,2.6,5] --set "
-      "moves.turn_deg=180 "
-      "--set camera.pitch_deg=0 --set compare=false",
-      "small");
-  const std::string end = flown.result.at("exploration").at("end").as_text();
-  EXPECT_TRUE(end == "nothing_to_gain" || end == "no_way") << end;
-  EXPECT_LE(flown.result.at("exploration").at("images").as_integer(), 18);
-}
-
 // What was there is kept, what is missing is made again, and the tables are the same.
 TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   few("");  // writes the yard
