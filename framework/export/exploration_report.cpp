@@ -89,8 +89,7 @@ Section candidates(const ExplorationRecord& record) {
     values.y.push_back(c.value);
   }
   drawing.lines.push_back(std::move(ticks));
-  section.blocks.push_back(
-      PathView{"Where they stand and look, coloured by utility", Projection::above, drawing});
+  section.blocks.push_back(Scene3D{"Where they stand and look, coloured by utility", drawing});
   Chart chart;
   chart.title = "Utility of each of the " + std::to_string(sorted.size()) + " candidates";
   chart.x = {"candidates, best first", "", false, true};

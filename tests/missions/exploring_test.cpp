@@ -91,17 +91,6 @@ TEST_F(Exploring, BadInputIsNamed) {
   EXPECT_NE(refusal("").find("--set input=PATH"), std::string::npos);
 }
 
-TEST_F(Exploring, NothingToGainEndsItAndSaysSo) {
-  // From nine places it cannot leave; four ways to look, twice each.
-  const Flown flown = explore(
-      "--set steps=100 --set lower=[-2.6,-2.6,3] --set upper=[2.6,2.6,5] --set moves.turn_deg=90 "
-      "--set camera.pitch_deg=0 --set compare=false",
-      "small");
-  const std::string end = flown.result.at("exploration").at("end").as_text();
-  EXPECT_TRUE(end == "nothing_to_gain" || end == "no_way") << end;
-  EXPECT_LE(flown.result.at("exploration").at("images").as_integer(), 72);
-}
-
 // What was there is kept, what is missing is made again, and the tables are the same.
 TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   few("");  // writes the yard
