@@ -72,7 +72,8 @@ local DECLARATIONS = {
     number("step", 1.5, "m", "between neighbours at the region", POSITIVE),
     number("step_growth", 0.2, "", "m more for every metre away from it", NOT_NEGATIVE),
     number("distance_apart", 1, "m", "or so far in angle", POSITIVE),
-    number("angle_apart_deg", 15, "deg", "or so far in distance", { minimum = 0, maximum = 180 }) } },
+    number("angle_apart_deg", 15, "deg", "or so far in distance",
+           { minimum = 0, maximum = 180 }) } },
   { name = "motions", type = "table", summary = "ways between views", table = {
     integer("neighbours", 12, 1, 1000, "that each view is tried with"),
     number("alpha", 0.4, "", "share that matchable views see in common", { minimum = 0,

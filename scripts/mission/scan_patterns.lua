@@ -1,4 +1,4 @@
--- Where a first flight takes its images: regular patterns at one height over a region (thesis 4.5.4).
+-- Where a first flight takes its images: patterns at one height over a region (thesis 4.5.4).
 local M = {}
 
 local function point(x, y, z, yaw, pitch)

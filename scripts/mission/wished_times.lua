@@ -29,7 +29,7 @@ local function paced(own, fixed)
   return list
 end
 
--- A first guess of the times that grants what is asked for: exact and preferred times, then windows.
+-- A first guess of the times that grants what is asked for: times first, then windows.
 local function guessed(shot, vehicle)
   local keyframes, own, fixed = {}, {}, {}
   for i, k in ipairs(shot.keyframes) do keyframes[i] = { position = k.position } end

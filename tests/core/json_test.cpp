@@ -7,7 +7,7 @@
 namespace lapwing {
 namespace {
 
-std::string json_refusal(const std::string& text) {
+std::string refused(const std::string& text) {
   try {
     from_json(text, "plan.json");
   } catch (const InputError& error) {
@@ -83,21 +83,21 @@ TEST(Json, RefusesWhatItCannotHold) {
 }
 
 TEST(Json, NamesLineAndColumnOfBadText) {
-  EXPECT_EQ(json_refusal("{\"a\": 1,\n \"a\": 2}"), "plan.json:2: repeated key 'a'");
-  const std::string truncated = json_refusal("{\n  \"samples\": [1, 2,");
+  EXPECT_EQ(refused("{\"a\": 1,\n \"a\": 2}"), "plan.json:2: repeated key 'a'");
+  const std::string truncated = refused("{\n  \"samples\": [1, 2,");
   EXPECT_EQ(truncated.rfind("plan.json:2:20: invalid JSON: ", 0), 0u) << truncated;
   for (const char* text : {"",    " ",     "{",     "[1 2]", "{\"a\" 1}", "{a: 1}",     "[1,]",
                            "nan", "[NaN]", "'a'",   "{} {}", "\x80",      "\"\xc3\"",   "\"unended",
                            "01",  "1.",    "1e999", "tru",   "[1]]",      "\"\\ud800\""}) {
-    EXPECT_EQ(json_refusal(text).rfind("plan.json:", 0), 0u) << text << " -> " << json_refusal(text);
+    EXPECT_EQ(refused(text).rfind("plan.json:", 0), 0u) << text << " -> " << refused(text);
   }
 }
 
 TEST(Json, RefusesDepthThatWouldExhaustTheStack) {
   const std::string deep(1000000, '[');
-  EXPECT_NE(json_refusal(deep).find("nested deeper than 200"), std::string::npos);
+  EXPECT_NE(refused(deep).find("nested deeper than 200"), std::string::npos);
   const std::string allowed = std::string(200, '[') + std::string(200, ']');
-  EXPECT_EQ(json_refusal(allowed), "accepted");
+  EXPECT_EQ(refused(allowed), "accepted");
 }
 
 TEST(Json, LargeIntegersBecomeNumbers) {

@@ -27,13 +27,13 @@ Value parsed(const std::string& json) {
   return from_json(json, "shot.yaml");
 }
 
-std::string table_refusal(const ParameterTable& table, const Value& given) {
+std::string why_not(const ParameterTable& table, const Value& given) {
   Diagnostics errors;
   check(table, given, "", errors);
   return errors.to_string();
 }
-std::string table_refusal(const std::string& json) {
-  return table_refusal(film(), parsed(json));
+std::string why_not(const std::string& json) {
+  return why_not(film(), parsed(json));
 }
 
 TEST(Parameters, FillsInDefaultsAndSaysSo) {
@@ -68,7 +68,7 @@ TEST(Parameters, ReadsWhatIsGivenWithItsOrigin) {
 }
 
 TEST(Parameters, CollectsEveryError) {
-  EXPECT_EQ(table_refusal("{\"wieght\": 1,\n\"speed\": \"3 kg\",\n\"order\": 5,\n\"stretch\": \"atuo\"}"),
+  EXPECT_EQ(why_not("{\"wieght\": 1,\n\"speed\": \"3 kg\",\n\"order\": 5,\n\"stretch\": \"atuo\"}"),
             "shot.yaml:1: wieght: unknown key; did you mean 'weight'?\n"
             "shot.yaml:2: speed: '3 kg' is no quantity in m/s; expected a number in m/s, or a text "
             "with a unit of that kind\n"
@@ -77,30 +77,30 @@ TEST(Parameters, CollectsEveryError) {
 }
 
 TEST(Parameters, RefusesEachMistakeInItsPlace) {
-  EXPECT_EQ(table_refusal(R"({"zzzzzz": 1})"),
+  EXPECT_EQ(why_not(R"({"zzzzzz": 1})"),
             "shot.yaml:1: zzzzzz: unknown key; known: weight, speed, order, closed, name, stretch, "
             "yaw_deg, start, keyframes");
-  EXPECT_EQ(table_refusal(R"({"keyframes": [{"position": [1, 2, 3]}, {"position": [1, 2]}]})"),
+  EXPECT_EQ(why_not(R"({"keyframes": [{"position": [1, 2, 3]}, {"position": [1, 2]}]})"),
             "shot.yaml:1: keyframes[2].position: expected a list of 3 numbers in m, got 2");
-  EXPECT_EQ(table_refusal(R"({"keyframes": [{"position": [1, "x", 3]}]})"),
+  EXPECT_EQ(why_not(R"({"keyframes": [{"position": [1, "x", 3]}]})"),
             "shot.yaml:1: keyframes[1].position[2]: 'x' is no quantity in m; expected a number in "
             "m, or a text with a unit of that kind");
-  EXPECT_EQ(table_refusal(R"({"keyframes": [{}]})"),
+  EXPECT_EQ(why_not(R"({"keyframes": [{}]})"),
             "shot.yaml:1: keyframes[1].position: missing; expected a list of 3 numbers in m");
-  EXPECT_EQ(table_refusal(R"({"start": {"velocity": {"x": 1}}})"),
+  EXPECT_EQ(why_not(R"({"start": {"velocity": {"x": 1}}})"),
             "shot.yaml:1: start.velocity: expected a list of 3 numbers in m/s, got a map");
-  EXPECT_EQ(table_refusal(R"({"weight": -1})"), "shot.yaml:1: weight: expected at least 0, got -1");
-  EXPECT_EQ(table_refusal(R"({"speed": 0})"), "shot.yaml:1: speed: expected above 0 m/s, got 0");
-  EXPECT_EQ(table_refusal(R"({"weight": "1"})"), "shot.yaml:1: weight: expected a number, got '1'");
-  EXPECT_EQ(table_refusal(R"({"weight": null})"), "shot.yaml:1: weight: expected a number, got nothing");
-  EXPECT_EQ(table_refusal(R"({"order": 2.5})"), "shot.yaml:1: order: expected an integer, got 2.5");
-  EXPECT_EQ(table_refusal(R"({"closed": 1})"), "shot.yaml:1: closed: expected true or false, got 1");
-  EXPECT_EQ(table_refusal(R"({"name": 3})"), "shot.yaml:1: name: expected a text, got 3");
-  EXPECT_EQ(table_refusal(R"({"start": 3})"), "shot.yaml:1: start: expected a table, got 3");
-  EXPECT_EQ(table_refusal(R"({"keyframes": 3})"),
+  EXPECT_EQ(why_not(R"({"weight": -1})"), "shot.yaml:1: weight: expected at least 0, got -1");
+  EXPECT_EQ(why_not(R"({"speed": 0})"), "shot.yaml:1: speed: expected above 0 m/s, got 0");
+  EXPECT_EQ(why_not(R"({"weight": "1"})"), "shot.yaml:1: weight: expected a number, got '1'");
+  EXPECT_EQ(why_not(R"({"weight": null})"), "shot.yaml:1: weight: expected a number, got nothing");
+  EXPECT_EQ(why_not(R"({"order": 2.5})"), "shot.yaml:1: order: expected an integer, got 2.5");
+  EXPECT_EQ(why_not(R"({"closed": 1})"), "shot.yaml:1: closed: expected true or false, got 1");
+  EXPECT_EQ(why_not(R"({"name": 3})"), "shot.yaml:1: name: expected a text, got 3");
+  EXPECT_EQ(why_not(R"({"start": 3})"), "shot.yaml:1: start: expected a table, got 3");
+  EXPECT_EQ(why_not(R"({"keyframes": 3})"),
             "shot.yaml:1: keyframes: expected a list of tables, got 3");
-  EXPECT_EQ(table_refusal("[1]"), "shot.yaml:1: expected a table, got a list");
-  EXPECT_EQ(table_refusal(ParameterTable{}, parsed(R"({"a": 1})")),
+  EXPECT_EQ(why_not("[1]"), "shot.yaml:1: expected a table, got a list");
+  EXPECT_EQ(why_not(ParameterTable{}, parsed(R"({"a": 1})")),
             "shot.yaml:1: a: unknown key; no key is accepted here");
 }
 
@@ -108,16 +108,16 @@ TEST(Parameters, RefusesNumbersThatAreNone) {
   for (const double number : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     Value given = Value::map();
     given.set("weight", number);
-    EXPECT_NE(table_refusal(film(), given).find("expected a finite number"), std::string::npos);
+    EXPECT_NE(why_not(film(), given).find("expected a finite number"), std::string::npos);
     Value order = Value::map();
     order.set("order", number);
-    EXPECT_NE(table_refusal(film(), order).find("expected an integer"), std::string::npos);
+    EXPECT_NE(why_not(film(), order).find("expected an integer"), std::string::npos);
   }
 }
 
 TEST(Parameters, AnEmptyLuaTableIsListAndMap) {
-  EXPECT_EQ(table_refusal(R"({"keyframes": {}, "start": []})"), "");
-  EXPECT_EQ(table_refusal("[]"), "");
+  EXPECT_EQ(why_not(R"({"keyframes": {}, "start": []})"), "");
+  EXPECT_EQ(why_not("[]"), "");
 }
 
 TEST(Parameters, ReadingAnUndeclaredNameIsADefect) {
@@ -134,8 +134,8 @@ TEST(Parameters, TablesSurviveTheWayThroughJson) {
   const Value written = film().to_value();
   const ParameterTable back = ParameterTable::from_value(from_json(to_json(written), "sidecar"));
   EXPECT_EQ(back.to_value(), written);
-  EXPECT_EQ(table_refusal(back, parsed(R"({"speed": 0, "keyframes": [{}]})")),
-            table_refusal(R"({"speed": 0, "keyframes": [{}]})"));
+  EXPECT_EQ(why_not(back, parsed(R"({"speed": 0, "keyframes": [{}]})")),
+            why_not(R"({"speed": 0, "keyframes": [{}]})"));
   EXPECT_EQ(check(back, Value()).value(), check(film(), Value()).value());
   Value broken = written;
   broken.as_list()[0].set("type", "nubmer");
