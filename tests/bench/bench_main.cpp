@@ -111,8 +111,8 @@ bool memory(const Medians& medians, const char* ours, const char* opponent, doub
 bool maps_hold(const Medians& medians) {
   bool held = true;
   for (const char* mode : {"discretised", "exact"}) {
-    const std::string brick = std::string("map_insert/brick_") + mode + "/iterations:1";
-    const std::string octomap = std::string("map_insert/octomap_") + mode + "/iterations:1";
+    const std::string brick = std::string("map_insert/brick_") + mode;
+    const std::string octomap = std::string("map_insert/octomap_") + mode;
     const bool exact = mode[0] == 'e';
     held &= map_ratio(medians, brick.c_str(), octomap.c_str(), exact ? 4 : 6);
     held &= memory(medians, brick.c_str(), octomap.c_str(), 1.5);
@@ -123,7 +123,7 @@ bool maps_hold(const Medians& medians) {
          map_ratio(medians, "map_cast_street/brick", "map_cast_street/octomap", 10) &
          map_ratio(medians, "map_cast_street/brick", "map_castRay_street", 10) &
          map_ratio(medians, "map_cast_room/brick", "map_castRay_room", 5) &
-         at_most(medians, "map_view/real_time", 1, 25, true) &
+         at_most(medians, "map_view", 1, 25, true) &
          at_most(medians, "map_sweep/brick_10000", 1, 200, false);
 }
 
