@@ -79,6 +79,12 @@ TEST(Gates, HaveAnOrderAndADirection) {
             std::string::npos);
 }
 
+TEST(Gates, OnePassageIsOneGate) {
+  EXPECT_FALSE(gates_of(gliding(), {window(3.3), window(3.3)}).pass);
+  EXPECT_FALSE(gates_of(gliding(), {window(4), window(4)}).pass) << "at the end of a chord";
+  EXPECT_TRUE(gates_of(gliding(), {window(3.3), window(3.301)}).pass) << "two within one chord";
+}
+
 TEST(Gates, TunnelsAreHeldFromEndToEnd) {
   EXPECT_TRUE(gates_of(gliding(), {window(5, 0, 8)}).pass);
   // Half a degree more and the tunnel is left before its end: 4 m * tan(4 degrees) is 0.28 m.
