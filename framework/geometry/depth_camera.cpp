@@ -56,6 +56,18 @@ Vector3d pixel_ray(const Pinhole& pinhole, double x, double y) {
           1};
 }
 
+std::vector<Vector3d> tiled_pixel_rays(const Pinhole& pinhole) {
+  constexpr int kTile = 8;
+  std::vector<Vector3d> rays;
+  rays.reserve(static_cast<std::size_t>(pinhole.width) * static_cast<std::size_t>(pinhole.height));
+  for (int top = 0; top < pinhole.height; top += kTile)
+    for (int left = 0; left < pinhole.width; left += kTile)
+      for (int y = top; y < std::min(top + kTile, pinhole.height); ++y)
+        for (int x = left; x < std::min(left + kTile, pinhole.width); ++x)
+          rays.push_back(pixel_ray(pinhole, x, y).normalized());
+  return rays;
+}
+
 Pose camera_pose(const Vector3d& position, double yaw, double pitch) {
   const CameraAxes<double> axes = camera_axes(yaw, pitch);
   Eigen::Matrix3d to_world;

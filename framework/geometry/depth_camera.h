@@ -11,6 +11,10 @@ namespace lapwing {
 
 // Towards a pixel, in the camera's frame (x right, y down, z forward), with z = 1.
 Eigen::Vector3d pixel_ray(const Pinhole& pinhole, double x, double y);
+// Unit vectors through all pixels, tile by tile of 8 x 8 from the upper left, row by row in each:
+// neighbours in the list are neighbours in the image both ways, which is how a map casts a view
+// quickest.
+std::vector<Eigen::Vector3d> tiled_pixel_rays(const Pinhole& pinhole);
 // A camera that looks along yaw and pitch (rad, positive up), its image level.
 Pose camera_pose(const Eigen::Vector3d& position, double yaw, double pitch);
 

@@ -84,6 +84,7 @@ class Map {
   // `hits` has as many places as there are rays. InputError naming the ray that starts outside
   // the largest map, whose direction is no unit vector or whose range is not positive and finite.
   // What is outside the largest map is unknown: the voxel is then the last one inside.
+  // Of a view, in the order of `tiled_pixel_rays`, it is quickest.
   void cast(std::span<const MapRay> rays, std::span<MapRayHit> hits) const;
 
   // Whether every voxel that the inside of the box meets is free; unknown ones block, and so does
@@ -113,6 +114,7 @@ class Map {
                       const Eigen::Vector3f& origin_W) = 0;
   // Log odds already within the clamps.
   virtual void assign(std::span<const VoxelLeaf> leaves) = 0;
+  // Called from several threads at once, each with rays of its own.
   virtual void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const = 0;
   virtual void means_checked(int level, std::span<const VoxelKey> keys,
                              std::span<MeanReading> means) const = 0;

@@ -33,8 +33,8 @@ function(lapwing_add_plugin kind name)
   if(NOT LAPWING_SANITIZE)
     target_link_options(${target} PRIVATE -Wl,--no-undefined)
   endif()
-  if(TARGET lapwing_plugin_precompiled)
-    target_precompile_headers(${target} REUSE_FROM lapwing_plugin_precompiled)
+  if(TARGET lapwing_precompiled)  # not where lapwing is installed
+    target_precompile_headers(${target} REUSE_FROM lapwing_precompiled)
   endif()
   add_custom_command(TARGET ${target} POST_BUILD
     COMMAND lapwing_sidecar $<TARGET_FILE:${target}> ${PLUGIN_OUTPUT}/${name}.json

@@ -55,19 +55,23 @@ VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<con
       !map_->grid().contains(settings_.region.max() + reach))
     throw InputError("the region of interest lies too far out for a map of this resolution");
   region_ = voxels_within(settings_.region, map_->grid());
+  rays_ = tiled_pixel_rays(settings_.pinhole);
 }
 
 std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
-                                               const Pinhole& pinhole) const {
+                                               std::span<const Vector3d> directions_C) const {
+  constexpr std::size_t kAtOnce = 1024;  // few enough to stay at hand
   const Pose camera = viewpoint.camera();
   const Eigen::Matrix3d r = camera.orientation.toRotationMatrix();
-  std::vector<MapRay> rays(static_cast<std::size_t>(pinhole.width));
-  std::vector<MapRayHit> hits(rays.size());
+  std::vector<MapRay> rays;
+  std::vector<MapRayHit> hits;
   std::vector<VoxelKey> keys;
-  for (int y = 0; y < pinhole.height; ++y) {
-    for (int x = 0; x < pinhole.width; ++x)
-      rays[static_cast<std::size_t>(x)] = {
-          camera.position, (r * pixel_ray(pinhole, x, y)).normalized(), settings_.range};
+  for (std::size_t first = 0; first < directions_C.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, directions_C.size() - first);
+    rays.resize(count);
+    hits.resize(count);
+    for (std::size_t k = 0; k < count; ++k)
+      rays[k] = {camera.position, r * directions_C[first + k], settings_.range};
     map_->cast(rays, hits);
     for (const MapRayHit& hit : hits) {
       if (hit.state == VoxelState::free || !region_.contains(hit.voxel)) continue;
@@ -82,7 +86,7 @@ std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
 std::vector<SeenVoxel> VisibleVoxels::seen_from(const Viewpoint& viewpoint) const {
   const double edge = map_->grid().resolution();
   std::vector<SeenVoxel> seen;
-  for (const VoxelKey& key : keys_from(viewpoint, settings_.pinhole)) {
+  for (const VoxelKey& key : keys_from(viewpoint, rays_)) {
     const Vector3d towards = map_->grid().center(key) - viewpoint.position;
     const double distance = towards.norm();
     VoxelSight sight{static_cast<float>(distance), 0, std::nullopt};
@@ -106,7 +110,7 @@ std::vector<VoxelKey> VisibleVoxels::seen_coarsely_from(const Viewpoint& viewpoi
                                                         int across) const {
   if (across < 1 || across > settings_.pinhole.width)
     throw InputError("a coarse view must have from 1 to as many pixels across as the camera");
-  return keys_from(viewpoint, coarser(settings_.pinhole, across));
+  return keys_from(viewpoint, tiled_pixel_rays(coarser(settings_.pinhole, across)));
 }
 
 bool matchable(const std::vector<VoxelKey>& a, const std::vector<VoxelKey>& b, double alpha) {

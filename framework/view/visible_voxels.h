@@ -45,12 +45,14 @@ class VisibleVoxels {
   std::vector<VoxelKey> seen_coarsely_from(const Viewpoint& viewpoint, int across) const;
 
  private:
-  std::vector<VoxelKey> keys_from(const Viewpoint& viewpoint, const Pinhole& pinhole) const;
+  std::vector<VoxelKey> keys_from(const Viewpoint& viewpoint,
+                                  std::span<const Eigen::Vector3d> directions_C) const;
 
   std::shared_ptr<const Map> map_;
   std::shared_ptr<const MeshScene> prior_;
   SightSettings settings_;
   VoxelBox region_;
+  std::vector<Eigen::Vector3d> rays_;  // unit vectors of the camera, tile by tile
 };
 
 // Whether two views can be matched: they share at least `alpha` of the mean of what they see (4.8).

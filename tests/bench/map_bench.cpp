@@ -103,17 +103,16 @@ std::vector<MapRay> room_rays() {
   return rays;
 }
 
-// 60 m rays through the street: pixel by pixel of views of 600 x 450 from within it (thesis 4.9),
+// 60 m rays through the street: all pixels of views of 600 x 450 from within it (thesis 4.9), in the
+// order in which VisibleVoxels asks for them,
 // ...
 std::vector<MapRay> view_rays(int view) {
   std::vector<MapRay> rays;
   const Pinhole pinhole{600, 450, 345, 345, 299.5, 224.5};
   const Pose camera =
       camera_pose({-36 + 8.0 * view, 1.5 * std::sin(view), 2.0 + view % 4 * 3}, 1.1 * view, -0.2);
-  for (int y = 0; y < pinhole.height; ++y)
-    for (int x = 0; x < pinhole.width; ++x)
-      rays.push_back(
-          {camera.position, (camera.orientation * pixel_ray(pinhole, x, y)).normalized(), 60});
+  for (const Eigen::Vector3d& ray_C : tiled_pixel_rays(pinhole))
+    rays.push_back({camera.position, (camera.orientation * ray_C).normalized(), 60});
   return rays;
 }
 

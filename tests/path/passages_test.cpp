@@ -109,7 +109,9 @@ TEST(Corridors, AreFreeAndHoldTheWay) {
   EXPECT_EQ(boxes.back().to, 1);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const CorridorBox& b = boxes[i];
-    if (i > 0) EXPECT_EQ(b.from, boxes[i - 1].to);
+    if (i > 0) {
+      EXPECT_EQ(b.from, boxes[i - 1].to);
+    }
     EXPECT_TRUE(bounds.contains(b.box));
     EXPECT_TRUE(space->swept_box_free(b.box.center(), b.box.center(), b.box.sizes() / 2));
     for (int k = 0; k <= 20; ++k) {

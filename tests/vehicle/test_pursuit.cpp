@@ -48,7 +48,9 @@ TEST(Pursuit, SlowsDownBeforeAViewAndRestsInIt) {
     const ViewPassed& view = flown.views[i];
     EXPECT_NEAR(view.departure - view.arrival, 1, 1e-9);
     EXPECT_LT(view.miss, 0.03);
-    if (i > 0) EXPECT_GT(view.arrival, flown.views[i - 1].departure);
+    if (i > 0) {
+      EXPECT_GT(view.arrival, flown.views[i - 1].departure);
+    }
     for (const Sample& s : flown.trajectory.samples) {
       if (s.time >= view.arrival && s.time < view.departure) {
         EXPECT_LT(speed_at(s), 0.05) << s.time;
@@ -57,8 +59,9 @@ TEST(Pursuit, SlowsDownBeforeAViewAndRestsInIt) {
       }
       const bool next = s.time < view.arrival && (i == 0 || s.time > flown.views[i - 1].departure);
       const double left = (s.position - kPath[kViews[i].point]).norm();
-      if (next && left < settings.slow_within)
+      if (next && left < settings.slow_within) {
         EXPECT_LT(speed_at(s), settings.view_speed + 0.1) << s.time << " s, " << left << " m";
+      }
     }
   }
 }
@@ -119,8 +122,9 @@ TEST(Pursuit, TheWholeQuadrotorFollows) {
   EXPECT_LT(calm.saturated_share, 0.005);
   for (std::size_t i = 0; i < kViews.size(); ++i)
     for (const FlownSample& s : calm.samples)
-      if (s.time > flown.views[i].arrival + 0.5 && s.time < flown.views[i].departure)
+      if (s.time > flown.views[i].arrival + 0.5 && s.time < flown.views[i].departure) {
         EXPECT_LT((s.state.position - kPath[kViews[i].point]).norm(), 0.08) << s.time;
+      }
   const FlownPath windy =
       fly(flown.trajectory, vehicle, {.wind_mean = 4, .wind_gust = 1, .seed = 3});
   EXPECT_FALSE(windy.lost);

@@ -105,13 +105,13 @@ TEST(RaceFlight, LeftCutsTheCornerAndRightGoesWide) {
   ASSERT_EQ(cut.end, RaceEnd::finished);
   ASSERT_EQ(wide.end, RaceEnd::finished);
   EXPECT_LT(cut.time, wide.time);
-  const auto nearest = [](const RaceFlight& flight) {
+  const auto nearest_to_gate = [](const RaceFlight& flight) {
     double nearest = 1e300;
     for (const RaceSample& sample : flight.samples)
       nearest = std::min(nearest, (sample.state.position - Eigen::Vector3d(4, 6, 3)).norm());
     return nearest;
   };
-  EXPECT_LT(nearest(cut), nearest(wide) - 0.5);
+  EXPECT_LT(nearest_to_gate(cut), nearest_to_gate(wide) - 0.5);
 }
 
 TEST(RaceFlight, TheFullStickEndsAsFarAsThePilotReaches) {

@@ -17,7 +17,7 @@ using namespace brick_map;
 
 namespace {
 
-constexpr std::size_t kRaysAPart = 1024, kBricksAPart = 16;
+constexpr std::size_t kBricksAPart = 16;
 
 class BrickMap : public Map {
  public:
@@ -40,12 +40,7 @@ class BrickMap : public Map {
 
  protected:
   void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const override {
-    const std::size_t parts = (rays.size() + kRaysAPart - 1) / kRaysAPart;
-    parallel_for(parts, threads(), [&](std::size_t part) {
-      const std::size_t first = part * kRaysAPart;
-      const std::size_t count = std::min(rays.size() - first, kRaysAPart);
-      cast_rays(bricks_, settings(), rays.subspan(first, count), hits.subspan(first, count));
-    });
+    cast_rays(bricks_, settings(), rays, hits);
   }
 
   bool sweep_checked(const SweptBox& box) const override { return sweep_free(bricks_, box); }

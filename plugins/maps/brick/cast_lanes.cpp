@@ -12,7 +12,7 @@ using FourInt = std::int32_t __attribute__((vector_size(16)));
 
 // More than one group of four hides how long each waits for its numbers.
 constexpr int kGroups = 2, kLanes = 4 * kGroups;
-constexpr std::size_t kBeam = 32;  // rays
+constexpr std::size_t kBeam = 64;  // rays: a tile of a view
 
 // Cells are mirrored along the axes on which a ray descends, so that every ray ascends; aligned
 // cubes stay aligned.
@@ -253,11 +253,17 @@ class Caster {
     return false;
   }
 
-  const Block* find_block(const Lanes& lanes, const Lane& of, int k) const {
+  const Block* find_block(const Lanes& lanes, const Lane& of, int k) {
     const int x = lanes.cell[0][k], y = lanes.cell[1][k], z = lanes.cell[2][k];
     if ((x | y | z) & ~0xffff) return nullptr;
     const int cell[3] = {x ^ of.mirror[0], y ^ of.mirror[1], z ^ of.mirror[2]};
-    return bricks_.find(cell);
+    // Rays of a view start in the same block.
+    const std::int32_t key = cell[0] >> 6 | (cell[1] >> 6) << 10 | (cell[2] >> 6) << 20;
+    if (key != found_key_) {
+      found_key_ = key;
+      found_ = bricks_.find(cell);
+    }
+    return found_;
   }
 
   VoxelState state_of_brick(const Block& block, unsigned at) const {
@@ -386,7 +392,7 @@ class Caster {
       most = most.cwiseMax(ray.direction);
       range = std::min(range, ray.range);
     }
-    if (beam_end_ - next_ < kBeam / 4) return;
+    if (beam_end_ - next_ < 8) return;
     const double shortest = 2 * settings_.resolution;
     double step = 16 * settings_.resolution;
     while (step >= shortest) {
@@ -422,6 +428,8 @@ class Caster {
   std::span<MapRayHit> hits_;
   std::size_t next_ = 0, beam_first_ = 0, beam_end_ = 0;
   double beam_free_ = 0;          // m
+  std::int32_t found_key_ = -1;   // of the block that was looked up last
+  const Block* found_ = nullptr;
   unsigned done_ = 0, busy_ = 0;  // lanes, as bits
   Starts starts_;
   Lanes lanes_[kGroups] = {};

@@ -8,7 +8,7 @@ file(MAKE_DIRECTORY ${folder})
 
 # The tree: the kernel's headers as they are, the plugins' list as it is, and the new folder.
 file(CREATE_LINK ${LAPWING_SOURCE_DIR}/framework ${root}/source/framework SYMBOLIC)
-file(COPY ${LAPWING_SOURCE_DIR}/plugins/CMakeLists.txt ${LAPWING_SOURCE_DIR}/plugins/precompiled.cpp
+file(COPY ${LAPWING_SOURCE_DIR}/plugins/CMakeLists.txt
      DESTINATION ${root}/source/plugins)
 file(COPY ${LAPWING_SOURCE_DIR}/tests/plugins/copied_term/CMakeLists.txt DESTINATION ${root}/source)
 file(READ ${LAPWING_SOURCE_DIR}/plugins/cost_terms/derivative/derivative.cpp text)

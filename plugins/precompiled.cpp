@@ -1,1 +1,0 @@
-// Carries the header that all plugins share precompiled; see CMakeLists.txt.
