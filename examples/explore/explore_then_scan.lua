@@ -1,5 +1,5 @@
--- A church that nobody has seen before: the drone explores it, then scans it for a 3D model with the
--- map and the mesh that it made, in one visit.
+-- A church that nobody has seen before: the drone explores it, then scans it for a 3D model with
+-- the map and the mesh that it made, in one visit.
 --   --set exploration.utility=frontier --set exploration.images=80
 local scan = require "mission.scan"
 

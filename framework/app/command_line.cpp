@@ -350,6 +350,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
                "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
   add_text(*dataset, "--explorer", "NAME", "the utility that explores; else the oracle",
            [&](const std::string& given) { request.explorer = given; });
+  add_repeated(*dataset, "--explorer-set", "KEY=VALUE", request.explorer_overrides,
+               "set one parameter of the utility that explores, as model=FILE");
   add_count(*dataset, "--episodes", 1, 100'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*dataset, "--steps", 1, 100'000, "of each episode",

@@ -1,5 +1,5 @@
--- An exploration in place of a scan's first flight (thesis 6.1): a drone that knows nothing maps the
--- place, then scans with the map and the mesh that it made, in one visit.
+-- An exploration in place of a scan's first flight (thesis 6.1): a drone that knows nothing maps
+-- the place, then scans with the map and the mesh that it made, in one visit.
 local M = {}
 
 -- What a learned utility was trained with (reading 5.2); the scan's map is made the same way.
@@ -20,7 +20,8 @@ M.DECLARATION = { name = "exploration", type = "table",
       summary = "edge of the box that is taken to be free where it begins" },
     { name = "start", type = "numbers", size = 3, unit = "m",
       summary = "where it begins; absent: drawn by the run's seed" },
-    { name = "start_yaw_deg", type = "number", unit = "deg", default = 0, summary = "heading there" },
+    { name = "start_yaw_deg", type = "number", unit = "deg", default = 0,
+      summary = "heading there" },
   } }
 
 function M.wanted(run)

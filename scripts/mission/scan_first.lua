@@ -122,8 +122,8 @@ local function open_air(run, known, surface, poses)
   known:open_air { lower = lower, upper = upper, surface = surface }
 end
 
--- What is known (a prior with its mesh), the poses of the first flights, what they were flown in, if
--- anything, and the exploration, if there was one.
+-- What is known (a prior with its mesh), the poses of the first flights, what they were flown in,
+-- if anything, and the exploration, if there was one.
 function M.knowledge(run)
   local o = run.options
   local files, surface = prior_files(run), surface_of(run)
