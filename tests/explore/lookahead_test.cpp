@@ -1,3 +1,5 @@
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "framework/explore/lookahead.h"
@@ -66,6 +68,34 @@ TEST(Lookahead, SeesOverWhatIsWorthNothing) {
   EXPECT_EQ(world.run(far).end, EpisodeEnd::nothing_to_gain);
   world.settings.lookahead = 2;
   EXPECT_EQ(world.run(far).end, EpisodeEnd::steps);
+}
+
+// kB of this process in memory.
+double resident() {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("VmRSS:")) return std::stod(line.substr(6));
+  return 0;
+}
+
+// In a box the map and the viewpoints have an end; nothing else is kept.
+TEST(Episode, NeedsNoMoreMemoryAfterAThousandStepsThanAfterThreeHundred) {
+  YardWorld world(1000);
+  world.settings.sensor.pinhole = {24, 18, 12, 12, 11.5, 8.5};
+  world.settings.turn = EIGEN_PI / 6;  // twelve ways to look from 27 places
+  world.settings.visits = 4;
+  world.settings.bounds =
+      Eigen::AlignedBox3d(world.start.position.array() - 2.6, world.start.position.array() + 2.6);
+  world.start.pitch = 0;
+  double early = 0, late = 0;
+  const Stated turning([](const Viewpoint& view) { return 2 + std::sin(5 * view.yaw); });
+  world.run(turning, [&](const EpisodeMoment& moment) {
+    if (moment.step == 300) early = resident();
+    if (moment.step == 999) late = resident();
+  });
+  ASSERT_GT(early, 0);
+  ASSERT_GT(late, 0);
+  EXPECT_LT(late - early, 4000) << "kB";
 }
 
 TEST(Lookahead, HasAnEnd) {
