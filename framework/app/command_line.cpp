@@ -350,6 +350,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
                "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
   add_text(*dataset, "--explorer", "NAME", "the utility that explores; else the oracle",
            [&](const std::string& given) { request.explorer = given; });
+  add_repeated(*dataset, "--explorer-set", "KEY=VALUE", request.explorer_overrides,
+               "set one parameter of the utility that explores, as model=FILE");
   add_count(*dataset, "--episodes", 1, 100'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*dataset, "--steps", 1, 100'000, "of each episode",
@@ -379,10 +381,16 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*made, "--steps", 1, 100'000, "of each episode",
             [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
+  add_count(*made, "--lookahead", 1, 4, "views of the ways that are valued; else 1",
+            [&](std::uint64_t count) { request.lookahead = static_cast<int>(count); });
   add_text(*made, "--sigma", "M", "noise of the depth; the views are replayed without",
            [&](const std::string& text) { request.sigma = read_number("--sigma", text); });
   add_text(*made, "--dropped", "SHARE", "of the pixels without a measurement",
            [&](const std::string& text) { request.dropped = read_number("--dropped", text); });
+  add_text(*made, "--stereo", "M", "depth by a pair of cameras so far apart, likewise",
+           [&](const std::string& text) { request.stereo = read_number("--stereo", text); });
+  add_repeated(*made, "--set", "UTILITY.KEY=VALUE", invocation.overrides,
+               "set one parameter of a utility");
   add_text(*made, "-o,--output", "DIR", "folder of the results; else out/evaluate_explore",
            [&](const std::string& path) { request.folder = path; });
   add_count(*made, "--threads", 1, kMostThreads, "threads to use; else one per core",

@@ -6,6 +6,7 @@
 
 #include "framework/app/exploration_worlds.h"
 #include "framework/app/interruption.h"
+#include "framework/config/overrides.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/parallel.h"
@@ -54,8 +55,8 @@ bool asks_truth(const Registry& registry, const std::string& utility) {
 }
 
 void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
-               const ExplorationSetup& setup, const Registry& registry, std::uint64_t seed,
-               const fs::path& folder) {
+               const ExplorationSetup& setup, const Registry& registry, const Value& parameters,
+               std::uint64_t seed, const fs::path& folder) {
   Random random = Random(seed).split(static_cast<std::uint64_t>(trial.episode));
   const Viewpoint start =
       random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2, setup.pitch, random);
@@ -63,7 +64,9 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   settings.show_truth = asks_truth(registry, trial.utility);
   settings.seed = seed + static_cast<std::uint64_t>(trial.episode) * 1'000'003;
   const auto new_map = setup.new_map(registry);
-  const auto utility = registry.create<ViewUtility>(trial.utility);
+  const Value* given = parameters.find(trial.utility);
+  const auto utility =
+      registry.create<ViewUtility>(trial.utility, given ? *given : Value::map(), trial.utility);
   ObservedSurface observed(truth, settings.sensor, new_map);
   const auto map = new_map();
   EpisodeResult result = explore(settings, start, truth, observed, *utility, *map);
@@ -74,7 +77,7 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
     curve.push_back(step.observed);
     seconds += step.seconds;
   }
-  if (settings.sensor.noise) {
+  if (settings.sensor.noise || settings.sensor.stereo) {
     ObservedSurface anew(truth, settings.sensor, new_map);
     const auto clean = new_map();
     curve = replay(settings, result, truth, anew, *clean);
@@ -202,15 +205,30 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   if (names.empty()) throw InputError("evaluate explore: name a world with --world");
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
+  setup.episode.lookahead = request.lookahead;
   setup.episode.cancellation = &interruption.token();
   if (request.sigma > 0 || request.dropped > 0)
     setup.episode.sensor.noise = DepthNoise{request.dropped, request.sigma};
+  if (request.stereo > 0) {
+    setup.episode.sensor.stereo.emplace();
+    setup.episode.sensor.stereo->baseline = request.stereo;
+  }
+  Value parameters = Value::map();
+  for (const std::string& text : invocation.overrides) apply_override(parameters, text);
+  for (const auto& [name, given] : parameters.as_map()) {
+    if (std::find(utilities.begin(), utilities.end(), name) == utilities.end())
+      throw InputError("--set " + name + ": no such utility is evaluated");
+    registry.create<ViewUtility>(name, given, name);
+  }
   // What another run of other settings left would be taken for this one's.
   Value stated = Value::map();
   stated.set("steps", request.steps);
   stated.set("seed", static_cast<std::int64_t>(invocation.seed));
   stated.set("sigma", request.sigma);
   stated.set("dropped", request.dropped);
+  stated.set("stereo", request.stereo);
+  stated.set("lookahead", request.lookahead);
+  stated.set("parameters", parameters);
   const fs::path settings_file = request.folder / "settings.json";
   if (request.resume && fs::exists(settings_file) &&
       !(from_json(read_file(settings_file), settings_file.string()) == stated))
@@ -232,7 +250,8 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     std::atomic<std::size_t> done{0};
     parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
       if (interruption.token().cancelled()) return;
-      run_trial(trials[k], world, truth, setup, registry, invocation.seed, request.folder);
+      run_trial(trials[k], world, truth, setup, registry, parameters, invocation.seed,
+                request.folder);
       const std::size_t count = ++done;
       if (!invocation.quiet)
         std::cerr << name.text() + ": " + std::to_string(count) + " of " +

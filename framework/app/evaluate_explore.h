@@ -9,12 +9,15 @@ struct ExploreEvaluation {
   std::vector<std::string> worlds;     // "downtown:101-104", "street", files
   std::vector<std::string> utilities;  // empty: all that are shipped
   std::int64_t episodes = 10;          // of each world, with the same starts for every utility
-  int steps = 200;
+  int steps = 200, lookahead = 1;
   double sigma = 0, dropped = 0;  // of the camera's depth (table 5.4); replayed without
+  double stereo = 0;              // m between a pair of cameras; 0: a depth camera
   std::filesystem::path folder = "out/evaluate_explore";
   bool resume = false;  // keep the episodes that are there
 };
 
+// The invocation's overrides are parameters of utilities, as "learned.blank=true".
+//
 // Every episode is a file in FOLDER/episodes, whole or not there; from these come table.csv
 // (efficiency, and relative to the oracle's of the same start, with standard deviations and 95 %
 // intervals), curves.csv, report.html. Wall-clock figures stand apart, in FOLDER/seconds.

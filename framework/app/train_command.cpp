@@ -39,13 +39,13 @@ std::string file_name(const std::string& world, std::int64_t episode) {
 // A utility explores; what every neighbour looked like, and its value to the oracle, is kept.
 SampleSet sampled_episode(const World& world, const GroundTruth& truth,
                           const ExplorationSetup& setup, const Registry& registry,
-                          const std::string& explorer, const GridShape& shape, std::int64_t episode,
-                          std::uint64_t seed) {
+                          const std::string& explorer, const Value& parameters,
+                          const GridShape& shape, std::int64_t episode, std::uint64_t seed) {
   SampleSet samples;
   samples.world = world.name;
   samples.episode = episode;
   samples.shape = shape;
-  const auto utility = registry.create<ViewUtility>(explorer);
+  const auto utility = registry.create<ViewUtility>(explorer, parameters, explorer);
   const auto new_map = setup.new_map(registry);
   Random random = Random(seed).split(static_cast<std::uint64_t>(episode));
   const Viewpoint start =
@@ -79,6 +79,9 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   setup.episode.steps = request.steps;
   setup.episode.show_truth = request.explorer == "oracle";
   setup.episode.cancellation = &interruption.token();
+  Value explorer = Value::map();
+  for (const std::string& text : request.explorer_overrides) apply_override(explorer, text);
+  registry.create<ViewUtility>(request.explorer, explorer, request.explorer);  // may refuse it
   std::size_t samples = 0;
   for (const WorldName& name : names) {
     std::vector<std::int64_t> missing;
@@ -91,8 +94,8 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
     std::vector<std::size_t> made(missing.size());
     parallel_for(missing.size(), invocation.threads, [&](std::size_t k) {
       if (interruption.token().cancelled()) return;
-      const SampleSet set = sampled_episode(world, truth, setup, registry, request.explorer, shape,
-                                            missing[k], invocation.seed);
+      const SampleSet set = sampled_episode(world, truth, setup, registry, request.explorer,
+                                            explorer, shape, missing[k], invocation.seed);
       if (interruption.token().cancelled()) return;
       write_samples(set, request.target / file_name(name.text(), missing[k]));
       made[k] = set.size();

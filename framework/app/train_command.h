@@ -8,6 +8,7 @@ namespace lapwing {
 struct TrainRequest {
   std::string utility = "learned";
   std::string explorer = "oracle";   // dataset: the utility that chooses; the oracle judges
+  std::vector<std::string> explorer_overrides;  // dataset: its parameters, as "model=FILE"
   std::vector<std::string> worlds;   // dataset: "downtown:1-8", files
   std::int64_t episodes = 4;         // dataset: of each world
   int steps = 200;                   // dataset: of each episode

@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "framework/core/error.h"
+#include "framework/explore/lookahead.h"
 
 namespace lapwing {
 namespace {
@@ -30,6 +31,9 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
   above(s.turn_rate, "the turn rate");
   if (!(s.pause >= 0)) throw InputError("the pause for an image must be at least 0 s");
   if (!(s.clear >= s.body)) throw InputError("the box cleared at the start must hold the body");
+  if (s.lookahead < 1 || s.lookahead > EpisodeSettings::kMostLookahead)
+    throw InputError("lookahead: expected 1 to " + std::to_string(EpisodeSettings::kMostLookahead) +
+                     " views, not " + std::to_string(s.lookahead));
   if (s.visits < 1 || s.steps < 1) throw InputError("expected at least one visit and one step");
   if (!map.settings().observations)
     throw InputError("an exploration needs a map that counts observations");
@@ -111,6 +115,8 @@ class Explorer {
   void look(EpisodeStep& taken, int place);
   void add_neighbours(int place, std::vector<Viewpoint>& reachable);
   void score(std::span<const int> places);
+  // The neighbours that a way could go on to.
+  std::vector<Viewpoint> worth_looking_from(const Viewpoint& view) const;
   bool stopped();
   bool within_bounds(const Viewpoint& view) const {
     return !settings_.bounds || settings_.bounds->contains(view.position);
@@ -163,9 +169,25 @@ void Explorer::score(std::span<const int> places) {
   std::vector<Viewpoint> views;
   for (const int place : places) views.push_back(graph_[place]);
   std::vector<double> values(views.size());
-  utility_.score(known_, views, values);
-  scored_ += static_cast<int>(places.size());
+  if (settings_.lookahead == 1) {
+    utility_.score(known_, views, values);
+    scored_ += static_cast<int>(places.size());
+  } else {
+    scored_ += score_ahead(
+        utility_, known_, views, settings_.lookahead,
+        [&](const Viewpoint& view) { return worth_looking_from(view); }, values);
+  }
   for (std::size_t k = 0; k < places.size(); ++k) candidates_.push({values[k], places[k], step_});
+}
+
+std::vector<Viewpoint> Explorer::worth_looking_from(const Viewpoint& view) const {
+  std::vector<Viewpoint> views;
+  for (const Viewpoint& next : neighbours_of(view, settings_.step, settings_.turn)) {
+    const int place = graph_.find(next);
+    const bool done = place >= 0 && visits_[static_cast<std::size_t>(place)] >= settings_.visits;
+    if (!done && within_bounds(next) && graph_.free(view, next)) views.push_back(next);
+  }
+  return views;
 }
 
 bool Explorer::choose(EpisodeStep& taken, int& place) {

@@ -20,12 +20,15 @@
 namespace lapwing {
 
 struct EpisodeSettings {
+  static constexpr int kMostLookahead = 4;  // 9^3 ways from each view
+
   ViewSensor sensor;
   double step = 2.5;                          // m, to a neighbour
   double turn = 0.4363323129985824;           // rad, to a neighbour: 25 degrees
   double body = 1;                            // m, edge of the box that must be free
   double clear = 6;                           // m, edge of the box that is free at the start
   int visits = 2;                             // images from a viewpoint, then it is left out
+  int lookahead = 1;                          // views of the ways that are valued (lookahead.h)
   int steps = 200;                            // images
   double speed = 2;                           // m/s
   double turn_rate = 1;                       // rad/s

@@ -57,6 +57,8 @@ ParameterTable explore_table() {
       .number("body", standard.body, "m", "edge of the box that must be free", above(0))
       .number("clear", standard.clear, "m", "edge of the box that is free at the start", above(0))
       .integer("visits", standard.visits, "images from a viewpoint", between(1, 100))
+      .integer("lookahead", 1, "views of the ways that are valued",
+               between(1, EpisodeSettings::kMostLookahead))
       .integer("steps", standard.steps, "images", between(1, 1000000))
       .number("speed", standard.speed, "m/s", "between viewpoints", above(0))
       .number("turn_rate_deg", 60, "deg/s", "on the spot", above(0))
@@ -90,6 +92,7 @@ EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   s.body = given.number("body");
   s.clear = given.number("clear");
   s.visits = static_cast<int>(given.integer("visits"));
+  s.lookahead = static_cast<int>(given.integer("lookahead"));
   s.steps = static_cast<int>(given.integer("steps"));
   s.speed = given.number("speed");
   s.turn_rate = radians(given.number("turn_rate_deg"));
@@ -217,6 +220,20 @@ int plan_exploration(lua_State* state) {
   return 1;
 }
 
+Value triple_of(const Eigen::Vector3d& v) {
+  Value list = Value::list();
+  for (int i = 0; i < 3; ++i) list.push_back(v[i]);
+  return list;
+}
+
+Value viewpoint_value(const Viewpoint& view) {
+  Value value = Value::map();
+  value.set("position", triple_of(view.position));
+  value.set("yaw", view.yaw);
+  value.set("pitch", view.pitch);
+  return value;
+}
+
 int exploration_field(lua_State* state) {
   const Exploration& e =
       *object_argument<ExplorationObject>(state, 1, kExplorationType).exploration;
@@ -237,6 +254,14 @@ int exploration_field(lua_State* state) {
   fields.set("relative", e.record.oracle_efficiency > 0
                              ? Value(e.record.efficiency / e.record.oracle_efficiency)
                              : Value());
+  Value& views = fields.set("views", Value::list());
+  for (const EpisodeStep& step : e.result.steps) views.push_back(viewpoint_value(step.view));
+  Value& cleared = fields.set("cleared", Value::map());
+  const Eigen::AlignedBox3d box = cleared_box(e.map->grid(), e.start.position, e.settings.clear);
+  // Within the voxels at its ends.
+  const double inside = e.map->grid().resolution() / 2;
+  cleared.set("lower", triple_of(box.min().array() + inside));
+  cleared.set("upper", triple_of(box.max().array() - inside));
   const Value* found = fields.find(field);
   if (!found) refuse_field("an exploration", field, fields);
   push_value(state, *found);

@@ -78,4 +78,78 @@ double BlockedVoxels::distance(const Eigen::Vector3d& p_W, double farthest) cons
   return std::sqrt(nearest2);
 }
 
+namespace {
+
+// Where from + s (to - from), s from 0 to 1, is nearest to a box: s. The squared distance is convex
+// and changes its form only where the way crosses the plane of a side.
+double nearest_share(const Eigen::Vector3d& from, const Eigen::Vector3d& way,
+                     const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  // Half the slope of the squared distance at s.
+  const auto slope = [&](double s) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double p = from(i) + s * way(i);
+      sum += (p - std::clamp(p, low(i), high(i))) * way(i);
+    }
+    return sum;
+  };
+  if (slope(0) >= 0) return 0;
+  if (slope(1) <= 0) return 1;
+  double below = 0, above = 1;  // the slope is below 0, and not
+  for (int i = 0; i < 3; ++i) {
+    if (way(i) == 0) continue;
+    for (const double side : {low(i), high(i)}) {
+      const double s = (side - from(i)) / way(i);
+      if (s > below && s < above) (slope(s) < 0 ? below : above) = s;
+    }
+  }
+  // In between it rises on a straight line.
+  const double at_below = slope(below), at_above = slope(above);
+  return at_above > at_below ? below - at_below * (above - below) / (at_above - at_below) : below;
+}
+
+}  // namespace
+
+BlockedVoxels::Nearest BlockedVoxels::nearest(const Eigen::Vector3d& from,
+                                              const Eigen::Vector3d& to, double farthest) const {
+  Nearest best{farthest, 0};
+  // Piece by piece, so that the boxes about them stay small.
+  constexpr double kPiece = 8;  // voxels
+  const Eigen::Vector3d way = to - from;
+  const int pieces =
+      std::max(1, static_cast<int>(std::ceil(way.norm() / (kPiece * grid_.resolution()))));
+  for (int piece = 0; piece < pieces && best.distance > 0; ++piece) {
+    const double first = static_cast<double>(piece) / pieces;
+    const Eigen::Vector3d a = from + first * way, step = way / pieces, b = a + step;
+    int low[3], high[3];
+    for (int i = 0; i < 3; ++i) {
+      // One more on either side: everything beyond what is held is blocked.
+      const auto index = [&](double x) {
+        const double reach = grid_.reach();
+        return std::clamp(grid_.index(std::clamp(x, -reach, reach)) - low_[i], -1, size_[i]);
+      };
+      low[i] = index(std::min(a(i), b(i)) - best.distance);
+      high[i] = index(std::max(a(i), b(i)) + best.distance);
+    }
+    for (int z = low[2]; z <= high[2]; ++z)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int x = low[0]; x <= high[0]; ++x) {
+          if (free(x, y, z)) continue;
+          const int at[3] = {x, y, z};
+          Eigen::Vector3d lower, upper;
+          for (int i = 0; i < 3; ++i) {
+            // What is beyond reaches as far as one likes.
+            constexpr double kFar = 1e9;
+            lower(i) = at[i] < 0 ? -kFar : grid_.face(low_[i] + at[i]);
+            upper(i) = at[i] >= size_[i] ? kFar : grid_.face(low_[i] + at[i] + 1);
+          }
+          const double share = nearest_share(a, step, lower, upper);
+          const Eigen::Vector3d p = a + share * step;
+          const double distance = (lower - p).cwiseMax(p - upper).cwiseMax(0.0).norm();
+          if (distance < best.distance) best = {distance, first + share / pieces};
+        }
+  }
+  return best;
+}
+
 }  // namespace lapwing

@@ -21,6 +21,13 @@ class BlockedVoxels {
   // m to the nearest blocked voxel's cube, 0 within it; at most `farthest`. Exact.
   double distance(const Eigen::Vector3d& p_W, double farthest) const;
 
+  // Where a way straight from one place to another comes nearest to a blocked voxel's cube: the
+  // distance, at most `farthest`, and the share of the way. Exact.
+  struct Nearest {
+    double distance, share;
+  };
+  Nearest nearest(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double farthest) const;
+
   const VoxelGrid& grid() const { return grid_; }
   // Along each axis, in the grid's counting: the first voxel that is held, and how many.
   int first(int axis) const { return low_[axis]; }

@@ -7,7 +7,8 @@
 namespace lapwing {
 namespace {
 
-constexpr double kReach = 50;  // m beyond the margin; farther meshes are far
+constexpr double kReach = 50;    // m beyond the margin; farther meshes are far
+constexpr double kApart = 1e-9;  // m, above what rounding can do
 
 struct Chord {
   Eigen::Vector3d from, to;
@@ -135,7 +136,7 @@ Nearest nearest_by_halves(const Obstacle& obstacle, const Chord& chord) {
     const auto [from, to] = parts.back();
     parts.pop_back();
     const double middle = (from + to) / 2, half = (to - from) / 2 * length;
-    const double value = distance(obstacle, chord.at(middle));
+    const double value = far_distance(obstacle, chord.at(middle), half);
     if (value - half >= best.distance) continue;
     if (half <= resolution) {
       best = {value - half, middle};
@@ -157,7 +158,8 @@ Nearest nearest(const MeshBody& mesh, const Chord& chord) {
 }
 
 Nearest nearest(const MapBody& map, const Chord& chord) {
-  return nearest_by_halves(map, chord);
+  const auto found = map.voxels.nearest(chord.from, chord.to, map.reach);
+  return {found.distance, found.share};
 }
 
 Nearest nearest(const Inside& inside, const Chord& chord) {
@@ -172,13 +174,17 @@ class Clearance {
   template <class Obstacle>
   void see(const Obstacle& obstacle, const char* kind, std::size_t number, const Chord& chord,
            double time, double duration) {
+    // Nothing farther away than the worst so far has to be told apart.
+    Obstacle near = obstacle;
+    if constexpr (requires { near.reach; })
+      if (seen_) near.reach = std::min(near.reach, worst_.value() + chord.bulge + kApart);
     // Distances change by no more than the way travelled, so most chords need one evaluation.
     const double length = (chord.to - chord.from).norm();
     const double around = length / 2 + chord.bulge;
-    const double lowest = far_distance(obstacle, chord.at(0.5), around) - around;
+    const double lowest = far_distance(near, chord.at(0.5), around) - around;
     if (seen_ && lowest >= worst_.value()) return;
     seen_ = true;
-    const Nearest best = nearest(obstacle, chord);
+    const Nearest best = nearest(near, chord);
     if (worst_.see(best.distance - chord.bulge, time + best.share * duration)) {
       nearest_ = obstacle.name.empty() ? std::string(kind) + " " + std::to_string(number + 1)
                                        : std::string(kind) + " '" + obstacle.name + "'";

@@ -96,7 +96,19 @@ local function solved(run, graph, budget)
   return tour
 end
 
-local function plan_of(run, graph, known)
+-- What is said of what came before the tour.
+local function notes_of(graph, known, explored)
+  local views = string.format("%d candidates, %d motions", graph.candidates, graph.motions)
+  if not explored then
+    return { string.format("%d depth images of the first flight, %s", known.images, views) }
+  end
+  return { string.format("explored first: %d depth images on %.0f m, %.0f %% of the surface; %s",
+                         explored.images, explored.length,
+                         100 * explored.observed_surface / explored.surface, explored.reason),
+           views }
+end
+
+local function plan_of(run, graph, known, explored)
   local o = run.options
   local asked = budget_of(run)
   local budget = asked
@@ -105,8 +117,7 @@ local function plan_of(run, graph, known)
     local plan = run:scan_plan {
       tour = tour, margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
-      notes = { string.format("%d depth images of the first flight, %d candidates, %d motions",
-                              known.images, graph.candidates, graph.motions) },
+      notes = notes_of(graph, known, explored),
       figures = { score = tour.score, upper_bound = tour.upper_bound, gap = tour.gap,
                   seconds = tour.seconds, budget = asked, images = tour.images,
                   candidates = graph.candidates, motions = graph.motions,
@@ -122,12 +133,12 @@ end
 local function planned(run)
   local o = run.options
   local vehicle = run:vehicle(o.vehicle)
-  local known, poses, surface = first.knowledge(run)
+  local known, poses, surface, explored = first.knowledge(run)
   local starts = first.starts(run, poses)
   local plan
   for round = 1, o.rounds do
     local graph = graph_of(run, known, vehicle, starts)
-    plan = plan_of(run, graph, known)
+    plan = plan_of(run, graph, known, explored)
     if round < o.rounds and not run:cancelled() then
       -- The tour is flown, and what it sees is known from then on.
       first.look(run, known, surface, plan.views)

@@ -1,5 +1,6 @@
 -- The first flight of a scan, and what is known after it (thesis 4.3): a map, a mesh, places that
 -- are free. What was flown in is asked by the simulator alone.
+local exploration = require "mission.scan_exploration"
 local patterns = require "mission.scan_patterns"
 
 local M = {}
@@ -9,6 +10,7 @@ local FLIGHT_ABOVE = 15   -- m of the safe height, likewise
 local OVERHEAD = 2        -- m of free air above the highest first flight
 
 local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
+local explored = setmetatable({}, { __mode = "k" })  -- likewise, the views of an exploration
 
 -- What the first flight is flown in, or nothing with files of an earlier one.
 local function surface_of(run)
@@ -74,6 +76,12 @@ end
 function M.ceiling_of(run)
   if run.options.ceiling then return run.options.ceiling end
   local ceiling = safe_height(run) + OVERHEAD
+  if explored[run] then
+    for _, pose in ipairs(explored[run]) do
+      ceiling = math.max(ceiling, pose.position[3] + OVERHEAD)
+    end
+    return ceiling
+  end
   if not prior_files(run) then
     for _, flight in ipairs(flights_of(run)) do
       ceiling = math.max(ceiling, height_of(run, flight) + OVERHEAD)
@@ -114,14 +122,19 @@ local function open_air(run, known, surface, poses)
   known:open_air { lower = lower, upper = upper, surface = surface }
 end
 
--- What is known (a prior with its mesh), the poses of the first flights, and what they were flown
--- in, if anything.
+-- What is known (a prior with its mesh), the poses of the first flights, what they were flown in,
+-- if anything, and the exploration, if there was one.
 function M.knowledge(run)
   local o = run.options
   local files, surface = prior_files(run), surface_of(run)
   if not surface and not files then
     lapwing.fail("nothing to scan: name a scene, a mesh with --set input=PATH (.obj, .ply, .dae, "
                  .. "...), or the files of an earlier flight with prior = { map =, mesh = }")
+  end
+  if exploration.wanted(run) then
+    local known, poses, done = exploration.knowledge(run, surface)
+    explored[run] = poses
+    return known, poses, surface, done
   end
   local known, poses = new_prior(run), {}
   if files then known:load { map = files.map, mesh = files.mesh } end

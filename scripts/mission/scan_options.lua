@@ -1,4 +1,6 @@
 -- What a scan can be told (readings 4.3, 4.6, 4.11 for defaults that the thesis never gives).
+local exploration = require "mission.scan_exploration"
+
 local function number(name, default, unit, summary, more)
   local entry = { name = name, type = "number", default = default, unit = unit, summary = summary }
   for key, value in pairs(more or {}) do entry[key] = value end
@@ -55,6 +57,7 @@ local DECLARATIONS = {
   number("mesh_room", 1, "m", "more that is kept from the prior mesh", NOT_NEGATIVE),
   { name = "flights", type = "tables", table = PATTERN,
     summary = "first flights, into one map; absent: one meander" },
+  exploration.DECLARATION,
   { name = "camera", type = "table", table = CAMERA, summary = "of all images" },
   { name = "noise", type = "table", summary = "of measured depth", table = {
     number("dropped", 0, "", "share of pixels without a measurement", { minimum = 0, maximum = 1 }),

@@ -8,7 +8,7 @@ local nature = require "scene.nature"
 local roofs = require "scene.roofs"
 local walls = require "scene.walls"
 
-local block, street = 40, 14  -- m
+local BLOCK, STREET, GROUND = 40, 14, 260  -- m
 
 -- A side of a glass tower: floors of glass between bands, with fins that stand out.
 local function curtain(scene, width, height, spec)
@@ -74,7 +74,7 @@ local function glass_tower(scene, size, height)
     roofs.flat(scene, w, w, 0, {wall = spec.band, machines = i == stages and 6 or 2})
     scene:pop()
     scene:pop()
-    z, inset = z + rise, inset + scene:uniform(2, 4)
+    z, inset = z + rise, math.min(inset + scene:uniform(2, 4), (size - 0.8) / 2)
   end
   colors.use(scene, "metal")
   scene:tube({size / 2, size / 2, z}, {size / 2, size / 2, z + 14}, 0.35, 0.08, 8)
@@ -111,13 +111,14 @@ local function bridge(scene, from, to, z)
   scene:pop()
 end
 
-local function square(scene)
+local function square(scene, block)
   colors.use(scene, "cobbles")
   scene:box({0, 0, 0}, {block, block, 0.15})
+  local apart = block / 4
   for i = 0, 3 do
     for k = 0, 3 do
       if (i + k) % 2 == 0 or i == 0 or k == 3 then
-        nature.tree(scene, {5 + 10 * i, 5 + 10 * k, 0.15}, scene:uniform(8, 12))
+        nature.tree(scene, {(i + 0.5) * apart, (k + 0.5) * apart, 0.15}, scene:uniform(8, 12))
       end
     end
   end
@@ -126,10 +127,12 @@ local function square(scene)
   for i = 0, 2 do furniture.table(scene, {23.5 + 2.6 * i, 27, 0.15}) end
 end
 
+-- `block` and `street`: their widths, m; `low`: times that buildings are high.
 return function(options)
-  local scene = lapwing.scene { name = "downtown", seed = options.seed or 1 }
+  local scene = lapwing.scene { name = options.name or "downtown", seed = options.seed or 1 }
+  local block, street, low = options.block or BLOCK, options.street or STREET, options.low or 1
   colors.use(scene, "asphalt")
-  nature.ground(scene, 260, 13, function() return 0 end)
+  nature.ground(scene, GROUND, 13, function() return 0 end)
   local pitch = block + street
   for row = -1, 1 do
     for column = -1, 1 do
@@ -137,17 +140,18 @@ return function(options)
       colors.use(scene, "pavement")
       scene:box({-2.5, -2.5, -0.2}, {block + 2.5, block + 2.5, 0.14})
       if row == 0 and column == 0 then
-        square(scene)
+        square(scene, block)
       elseif (row + column) % 2 == 0 then
         scene:push({4, 4, 0.14})
-        glass_tower(scene, block - 8, scene:uniform(70, 110))
+        glass_tower(scene, block - 8, low * scene:uniform(70, 110))
         scene:pop()
       else
         scene:push({0, 0, 0.14})
-        stone_block(scene, block, block * 0.42, 5.5 + 4 * scene:integer(4, 8) + 0.6)
+        stone_block(scene, block, block * 0.42,
+                    5.5 + 4 * math.max(1, math.floor(low * scene:integer(4, 8))) + 0.6)
         scene:pop()
         scene:push({block * 0.3, block * 0.55, 0.14})
-        glass_tower(scene, block * 0.42, scene:uniform(35, 60))
+        glass_tower(scene, block * 0.42, math.max(12, low * scene:uniform(35, 60)))
         scene:pop()
       end
       for i = 0, 3 do
@@ -160,6 +164,6 @@ return function(options)
   end
   bridge(scene, {-pitch + block / 2 - 4.5, pitch}, {-block / 2 + 0.5, pitch}, 12)
   bridge(scene, {pitch, -pitch + block / 2 - 4.5}, {pitch, -block / 2 + 0.5}, 16)
-  scene:region({-1.5 * pitch, -1.5 * pitch, -0.3}, {1.5 * pitch, 1.5 * pitch, 126})
+  scene:region({-1.5 * pitch, -1.5 * pitch, -0.3}, {1.5 * pitch, 1.5 * pitch, 126 * low})
   return scene
 end

@@ -89,6 +89,32 @@ TEST_F(Exploring, BadInputIsNamed) {
     EXPECT_NE(refusal(few(more)).find(expected), std::string::npos)
         << more << ": " << refusal(few(more));
   EXPECT_NE(refusal("").find("--set input=PATH"), std::string::npos);
+  EXPECT_NE(refusal(few("--set lookahead=9")).find("lookahead"), std::string::npos);
+}
+
+TEST_F(Exploring, DamagedModelsAndEmptyScenesAreNamed) {
+  const fs::path model = folder_ / "broken.model", empty = folder_ / "empty.obj";
+  const std::string shipped =
+      read_file(fs::path(LAPWING_BUILD_DIR) / "lib/plugins/utilities/learned.model");
+  const auto with_model = [&](const std::string& bytes) {
+    write_file_atomically(model, bytes);
+    return refusal(few("--set 'utility={type: learned, model: " + model.string() +
+                       "}' --set camera.width=160 --set camera.height=120"));
+  };
+  std::string damaged = shipped;
+  damaged[damaged.size() / 2] ^= 0x10;
+  EXPECT_NE(with_model(damaged).find("broken.model' is no model"), std::string::npos)
+      << with_model(damaged);
+  EXPECT_NE(with_model(shipped.substr(0, 5000)).find("broken.model' is no model"),
+            std::string::npos);
+  fs::remove(model);
+  EXPECT_NE(refusal(few("--set 'utility={type: learned, model: " + model.string() + "}'"))
+                .find("broken.model"),
+            std::string::npos);
+  write_file_atomically(empty, "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  const std::string of_empty =
+      refusal("--config explore/small --set input='" + empty.string() + "'");
+  EXPECT_NE(of_empty.find("empty.obj"), std::string::npos) << of_empty;
 }
 
 // What was there is kept, what is missing is made again, and the tables are the same.

@@ -99,6 +99,50 @@ TEST_F(Regions, DistancesToBlockedVoxelsAreExact) {
                InputError);
 }
 
+// As the points of the way say, which are 2 mm apart.
+TEST_F(Regions, WaysComeAsNearToBlockedVoxelsAsTheirPointsDo) {
+  const BlockedVoxels voxels(read_map_file(folder_ / "hall.ot"),
+                             {Vector3d(-9, -9, 0.5), Vector3d(9, 9, 4.5)});
+  Random random(5);
+  int near = 0;
+  for (int k = 0; k < 300; ++k) {
+    const auto place = [&] {
+      return Vector3d(random.uniform(-10, 10), random.uniform(-10, 10), random.uniform(0, 5));
+    };
+    const Vector3d from = place(), to = k % 3 == 0 ? place() : Vector3d(from + 0.05 * place());
+    const double farthest = random.uniform(0.1, 3), length = (to - from).norm();
+    const int steps = 1 + static_cast<int>(length / 0.002);
+    double least = farthest;
+    for (int i = 0; i <= steps; ++i)
+      least = std::min(least, voxels.distance(from + (to - from) * i / steps, farthest));
+    const auto found = voxels.nearest(from, to, farthest);
+    EXPECT_LE(found.distance, least + 1e-9) << k;
+    EXPECT_GE(found.distance, least - length / steps) << k;
+    if (found.distance < farthest) {
+      ++near;
+      EXPECT_NEAR(voxels.distance(from + found.share * (to - from), farthest), found.distance, 1e-9)
+          << k;
+    }
+  }
+  EXPECT_GT(near, 150);
+}
+
+// Chords that are left out because others came nearer change nothing.
+TEST_F(Regions, TheClearanceOfALongWayIsThatOfItsPoints) {
+  Random random(6);
+  std::vector<Vector3d> points;
+  for (int k = 0; k < 40; ++k)
+    points.emplace_back(random.uniform(-9, 9), random.uniform(-9, 0.5), random.uniform(0.6, 4));
+  const BlockedVoxels voxels(read_map_file(folder_ / "hall.ot"),
+                             {Vector3d(-12, -12, -2), Vector3d(12, 12, 7)});
+  double least = 10;
+  for (std::size_t k = 1; k < points.size(); ++k)
+    for (int i = 0; i <= 10000; ++i)
+      least = std::min(
+          least, voxels.distance(points[k - 1] + (points[k] - points[k - 1]) * i / 10000, least));
+  EXPECT_NEAR(check(in_hall(points), "clearance").worst.value(), least, 2e-3);
+}
+
 TEST_F(Regions, MapsAreKeptAwayFrom) {
   const Check clear = check(in_hall({{-8, -5, 2}, {8, -5, 2}}), "clearance");
   EXPECT_TRUE(clear.pass);

@@ -172,23 +172,10 @@ void Backpropagation::backward_unit(std::size_t k, const NetworkState& state,
   // Through rectification and normalisation.
   std::vector<std::vector<double>> sums(kShards, std::vector<double>(2 * out, 0.0));
   for_shards([&](std::size_t s, std::size_t first, std::size_t end) {
-    std::vector<float> part(2 * out);
-    for (std::size_t n = first; n < end; ++n) {
-      const float* y = unit.result.data() + n * points * out;
-      float* g = points_gradient_.data() + n * points * out;
-      for (std::size_t p = 0; p < points; p += 8, y += 8 * out, g += 8 * out) {
-        std::fill(part.begin(), part.end(), 0.0f);
-        for (std::size_t q = 0; q < 8; ++q)
-          for (std::size_t c = 0; c < out; ++c) {
-            const float normal = (y[q * out + c] - unit.mean[c]) * unit.inverse[c];
-            float& at = g[q * out + c];
-            at = scale[c] * normal + shift[c] > 0 ? at : 0.0f;
-            part[c] += at;
-            part[out + c] += at * normal;
-          }
-        for (std::size_t c = 0; c < 2 * out; ++c) sums[s][c] += part[c];
-      }
-    }
+    const Normalisation normalisation{out, unit.mean.data(), unit.inverse.data(), scale, shift};
+    for (std::size_t n = first; n < end; ++n)
+      back_through(normalisation, points, unit.result.data() + n * points * out,
+                   points_gradient_.data() + n * points * out, sums[s].data());
   });
   const double count = static_cast<double>(batch_) * static_cast<double>(points);
   std::vector<float> mean_shift(out), mean_scale(out);

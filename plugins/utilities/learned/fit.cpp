@@ -75,9 +75,8 @@ Judged judge(const Samples& samples, const Model& model, int threads) {
   Judged judged;
   for (std::size_t k = 0; k < values.size(); ++k) {
     targets[k] = samples.target(k);
-    const double expected =
-        (static_cast<double>(targets[k]) - model.target_mean) / model.target_deviation;
-    const double error = static_cast<double>(values[k]) - expected;
+    const double error =
+        static_cast<double>(values[k]) - model.answer_of(static_cast<double>(targets[k]));
     judged.loss += error * error / static_cast<double>(values.size());
   }
   judged.rho = rank_correlation(values, targets);
@@ -100,7 +99,8 @@ class Training {
   NetworkLayout layout_;
   int batch_, epochs_, patience_;
   double rate_, dropout_, regularisation_;
-  bool mirror_, cosine_;
+  bool mirror_, cosine_, root_;
+  std::string from_;  // a model to begin with
   Samples training_, validation_;
   Model model_;
   Judged best_;
@@ -119,7 +119,9 @@ Training::Training(const Parameters& p, const FitRequest& request)
       dropout_(p.number("dropout")),
       regularisation_(p.number("regularisation")),
       mirror_(p.boolean("mirror")),
-      cosine_(p.text("schedule") == "cosine") {
+      cosine_(p.text("schedule") == "cosine"),
+      root_(p.text("targets") == "root"),
+      from_(p.text("begin")) {
   Value mapping;
   training_ = read_all(request.training, shape_.grid, mapping);
   validation_ = read_all(request.validation, shape_.grid, mapping);
@@ -140,19 +142,29 @@ Training::Training(const Parameters& p, const FitRequest& request)
 }
 
 void Training::begin() {
+  model_.root = root_;
   double sum = 0, squares = 0;
-  for (std::size_t k = 0; k < training_.size(); ++k)
-    sum += static_cast<double>(training_.target(k));
   const double count = static_cast<double>(training_.size());
-  model_.target_mean = sum / count;
+  for (std::size_t k = 0; k < training_.size(); ++k)
+    sum += model_.answer_of(static_cast<double>(training_.target(k)));
   for (std::size_t k = 0; k < training_.size(); ++k) {
-    const double d = static_cast<double>(training_.target(k)) - model_.target_mean;
+    const double d = model_.answer_of(static_cast<double>(training_.target(k))) - sum / count;
     squares += d * d;
   }
+  model_.target_mean = sum / count;
   model_.target_deviation = std::sqrt(squares / count);
   if (!(model_.target_deviation > 0))
     throw InputError("every sample of training has the same target: there is nothing to learn");
   model_.state = initial_state(layout_, Random(request_.seed));
+  if (!from_.empty()) {
+    Model other = read_model(from_);
+    if (!(other.shape == shape_))
+      throw InputError("begin: '" + from_ + "' has another architecture than asked for");
+    const std::string difference = mapping_difference(model_.mapping, other.mapping);
+    if (!difference.empty())
+      throw InputError("begin: '" + from_ + "' has another mapping: " + difference);
+    model_.state = std::move(other.state);
+  }
   model_.adam.emplace(layout_.parameters);
   best_.loss = HUGE_VAL;
 }
@@ -164,6 +176,8 @@ void Training::resume() {
     throw InputError("the checkpoint has another architecture than asked for");
   const std::string difference = mapping_difference(model_.mapping, saved.mapping);
   if (!difference.empty()) throw InputError("the checkpoint has another mapping: " + difference);
+  if (saved.root != root_)
+    throw InputError("the checkpoint was trained for other targets (plain or root)");
   model_ = std::move(saved);
   first_ = model_.progress.at("epoch").as_integer() + 1;
   best_epoch_ = model_.progress.at("best_epoch").as_integer();
@@ -193,8 +207,7 @@ double Training::epoch(std::int64_t number) {
       const std::size_t k = order[b * targets.size() + i];
       decode_grid(layout_, training_.grid(k), mirrored[i] != 0, network.input(static_cast<int>(i)));
       targets[i] =
-          static_cast<float>((static_cast<double>(training_.target(k)) - model_.target_mean) /
-                             model_.target_deviation);
+          static_cast<float>(model_.answer_of(static_cast<double>(training_.target(k))));
     });
     BatchOptions options;
     options.dropout = dropout_;
@@ -298,9 +311,12 @@ ParameterTable fit_parameters() {
       .number("rate", 1e-4, "", "of Adam", above(0))
       .choice("schedule", "constant", {"constant", "cosine"},
               "the rate stays, or falls to 0 with the last epoch")
+      .choice("targets", "plain", {"plain", "root"},
+              "what is learned: the oracle's values, or their square roots")
       .number("dropout", 0.5, "", "share of hidden numbers left out", between(0, 0.95))
       .number("regularisation", 1e-4, "", "lambda of (5.4)", between(0, 1))
       .boolean("mirror", true, "exchange right and left in half of the samples")
+      .text("begin", "", "a model whose weights are begun with; empty: none")
       .integer("validation_samples", 20000, "at most, evenly over all", between(2, 10000000));
 }
 
@@ -326,10 +342,8 @@ std::vector<float> predict(const std::filesystem::path& path, const SampleSet& s
   const FoldedNetwork network(NetworkLayout(model.shape), model.state);
   std::vector<float> values(samples.size());
   parallel_for(samples.size(), threads, [&](std::size_t k) {
-    values[k] = static_cast<float>(
-        model.target_mean +
-        model.target_deviation *
-            static_cast<double>(network.answer(samples.grids.data() + k * samples.shape.size())));
+    values[k] = static_cast<float>(model.target_of(
+        static_cast<double>(network.answer(samples.grids.data() + k * samples.shape.size()))));
   });
   return values;
 }
@@ -340,8 +354,8 @@ double loss_of(const std::filesystem::path& path, std::span<const float> predict
   const Model model = read_model(path);
   double sum = 0;
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    const double error = (static_cast<double>(predicted[k]) - static_cast<double>(targets[k])) /
-                         model.target_deviation;
+    const double error = model.answer_of(static_cast<double>(predicted[k])) -
+                         model.answer_of(static_cast<double>(targets[k]));
     sum += error * error;
   }
   return sum / static_cast<double>(std::max<std::size_t>(targets.size(), 1));

@@ -1,7 +1,8 @@
 // The arithmetic of the network: small dense products in single precision, and nothing else.
 //
-// Numbers of channels of results are multiples of 8 (kLanes). Where the processor has AVX2 it is
-// used; the order of additions does not depend on the number of threads.
+// Numbers of channels of results are multiples of 8 (kLanes). Where the processor has AVX2 or
+// AVX-512 they are used; the order of additions depends neither on that nor on the number of
+// threads.
 #pragma once
 
 #include <cstddef>
@@ -38,5 +39,16 @@ struct OuterProduct {
   float* d = nullptr;
 };
 void accumulate(const OuterProduct& product);
+
+// A batch's normalisation of each of `maps` maps, with what follows it.
+struct Normalisation {
+  std::size_t maps = 0;  // a multiple of 8
+  const float *mean = nullptr, *inverse = nullptr, *scale = nullptr, *shift = nullptr;
+};
+// Back through rectification: of `points` points (a multiple of 8) with values `y` before they were
+// normalised, the gradient `g` becomes 0 where the result was not above 0. To `sums` it adds the
+// gradient of each map's shift, then of each map's scale.
+void back_through(const Normalisation& n, std::size_t points, const float* y, float* g,
+                  double* sums);
 
 }  // namespace lapwing::learned

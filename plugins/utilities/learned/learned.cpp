@@ -66,8 +66,7 @@ class Learned final : public ViewUtility {
         for (std::size_t k = 0; k < grid.size(); ++k) grid[k] = k % 2 == 0 ? 0.5f : 1.0f;
       else
         sample_grid(known, views[i], shape, grid);
-      values[i] =
-          model_.target_mean + model_.target_deviation * static_cast<double>(network_.answer(grid));
+      values[i] = model_.target_of(static_cast<double>(network_.answer(grid)));
     });
   }
 

@@ -1,5 +1,6 @@
 #include "plugins/utilities/learned/model_file.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "framework/core/checksum.h"
@@ -20,6 +21,16 @@ void append(std::string& bytes, const std::vector<float>& numbers) {
 
 }  // namespace
 
+double Model::answer_of(double target) const {
+  // The oracle's values are not below 0.
+  return ((root ? std::sqrt(std::max(target, 0.0)) : target) - target_mean) / target_deviation;
+}
+
+double Model::target_of(double answer) const {
+  const double told = target_mean + target_deviation * answer;
+  return root ? told * std::abs(told) : told;
+}
+
 void write_model(const Model& model, const std::filesystem::path& path) {
   std::string numbers;
   append(numbers, model.state.parameters);
@@ -32,6 +43,7 @@ void write_model(const Model& model, const std::filesystem::path& path) {
   header.set("network", to_value(model.shape));
   header.set("mapping", model.mapping);
   Value& targets = header.set("targets", Value::map());
+  targets.set("root", model.root);
   targets.set("mean", model.target_mean);
   targets.set("deviation", model.target_deviation);
   header.set("provenance", model.provenance);
@@ -59,6 +71,7 @@ Model read_model(const std::filesystem::path& path) {
   const Value shape = fields.opaque("network");
   model.mapping = fields.opaque("mapping");
   Fields targets = fields.table("targets");
+  if (targets.has("root")) model.root = targets.boolean("root");
   model.target_mean = targets.number("mean");
   model.target_deviation = targets.number("deviation");
   targets.finish();

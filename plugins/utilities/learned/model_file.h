@@ -14,12 +14,17 @@ namespace lapwing::learned {
 struct Model {
   NetworkShape shape;
   Value mapping;                                 // what it was trained with (reading 5.2)
-  double target_mean = 0, target_deviation = 1;  // of the oracle's values
+  bool root = false;                             // the network speaks of targets' square roots
+  double target_mean = 0, target_deviation = 1;  // of the oracle's values, or of their roots
   Value provenance;                              // where it comes from, for people
   NetworkState state;
   // Of a checkpoint alone.
   std::optional<Adam> adam;
   Value progress;
+
+  // What the network has to answer for a value of the oracle's, and the other way round.
+  double answer_of(double target) const;
+  double target_of(double answer) const;
 };
 
 void write_model(const Model& model, const std::filesystem::path& path);

@@ -184,7 +184,7 @@ TEST(LearnedKernels, MultiplyAsTheyShould) {
       multiply(
           {starts, parts, 5, depth, b.data(), bias.data(), rows, columns, c.data(), columns, true});
       std::vector<float> d(static_cast<std::size_t>(depth * columns), 1.0f);
-      accumulate({starts, starts, 2, rows, 5, 5, depth, 8, d.data()});
+      accumulate({starts, starts, 2, rows, 5, 5, depth, columns, d.data()});
       for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) {
           double sum = static_cast<double>(bias[static_cast<std::size_t>(j)]);
@@ -196,12 +196,12 @@ TEST(LearnedKernels, MultiplyAsTheyShould) {
           EXPECT_NEAR(c[static_cast<std::size_t>(i * columns + j)], std::max(sum, 0.0), 1e-4);
         }
       for (int k = 0; k < depth; ++k)
-        for (int j = 0; j < 8; ++j) {
+        for (int j = 0; j < columns; ++j) {
           double sum = 1;
           for (const float* start : starts)
             for (int i = 0; i < rows; ++i)
               sum += static_cast<double>(start[i * 5 + k]) * static_cast<double>(start[i * 5 + j]);
-          EXPECT_NEAR(d[static_cast<std::size_t>(k * 8 + j)], sum, 1e-3);
+          EXPECT_NEAR(d[static_cast<std::size_t>(k * columns + j)], sum, 1e-3);
         }
     }
 }
@@ -394,6 +394,41 @@ TEST(LearnedFit, LearnsWhatIsEasy) {
               1e-6);
   EXPECT_NEAR(loss_of(fixture.request.model, predicted, set.targets),
               figures.at("validation_loss").as_number(), 1e-3);
+}
+
+// The same order of values, and values of the same size, by way of their square roots.
+TEST(LearnedFit, LearnsRootsAsWell) {
+  FitFixture fixture;
+  fixture.given.set("targets", "root");
+  const Value figures = fixture.run();
+  EXPECT_GT(figures.at("validation_rho").as_number(), 0.95);
+  const SampleSet set = read_samples(fixture.request.validation.front());
+  const std::vector<float> predicted = predict(fixture.request.model, set, 1);
+  double error = 0;
+  for (std::size_t k = 0; k < set.size(); ++k)
+    error += std::abs(static_cast<double>(predicted[k] - set.targets[k])) /
+             static_cast<double>(set.size());
+  EXPECT_LT(error, 10) << "of targets from 0 to 100";
+  EXPECT_NEAR(loss_of(fixture.request.model, predicted, set.targets),
+              figures.at("validation_loss").as_number(), 1e-3);
+  const Model model = read_model(fixture.request.model);
+  for (const double target : {0.0, 1.0, 64.0})
+    EXPECT_NEAR(model.target_of(model.answer_of(target)), target, 1e-9);
+}
+
+// One epoch more of what was learned is better than one of nothing.
+TEST(LearnedFit, BeginsWithAModel) {
+  FitFixture fixture;
+  const double whole = fixture.run().at("validation_loss").as_number();
+  std::filesystem::rename(fixture.request.model, fixture.folder / "first.model");
+  fixture.given.set("epochs", 1);
+  const double fresh = fixture.run().at("validation_loss").as_number();
+  fixture.given.set("begin", (fixture.folder / "first.model").string());
+  const double begun = fixture.run().at("validation_loss").as_number();
+  EXPECT_LT(begun, 0.5 * fresh);
+  EXPECT_LT(begun, 4 * whole);
+  fixture.given.set("hidden1", 24);
+  EXPECT_THROW(fixture.run(), InputError);
 }
 
 TEST(LearnedFit, ResumedItIsAsIfNeverStopped) {

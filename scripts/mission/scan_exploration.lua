@@ -1,0 +1,80 @@
+-- An exploration in place of a scan's first flight (thesis 6.1): a drone that knows nothing maps
+-- the place, then scans with the map and the mesh that it made, in one visit.
+local M = {}
+
+-- What a learned utility was trained with (reading 5.2); the scan's map is made the same way.
+local HIT, MISS, PITCH_DEG, VIEW_DEG = 0.9, 0.1, -10, 90
+local WIDTH, HEIGHT = 160, 120
+
+M.DECLARATION = { name = "exploration", type = "table",
+  summary = "in place of the first flight: nothing is known before it", table = {
+    { name = "images", type = "integer", default = 0, minimum = 0, maximum = 100000,
+      summary = "depth images at most; 0: no exploration" },
+    { name = "utility", type = "text", default = "learned", summary = "how useful a view is" },
+    { name = "budget", type = "number", unit = "s", above = 0, summary = "of its flight" },
+    { name = "range", type = "number", unit = "m", default = 20, minimum = 1, maximum = 1000,
+      summary = "of its depth camera" },
+    { name = "speed", type = "number", unit = "m/s", default = 2, above = 0,
+      summary = "between viewpoints" },
+    { name = "clear", type = "number", unit = "m", default = 6, minimum = 1, maximum = 100,
+      summary = "edge of the box that is taken to be free where it begins" },
+    { name = "start", type = "numbers", size = 3, unit = "m",
+      summary = "where it begins; absent: drawn by the run's seed" },
+    { name = "start_yaw_deg", type = "number", unit = "deg", default = 0,
+      summary = "heading there" },
+  } }
+
+function M.wanted(run)
+  return run.options.exploration.images > 0
+end
+
+local function map_of(o, range)
+  local map = {}
+  for key, value in pairs(type(o.map) == "table" and o.map or { type = o.map }) do
+    map[key] = value
+  end
+  map.resolution, map.maximum_range = o.resolution, range
+  map.hit, map.miss = HIT, MISS
+  return map
+end
+
+-- What is known afterwards: a prior with its mesh, and the views, the last one first.
+function M.knowledge(run, surface)
+  local o = run.options
+  local e = o.exploration
+  if not surface then
+    run:fail("exploration", "there is nothing to explore: name a scene or a mesh")
+  end
+  if o.prior.map or #o.flights > 0 then
+    run:fail("exploration", "it takes the place of flights and of files of an earlier flight: "
+                            .. "leave them out")
+  end
+  local own = map_of(o, e.range)
+  own.observations = true
+  local body = 2 * math.max(table.unpack(o.body))
+  local done = run:explore {
+    surface = surface, map = own, utility = e.utility, steps = e.images, budget = e.budget,
+    camera = { width = WIDTH, height = HEIGHT, view_deg = VIEW_DEG, pitch_deg = PITCH_DEG },
+    range = e.range, noise = o.noise, body = body, clear = e.clear, speed = e.speed,
+    start = e.start and { { position = e.start, yaw = math.rad(e.start_yaw_deg) } } or {},
+  }
+  if done.images < 2 then run:fail("exploration", "it ended after one image: " .. done.reason) end
+  local known = run:prior { map = map_of(o, e.range), spacing = o.surface.spacing,
+                            range = e.range, stride = o.surface.stride }
+  known:open_air { lower = done.cleared.lower, upper = done.cleared.upper, surface = surface }
+  known:look { surface = surface, poses = done.views, range = e.range, noise = o.noise,
+               camera = { width = WIDTH, height = HEIGHT,
+                          focal = WIDTH / 2 / math.tan(math.rad(VIEW_DEG) / 2) } }
+  known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
+  local poses = {}
+  for k = #done.views, 1, -1 do poses[#poses + 1] = done.views[k] end
+  -- The tour begins where the exploration ended, with a look at what is to be scanned.
+  local last, lower, upper = poses[1], surface.region.lower, surface.region.upper
+  local to = {}
+  for axis = 1, 3 do to[axis] = (lower[axis] + upper[axis]) / 2 - last.position[axis] end
+  poses[1] = { position = last.position, yaw = math.atan(to[2], to[1]),
+               pitch = math.min(0, math.atan(to[3], math.sqrt(to[1] ^ 2 + to[2] ^ 2))) }
+  return known, poses, done
+end
+
+return M

@@ -1,0 +1,49 @@
+// An exploration and a scan in one visit.
+#include "tests/missions/scan_hut.h"
+
+namespace lapwing {
+namespace {
+
+class ExploringThenScanning : public Scanning {
+ protected:
+  void write_both(const std::string& more) {
+    write_file_atomically(folder_ / "both.lua", R"(
+local scan = require "mission.scan"
+return scan.of_scene {
+  name = "hut", scene = "hut", resolution = 0.4, body = { 0.5, 0.5, 0.5 },
+  exploration = { images = 10, utility = "frontier", start = { 0, -11, 4 }, start_yaw_deg = 90 },
+  tour = { budget = 60, iterations = 20 }, closed_loop = "reported",
+  surface = { spacing = 0.8, cell = 1, trim = 2 },
+  candidates = { most = 30, step = 2.5, distance_apart = 2 },
+  motions = { alpha = 0.3, coarse = 40 },)" + more +
+                                                      "\n}\n");
+  }
+};
+
+// The tour begins where the exploration ended, in the map that it made.
+TEST_F(ExploringThenScanning, TheTourIsPlannedOnWhatWasExplored) {
+  write_both("");
+  ASSERT_EQ(run("", "both.lua"), 0) << error();
+  const Value result = answer();
+  EXPECT_EQ(result.at("status").as_text(), "ok");
+  EXPECT_GT(result.at("tour").at("score").as_number(), 0);
+  const Value& notes = result.at("notes");
+  EXPECT_THAT(notes.as_list().front().as_text(), HasSubstr("explored first: 10 depth images"));
+  const Plan read = read_plan(folder_ / "out/plan.json");
+  EXPECT_EQ(read.environment.maps.at(0).file, "map.ot");
+  EXPECT_EQ(read.environment.meshes.at(0).file, "prior.ply");
+  for (const Check& check : verify(read, folder_ / "out").failures())
+    ADD_FAILURE() << to_line(check);
+}
+
+TEST_F(ExploringThenScanning, WhatCannotBeIsSaid) {
+  write_both(" flights = { { pattern = 'meander' } },");
+  EXPECT_NE(run("", "both.lua"), 0);
+  EXPECT_THAT(error(), HasSubstr("takes the place of flights"));
+  write_both(" prior = { map = 'a.ot', mesh = 'a.ply' },");
+  EXPECT_NE(run("", "both.lua"), 0);
+  EXPECT_THAT(error(), HasSubstr("leave them out"));
+}
+
+}  // namespace
+}  // namespace lapwing
