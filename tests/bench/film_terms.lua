@@ -31,7 +31,8 @@ terms.written = {
       local squared = lapwing.dot(d, d)
       return near_fade(squared) * 4 * d.z / (squared + 2 * lapwing.abs(d.z)) end },
   { name = "jerk", weight = 1e-3, residual = function(s)
-      return (s[3].position - 3 * s[2].position + 3 * s[1].position - s.position) / s.step ^ 3 end },
+      return (s[3].position - 3 * s[2].position + 3 * s[1].position - s.position)
+             / s.step ^ 3 end },
 }
 terms.shipped = {
   { type = "camera_angle", name = "angle", weight = 10 },

@@ -1,5 +1,6 @@
 // Cost terms and constraints written in Lua: the shipped ones written so agree with themselves.
 #include "framework/core/random.h"
+#include "tests/guide.h"
 #include "tests/mission/term_fixture.h"
 
 namespace lapwing {
@@ -258,6 +259,18 @@ TEST_F(TermTest, AConstraintOfOnesOwnHolds) {
     end })");
   EXPECT_EQ(problem->rows() - problem->dynamics_rows(), problem->horizon().stages);
   EXPECT_NE(problem->row_name(problem->rows() - 1).find("cone at 1 s"), std::string::npos);
+}
+
+// What the guides show is right.
+TEST_F(TermTest, SnippetsOfTheGuidesAreRight) {
+  const auto terms = snippets_of(LAPWING_SOURCE_DIR "/framework/mission/README.md", "## Terms of");
+  ASSERT_EQ(terms.size(), 1u);
+  EXPECT_EQ(stated(terms[0].text)->quadratic(), false);
+  const auto films = snippets_of(LAPWING_SOURCE_DIR "/scripts/mission/README.md", "## film");
+  ASSERT_EQ(films.size(), 2u);
+  const auto mission = load(film(films[1].text));
+  mission->configure({}, {});
+  EXPECT_EQ(mission->plan().report.status, SolveStatus::optimal);
 }
 
 }  // namespace
