@@ -1,5 +1,7 @@
 #include "framework/app/command_line.h"
 #include "framework/app/evaluate_explore.h"
+#include "framework/app/new_files.h"
+#include "framework/app/plugin_check.h"
 #include "framework/app/train_command.h"
 
 #include <CLI/CLI.hpp>
@@ -302,7 +304,7 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
 }
 
 void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
-                         Command& command) {
+                         PluginCheck& asked, Command& command) {
   CLI::App* plugins = app.add_subcommand("plugins", "what plugins there are");
   plugins->require_subcommand(1);
   CLI::App* list = plugins->add_subcommand("list", "every plugin, by kind");
@@ -317,6 +319,43 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
   CLI::App* path = plugins->add_subcommand("path", "the folders that are searched");
   add_json(*path, invocation);
   path->callback([&] { command = [&] { return show_plugin_path(invocation); }; });
+  CLI::App* check = plugins->add_subcommand(
+      "check", "what every plugin of its kind must pass, each test in a process of its own");
+  add_text(*check, "plugin", "FILE.so|[KIND/]NAME", "a library, or the name of a plugin",
+           [&](const std::string& given) { asked.target = given; })
+      ->required();
+  add_repeated(*check, "--only", "TEST", asked.only, "this test alone; repeatable");
+  add_text(*check, "--limit", "S", "s that one test may take; else 60",
+           [&](const std::string& text) {
+             asked.limit = read_number("--limit", text);
+             if (!(asked.limit > 0))
+               throw CLI::ValidationError("--limit",
+                                          "expected a number above 0, not '" + text + "'");
+           });
+  add_json(*check, invocation);
+  check->callback([&] { command = [&] { return check_plugins(asked, invocation); }; });
+}
+
+void add_new_commands(CLI::App& app, Invocation& invocation, NewFiles& wanted, Command& command) {
+  CLI::App* made = app.add_subcommand("new", "files to begin from");
+  made->require_subcommand(1);
+  CLI::App* plugin = made->add_subcommand(
+      "plugin", "a folder with a plugin that builds, passes its tests and says what it does");
+  CLI::App* mission = made->add_subcommand("mission", "a mission script with comments that teach");
+  for (CLI::App* one : {plugin, mission}) {
+    add_text(*one, "kind", "KIND", one == plugin ? "cost_term, constraint, ..." : "film, race, ...",
+             [&](const std::string& given) { wanted.kind = given; })
+        ->required();
+    add_text(*one, "name", one == plugin ? "NAME" : "FILE",
+             one == plugin ? "its name, in snake_case; also the folder's" : "the file to write",
+             [&](const std::string& given) { wanted.name = given; })
+        ->required();
+    add_json(*one, invocation);
+  }
+  add_text(*plugin, "--in", "DIR", "where the folder is made; else here",
+           [&](const std::string& given) { wanted.folder = given; });
+  plugin->callback([&] { command = [&] { return new_plugin(wanted, invocation); }; });
+  mission->callback([&] { command = [&] { return new_mission(wanted, invocation); }; });
 }
 
 void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& request,
@@ -463,6 +502,8 @@ int run_command_line(int argc, const char* const* argv) {
   std::vector<std::string> pilots;
   RaceRules rules;
   TrainRequest training;
+  PluginCheck checking;
+  NewFiles wanted;
   ScanEvaluation asked;
   ExploreEvaluation exploring;
   Command command;
@@ -474,7 +515,8 @@ int run_command_line(int argc, const char* const* argv) {
   add_map_commands(app, invocation, plan, target, command);
   add_scene_commands(app, invocation, plan, stated, target, command);
   add_race_command(app, invocation, plan, pilots, rules, target, command);
-  add_plugin_commands(app, invocation, name, command);
+  add_plugin_commands(app, invocation, name, checking, command);
+  add_new_commands(app, invocation, wanted, command);
   add_train_commands(app, invocation, training, command);
   CLI::App* evaluate = app.add_subcommand("evaluate", "studies: methods against each other");
   evaluate->require_subcommand(1);

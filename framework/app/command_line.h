@@ -88,6 +88,8 @@ ExitStatus view_scene(const std::filesystem::path& file, const SceneStatement& s
 ExitStatus list_plugins(const Invocation& invocation);
 ExitStatus show_plugin(const std::string& name, const Invocation& invocation);
 ExitStatus show_plugin_path(const Invocation& invocation);
+// InputError naming the nearest.
+[[noreturn]] void refuse_unknown_plugin(const Registry& registry, const std::string& name);
 
 // Writes one object and a line end to standard output.
 void print_json(const Value& value);

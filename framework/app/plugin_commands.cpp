@@ -64,7 +64,9 @@ void print_plugin(const PluginEntry& entry) {
   }
 }
 
-[[noreturn]] void refuse_unknown(const Registry& registry, const std::string& name) {
+}  // namespace
+
+void refuse_unknown_plugin(const Registry& registry, const std::string& name) {
   std::vector<std::string> names;
   for (const PluginEntry& entry : registry.entries()) {
     names.push_back(entry.name);
@@ -75,8 +77,6 @@ void print_plugin(const PluginEntry& entry) {
       "there is no plugin '" + name + "'" +
       (nearest.empty() ? "; see 'lapwing plugins list'" : "; did you mean '" + nearest + "'?"));
 }
-
-}  // namespace
 
 ExitStatus list_plugins(const Invocation& invocation) {
   const Registry registry = invocation.registry();
@@ -107,7 +107,7 @@ ExitStatus show_plugin(const std::string& name, const Invocation& invocation) {
   for (const PluginEntry& entry : registry.entries()) {
     if (entry.name == name || entry.kind + "/" + entry.name == name) found.push_back(&entry);
   }
-  if (found.empty()) refuse_unknown(registry, name);
+  if (found.empty()) refuse_unknown_plugin(registry, name);
   if (invocation.json) {
     Value list = Value::list();
     for (const PluginEntry* entry : found) list.push_back(plugin_value(*entry, true));

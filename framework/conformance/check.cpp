@@ -1,5 +1,6 @@
 #include "framework/conformance/check.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "framework/conformance/function_checks.h"
@@ -37,6 +38,20 @@ std::vector<CheckResult> check_registered(const Registry& registry, const Plugin
 
 }  // namespace
 
+bool CheckOptions::wants(const std::string& check) const {
+  return only.empty() || std::find(only.begin(), only.end(), check) != only.end();
+}
+
+std::vector<std::string> check_names(const std::string& kind) {
+  std::vector<std::string> names{"creation",   "values",  "derivatives", "curvature",
+                                 "ranges",     "affine",  "degenerate input",
+                                 "repeatable", "threads", "allocations", "identity"};
+  if (kind == CostTerm::kKind) return names;
+  names.push_back("bounds");
+  if (kind == Constraint::kKind) return names;
+  return {"behaviour"};
+}
+
 std::vector<CheckResult> check_cost_term(const Specimen<CostTerm>& subject,
                                          const CheckOptions& options) {
   Findings findings;
@@ -49,7 +64,9 @@ std::vector<CheckResult> check_constraint(const Specimen<Constraint>& subject,
                                           const CheckOptions& options) {
   Findings findings;
   check_stage_function(subject.parameters, subject.create, options, findings,
-                       [&](const BoundSubject& bound) { check_bounds(bound, findings); });
+                       [&](const BoundSubject& bound) {
+                         if (options.wants("bounds")) check_bounds(bound, findings);
+                       });
   return std::move(findings).results();
 }
 

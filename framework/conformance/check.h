@@ -46,7 +46,15 @@ struct CheckOptions {
   // Number of heap allocations of the whole process so far. A library cannot count them; without
   // this the allocation check is skipped.
   std::function<std::int64_t()> allocations;
+  // Makes these checks alone, of those that `check_names` lists; none: all of them.
+  std::vector<std::string> only = {};
+
+  bool wants(const std::string& check) const;
 };
+
+// The checks of a kind that can be asked for one by one, so that each may have a process of its
+// own. A kind whose checks hang together has one, "behaviour".
+std::vector<std::string> check_names(const std::string& kind);
 
 std::vector<CheckResult> check_cost_term(const Specimen<CostTerm>& subject,
                                          const CheckOptions& options = {});
@@ -72,6 +80,12 @@ Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {
             return registry.create<Kind>(name, given);
           }};
 }
+
+// What a plugin of any kind says of itself: names, version, and a parameter table that agrees with
+// itself. Opens nothing.
+std::vector<CheckResult> check_description(const PluginEntry& entry);
+// Whether parameters of the wrong type, out of range or unknown are refused with an InputError.
+std::vector<CheckResult> check_rubbish(const Registry& registry, const PluginEntry& entry);
 
 // A plugin of any kind; of a kind without checks of its own, one skipped result that says so.
 std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntry& entry,

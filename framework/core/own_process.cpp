@@ -114,8 +114,8 @@ bool read_until(int pipe, double deadline, std::string& answer) {
 
 }  // namespace
 
-std::string in_own_process(const std::string& what, const ProcessLimits& limits,
-                           const std::function<std::string()>& work) {
+ProcessResult run_in_own_process(const ProcessLimits& limits,
+                                 const std::function<std::string()>& work) {
   Pipe pipe;
   const pid_t copy = ::fork();
   if (copy < 0) throw Error(std::string("no process of its own: ") + std::strerror(errno));
@@ -133,16 +133,29 @@ std::string in_own_process(const std::string& what, const ProcessLimits& limits,
   if (!whole) {
     char text[32];
     std::snprintf(text, sizeof text, "%g", limits.seconds);
-    throw InputError(what + ": it takes longer than " + text + " s");
+    return {ProcessEnd::overtime, std::string("it takes longer than ") + text + " s"};
   }
-  if (WIFSIGNALED(status)) {
-    throw InputError(what + ": the reader crashed on it (" + ::strsignal(WTERMSIG(status)) + ")");
+  if (WIFSIGNALED(status)) return {ProcessEnd::crashed, ::strsignal(WTERMSIG(status))};
+  if (answer.empty()) return {ProcessEnd::crashed, "it ended without an answer"};
+  const ProcessEnd end = answer[0] == kResult       ? ProcessEnd::answered
+                         : answer[0] == kInputError ? ProcessEnd::refused
+                                                    : ProcessEnd::failed;
+  return {end, answer.substr(1)};
+}
+
+std::string in_own_process(const std::string& what, const ProcessLimits& limits,
+                           const std::function<std::string()>& work) {
+  const ProcessResult result = run_in_own_process(limits, work);
+  switch (result.end) {
+    case ProcessEnd::answered:
+      return result.text;
+    case ProcessEnd::refused:
+      throw InputError(result.text);
+    case ProcessEnd::crashed:
+      throw InputError(what + ": the reader crashed on it (" + result.text + ")");
+    default:
+      throw InputError(what + ": " + result.text);
   }
-  const char kind = answer.empty() ? kOtherError : answer[0];
-  const std::string rest = answer.empty() ? "the reader ended without an answer" : answer.substr(1);
-  if (kind == kInputError) throw InputError(rest);
-  if (kind == kOtherError) throw InputError(what + ": " + rest);
-  return rest;
 }
 
 }  // namespace lapwing

@@ -10,6 +10,7 @@
 #include "framework/mission/options.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scene_script.h"
+#include "framework/mission/term_recording.h"
 
 namespace lapwing {
 
@@ -53,6 +54,9 @@ struct Mission::Impl {
 void Mission::Impl::load() {
   sandbox.protect([this](lua_State* state) {
     open_lapwing_library(state, run);
+    open_symbolic_types(state);
+    open_symbolic_functions(state);
+    open_stage_values(state);
     open_problem_library(state);
     open_plan_library(state);
     open_map_library(state);

@@ -5,6 +5,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
+#include "framework/mission/script_terms.h"
 #include "framework/mission/vehicle_source.h"
 #include "framework/mission/way_library.h"
 #include "framework/problem/constraint.h"
@@ -84,7 +85,18 @@ int add_block(lua_State* state) {
   return 0;
 }
 
+// Notes a term of the script's own; whether it was one.
+bool add_own_term(lua_State* state, ScriptTermKind kind) {
+  open_problem(state);
+  if (!is_script_term(state, 2, kind)) return false;
+  ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  if (!object.terms) object.terms = std::make_shared<std::vector<ScriptTerm>>();
+  object.terms->push_back(read_script_term(state, 2, kind));
+  return true;
+}
+
 int add_cost(lua_State* state) {
+  if (add_own_term(state, ScriptTermKind::cost)) return 0;
   TrajectoryProblem& problem = open_problem(state);
   const PluginArgument argument = plugin_argument(state, "add_cost", true);
   problem.add_cost(argument.name, argument.weight, create<CostTerm>(state, argument));
@@ -92,6 +104,7 @@ int add_cost(lua_State* state) {
 }
 
 int add_constraint(lua_State* state) {
+  if (add_own_term(state, ScriptTermKind::constraint)) return 0;
   TrajectoryProblem& problem = open_problem(state);
   const PluginArgument argument = plugin_argument(state, "add_constraint", false);
   problem.add_constraint(argument.name, create<Constraint>(state, argument));
@@ -140,8 +153,20 @@ int guess_solution(lua_State* state) {
 }
 
 int finish(lua_State* state) {
-  open_problem(state).finish();
-  object_argument<ProblemObject>(state, 1, kProblemType).finished = true;
+  TrajectoryProblem& problem = open_problem(state);
+  ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  object.finished = true;  // functions of terms run now, and can add nothing
+  if (object.terms)
+    for (ScriptTerm& term : *object.terms) add_script_term(state, term, problem);
+  problem.finish();
+  return 0;
+}
+
+// problem:set_parameter{term = "stay", name = "height", value = 4}
+int set_parameter(lua_State* state) {
+  ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  std::vector<ScriptTerm> none;
+  set_term_parameter(state, 2, object.terms ? *object.terms : none);
   return 0;
 }
 
@@ -310,6 +335,7 @@ void open_problem_library(lua_State* state) {
                               {"flight_zone_distance", &guarded<flight_zone_distance>},
                               {"plan_way", &guarded<plan_way>},
                               {"grow_corridor", &guarded<grow_corridor_of_problem>},
+                              {"set_parameter", &guarded<set_parameter>},
                               {"finish", &guarded<finish>},
                               {nullptr, nullptr}};
   define_type<ProblemObject>(state, kProblemType, methods);

@@ -26,6 +26,7 @@ struct lua_State;
 namespace lapwing {
 
 struct ScanRecord;  // export/scan_report.h
+struct ScriptTerm;  // script_terms.h
 
 struct ScanWork;  // scan_objects.h
 struct TourDefinition;
@@ -54,6 +55,8 @@ struct MissionSettings {
 struct ProblemObject {
   std::shared_ptr<TrajectoryProblem> problem;
   bool finished = false;
+  // Written in the script, recorded when the problem is finished.
+  std::shared_ptr<std::vector<ScriptTerm>> terms = nullptr;
 };
 
 struct SolutionObject {

@@ -10,6 +10,7 @@
 -- the limits of vehicle and gimbal, obstacles, how the flight begins and ends, with `hard` the
 -- keyframes.
 local input = require "mission.film_input"
+local own = require "mission.own_terms"
 local search = require "mission.film_search"
 local shot_file = require "mission.shot_file"
 
@@ -71,6 +72,7 @@ local common = {
     summary = "finds a way round obstacles to begin with" },
   { name = "passages", type = "integer", default = 4, minimum = 0, maximum = 20,
     summary = "ways of another kind that are tried where the first comes to nothing" },
+  own.declared[1], own.declared[2],
 }
 local of_shot = {
   { name = "duration", type = "number", unit = "s", above = 0, maximum = 1e5,
@@ -89,9 +91,14 @@ local function mission(what, given, declared, shot_of)
   local options = input.written_out(given)
   local name = options.name or "film"
   options.name = nil
+  local terms = own.taken(options)
   local all = table.move(common, 1, #common, #declared + 1, { table.unpack(declared) })
   return { kind = "film", name = name, options = lapwing.options(all, options),
-           plan = function(run) return search.fly(run, shot_of(run)) end }
+           plan = function(run)
+             local shot = shot_of(run)
+             shot.terms = terms
+             return search.fly(run, shot)
+           end }
 end
 
 -- film.shot { name =, duration =, subject = { position =, height = }, keyframes = { { time =,

@@ -1,6 +1,7 @@
 -- A film as a trajectory problem: blocks, cost terms, constraints, a first guess, and the task that
 -- its plan is judged by (thesis 3.5).
 local surroundings = require "mission.film_environment"
+local own = require "mission.own_terms"
 local passages = require "mission.passages"
 local subjects = require "mission.subjects"
 local tracks = require "mission.tracks"
@@ -230,6 +231,7 @@ function problem.state(run, shot, stretch, only)
     end
     task.framing_share = #task.framing > 0 and o.framing or nil
   end
+  if not only then own.add(p, o, shot.terms) end
   p:guess_path(guess(keyframes, camera, path))
   p:finish()
   return p, task, camera

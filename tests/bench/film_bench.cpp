@@ -14,7 +14,8 @@ constexpr double kNear = 1.005;     // times the better optimum
 
 using Overrides = std::vector<std::string>;
 
-std::shared_ptr<const TrajectoryProblem> castle(const Overrides& overrides) {
+std::shared_ptr<const TrajectoryProblem> problem_of(const std::filesystem::path& script,
+                                                    const Overrides& overrides) {
   std::shared_ptr<const TrajectoryProblem> problem;
   MissionSettings settings;
   settings.scripts = shipped_folder("scripts");
@@ -23,10 +24,14 @@ std::shared_ptr<const TrajectoryProblem> castle(const Overrides& overrides) {
   settings.observe_problem = [&](std::shared_ptr<const TrajectoryProblem> seen) {
     if (!problem) problem = std::move(seen);
   };
-  Mission mission(shipped_folder("examples") / "filming/castle_flyover.lua", settings);
+  Mission mission(script, settings);
   mission.configure({}, overrides);
   mission.plan();
   return problem;
+}
+
+std::shared_ptr<const TrajectoryProblem> castle(const Overrides& overrides) {
+  return problem_of(shipped_folder("examples") / "filming/castle_flyover.lua", overrides);
 }
 
 // 200 stages and every term that a film can have.
@@ -87,6 +92,19 @@ void to_the_end(benchmark::State& state, const char* name, bool warm) {
   if (result.report.status != SolveStatus::optimal) state.SkipWithError("not optimal");
 }
 
+// Three terms beside those of the film, from the same guess to the end: in Lua, and as plugins.
+void film_terms(benchmark::State& state, const char* script) {
+  const auto problem =
+      problem_of(std::filesystem::path(LAPWING_SOURCE_DIR) / "tests/bench" / script, {});
+  SolveResult result;
+  for (auto _ : state) result = solve("iqp", *problem, {});
+  state.counters["cost"] = result.report.cost;
+  state.counters["iterations"] = result.report.iterations;
+  if (result.report.status != SolveStatus::optimal) state.SkipWithError("not optimal");
+}
+
+BENCHMARK_CAPTURE(film_terms, plugins, "film_with_plugin_terms.lua")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(film_terms, lua, "film_with_lua_terms.lua")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(to_half_a_percent, iqp, "iqp")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(to_half_a_percent, ipopt, "ipopt")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(to_the_end, moved_cold, "iqp", false)->Unit(benchmark::kMillisecond);

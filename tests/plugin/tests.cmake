@@ -7,6 +7,10 @@ lapwing_add_plugin(fixture good SOURCES ${fixtures}/good.cpp OUTPUT ${fixture_ou
 lapwing_add_plugin(fixture throwing SOURCES ${fixtures}/throwing.cpp OUTPUT ${fixture_output}/whole)
 lapwing_add_plugin(fixture duplicate SOURCES ${fixtures}/duplicate.cpp
                    OUTPUT ${fixture_output}/duplicate)
+# Terms with one mistake each, for `lapwing plugins check`.
+lapwing_add_plugin(cost_term broken_term SOURCES ${fixtures}/broken_term.cpp
+                   OUTPUT ${fixture_output}/broken_terms)
+add_dependencies(test_app lapwing_cost_term_broken_term)
 add_dependencies(test_plugin lapwing_fixture_good lapwing_fixture_throwing
                  lapwing_fixture_duplicate)
 
@@ -17,6 +21,7 @@ foreach(name other_abi no_symbol undefined_symbol throwing_library bad_preset)
   set_target_properties(fixture_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
     LIBRARY_OUTPUT_DIRECTORY ${fixture_output}/broken CXX_VISIBILITY_PRESET hidden)
   add_dependencies(test_plugin fixture_${name})
+  add_dependencies(test_app fixture_${name})
 endforeach()
 # The tests compare every plugin with its sidecar, so all of them must be there.
 get_property(all_plugins GLOBAL PROPERTY LAPWING_PLUGINS)

@@ -1,0 +1,128 @@
+#include "framework/app/new_files.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "framework/config/shipped.h"
+#include "framework/core/files.h"
+
+namespace lapwing {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Every kind there are templates for: names of folders, or of files without their ending.
+std::vector<std::string> kinds_in(const fs::path& folder) {
+  std::vector<std::string> kinds;
+  for (const auto& item : fs::directory_iterator(folder))
+    kinds.push_back(item.path().stem().stem().string());
+  std::sort(kinds.begin(), kinds.end());
+  return kinds;
+}
+
+void expect_kind(const std::string& kind, const std::vector<std::string>& known,
+                 const std::string& what) {
+  if (std::find(known.begin(), known.end(), kind) != known.end()) return;
+  std::string all;
+  for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
+  const std::string nearest = nearest_name(kind, known);
+  throw InputError("there is no kind of " + what + " '" + kind + "'" +
+                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") +
+                   " There are: " + all);
+}
+
+void expect_snake_case(const std::string& name) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z' && name.back() != '_' &&
+      name.find("__") == std::string::npos && std::all_of(name.begin(), name.end(), fits))
+    return;
+  throw InputError("'" + name + "' is no name for a plugin: expected snake_case, such as keep_low");
+}
+
+// keep_low: KeepLow
+std::string in_pascal_case(const std::string& name) {
+  std::string result;
+  bool upper = true;
+  for (const char c : name) {
+    if (c == '_') {
+      upper = true;
+      continue;
+    }
+    result += upper && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    upper = false;
+  }
+  return result;
+}
+
+std::string filled_in(std::string text, const std::string& mark, const std::string& value) {
+  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += value.size())
+    text.replace(at, mark.size(), value);
+  return text;
+}
+
+void say(const Invocation& invocation, const std::vector<fs::path>& files,
+         const std::string& next) {
+  if (invocation.json) {
+    Value list = Value::list();
+    for (const fs::path& file : files) list.push_back(file.string());
+    Value object = Value::map();
+    object.set("files", std::move(list));
+    print_json(object);
+    return;
+  }
+  for (const fs::path& file : files) std::printf("%s\n", file.c_str());
+  std::printf("%s", next.c_str());
+}
+
+}  // namespace
+
+ExitStatus new_plugin(const NewFiles& wanted, const Invocation& invocation) {
+  const fs::path templates = shipped_folder("scripts") / "templates" / "plugins";
+  expect_kind(wanted.kind, kinds_in(templates), "plugin");
+  expect_snake_case(wanted.name);
+  const fs::path folder = wanted.folder / wanted.name;
+  if (fs::exists(folder)) throw InputError("'" + folder.string() + "' exists already");
+  const Registry registry = invocation.registry();
+  for (const PluginEntry& entry : registry.entries())
+    if (entry.kind == wanted.kind && entry.name == wanted.name)
+      throw InputError("there is a " + wanted.kind + " '" + wanted.name + "' already, in '" +
+                       entry.library.string() + "'; choose another name");
+  std::vector<fs::path> files;
+  const auto write = [&](const fs::path& from, const std::string& name) {
+    std::string text = read_file(from);
+    text = filled_in(text, "@NAME@", wanted.name);
+    text = filled_in(text, "@CLASS@", in_pascal_case(wanted.name));
+    text = filled_in(text, "@KIND@", wanted.kind);
+    files.push_back(folder / name);
+    write_file_atomically(files.back(), text);
+  };
+  fs::create_directories(folder);
+  write(templates / wanted.kind / "source.cpp.in", wanted.name + ".cpp");
+  write(templates / wanted.kind / "README.md.in", "README.md");
+  write(templates.parent_path() / "CMakeLists.txt.in", "CMakeLists.txt");
+  say(invocation, files,
+      "\nBuild and check it:\n  cd " + folder.string() +
+          "\n  cmake -B build && cmake --build build && ctest --test-dir build\n"
+          "Use it:\n  lapwing --plugin-path " +
+          folder.string() + "/build/lib/plugins ...\n");
+  return ExitStatus::done;
+}
+
+ExitStatus new_mission(const NewFiles& wanted, const Invocation& invocation) {
+  const fs::path templates = shipped_folder("scripts") / "templates" / "missions";
+  expect_kind(wanted.kind, kinds_in(templates), "mission");
+  const fs::path file = wanted.name;
+  if (file.extension() != ".lua")
+    throw InputError("'" + wanted.name +
+                     "' is no name for a script: expected one that ends in .lua");
+  if (fs::exists(file)) throw InputError("'" + file.string() + "' exists already");
+  write_file_atomically(file, filled_in(read_file(templates / (wanted.kind + ".lua.in")), "@NAME@",
+                                        file.stem().string()));
+  say(invocation, {file}, "\nRun it:\n  lapwing run " + file.string() + "\n");
+  return ExitStatus::done;
+}
+
+}  // namespace lapwing

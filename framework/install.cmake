@@ -1,0 +1,32 @@
+# What `cmake --install` lays down, and what find_package(lapwing) finds: in an install, or in a build
+# tree by -Dlapwing_DIR=BUILD.
+include(CMakePackageConfigHelpers)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lapwing)
+
+set_target_properties(lapwing_app lapwing_sidecar PROPERTIES
+  INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS lapwing lapwing_app lapwing_sidecar EXPORT lapwing_targets)
+install(EXPORT lapwing_targets NAMESPACE lapwing:: DESTINATION ${package})
+export(EXPORT lapwing_targets NAMESPACE lapwing:: FILE ${CMAKE_BINARY_DIR}/lapwing_targets.cmake)
+
+# Plugins see the kernel's headers; Lua and the command line stay inside.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lapwing FILES_MATCHING PATTERN "*.h"
+  PATTERN "framework/mission" EXCLUDE PATTERN "framework/app" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs ${PROJECT_SOURCE_DIR}/scripts
+  ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/lapwing)
+install(FILES plugin/lapwing_plugin.cmake plugin/plugin_exports.map DESTINATION ${package})
+
+foreach(place build install)
+  set(LAPWING_PLUGIN_CMAKE "\${CMAKE_CURRENT_LIST_DIR}/lapwing_plugin.cmake")
+  set(config ${CMAKE_CURRENT_BINARY_DIR}/installed/lapwing-config.cmake)
+  if(place STREQUAL build)
+    set(LAPWING_PLUGIN_CMAKE ${CMAKE_CURRENT_SOURCE_DIR}/plugin/lapwing_plugin.cmake)
+    set(config ${CMAKE_BINARY_DIR}/lapwing-config.cmake)
+  endif()
+  configure_file(lapwing-config.cmake.in ${config} @ONLY)
+endforeach()
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/lapwing-config-version.cmake
+  VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/installed/lapwing-config.cmake
+  ${CMAKE_BINARY_DIR}/lapwing-config-version.cmake DESTINATION ${package})

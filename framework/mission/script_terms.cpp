@@ -1,0 +1,208 @@
+#include "framework/mission/script_terms.h"
+
+#include <algorithm>
+
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/run.h"
+#include "framework/problem/time_spans.h"
+
+namespace lapwing {
+
+namespace {
+
+constexpr double kDefaultWidth = 1e-3;
+
+const char* function_key(ScriptTermKind kind) {
+  return kind == ScriptTermKind::cost ? "residual" : "value";
+}
+const char* word_of(ScriptTermKind kind) {
+  return kind == ScriptTermKind::cost ? "cost" : "constraint";
+}
+
+ParameterTable script_term_table(ScriptTermKind kind) {
+  ParameterTable table;
+  table.required_text("name", "its name in this problem, for messages and reports")
+      .integer("window", 1, "neighbouring stages that it reads at the least", between(1, 64))
+      .number("smoothing", kDefaultWidth, "",
+              "within which the kinks of max, min, abs and norm are rounded; 0: not at all",
+              at_least(0))
+      .numbers("times", {}, "s", "when it is asked; none: at every stage", at_least(0))
+      .tables("spans", time_span_table(), "spans of time in which it is asked; none: always")
+      .tables("except", time_span_table(), "spans of time in which it is not asked");
+  if (kind == ScriptTermKind::cost)
+    table.number("weight", 1.0, "", "weight of the squared residuals", at_least(0))
+        .boolean("integral", true,
+                 "the squares are integrated over time; else, and at given times, summed");
+  return table;
+}
+
+// A number, or a list of them.
+std::vector<double> numbers_of(const Value& value, const std::string& what) {
+  std::vector<double> numbers;
+  if (value.is_number()) return {value.as_number()};
+  if (value.is_list())
+    for (const Value& entry : value.as_list())
+      if (entry.is_number()) numbers.push_back(entry.as_number());
+  if (!value.is_list() || numbers.empty() || numbers.size() != value.as_list().size())
+    throw InputError(value.origin(), what + ": expected a number or a list of numbers, got " +
+                                         value.describe_type());
+  return numbers;
+}
+
+Value field_value(lua_State* state, int index, const char* key, const Origin& origin,
+                  const std::string& what) {
+  lua_getfield(state, index, key);
+  const Value value =
+      lua_isnil(state, -1) ? Value() : value_from_lua(state, lua_gettop(state), origin, what);
+  lua_pop(state, 1);
+  return value;
+}
+
+void read_parameters(const Value& given, ScriptTerm& term) {
+  if (given.is_null() || given == Value::list()) return;
+  if (!given.is_map())
+    throw InputError(
+        given.origin(),
+        term.name + ": parameters: expected {name = number, ...}, got " + given.describe_type());
+  for (const auto& [key, value] : given.as_map()) {
+    const std::vector<double> numbers = numbers_of(value, term.name + ": parameters." + key);
+    std::vector<double>& all = *term.parameters.values;
+    term.parameters.list.push_back(
+        {key, static_cast<int>(all.size()), static_cast<int>(numbers.size()), value.is_number()});
+    all.insert(all.end(), numbers.begin(), numbers.end());
+  }
+}
+
+std::vector<double> for_all_rows(const ScriptTerm& term, const std::vector<double>& bounds,
+                                 double none, const char* which) {
+  const int rows = term.shape.tape->rows();
+  if (bounds.empty()) return std::vector<double>(rows, none);
+  if (bounds.size() == 1) return std::vector<double>(rows, bounds[0]);
+  if (static_cast<int>(bounds.size()) != rows)
+    throw InputError(term.origin, "constraint '" + term.name + "': " + which + " has " +
+                                      std::to_string(bounds.size()) +
+                                      " numbers, the function returns " + std::to_string(rows));
+  return bounds;
+}
+
+std::string one_of(const std::vector<std::string>& known) {
+  std::string text;
+  for (const std::string& name : known) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text.empty() ? "there are none" : "there is " + text;
+}
+
+}  // namespace
+
+bool is_script_term(lua_State* state, int index, ScriptTermKind kind) {
+  if (!lua_istable(state, index)) return false;
+  const bool has_type = lua_getfield(state, index, "type") != LUA_TNIL;
+  const int own = lua_getfield(state, index, function_key(kind));
+  lua_pop(state, 2);
+  if (has_type && own == LUA_TFUNCTION)
+    throw InputError(Sandbox::of(state).script_position(state),
+                     std::string("add_") + word_of(kind) + ": give a plugin's `type` or a `" +
+                         function_key(kind) + "` of your own, not both");
+  return !has_type && own != LUA_TNIL;
+}
+
+ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
+  // What belongs to the other kind is left to the check, which says that it is unknown.
+  std::vector<std::string_view> apart{function_key(kind), "parameters"};
+  if (kind == ScriptTermKind::constraint) apart.insert(apart.end(), {"lower", "upper"});
+  const std::string call = std::string("add_") + word_of(kind);
+  const Parameters given = table_argument(state, index, script_term_table(kind), call, apart);
+  ScriptTerm term;
+  term.kind = kind;
+  term.name = given.text("name");
+  term.origin = given.origin();
+  term.width = given.number("smoothing");
+  term.shape.window = static_cast<int>(given.integer("window"));
+  const auto times = given.numbers("times");
+  term.shape.times.assign(times.begin(), times.end());
+  term.shape.spans = time_spans(given, "spans");
+  term.shape.except = time_spans(given, "except");
+  const bool timed = !term.shape.times.empty();
+  if (timed && !(term.shape.spans.empty() && term.shape.except.empty()))
+    throw InputError(term.origin, call + ": give times or spans, not both");
+  if (kind == ScriptTermKind::cost) {
+    term.weight = given.number("weight");
+    term.shape.integral = given.boolean("integral") && !timed;
+  } else {
+    const Value lower = field_value(state, index, "lower", term.origin, call + ".lower");
+    const Value upper = field_value(state, index, "upper", term.origin, call + ".upper");
+    if (lower.is_null() && upper.is_null())
+      throw InputError(term.origin, call + ": give `lower`, `upper` or both: what '" + term.name +
+                                        "' must keep between");
+    if (!lower.is_null()) term.lower = numbers_of(lower, call + ".lower");
+    if (!upper.is_null()) term.upper = numbers_of(upper, call + ".upper");
+  }
+  read_parameters(field_value(state, index, "parameters", term.origin, call + ".parameters"), term);
+  if (lua_getfield(state, index, function_key(kind)) != LUA_TFUNCTION)
+    throw InputError(term.origin, call + ": " + function_key(kind) +
+                                      ": expected a function of a stage, got " +
+                                      describe_symbolic(state, -1));
+  term.function = luaL_ref(state, LUA_REGISTRYINDEX);
+  return term;
+}
+
+void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& problem) {
+  const std::string what = std::string(word_of(term.kind)) + " '" + term.name + "'";
+  {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, term.function);
+    TermRecording recording(state, what, problem, term.parameters, term.width);
+    recording.record(lua_gettop(state), term.shape);
+    lua_pop(state, 1);
+  }
+  luaL_unref(state, LUA_REGISTRYINDEX, term.function);
+  term.function = LUA_NOREF;
+  term.shape.parameters = term.parameters.values;
+  if (!term.shape.times.empty() && term.shape.window > 1)
+    throw InputError(term.origin, what + ": at given times there is no neighbouring stage to read");
+  if (term.kind == ScriptTermKind::cost) {
+    problem.add_cost(term.name, term.weight, tape_cost(term.shape));
+    return;
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<double> lower = for_all_rows(term, term.lower, -kInfinity, "lower");
+  std::vector<double> upper = for_all_rows(term, term.upper, kInfinity, "upper");
+  for (std::size_t r = 0; r < lower.size(); ++r)
+    if (lower[r] > upper[r])
+      throw InputError(term.origin,
+                       what + ": lower is above upper in result " + std::to_string(r + 1));
+  problem.add_constraint(term.name,
+                         tape_constraint(term.shape, std::move(lower), std::move(upper)));
+}
+
+void set_term_parameter(lua_State* state, int index, std::vector<ScriptTerm>& terms) {
+  static constexpr std::string_view kValue[] = {"value"};
+  ParameterTable table;
+  table.required_text("term", "name of a term of the script's own")
+      .required_text("name", "of one of its parameters");
+  const Parameters given = table_argument(state, index, table, "set_parameter", kValue);
+  const Value value = field_value(state, index, "value", given.origin(), "set_parameter.value");
+  const auto term = std::find_if(terms.begin(), terms.end(), [&](const ScriptTerm& entry) {
+    return entry.name == given.text("term");
+  });
+  std::vector<std::string> known;
+  if (term == terms.end()) {
+    for (const ScriptTerm& entry : terms) known.push_back(entry.name);
+    throw InputError(given.origin(), "set_parameter: no term '" + given.text("term") +
+                                         "' of the script's own; " + one_of(known));
+  }
+  for (const TermParameter& parameter : term->parameters.list) {
+    known.push_back(parameter.name);
+    if (parameter.name != given.text("name")) continue;
+    const std::vector<double> numbers = numbers_of(value, "set_parameter: value");
+    if (static_cast<int>(numbers.size()) != parameter.size)
+      throw InputError(given.origin(), "set_parameter: '" + parameter.name + "' has " +
+                                           std::to_string(parameter.size) + " numbers, got " +
+                                           std::to_string(numbers.size()));
+    std::copy(numbers.begin(), numbers.end(), term->parameters.values->begin() + parameter.first);
+    return;
+  }
+  throw InputError(given.origin(), "set_parameter: '" + term->name + "' has no parameter '" +
+                                       given.text("name") + "'; " + one_of(known));
+}
+
+}  // namespace lapwing

@@ -1,0 +1,45 @@
+// Cost terms and constraints written in a script:
+//
+//   p:add_cost { name = "keep_low", weight = 5,
+//                residual = function(s) return lapwing.max(s.position.z - 10, 0) end }
+//   p:add_constraint { name = "ceiling", upper = 30, value = function(s) return s.position.z end }
+//   p:add_cost { name = "stay", parameters = { height = 3 },
+//                residual = function(s, q) return s.position.z - q.height end }
+//   p:set_parameter { term = "stay", name = "height", value = 4 }       -- between two solves
+//
+// They are noted when they are added and recorded when the problem is finished: only then are all
+// blocks known.
+#pragma once
+
+#include <lua.hpp>
+
+#include <string>
+#include <vector>
+
+#include "framework/mission/term_recording.h"
+
+namespace lapwing {
+
+enum class ScriptTermKind { cost, constraint };
+
+struct ScriptTerm {
+  ScriptTermKind kind = ScriptTermKind::cost;
+  std::string name;
+  double weight = 1, width = 0;
+  int function = LUA_NOREF;  // in the registry
+  TapeFunction shape;
+  std::vector<double> lower, upper;  // of a constraint: none, one for all rows, or one each
+  Origin origin;
+  TermParameters parameters;
+};
+
+// Whether the table at `index` states a term of the script's own. InputError where it also names a
+// plugin.
+bool is_script_term(lua_State* state, int index, ScriptTermKind kind);
+ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind);
+// Records the term and adds it to the problem, which keeps its parameters alive.
+void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& problem);
+// {term =, name =, value =} at `index`. InputError naming the terms or parameters there are.
+void set_term_parameter(lua_State* state, int index, std::vector<ScriptTerm>& terms);
+
+}  // namespace lapwing

@@ -1,0 +1,190 @@
+// The functions of the table `lapwing` that terms are written with.
+#include "framework/mission/guard.h"
+#include "framework/mission/symbolic_values.h"
+
+namespace lapwing {
+
+namespace {
+
+SymbolicScalar multiplied(lua_State* state, const SymbolicScalar& a, const SymbolicScalar& b) {
+  return symbolic_result(state, TapeOp::multiply, a, b);
+}
+
+constexpr const char* name_of(TapeOp op) {
+  switch (op) {
+    case TapeOp::sin:
+      return "lapwing.sin";
+    case TapeOp::cos:
+      return "lapwing.cos";
+    case TapeOp::tan:
+      return "lapwing.tan";
+    case TapeOp::exp:
+      return "lapwing.exp";
+    case TapeOp::log:
+      return "lapwing.log";
+    case TapeOp::sqrt:
+      return "lapwing.sqrt";
+    default:
+      return "lapwing.abs";
+  }
+}
+
+double rounding(lua_State* state) {
+  const SymbolicSetting* setting = symbolic_setting(state);
+  return setting ? setting->width : 0.0;
+}
+
+void expect_count(lua_State* state, const char* what, int least, int most) {
+  const int given = lua_gettop(state);
+  if (given >= least && given <= most) return;
+  refuse_symbolic(state, std::string(what) + ": expected " + std::to_string(least) +
+                             (least == most ? "" : " or more") + " values, got " +
+                             std::to_string(given));
+}
+
+template <TapeOp kOp>
+int function_of_one(lua_State* state) {
+  expect_count(state, name_of(kOp), 1, 1);
+  const double width = kOp == TapeOp::absolute ? rounding(state) : 0.0;
+  push_symbolic(
+      state, symbolic_result(state, kOp, symbolic_argument(state, 1, name_of(kOp)), {}, {}, width));
+  return 1;
+}
+
+int angle_of_two(lua_State* state) {
+  expect_count(state, "lapwing.atan2", 2, 2);
+  const SymbolicScalar y = symbolic_argument(state, 1, "lapwing.atan2");
+  push_symbolic(state, symbolic_result(state, TapeOp::atan2, y,
+                                       symbolic_argument(state, 2, "lapwing.atan2")));
+  return 1;
+}
+
+template <bool kLargest>
+int extreme_function(lua_State* state) {
+  constexpr const char* kName = kLargest ? "lapwing.max" : "lapwing.min";
+  constexpr int kMost = 200;
+  expect_count(state, kName, 1, kMost);
+  const auto turned = [&](const SymbolicScalar& x) {
+    return kLargest ? x : symbolic_result(state, TapeOp::negate, x);
+  };
+  SymbolicScalar result = turned(symbolic_argument(state, 1, kName));
+  for (int i = 2; i <= lua_gettop(state); ++i)
+    result = symbolic_result(state, TapeOp::maximum, result,
+                             turned(symbolic_argument(state, i, kName)), {}, rounding(state));
+  push_symbolic(state, turned(result));
+  return 1;
+}
+
+int where_function(lua_State* state) {
+  expect_count(state, "lapwing.where", 3, 3);
+  if (lua_isboolean(state, 1))
+    refuse_symbolic(state,
+                    "lapwing.where: expected a number, got a truth value: write x - 3 for "
+                    "x > 3; lapwing.where(x, a, b) is a where x > 0");
+  const SymbolicScalar choice = symbolic_argument(state, 1, "lapwing.where");
+  const auto chosen = [&](const SymbolicScalar& a, const SymbolicScalar& b) {
+    if (choice.known()) return choice.value > 0 ? a : b;
+    return symbolic_result(state, TapeOp::select, choice, a, b);
+  };
+  if (is_symbolic_scalar(state, 2) && is_symbolic_scalar(state, 3)) {
+    push_symbolic(state, chosen(symbolic_argument(state, 2, "lapwing.where"),
+                                symbolic_argument(state, 3, "lapwing.where")));
+    return 1;
+  }
+  SymbolicEntries a = symbolic_vector_argument(state, 2, "lapwing.where");
+  const SymbolicEntries b =
+      symbolic_vector_argument(state, 3, "lapwing.where", static_cast<int>(a.size()));
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = chosen(a[i], b[i]);
+  push_symbolic_vector(state, std::move(a));
+  return 1;
+}
+
+SymbolicScalar dot_product(lua_State* state, const SymbolicEntries& a, const SymbolicEntries& b) {
+  SymbolicScalar sum = multiplied(state, a[0], b[0]);
+  for (std::size_t i = 1; i < a.size(); ++i)
+    sum = symbolic_result(state, TapeOp::add, sum, multiplied(state, a[i], b[i]));
+  return sum;
+}
+
+int dot_function(lua_State* state) {
+  expect_count(state, "lapwing.dot", 2, 2);
+  const SymbolicEntries a = symbolic_vector_argument(state, 1, "lapwing.dot");
+  push_symbolic(state, dot_product(state, a,
+                                   symbolic_vector_argument(state, 2, "lapwing.dot",
+                                                            static_cast<int>(a.size()))));
+  return 1;
+}
+
+int cross_function(lua_State* state) {
+  expect_count(state, "lapwing.cross", 2, 2);
+  const SymbolicEntries a = symbolic_vector_argument(state, 1, "lapwing.cross", 3);
+  const SymbolicEntries b = symbolic_vector_argument(state, 2, "lapwing.cross", 3);
+  SymbolicEntries result(3);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    result[i] = symbolic_result(state, TapeOp::subtract, multiplied(state, a[j], b[k]),
+                                multiplied(state, a[k], b[j]));
+  }
+  push_symbolic_vector(state, std::move(result));
+  return 1;
+}
+
+SymbolicScalar length_of(lua_State* state, const SymbolicEntries& v) {
+  return symbolic_result(state, TapeOp::norm, dot_product(state, v, v), {}, {}, rounding(state));
+}
+
+int norm_function(lua_State* state) {
+  expect_count(state, "lapwing.norm", 1, 1);
+  push_symbolic(state, length_of(state, symbolic_vector_argument(state, 1, "lapwing.norm")));
+  return 1;
+}
+
+int normalize_function(lua_State* state) {
+  expect_count(state, "lapwing.normalize", 1, 1);
+  SymbolicEntries v = symbolic_vector_argument(state, 1, "lapwing.normalize");
+  const SymbolicScalar length = length_of(state, v);
+  for (SymbolicScalar& entry : v) entry = symbolic_result(state, TapeOp::divide, entry, length);
+  push_symbolic_vector(state, std::move(v));
+  return 1;
+}
+
+// lapwing.vector(x, y, z) or lapwing.vector{x, y, z}
+int make_vector(lua_State* state) {
+  expect_count(state, "lapwing.vector", 1, 64);
+  if ((lua_istable(state, 1) || is_symbolic_vector(state, 1))) {
+    push_symbolic_vector(state, symbolic_vector_argument(state, 1, "lapwing.vector"));
+    return 1;
+  }
+  SymbolicEntries entries;
+  for (int i = 1; i <= lua_gettop(state); ++i)
+    entries.push_back(symbolic_argument(state, i, "lapwing.vector"));
+  push_symbolic_vector(state, std::move(entries));
+  return 1;
+}
+
+}  // namespace
+
+void open_symbolic_functions(lua_State* state) {
+  const luaL_Reg functions[] = {{"sin", &guarded<function_of_one<TapeOp::sin>>},
+                                {"cos", &guarded<function_of_one<TapeOp::cos>>},
+                                {"tan", &guarded<function_of_one<TapeOp::tan>>},
+                                {"exp", &guarded<function_of_one<TapeOp::exp>>},
+                                {"log", &guarded<function_of_one<TapeOp::log>>},
+                                {"sqrt", &guarded<function_of_one<TapeOp::sqrt>>},
+                                {"abs", &guarded<function_of_one<TapeOp::absolute>>},
+                                {"atan2", &guarded<angle_of_two>},
+                                {"max", &guarded<extreme_function<true>>},
+                                {"min", &guarded<extreme_function<false>>},
+                                {"where", &guarded<where_function>},
+                                {"dot", &guarded<dot_function>},
+                                {"cross", &guarded<cross_function>},
+                                {"norm", &guarded<norm_function>},
+                                {"normalize", &guarded<normalize_function>},
+                                {"vector", &guarded<make_vector>},
+                                {nullptr, nullptr}};
+  lua_getglobal(state, "lapwing");
+  luaL_setfuncs(state, functions, 0);
+  lua_pop(state, 1);
+}
+
+}  // namespace lapwing

@@ -1,0 +1,171 @@
+// What authors of plugins and missions meet: `new`, and `plugins check` on what is right and on
+// what has one mistake each.
+#include <chrono>
+
+#include "framework/core/json.h"
+#include "tests/app/program_fixture.h"
+#include "tests/guide.h"
+
+namespace lapwing {
+namespace {
+
+const std::string kFixtures = std::string(LAPWING_BUILD_DIR) + "/tests/plugin_fixtures";
+
+class Authoring : public CommandLine {
+ protected:
+  // The outcome of every test, by name, of one plugin of the library of broken terms.
+  std::map<std::string, std::string> outcomes(const std::string& mistake,
+                                              const std::vector<std::string>& only,
+                                              const std::string& limit = "60") {
+    std::vector<std::string> arguments{
+        "plugins", "check",         "cost_term/broken_" + mistake, "--json", "--limit",
+        limit,     "--plugin-path", kFixtures + "/broken_terms"};
+    for (const std::string& test : only) arguments.insert(arguments.end(), {"--only", test});
+    const Finished finished = run(arguments);
+    std::map<std::string, std::string> result;
+    const Value answer = from_json(finished.out, "answer");
+    message_.clear();
+    for (const Value& test : answer.at("plugins").as_list()[0].at("tests").as_list()) {
+      result[test.at("name").as_text()] = test.at("outcome").as_text();
+      if (const Value* message = test.find("message")) message_ += message->as_text() + "\n";
+    }
+    EXPECT_EQ(answer.at("passed").as_boolean(), finished.status == 0);
+    status_ = finished.status;
+    return result;
+  }
+
+  std::string message_;
+  int status_ = 0;
+};
+
+TEST_F(Authoring, EveryTestBites) {
+  struct Case {
+    const char* mistake;
+    const char* test;
+    const char* says;
+  };
+  for (const Case& a : {Case{"derivatives", "derivatives", "d row 0 / d position[0] of stage 0"},
+                        {"curvature", "curvature", "d2 / d position[0] of stage 0"},
+                        {"values", "values", "when derivatives are asked too"},
+                        {"ranges", "ranges", "alone differs from the same in a range"},
+                        {"affine", "affine", "declared affine, but its Jacobian changes"},
+                        {"degenerate", "degenerate input", "not finite with all inputs zero"},
+                        {"repeatable", "repeatable", "the same inputs give two answers"},
+                        {"threads", "threads", "four threads at once get other answers"},
+                        {"allocations", "allocations", "heap allocations in calls"},
+                        {"throws", "values", "throws: no"},
+                        {"refuses", "creation", "not even its own defaults will do"},
+                        {"creates", "creation", "not made"}}) {
+    const auto found = outcomes(a.mistake, {a.test, "description"});
+    EXPECT_EQ(status_, 1) << a.mistake;
+    EXPECT_EQ(found.at(a.test), "failed") << a.mistake << ": " << message_;
+    EXPECT_EQ(found.at("description"), "passed") << a.mistake << ": " << message_;
+    EXPECT_NE(message_.find(a.says), std::string::npos) << a.mistake << ": " << message_;
+  }
+}
+
+TEST_F(Authoring, ACrashIsAResult) {
+  auto found = outcomes("crashes", {"creation", "values", "rubbish"});
+  EXPECT_EQ(found.at("values"), "crashed");
+  EXPECT_EQ(found.at("rubbish"), "passed");
+  EXPECT_NE(message_.find("Segmentation fault"), std::string::npos) << message_;
+  EXPECT_EQ(status_, 1);
+  found = outcomes("exits", {"values"});
+  EXPECT_EQ(found.at("values"), "crashed");
+  EXPECT_NE(message_.find("ended without an answer"), std::string::npos) << message_;
+  found = outcomes("hangs", {"values"}, "0.5");
+  EXPECT_EQ(found.at("values"), "crashed");
+  EXPECT_NE(message_.find("it did not return: it takes longer than 0.5 s"), std::string::npos)
+      << message_;
+}
+
+TEST_F(Authoring, ATermWithoutAMistakePasses) {
+  const auto found = outcomes("term", {});
+  EXPECT_EQ(status_, 0) << message_;
+  EXPECT_GE(found.size(), 12u);
+  EXPECT_EQ(found.at("allocations"), "passed");
+  EXPECT_EQ(found.at("affine"), "skipped");
+}
+
+TEST_F(Authoring, ALibraryThatDoesNotOpenSaysWhy) {
+  for (const auto& [name, says] : {std::pair{"other_abi", "rebuild"},
+                                   {"no_symbol", "lapwing_plugin_library"},
+                                   {"undefined_symbol", "undefined symbol"},
+                                   {"throwing_library", "throw"}}) {
+    const Finished finished =
+        run({"plugins", "check", kFixtures + "/broken/" + std::string(name) + ".so"});
+    EXPECT_EQ(finished.status, 1) << finished.out;
+    EXPECT_NE(finished.out.find("failed   opens"), std::string::npos) << finished.out;
+    EXPECT_NE(finished.out.find(says), std::string::npos) << finished.out;
+  }
+  refused({"plugins", "check", "nothing.so"}, {"there is no library 'nothing.so'"});
+  refused({"plugins", "check", "keyfarme"}, {"did you mean 'keyframe'?"});
+  refused({"plugins", "check", "cost_term/keyframe", "--only", "derivative"},
+          {"there is no test 'derivative' for it; there are description, rubbish, creation"});
+}
+
+TEST_F(Authoring, ShippedPluginsPass) {
+  for (const char* name : {"cost_term/input_effort", "constraint/flight_zone", "map/brick"}) {
+    const Finished finished = run({"plugins", "check", name});
+    EXPECT_EQ(finished.status, 0) << finished.out << finished.err;
+  }
+}
+
+// The guide of plugins/README.md, followed to the letter: from nothing to a passed check in a
+// minute, and to a flight with it. A Lua snippet is saved under the name in its first line.
+TEST_F(Authoring, TheGuideOfPluginsHolds) {
+  const auto began = std::chrono::steady_clock::now();
+  std::string script = "set -e\ncd '" + folder_.string() +
+                       "'\nexport PATH='" LAPWING_BUILD_DIR
+                       "/bin':\"$PATH\" lapwing_DIR='" LAPWING_BUILD_DIR "'\n";
+  int commands = 0;
+  for (const Snippet& snippet :
+       snippets_of(LAPWING_SOURCE_DIR "/plugins/README.md", "## A first cost term")) {
+    if (snippet.language == "sh") {
+      script += snippet.text;
+      ++commands;
+      continue;
+    }
+    ASSERT_EQ(snippet.text.rfind("-- ", 0), 0u) << snippet.text;
+    write(snippet.text.substr(3, snippet.text.find('\n') - 3), snippet.text);
+  }
+  EXPECT_EQ(commands, 3);
+  write("guide.sh", script);
+  const int status = std::system(("bash '" + (folder_ / "guide.sh").string() + "' > '" +
+                                  (folder_ / "log.txt").string() + "' 2>&1")
+                                     .c_str());
+  const std::string log = read_file(folder_ / "log.txt");
+  EXPECT_EQ(status, 0) << log;
+  EXPECT_NE(log.find("100% tests passed, 0 tests failed out of 1"), std::string::npos) << log;
+  EXPECT_NE(log.find("low: certified"), std::string::npos) << log;
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  EXPECT_LT(took.count(), 60);
+  const std::string source = read_file(folder_ / "keep_low/keep_low.cpp");
+  EXPECT_LE(std::count(source.begin(), source.end(), '\n'), 60);
+  EXPECT_NE(source.find("class KeepLow final"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder_ / "keep_low/README.md"));
+  refused({"new", "plugin", "cost_term", "keep_low"}, {"exists already"});
+  refused({"new", "plugin", "cost_trem", "x"}, {"did you mean 'cost_term'?"});
+  refused({"new", "plugin", "cost_term", "KeepLow"}, {"expected snake_case"});
+  refused({"new", "plugin", "cost_term", "keyframe"}, {"choose another name"});
+}
+
+TEST_F(Authoring, NewMissionsOfEveryKindAreRight) {
+  for (const char* kind : {"film", "race", "light_painting", "map", "scan", "explore", "own"}) {
+    const std::string file = std::string("my_") + kind + ".lua";
+    Finished finished = run({"new", "mission", kind, file});
+    ASSERT_EQ(finished.status, 0) << finished.err;
+    finished = run({"config", file});
+    EXPECT_EQ(finished.status, 0) << finished.err;
+  }
+  for (const char* file : {"my_own.lua", "my_film.lua"}) {
+    const Finished finished = run({"run", file, "--quiet"});
+    EXPECT_EQ(finished.status, 0) << file << finished.err;
+  }
+  refused({"new", "mission", "film", "my_film.lua"}, {"exists already"});
+  refused({"new", "mission", "flim", "x.lua"}, {"did you mean 'film'?"});
+  refused({"new", "mission", "film", "x.txt"}, {"expected one that ends in .lua"});
+}
+
+}  // namespace
+}  // namespace lapwing

@@ -1,0 +1,97 @@
+// The program run as a process of its own, in a folder of the test's own.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "framework/core/files.h"
+
+namespace lapwing {
+
+namespace fs = std::filesystem;
+
+struct Finished {
+  int status = -1;
+  std::string out, err;
+};
+
+class CommandLine : public ::testing::Test {
+ protected:
+  CommandLine() {
+    static int count = 0;
+    folder_ = fs::temp_directory_path() /
+              ("lapwing_app_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    fs::create_directories(folder_);
+    ::unsetenv("LAPWING_DATA");
+  }
+  ~CommandLine() override { fs::remove_all(folder_); }
+
+  // Starts the program in the test's folder.
+  pid_t start(const std::vector<std::string>& arguments) {
+    const std::string program = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing";
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    std::vector<char*> pointers = {const_cast<char*>(program.c_str())};
+    for (const std::string& a : arguments) pointers.push_back(const_cast<char*>(a.c_str()));
+    pointers.push_back(nullptr);
+    if (::chdir(folder_.c_str()) != 0 || !std::freopen("stdout.txt", "w", stdout) ||
+        !std::freopen("stderr.txt", "w", stderr)) {
+      ::_exit(99);
+    }
+    ::execv(program.c_str(), pointers.data());
+    ::_exit(98);
+  }
+
+  Finished finish(pid_t child) {
+    Finished finished;
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    finished.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    finished.out = read_file(folder_ / "stdout.txt");
+    finished.err = read_file(folder_ / "stderr.txt");
+    fs::remove(folder_ / "stdout.txt");
+    fs::remove(folder_ / "stderr.txt");
+    return finished;
+  }
+
+  Finished run(const std::vector<std::string>& arguments) { return finish(start(arguments)); }
+
+  void write(const std::string& name, const std::string& text) {
+    write_file_atomically(folder_ / name, text);
+  }
+
+  // Bad input: exit 2, the fragments on standard error, nothing written.
+  void refused(const std::vector<std::string>& arguments,
+               const std::vector<std::string>& fragments) {
+    std::vector<fs::path> before, after;
+    for (const auto& entry : fs::directory_iterator(folder_)) before.push_back(entry.path());
+    const Finished finished = run(arguments);
+    for (const auto& entry : fs::directory_iterator(folder_)) after.push_back(entry.path());
+    EXPECT_EQ(finished.status, 2) << finished.err;
+    EXPECT_EQ(finished.out, "");
+    for (const std::string& fragment : fragments) {
+      EXPECT_NE(finished.err.find(fragment), std::string::npos)
+          << "expected: " << fragment << "\ngot: " << finished.err;
+    }
+    EXPECT_EQ(before.size(), after.size()) << "something was written";
+  }
+
+  void refused_script(const std::string& text, const std::vector<std::string>& fragments) {
+    write("shot.lua", text);
+    refused({"run", "shot.lua"}, fragments);
+  }
+
+  static std::string film(const std::string& more) {
+    return "local film = require 'mission.film'\n"
+           "return film.shot {\n  keyframes = {\n    { position = {0, 0, 2} },\n"
+           "    { position = {5, 0, 3} },\n  },\n  " +
+           more + "\n}\n";
+  }
+
+  fs::path folder_;
+};
+
+}  // namespace lapwing

@@ -1,0 +1,2 @@
+local terms = require "film_terms"
+return terms.film(terms.shipped)

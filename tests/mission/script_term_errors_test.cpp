@@ -1,0 +1,131 @@
+// What a script may get wrong in a term of its own: file, line, and what to write instead.
+#include "tests/mission/term_fixture.h"
+
+namespace lapwing {
+namespace {
+
+// A cost whose function has this body, its first line being line 3 of the script.
+std::string cost(const std::string& body) {
+  return "p:add_cost { name = 'mine', residual = function(s)\n" + body + "\nend }";
+}
+
+TEST_F(TermTest, ComparingIsRefused) {
+  refuses(
+      cost("  if s.position.z > 3 then return 1 end\n  return 0"),
+      "shot.lua:3: cost 'mine': a comparison would decide once, while the function is recorded, "
+      "and not at every stage: write lapwing.where(x, a, b)");
+  refuses(cost("  return s.position.z <= 3"), "shot.lua:3: cost 'mine': a comparison");
+  refuses(cost("  return s.yaw == s.yaw_rate and 1 or 0"), "a comparison would decide once");
+  refuses(cost("  return lapwing.where(2 > 1, s.yaw, 0)"), "write x - 3 for x > 3");
+  refuses(cost("  return s.yaw % 2"), "'%' and '//' jump");
+  refuses(cost("  return 'z' .. s.yaw"), "cannot be joined to a text");
+}
+
+// What Lua lets no type trap is found on plain numbers.
+TEST_F(TermTest, DecidingIsFoundOut) {
+  refuses(cost("  if s.yaw == 0 then return 1 end\n  return s.yaw"),
+          "shot.lua:2: cost 'mine': on plain numbers result 1 is 1, as recorded 0, where yaw = 0: "
+          "the function decides by a value (if, ==, and, or), which is done once");
+  refuses(cost("  if s.position.x == 2 then return 1, 2 end\n  return s.yaw"),
+          "on plain numbers it returns 2 numbers, on a stage 1");
+  refuses(cost("  return s.yaw * math.random()"), "depends on something that changes from call");
+  refuses(cost("  return type(s.yaw) == 'number' and 1 or s.yaw"), "the function decides");
+  refuses("local n = 0\n" + cost("  n = n + 1\n  return n * s.yaw"), "the function decides");
+  refuses("local kept\n" + cost("  kept = kept or s.yaw\n  return kept - s.yaw"),
+          "a value of a stage was kept from another term or another call");
+}
+
+TEST_F(TermTest, WrongShapesAreNamed) {
+  refuses(
+      cost("  return s.position + s.yaw"),
+      "shot.lua:3: cost 'mine': '+' of a vector of 3 numbers and a number: both must be vectors, "
+      "or both numbers");
+  refuses(cost("  return s.position - {1, 2}"),
+          "'-' of a vector of 3 numbers and a list of 2: their sizes differ");
+  refuses(cost("  return s.position * s.velocity"), "write lapwing.dot(a, b)");
+  refuses(cost("  return 1 / s.position"), "a number divided by a vector");
+  refuses(cost("  return lapwing.cross(s.position, {1, 2})"),
+          "lapwing.cross: expected a vector of 3 numbers, got a list of 2");
+  refuses(cost("  return s.position.q"),
+          "a vector of 3 numbers has no 'q'; it has x, y, z, or 1 to 3");
+  refuses(cost("  return s.yaw.z"), "this is one number and has no 'z'");
+  refuses(cost("  return lapwing.sin(s.position)"),
+          "lapwing.sin: expected a number, got a vector of 3 numbers");
+  refuses(cost("  return lapwing.max()"), "lapwing.max: expected 1 or more values, got 0");
+  refuses(cost("  s.position.x = 2\n  return 1"), "cannot be changed");
+}
+
+TEST_F(TermTest, WrongNamesAndResultsAreNamed) {
+  refuses(cost("\n  return s.positon.z"), "shot.lua:4: cost 'mine': no block 'positon'");
+  refuses(cost("\n  return s.positon.z"), "position");
+  refuses(
+      cost("  return 'high'"),
+      "shot.lua:2: cost 'mine': expected the function to return numbers or vectors, got a string");
+  refuses(cost("  local x = s.yaw"), "the function returns nothing");
+  refuses(cost("  return s.yaw, nil"), "got nothing");
+  refuses(cost("  return s"), "got a stage");
+  refuses(cost("  return 0 / 0"), "returns no finite number whatever the stage is");
+  refuses(cost("  return lapwing.log(-1 - s.yaw ^ 2)"),
+          "result 1 is no finite number at any of 32");
+  refuses(cost("  return math.sin(s.yaw)"),
+          "got value of a stage (which the functions of `lapwing` take)");
+  refuses(cost("  return s[11].yaw"), "s[11]: the last neighbour that there can be here is s[10]");
+  refuses(cost("  return s[0.5].yaw"), "expected a whole number, at least 0");
+  refuses(cost("  return s:subject('wlaker')"), "did you mean 'walker'?");
+  refuses(cost("  return s:distance(s.position, 'rokc')"), "did you mean 'rock'?");
+  refuses(
+      "p:add_cost { name = 'mine', parameters = { height = 2 }, residual = function(s, q)\n"
+      "  return s.yaw - q.heigth\nend }",
+      "shot.lua:3: cost 'mine': no parameter 'heigth' in its `parameters`; did you mean 'height'?");
+}
+
+TEST_F(TermTest, WrongTablesAreNamed) {
+  refuses("p:add_cost { name = 'mine', residual = 'position.z' }",
+          "shot.lua:2: add_cost: residual: expected a function of a stage, got a string");
+  refuses("p:add_cost { residual = function(s) return s.yaw end }", "name: missing");
+  refuses("p:add_cost { name = 'mine', wieght = 2, residual = function(s) return s.yaw end }",
+          "add_cost.wieght: unknown key; did you mean 'weight'?");
+  refuses("p:add_cost { name = 'mine', type = 'keyframe', residual = function(s) return 1 end }",
+          "add_cost: give a plugin's `type` or a `residual` of your own, not both");
+  refuses("p:add_constraint { name = 'mine', value = function(s) return s.yaw end }",
+          "add_constraint: give `lower`, `upper` or both");
+  refuses(
+      "p:add_constraint { name = 'mine', lower = {0, 1}, value = function(s) return s.yaw end }",
+      "constraint 'mine': lower has 2 numbers, the function returns 1");
+  refuses(
+      "p:add_constraint { name = 'mine', lower = 1, upper = 0, value = function(s) return "
+      "s.yaw end }",
+      "constraint 'mine': lower is above upper");
+  refuses("p:add_cost { name = 'mine', times = {0.5}, residual = function(s) return s[1].yaw end }",
+          "at given times there is no neighbouring stage to read");
+  refuses("p:add_cost { name = 'mine', residual = function(s) p:add_cost {} return 1 end }",
+          "the problem is finished");
+}
+
+// Terms that a film's script brings along.
+TEST_F(TermTest, AFilmTakesTermsOfItsOwn) {
+  const std::string text = film(R"(  weights = { smoothness = 1e-3 },
+  costs = { { name = "keep_low", weight = 50,
+              residual = function(s) return lapwing.max(s.position.z - 3, 0) end },
+            { type = "input_effort", weight = 0.1 } },
+  constraints = { { name = "side", upper = 0.2, value = function(s) return s.position.y end } },)");
+  const auto highest = [&](std::vector<std::string> overrides) {
+    const auto mission = load(text);
+    mission->configure({}, overrides);
+    const MissionResult result = mission->plan();
+    EXPECT_EQ(result.report.status, SolveStatus::optimal) << result.report.message;
+    double sum = 0;
+    for (const Sample& sample : result.plan.trajectory.samples) sum += sample.position.z();
+    return sum;
+  };
+  EXPECT_LT(highest({}), highest({"costs[1].weight=0"}));
+  expect(film("costs = 3,"), "shot.lua:2: costs: expected a list of tables, got number");
+  expect(film("costs = { { weight = 2 } },"), "add_cost.type: missing");
+  expect(film("costs = { { name = 'a', residual = function(s) return s.positon end } },"),
+         "shot.lua:8: cost 'a': no block 'positon'");
+  expect(film("constraints = { { name = 'a', weight = 1 } },"),
+         "constraints[1]: a constraint has no weight");
+}
+
+}  // namespace
+}  // namespace lapwing
