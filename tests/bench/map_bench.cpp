@@ -103,8 +103,8 @@ std::vector<MapRay> room_rays() {
   return rays;
 }
 
-// 60 m rays through the street: all pixels of views of 600 x 450 from within it (thesis 4.9), in the
-// order in which VisibleVoxels asks for them,
+// 60 m rays through the street: all pixels of views of 600 x 450 from within it (thesis 4.9), in
+// the order in which VisibleVoxels asks for them,
 // ...
 std::vector<MapRay> view_rays(int view) {
   std::vector<MapRay> rays;
