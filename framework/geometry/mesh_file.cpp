@@ -200,7 +200,8 @@ void take(std::string_view& bytes, std::vector<Number>& numbers) {
   std::memcpy(&count, bytes.data(), sizeof count);
   bytes.remove_prefix(sizeof count);
   numbers.resize(count);
-  std::memcpy(static_cast<void*>(numbers.data()), bytes.data(), count * sizeof(Number));
+  if (count > 0)  // an empty vector has no address to copy to
+    std::memcpy(static_cast<void*>(numbers.data()), bytes.data(), count * sizeof(Number));
   bytes.remove_prefix(count * sizeof(Number));
 }
 
