@@ -258,6 +258,11 @@ void Explorer::look(EpisodeStep& taken, int place) {
   map_.integrate(image);
   means_.touch(
       reach_box(map_.grid(), taken.view, settings_.sensor.pinhole, settings_.sensor.range));
+  // Where the body is there is nothing else, whatever a noisy image says.
+  if (!graph_.free(taken.view, taken.view))
+    means_.touch(
+        clear_box(map_, cleared_box(map_.grid(), taken.view.position, settings_.body)));
+  graph_.look_again();
   const double mapped = wall_seconds();
   observed_.update(map_, taken.view);
   began_ += wall_seconds() - mapped;  // nor is what the truth says of it

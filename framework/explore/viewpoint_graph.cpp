@@ -29,9 +29,19 @@ void ViewpointGraph::join(int a, int b) {
   edges_[static_cast<std::size_t>(b)].push_back({a, seconds});
 }
 
-void ViewpointGraph::cut(int a, int b) {
-  std::erase_if(edges_[static_cast<std::size_t>(a)], [&](const Edge& e) { return e.to == b; });
-  std::erase_if(edges_[static_cast<std::size_t>(b)], [&](const Edge& e) { return e.to == a; });
+void ViewpointGraph::set_blocked(int a, int b, bool blocked) {
+  for (Edge& edge : edges_[static_cast<std::size_t>(a)])
+    if (edge.to == b) edge.blocked = blocked;
+  for (Edge& edge : edges_[static_cast<std::size_t>(b)])
+    if (edge.to == a) edge.blocked = blocked;
+}
+
+void ViewpointGraph::look_again() {
+  std::erase_if(blocked_, [&](const std::pair<int, int>& move) {
+    if (!free(index_[move.first], index_[move.second])) return false;
+    set_blocked(move.first, move.second, false);
+    return true;
+  });
 }
 
 bool ViewpointGraph::free(const Viewpoint& a, const Viewpoint& b) const {
@@ -53,6 +63,7 @@ std::vector<int> ViewpointGraph::believed_way(int from, int to) const {
     if (reached > seconds[static_cast<std::size_t>(at)]) continue;
     if (at == to) break;
     for (const Edge& edge : edges_[static_cast<std::size_t>(at)]) {
+      if (edge.blocked) continue;
       const double there = reached + edge.seconds;
       if (there >= seconds[static_cast<std::size_t>(edge.to)]) continue;
       seconds[static_cast<std::size_t>(edge.to)] = there;
@@ -75,7 +86,8 @@ std::vector<int> ViewpointGraph::way(int from, int to) {
     bool good = true;
     for (const int next : way) {
       if (!free(index_[at], index_[next])) {
-        cut(at, next);
+        set_blocked(at, next, true);
+        blocked_.emplace_back(at, next);
         good = false;
         break;
       }

@@ -15,7 +15,8 @@ struct MoveTimes {
 };
 
 // Viewpoints, and moves between neighbours that were free when they were added. Shortest ways are
-// asked for in the map as it is now: a move that is no longer free is left out of it for good.
+// asked for in the map as it is now: a move that is no longer free is left out until it is found
+// to be free again, as it is where noise had blocked it.
 class ViewpointGraph {
  public:
   ViewpointGraph(const Map& map, const Eigen::Vector3d& half, const MoveTimes& times)
@@ -32,6 +33,9 @@ class ViewpointGraph {
   // Whether the body can move straight there through free voxels.
   bool free(const Viewpoint& a, const Viewpoint& b) const;
 
+  // After the map has changed: which of the moves that were left out are free again.
+  void look_again();
+
   // The quickest way, `from` left out; empty where there is none or where `from` is `to`.
   std::vector<int> way(int from, int to);
 
@@ -39,15 +43,17 @@ class ViewpointGraph {
   struct Edge {
     int to;
     double seconds;
+    bool blocked = false;
   };
   std::vector<int> believed_way(int from, int to) const;
-  void cut(int a, int b);
+  void set_blocked(int a, int b, bool blocked);
 
   const Map* map_;
   Eigen::Vector3d half_;
   MoveTimes times_;
   ViewpointIndex index_;
   std::vector<std::vector<Edge>> edges_;
+  std::vector<std::pair<int, int>> blocked_;
 };
 
 }  // namespace lapwing

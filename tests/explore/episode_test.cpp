@@ -270,6 +270,17 @@ TEST(Episode, NoiseIsReplayedWithoutIt) {
   EXPECT_NEAR(curve.back(), sum, 1e-6 * sum);
 }
 
+// What noise blocks today may be free tomorrow, and where the body is nothing else can be.
+TEST(Episode, NoiseDoesNotWallItIn) {
+  YardWorld world(80);
+  world.settings.sensor.noise = DepthNoise{0.4, 0.5};
+  world.settings.show_truth = true;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    world.settings.seed = seed;
+    EXPECT_EQ(world.run(Oracle()).end, EpisodeEnd::steps) << seed;
+  }
+}
+
 TEST(RandomStart, LiesWhereTheBoxIsFree) {
   const YardWorld world;
   Random random(3);
