@@ -111,6 +111,30 @@ TEST_F(Authoring, ShippedPluginsPass) {
   }
 }
 
+// A flight with a broken plugin ends with the plugin's name and the right status.
+TEST_F(Authoring, ABrokenPluginIsNamedByTheRun) {
+  struct Case {
+    const char* mistake;
+    int status;
+    const char* says;
+  };
+  ::setenv("LAPWING_CALL_LIMIT", "0.5", 1);
+  for (const Case& a :
+       {Case{"throws", 3, "plugin 'broken_throws' failed in evaluate: no"},
+        {"creates", 3, "plugin 'broken_creates' failed in create: not made"},
+        {"refuses", 2, "not even its own defaults will do"},
+        {"degenerate", 3, "a value of broken_degenerate.0 at 0 s is not a finite number"},
+        {"crashes", 3, "plugin 'broken_crashes' crashed in evaluate (segmentation fault)"},
+        {"hangs", 3, "plugin 'broken_hangs' does not return from evaluate"}}) {
+    write("shot.lua", film("costs = { { type = 'broken_" + std::string(a.mistake) + "' } },"));
+    const Finished finished =
+        run({"--plugin-path", kFixtures + "/broken_terms", "run", "shot.lua", "--quiet"});
+    EXPECT_EQ(finished.status, a.status) << a.mistake << ": " << finished.err;
+    EXPECT_NE(finished.err.find(a.says), std::string::npos) << a.mistake << ": " << finished.err;
+  }
+  ::unsetenv("LAPWING_CALL_LIMIT");
+}
+
 // The guide of plugins/README.md, followed to the letter: from nothing to a passed check in a
 // minute, and to a flight with it. A Lua snippet is saved under the name in its first line.
 TEST_F(Authoring, TheGuideOfPluginsHolds) {
