@@ -1,5 +1,5 @@
--- A kind of mission that the library does not have: the inspection of a facade. The camera keeps its
--- distance, looks along the wall's normal, and goes over the wall as a lawn is mown.
+-- A kind of mission that the library does not have: the inspection of a facade. The camera keeps
+-- its distance, looks along the normal of the wall, and goes over it as a lawn is mown.
 --   lapwing run examples/facade/facade.lua
 --   lapwing run examples/facade/facade.lua --set wall.width=20 --set overlap=0.8
 local options = lapwing.options({
