@@ -2,6 +2,7 @@
 #include "framework/app/evaluate_explore.h"
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
+#include "framework/app/sweep_command.h"
 #include "framework/app/train_command.h"
 
 #include <CLI/CLI.hpp>
@@ -110,6 +111,21 @@ void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& scrip
   add_configuration(*config, invocation);
   add_json(*config, invocation);
   config->callback([&] { command = [&] { return show_configuration(script, invocation); }; });
+}
+
+void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& command) {
+  CLI::App* sweep =
+      app.add_subcommand("sweep", "run a mission with several values of its options, in a table");
+  add_mission(*sweep, asked.script);
+  add_configuration(*sweep, invocation);
+  add_repeated(*sweep, "--vary", "KEY=VALUE,VALUE,...", asked.varied,
+               "values of one option; of several, all combinations are run");
+  add_count(*sweep, "--jobs", 1, 64, "runs at once; else 2",
+            [&](std::uint64_t jobs) { asked.jobs = static_cast<int>(jobs); });
+  add_text(*sweep, "--out", "DIR", "folder of the results; else out/sweep",
+           [&](const std::string& path) { invocation.out = path; });
+  add_json(*sweep, invocation);
+  sweep->callback([&] { command = [&] { return sweep_missions(asked, invocation); }; });
 }
 
 void add_plan(CLI::App& command, std::filesystem::path& plan) {
@@ -504,6 +520,7 @@ int run_command_line(int argc, const char* const* argv) {
   TrainRequest training;
   PluginCheck checking;
   NewFiles wanted;
+  Sweep sweep;
   ScanEvaluation asked;
   ExploreEvaluation exploring;
   Command command;
@@ -511,6 +528,7 @@ int run_command_line(int argc, const char* const* argv) {
                "a folder of plugins, searched first");
   app.fallthrough();
   add_run(app, invocation, script, command);
+  add_sweep(app, invocation, sweep, command);
   add_plan_commands(app, invocation, plan, conditions, format, target, command);
   add_map_commands(app, invocation, plan, target, command);
   add_scene_commands(app, invocation, plan, stated, target, command);

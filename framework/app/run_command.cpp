@@ -7,6 +7,7 @@
 #include "framework/app/interruption.h"
 #include "framework/app/mapping_run.h"
 #include "framework/app/mission_loading.h"
+#include "framework/app/plugin_guard.h"
 #include "framework/app/progress_line.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
@@ -214,6 +215,7 @@ void complete_plan(Outcome& outcome) {
 
 ExitStatus run_mission(const std::filesystem::path& script, const Invocation& invocation) {
   const double begin = steady_seconds();
+  guard_plugin_calls(call_limit_from_environment());
   const log::Capture capture;
   const Interruption interruption;
   const Registry registry = invocation.registry();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/conformance/function_checks.h"
+#include "framework/export/exporter.h"
 
 namespace lapwing {
 namespace {
@@ -89,6 +90,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
     return check_registered<TourSolver>(registry, entry, options, check_tour_solver);
   if (entry.kind == ViewUtility::kKind)
     return check_registered<ViewUtility>(registry, entry, options, check_utility);
+  if (entry.kind == Exporter::kKind)
+    return check_registered<Exporter>(registry, entry, options, check_exporter);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
 }
 

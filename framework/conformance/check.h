@@ -25,6 +25,8 @@
 
 namespace lapwing {
 
+class Exporter;  // export/exporter.h
+
 enum class Outcome { passed, failed, skipped };
 
 struct CheckResult {
@@ -73,6 +75,9 @@ std::vector<CheckResult> check_information(const Specimen<ViewInformation>& subj
                                            const CheckOptions& options = {});
 std::vector<CheckResult> check_utility(const Specimen<ViewUtility>& subject,
                                        const CheckOptions& options = {});
+
+std::vector<CheckResult> check_exporter(const Specimen<Exporter>& subject,
+                                        const CheckOptions& options = {});
 
 template <class Kind>
 Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {

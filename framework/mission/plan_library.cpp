@@ -4,6 +4,7 @@
 
 #include <lua.hpp>
 
+#include "framework/core/active_call.h"
 #include "framework/core/log.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
@@ -82,7 +83,9 @@ int solve(lua_State* state) {
   solution.solver = argument.type;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    solution.result = solver->solve(*object.problem, request);
+    const ActiveCall mark(argument.type.c_str(), "solve", false);
+    solution.result = call_plugin(argument.type, "solve",
+                                  [&] { return solver->solve(*object.problem, request); });
   }
   const SolveReport& report = solution.result.report;
   run.solve_seconds += report.seconds;

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "framework/core/active_call.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/plugin/library.h"
@@ -181,6 +182,7 @@ void* Registry::create_untyped(std::string_view kind, std::string_view name, con
   const PluginEntry& entry = find(kind, name, given.origin());
   const Parameters parameters = check(entry.parameters, given, key_path);
   const PluginDescriptor& descriptor = impl_->descriptor(entry);
+  const ActiveCall mark(entry.name.c_str(), "create");
   void* created = call_plugin(entry.name, "create", [&] { return descriptor.create(parameters); });
   if (!created) throw PluginError("plugin '" + entry.name + "' failed in create: it returned null");
   return created;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "framework/core/active_call.h"
+
 namespace lapwing {
 namespace {
 
@@ -249,6 +251,33 @@ void BoundFunction::flow_between(const StageColumns& columns, const BoundModel& 
   }
 }
 
+// What goes wrong in the function's own code is told with its name.
+template <class Body>
+void BoundFunction::guarded_call(const char* call, const Body& body) const {
+  const ActiveCall mark(name_.c_str(), call);
+  call_plugin(name_, call, body);
+}
+
+// Where a problem is linearised every number counts: one that is not finite is named here, and not
+// found in a matrix later.
+void BoundFunction::expect_finite(int first, int count, const double* values,
+                                  const double* derivatives) const {
+  const int m = rows(), n = derivatives ? inputs_ : 0;
+  bool finite = true;
+  for (int k = 0; k < count * m; ++k) finite &= values[k] - values[k] == 0;
+  for (int k = 0; k < count * m * n; ++k) finite &= derivatives[k] - derivatives[k] == 0;
+  if (finite) return;
+  for (int k = 0; k < count * m; ++k) {
+    bool fine = std::isfinite(values[k]);
+    const char* const what = fine ? "a derivative" : "a value";
+    for (int i = 0; i < n; ++i) fine &= std::isfinite(derivatives[k * n + i]);
+    if (!fine)
+      throw PluginError("plugin '" + name_ + "' failed in evaluate: " + what + " of " +
+                        row_name(first + k / m, k % m) +
+                        " is not a finite number; 'lapwing plugins check' tries it alone");
+  }
+}
+
 const double* BoundFunction::evaluate(const StageColumns& columns, const Stages& at, double* values,
                                       std::vector<double>* jacobian, Workspace& workspace) const {
   constexpr int kChunk = 64;
@@ -265,7 +294,10 @@ const double* BoundFunction::evaluate(const StageColumns& columns, const Stages&
     const bool in_place = compute && direct_ && !step_column_;
     double* const out =
         compute ? jacobian->data() + static_cast<std::size_t>(first) * m * width_ : nullptr;
-    function_->evaluate({first, count}, x, v, !compute ? nullptr : in_place ? out : j, workspace);
+    double* const derivatives = !compute ? nullptr : in_place ? out : j;
+    guarded_call("evaluate",
+                 [&] { function_->evaluate({first, count}, x, v, derivatives, workspace); });
+    if (jacobian) expect_finite(first, count, v, derivatives);
     for (int k = 0; k < count; ++k) {
       double* const row = compute ? out + static_cast<std::size_t>(k) * m * width_ : nullptr;
       if (compute && !in_place) {
@@ -314,13 +346,18 @@ void BoundFunction::curvature(const StageColumns& columns, const Stages& at,
     const double root = shape_.integral ? std::sqrt(step) : 1.0;
     for (int r = 0; r < m; ++r) scaled[r] = root * multipliers[k * m + r];
     std::fill(h.begin(), h.end(), 0.0);
-    if (!shape_.affine) function_->curvature({k, 1}, x.data(), scaled.data(), h.data(), workspace);
+    if (!shape_.affine)
+      guarded_call("curvature", [&] {
+        function_->curvature({k, 1}, x.data(), scaled.data(), h.data(), workspace);
+      });
     Eigen::Map<RowMajor> result(hessian.data() + static_cast<std::size_t>(k) * width_ * width_,
                                 width_, width_);
     const RowMajor bent = Eigen::Map<RowMajor>(h.data(), n, n).lazyProduct(chain);
     result = chain.transpose().lazyProduct(bent);
     if (direct_ && !step_column_) continue;
-    function_->evaluate({k, 1}, x.data(), v.data(), j.data(), workspace);
+    guarded_call("evaluate", [&] {
+      function_->evaluate({k, 1}, x.data(), v.data(), j.data(), workspace);
+    });
     const Eigen::Map<const Eigen::VectorXd> lambda(multipliers + k * m, m);
     const Eigen::VectorXd slope =
         Eigen::Map<const RowMajor>(j.data(), m, n).transpose() * lambda;  // d(lambda.v)/d inputs

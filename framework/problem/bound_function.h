@@ -48,6 +48,9 @@ class BoundFunction {
  private:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+  template <class Body>
+  void guarded_call(const char* call, const Body& body) const;
+  void expect_finite(int first, int count, const double* values, const double* derivatives) const;
   void list_instances(const StageColumns& columns);
   int end_of_leg(const Horizon& horizon, double time) const;
   void list_columns(const StageColumns& columns);

@@ -14,12 +14,15 @@ add_test(NAME copied_term COMMAND ${CMAKE_COMMAND}
   -P ${CMAKE_CURRENT_LIST_DIR}/copied_term/copied_term.cmake)
 set_tests_properties(copied_term PROPERTIES TIMEOUT 240)
 
-# The example plugin, built and run against an install tree.
-add_test(NAME installed_plugin COMMAND ${CMAKE_COMMAND}
-  -DLAPWING_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DLAPWING_BUILD_DIR=${CMAKE_BINARY_DIR}
-  -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
-  -P ${CMAKE_CURRENT_LIST_DIR}/installed/installed_plugin.cmake)
-set_tests_properties(installed_plugin PROPERTIES TIMEOUT 240)
+# The example plugin, built and run against an install tree; and a new plugin of every kind.
+foreach(name installed_plugin new_plugins)
+  add_test(NAME ${name} COMMAND ${CMAKE_COMMAND}
+    -DLAPWING_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DLAPWING_BUILD_DIR=${CMAKE_BINARY_DIR}
+    -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
+    -P ${CMAKE_CURRENT_LIST_DIR}/installed/${name}.cmake)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+endforeach()
+set_tests_properties(new_plugins PROPERTIES LABELS long)
 
 find_package(octomap REQUIRED)
 target_link_libraries(test_maps PRIVATE octomap octomath)

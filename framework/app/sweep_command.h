@@ -1,0 +1,22 @@
+// lapwing sweep: one mission with several values of its options, several runs at once, one table.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/app/command_line.h"
+
+namespace lapwing {
+
+struct Sweep {
+  std::filesystem::path script;
+  std::vector<std::string> varied;  // "key=value,value,..."; all combinations are run
+  int jobs = 2;                     // runs at once
+};
+
+// Each run is `lapwing run` in a process of its own, into a folder of its own below --out. Exit
+// status 0 where every one is certified, 1 where one is not, 2 where one's input is bad.
+ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation);
+
+}  // namespace lapwing
