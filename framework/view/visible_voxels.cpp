@@ -55,7 +55,21 @@ VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<con
       !map_->grid().contains(settings_.region.max() + reach))
     throw InputError("the region of interest lies too far out for a map of this resolution");
   region_ = voxels_within(settings_.region, map_->grid());
+  // Wider by a voxel: rays are only to be spared what cannot count.
+  const Vector3d margin = Vector3d::Constant(map_->grid().resolution());
+  reach_ = {settings_.region.min() - margin, settings_.region.max() + margin};
   rays_ = tiled_pixel_rays(settings_.pinhole);
+}
+
+double VisibleVoxels::leaves_region_after(const Vector3d& origin, const Vector3d& direction) const {
+  double enters = 0, leaves = settings_.range;
+  for (int i = 0; i < 3; ++i) {
+    const double a = (reach_.min()[i] - origin[i]) / direction[i];
+    const double b = (reach_.max()[i] - origin[i]) / direction[i];
+    enters = std::max(enters, std::min(a, b));
+    leaves = std::min(leaves, std::max(a, b));
+  }
+  return enters < leaves ? leaves : 0;
 }
 
 std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
@@ -68,10 +82,13 @@ std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
   std::vector<VoxelKey> keys;
   for (std::size_t first = 0; first < directions_C.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, directions_C.size() - first);
-    rays.resize(count);
-    hits.resize(count);
-    for (std::size_t k = 0; k < count; ++k)
-      rays[k] = {camera.position, r * directions_C[first + k], settings_.range};
+    rays.clear();
+    for (const Vector3d& direction_C : directions_C.subspan(first, count)) {
+      const Vector3d direction = r * direction_C;
+      const double range = leaves_region_after(camera.position, direction);
+      if (range > 0) rays.push_back({camera.position, direction, range});
+    }
+    hits.resize(rays.size());
     map_->cast(rays, hits);
     for (const MapRayHit& hit : hits) {
       if (hit.state == VoxelState::free || !region_.contains(hit.voxel)) continue;

@@ -45,6 +45,8 @@ class VisibleVoxels {
   std::vector<VoxelKey> seen_coarsely_from(const Viewpoint& viewpoint, int across) const;
 
  private:
+  // m; 0 where a ray misses the region. What lies beyond does not count and need not be looked at.
+  double leaves_region_after(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   std::vector<VoxelKey> keys_from(const Viewpoint& viewpoint,
                                   std::span<const Eigen::Vector3d> directions_C) const;
 
@@ -52,6 +54,7 @@ class VisibleVoxels {
   std::shared_ptr<const MeshScene> prior_;
   SightSettings settings_;
   VoxelBox region_;
+  Eigen::AlignedBox3d reach_;           // around it
   std::vector<Eigen::Vector3d> rays_;  // unit vectors of the camera, tile by tile
 };
 
