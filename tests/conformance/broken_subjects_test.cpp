@@ -3,7 +3,7 @@
 
 #include "framework/conformance/check.h"
 #include "framework/problem/differentiable.h"
-#include "tests/conformance/allocation_counter.h"
+#include "framework/app/allocation_counter.h"
 
 namespace lapwing {
 namespace {

@@ -1,6 +1,6 @@
 // Every plugin of the build tree passes what its kind must pass.
 #include "framework/conformance/check.h"
-#include "tests/conformance/allocation_counter.h"
+#include "framework/app/allocation_counter.h"
 
 namespace lapwing {
 

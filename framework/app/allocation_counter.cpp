@@ -1,6 +1,7 @@
-#include "tests/conformance/allocation_counter.h"
+#include "framework/app/allocation_counter.h"
 
 #include <cerrno>
+#include <cstddef>
 #include <cstdlib>
 
 #include "framework/plugin/abi.h"

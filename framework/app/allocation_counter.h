@@ -1,4 +1,5 @@
-// Counts every heap allocation of the test program, those of the libraries that it loads included.
+// Counts every heap allocation of a program that is linked with it, those of the libraries that it
+// loads included. For programs alone: in a library it would replace its users' allocator.
 #pragma once
 
 #include <cstdint>
