@@ -1,6 +1,5 @@
 # build PRESET TARGET...: configures if needed and builds quietly; sourced by the other scripts.
 # Everything goes to build/PRESET.log; a failure prints its end.
-export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime}"
 
 lapwing_build() {
   local preset=$1 log

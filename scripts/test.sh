@@ -25,44 +25,43 @@ if $cold && [ "$lapwing_build_seconds" -gt "$build_budget" ]; then
   exit 1
 fi
 # What took longer than the budget beside other work is compiled once more by itself, and its
-# processor time counts; of several sources that were joined, each by itself. .ninja_log: start, end
-# (ms), time stamp, output, command hash.
+# processor time counts; of several sources that were joined, each by itself: two at a time, and what
+# is over the budget then, alone. .ninja_log: start, end (ms), time stamp, output, command hash.
 mapfile -t candidates < <(awk -v limit=$((source_budget * 1000)) \
   '$4 ~ /\.c(pp|xx)\.o$/ { took[$4] = $2 - $1 } END { for (o in took) if (took[o] > limit) print o }' \
   build/release/.ninja_log)
-slow=()
-over_budget() { awk -v s="$1" -v limit="$source_budget" 'BEGIN { exit !(s > limit) }'; }
-# Processor seconds of a compiler's command; tried again where it is over the budget: a shared
-# machine's speed goes up and down. Nothing where it fails.
+# Processor seconds of a compiler's command; "does not compile" where it fails.
 compile_seconds() {
   local TIMEFORMAT=%U seconds
-  for _ in 1 2; do
-    seconds=$({ time (cd build/release && CCACHE_DISABLE=1 bash -c "$1" >/dev/null 2>&1); } 2>&1) ||
-      return 0
-    over_budget "$seconds" || break
-  done
+  seconds=$({ time (cd build/release && CCACHE_DISABLE=1 bash -c "$1" >/dev/null 2>&1); } 2>&1) ||
+    seconds="does not compile by itself"
   echo "$seconds"
 }
+export -f compile_seconds
+over_budget() { awk -v s="$1" -v limit="$source_budget" 'BEGIN { exit !(s + 0 != s || s > limit) }'; }
+checks=()  # source, command
 for object in "${candidates[@]}"; do
   command=$(ninja -C build/release -t commands "$object" 2>/dev/null | tail -n 1)
   [[ "$command" == *" -c "* ]] || continue  # a source that is gone
-  seconds=$(compile_seconds "$command")
-  over_budget "$seconds" || continue
   joined=${command##* -c }
-  mapfile -t sources < <(cd build/release && sed -n 's/^#include "\(.*\)"$/\1/p' "$joined")
   if [[ "$joined" != *_cxx.cxx ]]; then
-    slow+=("$seconds s  $object")
+    checks+=("$joined" "$command")
     continue
   fi
-  for source in "${sources[@]}"; do
-    seconds=$(compile_seconds "${command%% -MD *} -o /dev/null -c $source")
-    if [ -z "$seconds" ]; then
-      slow+=("does not compile by itself: $source")
-    elif over_budget "$seconds"; then
-      slow+=("$seconds s  $source")
-    fi
-  done
+  while read -r source; do
+    checks+=("$source" "${command%% -MD *} -o /dev/null -c $source")
+  done < <(cd build/release && sed -n 's/^#include "\(.*\)"$/\1/p' "$joined")
 done
+echo "Timing $((${#checks[@]} / 2)) sources by themselves ..."
+slow=()
+if [ ${#checks[@]} -gt 0 ]; then
+  while IFS=$'\t' read -r seconds source command; do
+    over_budget "$seconds" || continue
+    seconds=$(compile_seconds "$command")
+    over_budget "$seconds" && slow+=("$seconds  $source")
+  done < <(printf '%s\0' "${checks[@]}" | xargs -0 -n 2 -P 2 bash -c \
+             'printf "%s\t%s\t%s\n" "$(compile_seconds "$2")" "$1" "$2"' _)
+fi
 if [ ${#slow[@]} -gt 0 ]; then
   printf 'test.sh: sources that compile longer than %s s:\n' "$source_budget" >&2
   printf '  %s\n' "${slow[@]}" >&2

@@ -58,7 +58,7 @@ void print_summary(const MappingOutcome& outcome, const std::string& status) {
 }  // namespace
 
 ExitStatus finish_mapping(const MappingOutcome& outcome, const Invocation& invocation,
-                          const log::Capture& capture) {
+                          const logging::Capture& capture) {
   const Mapping& mapping = *outcome.result.mapping;
   const VoxelCounts counts = mapping.map->counts();
   const bool empty = counts.free + counts.occupied == 0;
@@ -72,7 +72,7 @@ ExitStatus finish_mapping(const MappingOutcome& outcome, const Invocation& invoc
                                          .map = mapping.map.get(),
                                          .images = mapping.images,
                                          .cancelled = mapping.cancelled}));
-  log::info("status " + status);
+  logging::info("status " + status);
   files.log = capture.text();
   write_run_folder(outcome.folder, files);
   if (invocation.json)

@@ -17,6 +17,6 @@ struct MappingOutcome {
 
 // Writes map.ot, report.html and run.log, and prints the summary or the JSON object.
 ExitStatus finish_mapping(const MappingOutcome& outcome, const Invocation& invocation,
-                          const log::Capture& capture);
+                          const logging::Capture& capture);
 
 }  // namespace lapwing

@@ -32,7 +32,7 @@ std::vector<fs::path> data_folders(const Invocation& invocation) {
     if (fs::is_directory(folder)) {
       folders.emplace_back(folder);
     } else {
-      log::warning("LAPWING_DATA names " + folder + ", which is no folder");
+      logging::warning("LAPWING_DATA names " + folder + ", which is no folder");
     }
   }
   return folders;
@@ -64,7 +64,7 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
   settings.observe_surface = observers.surface;
   settings.observe_tour = observers.tour;
   settings.print = [quiet = invocation.quiet, before_print](const std::string& line) {
-    log::info(line);
+    logging::info(line);
     if (quiet) return;
     if (before_print) before_print();
     std::cerr << line << "\n";

@@ -158,15 +158,17 @@ std::string report_page(const Outcome& outcome) {
   return render_html(report);
 }
 
-void write_files(const Outcome& outcome, const Registry& registry, const log::Capture& capture) {
+void write_files(const Outcome& outcome, const Registry& registry,
+                 const logging::Capture& capture) {
   const Plan& plan = outcome.result.plan;
   RunFiles files;
   files.plan = to_json(to_value(plan)) + "\n";
   files.trajectory = registry.create<Exporter>("csv")->write(plan);
   files.report = report_page(outcome);
-  log::info("status " + outcome.status);
-  for (const std::string& note : outcome.result.notes) log::info(note);
-  for (const Check& check : outcome.certificate.failures()) log::info("fails: " + to_line(check));
+  logging::info("status " + outcome.status);
+  for (const std::string& note : outcome.result.notes) logging::info(note);
+  for (const Check& check : outcome.certificate.failures())
+    logging::info("fails: " + to_line(check));
   files.log = capture.text();
   files.long_exposure = outcome.long_exposure;
   for (const std::string& name : outcome.result.obstacle_files) {
@@ -216,7 +218,7 @@ void complete_plan(Outcome& outcome) {
 ExitStatus run_mission(const std::filesystem::path& script, const Invocation& invocation) {
   const double begin = steady_seconds();
   guard_plugin_calls(call_limit_from_environment());
-  const log::Capture capture;
+  const logging::Capture capture;
   const Interruption interruption;
   const Registry registry = invocation.registry();
   ProgressLine progress("plan", std::cerr, progress_style_of_stderr(invocation.quiet),
@@ -226,7 +228,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   registry.find("exporter", "csv");
   Outcome outcome;
   outcome.folder = invocation.out.empty() ? run_folder(mission->name()) : invocation.out;
-  log::info("mission " + mission->name() + ", seed " + std::to_string(invocation.seed));
+  logging::info("mission " + mission->name() + ", seed " + std::to_string(invocation.seed));
   outcome.result = mission->plan();
   progress.clear();
   if (outcome.result.mapping) {

@@ -10,8 +10,8 @@
 namespace lapwing {
 namespace {
 
-constexpr double kStep = 0.1;  // s
-constexpr int kPoints = 5;
+constexpr double kModelStep = 0.1;  // s
+constexpr int kModelPoints = 5;
 
 // A model with the sizes that its blocks give it.
 class ModelCheck {
@@ -28,8 +28,8 @@ class ModelCheck {
   void run() {
     if (!blocks()) return;
     bounds();
-    for (int point = 0; point < kPoints; ++point) {
-      const std::vector<double> x = arguments(kStep);
+    for (int point = 0; point < kModelPoints; ++point) {
+      const std::vector<double> x = arguments(kModelStep);
       flow(x);
       derivatives(x);
       curvature(x);
@@ -119,7 +119,7 @@ class ModelCheck {
     findings_.expect("flow", distance(next(x).data(), x.data()) < 1e-12,
                      [] { return "a step of no length moves the state"; });
     std::fill(x.begin(), x.end() - 1, 0.0);
-    x.back() = kStep;
+    x.back() = kModelStep;
     int at = 0;
     for (const BlockSpec& block : states_) {
       if (block.topology == Topology::quaternion) x[at] = 1;
@@ -179,7 +179,7 @@ class ModelCheck {
   // may differ by its error.
   void halves(std::vector<double> x) {
     const std::vector<double> whole = next(x);
-    x.back() = kStep / 2;
+    x.back() = kModelStep / 2;
     for (int half = 0; half < 2; ++half) {
       const std::vector<double> half_way = next(x);
       std::copy(half_way.begin(), half_way.end(), x.begin());
@@ -222,7 +222,7 @@ class ModelCheck {
   std::vector<double> many(int count) {
     std::vector<double> result;
     for (int k = 0; k < count; ++k) {
-      const std::vector<double> x = arguments(kStep * (1 + k));
+      const std::vector<double> x = arguments(kModelStep * (1 + k));
       result.insert(result.end(), x.begin(), x.end());
     }
     return result;
@@ -281,9 +281,9 @@ class ModelCheck {
 
   void affine() {
     Workspace workspace;
-    const Answer first = ask(arguments(kStep), 1, workspace);
-    for (int point = 0; point < kPoints; ++point) {
-      const Answer other = ask(arguments(kStep), 1, workspace);
+    const Answer first = ask(arguments(kModelStep), 1, workspace);
+    for (int point = 0; point < kModelPoints; ++point) {
+      const Answer other = ask(arguments(kModelStep), 1, workspace);
       double worst = 0;
       for (int r = 0; r < n_; ++r)
         for (int c = 0; c + 1 < width_; ++c)

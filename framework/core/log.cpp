@@ -7,7 +7,7 @@
 
 #include <mutex>
 
-namespace lapwing::log {
+namespace lapwing::logging {
 
 namespace {
 
@@ -101,4 +101,4 @@ std::string Capture::text() const {
   return impl_->sink->text();
 }
 
-}  // namespace lapwing::log
+}  // namespace lapwing::logging

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace lapwing::log {
+namespace lapwing::logging {
 
 enum class Level { debug, info, warning, error, off };
 
@@ -29,4 +29,4 @@ class Capture {
   Impl* impl_;
 };
 
-}  // namespace lapwing::log
+}  // namespace lapwing::logging

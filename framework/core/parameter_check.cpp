@@ -329,6 +329,13 @@ const Parameters::Entry& Parameters::entry(std::string_view name) const {
   throw Error("parameter '" + std::string(name) + "' was read but never declared");
 }
 
+Parameters::Parameters() = default;
+Parameters::Parameters(const Parameters& other) = default;
+Parameters::Parameters(Parameters&& other) noexcept = default;
+Parameters& Parameters::operator=(const Parameters& other) = default;
+Parameters& Parameters::operator=(Parameters&& other) noexcept = default;
+Parameters::~Parameters() = default;
+
 bool Parameters::has(std::string_view name) const {
   for (const Entry& entry : entries_) {
     if (entry.name == name) return entry.present;

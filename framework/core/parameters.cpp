@@ -83,11 +83,11 @@ ParameterSpec spec_from_value(const Value& value) {
   return spec;
 }
 
-ParameterSpec make_spec(std::string name, ParameterType type, std::string summary) {
+ParameterSpec make_spec(std::string_view name, ParameterType type, std::string_view summary) {
   ParameterSpec spec;
-  spec.name = std::move(name);
+  spec.name = name;
   spec.type = type;
-  spec.summary = std::move(summary);
+  spec.summary = summary;
   return spec;
 }
 
@@ -128,6 +128,13 @@ std::string ParameterSpec::type_name() const {
   return "";
 }
 
+ParameterTable::ParameterTable() = default;
+ParameterTable::ParameterTable(const ParameterTable& other) = default;
+ParameterTable::ParameterTable(ParameterTable&& other) noexcept = default;
+ParameterTable& ParameterTable::operator=(const ParameterTable& other) = default;
+ParameterTable& ParameterTable::operator=(ParameterTable&& other) noexcept = default;
+ParameterTable::~ParameterTable() = default;
+
 ParameterTable& ParameterTable::add(ParameterSpec spec) {
   if (find(spec.name)) throw Error("parameter '" + spec.name + "' is declared twice");
   spec.default_value.with_origin({"default", 0});
@@ -135,105 +142,105 @@ ParameterTable& ParameterTable::add(ParameterSpec spec) {
   return *this;
 }
 
-ParameterTable& ParameterTable::boolean(std::string name, bool default_value, std::string summary) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::boolean, std::move(summary));
+ParameterTable& ParameterTable::boolean(std::string_view name, bool default_value, std::string_view summary) {
+  ParameterSpec spec = make_spec(name, ParameterType::boolean, summary);
   spec.default_value = default_value;
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::integer(std::string name, std::int64_t default_value,
-                                        std::string summary, Range range) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::integer, std::move(summary));
+ParameterTable& ParameterTable::integer(std::string_view name, std::int64_t default_value,
+                                        std::string_view summary, Range range) {
+  ParameterSpec spec = make_spec(name, ParameterType::integer, summary);
   spec.default_value = default_value;
   spec.range = range;
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::number(std::string name, double default_value, std::string unit,
-                                       std::string summary, Range range) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::number, std::move(summary));
+ParameterTable& ParameterTable::number(std::string_view name, double default_value, std::string_view unit,
+                                       std::string_view summary, Range range) {
+  ParameterSpec spec = make_spec(name, ParameterType::number, summary);
   spec.default_value = default_value;
-  spec.unit = std::move(unit);
+  spec.unit = unit;
   spec.range = range;
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::required_number(std::string name, std::string unit,
-                                                std::string summary, Range range) {
-  optional_number(std::move(name), std::move(unit), std::move(summary), range);
+ParameterTable& ParameterTable::required_number(std::string_view name, std::string_view unit,
+                                                std::string_view summary, Range range) {
+  optional_number(name, unit, summary, range);
   specs_.back().required = true;
   return *this;
 }
 
-ParameterTable& ParameterTable::optional_number(std::string name, std::string unit,
-                                                std::string summary, Range range) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::number, std::move(summary));
-  spec.unit = std::move(unit);
+ParameterTable& ParameterTable::optional_number(std::string_view name, std::string_view unit,
+                                                std::string_view summary, Range range) {
+  ParameterSpec spec = make_spec(name, ParameterType::number, summary);
+  spec.unit = unit;
   spec.range = range;
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::numbers(std::string name, std::vector<double> default_value,
-                                        std::string unit, std::string summary, Range range) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::numbers, std::move(summary));
+ParameterTable& ParameterTable::numbers(std::string_view name, std::vector<double> default_value,
+                                        std::string_view unit, std::string_view summary, Range range) {
+  ParameterSpec spec = make_spec(name, ParameterType::numbers, summary);
   spec.default_value = Value::list();
   for (const double number : default_value) spec.default_value.push_back(number);
   spec.size = static_cast<int>(default_value.size());
-  spec.unit = std::move(unit);
+  spec.unit = unit;
   spec.range = range;
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::required_numbers(std::string name, int size, std::string unit,
-                                                 std::string summary, Range range) {
-  optional_numbers(std::move(name), size, std::move(unit), std::move(summary), range);
+ParameterTable& ParameterTable::required_numbers(std::string_view name, int size, std::string_view unit,
+                                                 std::string_view summary, Range range) {
+  optional_numbers(name, size, unit, summary, range);
   specs_.back().required = true;
   return *this;
 }
 
-ParameterTable& ParameterTable::optional_numbers(std::string name, int size, std::string unit,
-                                                 std::string summary, Range range) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::numbers, std::move(summary));
+ParameterTable& ParameterTable::optional_numbers(std::string_view name, int size, std::string_view unit,
+                                                 std::string_view summary, Range range) {
+  ParameterSpec spec = make_spec(name, ParameterType::numbers, summary);
   spec.size = size;
-  spec.unit = std::move(unit);
+  spec.unit = unit;
   spec.range = range;
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::text(std::string name, std::string default_value,
-                                     std::string summary) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::text, std::move(summary));
-  spec.default_value = std::move(default_value);
+ParameterTable& ParameterTable::text(std::string_view name, std::string_view default_value,
+                                     std::string_view summary) {
+  ParameterSpec spec = make_spec(name, ParameterType::text, summary);
+  spec.default_value = std::string(default_value);
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::required_text(std::string name, std::string summary) {
-  optional_text(std::move(name), std::move(summary));
+ParameterTable& ParameterTable::required_text(std::string_view name, std::string_view summary) {
+  optional_text(name, summary);
   specs_.back().required = true;
   return *this;
 }
 
-ParameterTable& ParameterTable::optional_text(std::string name, std::string summary) {
-  return add(make_spec(std::move(name), ParameterType::text, std::move(summary)));
+ParameterTable& ParameterTable::optional_text(std::string_view name, std::string_view summary) {
+  return add(make_spec(name, ParameterType::text, summary));
 }
 
-ParameterTable& ParameterTable::choice(std::string name, std::string default_value,
-                                       std::vector<std::string> choices, std::string summary) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::choice, std::move(summary));
-  spec.default_value = std::move(default_value);
+ParameterTable& ParameterTable::choice(std::string_view name, std::string_view default_value,
+                                       std::vector<std::string> choices, std::string_view summary) {
+  ParameterSpec spec = make_spec(name, ParameterType::choice, summary);
+  spec.default_value = std::string(default_value);
   spec.choices = std::move(choices);
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::table(std::string name, ParameterTable table, std::string summary) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::table, std::move(summary));
+ParameterTable& ParameterTable::table(std::string_view name, ParameterTable table, std::string_view summary) {
+  ParameterSpec spec = make_spec(name, ParameterType::table, summary);
   spec.table = std::make_shared<const ParameterTable>(std::move(table));
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::tables(std::string name, ParameterTable table, std::string summary,
+ParameterTable& ParameterTable::tables(std::string_view name, ParameterTable table, std::string_view summary,
                                        bool required) {
-  ParameterSpec spec = make_spec(std::move(name), ParameterType::tables, std::move(summary));
+  ParameterSpec spec = make_spec(name, ParameterType::tables, summary);
   spec.table = std::make_shared<const ParameterTable>(std::move(table));
   spec.required = required;
   return add(std::move(spec));

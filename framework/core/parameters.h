@@ -59,32 +59,42 @@ struct ParameterSpec {
 
 class ParameterTable {
  public:
-  ParameterTable& boolean(std::string name, bool default_value, std::string summary);
-  ParameterTable& integer(std::string name, std::int64_t default_value, std::string summary,
-                          Range range = {});
-  ParameterTable& number(std::string name, double default_value, std::string unit,
-                         std::string summary, Range range = {});
+  // Here and in the source: a declaration is cheap to compile.
+  ParameterTable();
+  ParameterTable(const ParameterTable& other);
+  ParameterTable(ParameterTable&& other) noexcept;
+  ParameterTable& operator=(const ParameterTable& other);
+  ParameterTable& operator=(ParameterTable&& other) noexcept;
+  ~ParameterTable();
+
+  ParameterTable& boolean(std::string_view name, bool default_value, std::string_view summary);
+  ParameterTable& integer(std::string_view name, std::int64_t default_value,
+                          std::string_view summary, Range range = {});
+  ParameterTable& number(std::string_view name, double default_value, std::string_view unit,
+                         std::string_view summary, Range range = {});
   // No default: the user must give it.
-  ParameterTable& required_number(std::string name, std::string unit, std::string summary,
-                                  Range range = {});
+  ParameterTable& required_number(std::string_view name, std::string_view unit,
+                                  std::string_view summary, Range range = {});
   // No default and not required: Parameters::has tells.
-  ParameterTable& optional_number(std::string name, std::string unit, std::string summary,
-                                  Range range = {});
-  ParameterTable& numbers(std::string name, std::vector<double> default_value, std::string unit,
-                          std::string summary, Range range = {});
-  ParameterTable& required_numbers(std::string name, int size, std::string unit,
-                                   std::string summary, Range range = {});
-  ParameterTable& optional_numbers(std::string name, int size, std::string unit,
-                                   std::string summary, Range range = {});
-  ParameterTable& text(std::string name, std::string default_value, std::string summary);
-  ParameterTable& required_text(std::string name, std::string summary);
-  ParameterTable& optional_text(std::string name, std::string summary);
-  ParameterTable& choice(std::string name, std::string default_value,
-                         std::vector<std::string> choices, std::string summary);
+  ParameterTable& optional_number(std::string_view name, std::string_view unit,
+                                  std::string_view summary, Range range = {});
+  ParameterTable& numbers(std::string_view name, std::vector<double> default_value,
+                          std::string_view unit, std::string_view summary,
+                          Range range = {});
+  ParameterTable& required_numbers(std::string_view name, int size, std::string_view unit,
+                                   std::string_view summary, Range range = {});
+  ParameterTable& optional_numbers(std::string_view name, int size, std::string_view unit,
+                                   std::string_view summary, Range range = {});
+  ParameterTable& text(std::string_view name, std::string_view default_value,
+                       std::string_view summary);
+  ParameterTable& required_text(std::string_view name, std::string_view summary);
+  ParameterTable& optional_text(std::string_view name, std::string_view summary);
+  ParameterTable& choice(std::string_view name, std::string_view default_value,
+                         std::vector<std::string> choices, std::string_view summary);
   // A nested table; its own defaults apply when it is absent.
-  ParameterTable& table(std::string name, ParameterTable table, std::string summary);
+  ParameterTable& table(std::string_view name, ParameterTable table, std::string_view summary);
   // A list of nested tables; empty when absent, unless `required`.
-  ParameterTable& tables(std::string name, ParameterTable table, std::string summary,
+  ParameterTable& tables(std::string_view name, ParameterTable table, std::string_view summary,
                          bool required = false);
 
   const std::vector<ParameterSpec>& specs() const { return specs_; }
@@ -101,6 +111,13 @@ class ParameterTable {
 // Checked values of a table. Copyable; reading a name that the table lacks is a defect (Error).
 class Parameters {
  public:
+  Parameters();
+  Parameters(const Parameters& other);
+  Parameters(Parameters&& other) noexcept;
+  Parameters& operator=(const Parameters& other);
+  Parameters& operator=(Parameters&& other) noexcept;
+  ~Parameters();
+
   bool has(std::string_view name) const;
   bool boolean(std::string_view name) const;
   std::int64_t integer(std::string_view name) const;

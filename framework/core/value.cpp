@@ -13,6 +13,30 @@ namespace {
 
 }  // namespace
 
+Value::Value() = default;
+Value::Value(bool v) : data_(v) {}
+Value::Value(int v) : data_(static_cast<std::int64_t>(v)) {}
+Value::Value(std::int64_t v) : data_(v) {}
+Value::Value(double v) : data_(v) {}
+Value::Value(const char* v) : data_(std::string(v)) {}
+Value::Value(std::string v) : data_(std::move(v)) {}
+Value::Value(List v) : data_(std::move(v)) {}
+Value::Value(Map v) : data_(std::move(v)) {}
+Value::Value(const Value& other) = default;
+Value::Value(Value&& other) noexcept = default;
+Value& Value::operator=(const Value& other) = default;
+Value& Value::operator=(Value&& other) noexcept = default;
+Value::~Value() = default;
+Value Value::list() { return Value(List{}); }
+Value Value::map() { return Value(Map{}); }
+
+Value& Value::with_origin(Origin origin) {
+  origin_ = std::move(origin);
+  return *this;
+}
+
+bool Value::operator==(const Value& other) const { return data_ == other.data_; }
+
 std::string Value::describe_type() const {
   switch (type()) {
     case Type::null:

@@ -20,17 +20,23 @@ class Value {
   using List = std::vector<Value>;
   using Map = std::vector<std::pair<std::string, Value>>;  // in the order written, keys unique
 
-  Value() = default;
-  Value(bool v) : data_(v) {}
-  Value(int v) : data_(static_cast<std::int64_t>(v)) {}
-  Value(std::int64_t v) : data_(v) {}
-  Value(double v) : data_(v) {}
-  Value(const char* v) : data_(std::string(v)) {}
-  Value(std::string v) : data_(std::move(v)) {}
-  Value(List v) : data_(std::move(v)) {}
-  Value(Map v) : data_(std::move(v)) {}
-  static Value list() { return Value(List{}); }
-  static Value map() { return Value(Map{}); }
+  // All in the source: nearly every other one copies and drops values.
+  Value();
+  Value(bool v);
+  Value(int v);
+  Value(std::int64_t v);
+  Value(double v);
+  Value(const char* v);
+  Value(std::string v);
+  Value(List v);
+  Value(Map v);
+  Value(const Value& other);
+  Value(Value&& other) noexcept;
+  Value& operator=(const Value& other);
+  Value& operator=(Value&& other) noexcept;
+  ~Value();
+  static Value list();
+  static Value map();
 
   Type type() const { return static_cast<Type>(data_.index()); }
   bool is_null() const { return type() == Type::null; }
@@ -60,12 +66,9 @@ class Value {
   void push_back(Value value);
 
   const Origin& origin() const { return origin_; }
-  Value& with_origin(Origin origin) {
-    origin_ = std::move(origin);
-    return *this;
-  }
+  Value& with_origin(Origin origin);
   // Compares contents, not origins.
-  bool operator==(const Value& other) const { return data_ == other.data_; }
+  bool operator==(const Value& other) const;
 
  private:
   std::variant<std::monostate, bool, std::int64_t, double, std::string, List, Map> data_;

@@ -89,7 +89,7 @@ int solve(lua_State* state) {
   }
   const SolveReport& report = solution.result.report;
   run.solve_seconds += report.seconds;
-  log::info(argument.type + ": " + to_string(report.status) + " after " +
+  logging::info(argument.type + ": " + to_string(report.status) + " after " +
             std::to_string(report.iterations) + " iterations" +
             (report.message.empty() ? "" : "; " + report.message));
   new_object(state, kSolutionType, std::move(solution));

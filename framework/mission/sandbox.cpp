@@ -293,7 +293,7 @@ int Sandbox::describe_error(lua_State* state) {
     message += " (called from " + place.to_string() + ")";
   }
   luaL_traceback(state, state, nullptr, 1);
-  log::debug(message + "\n" + lua_tostring(state, -1));
+  logging::debug(message + "\n" + lua_tostring(state, -1));
   push_text(state, message);
   return 1;
 }

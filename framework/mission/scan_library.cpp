@@ -261,7 +261,7 @@ int scan_graph_of_run(lua_State* state) {
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
   work->island = islands_of(work->graph);
   const ScanGraph& graph = work->graph;
-  log::info("candidates: " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
+  logging::info("candidates: " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
             std::to_string(graph.candidates.blocked) + " places blocked, " +
             std::to_string(graph.candidates.crowded) + " too near to others); motions: " +
             std::to_string(graph.motions.motions.size()) + " of " +
@@ -377,7 +377,7 @@ int solve_tour_of_run(lua_State* state) {
     tour.walk = std::move(result.walk);
   }
   run.solve_seconds += tour.report.wall_seconds;
-  log::info(chosen.type + ": " + to_string(tour.report.status) + ", score " +
+  logging::info(chosen.type + ": " + to_string(tour.report.status) + ", score " +
             std::to_string(tour.report.score) + ", " + std::to_string(tour.report.seconds_used) +
             " s, " + std::to_string(tour.report.images) + " images, " +
             std::to_string(tour.report.evaluations) + " evaluations" +

@@ -26,7 +26,7 @@ void add_from_environment(std::vector<fs::path>& folders) {
     list = end == list.npos ? "" : list.substr(end + 1);
     if (folder.empty()) continue;
     if (!fs::is_directory(folder)) {
-      log::warning("LAPWING_PLUGIN_PATH names '" + folder + "', which is no folder");
+      logging::warning("LAPWING_PLUGIN_PATH names '" + folder + "', which is no folder");
     }
     folders.push_back(folder);
   }

@@ -11,10 +11,6 @@ using Eigen::VectorXd;
 constexpr double kCertificate = 1e-8;  // relative size of a proof's residual
 constexpr double kRounding = 1e-10;    // relative size of a sum that is not rounding
 
-double largest(const VectorXd& v) {
-  return v.size() ? v.cwiseAbs().maxCoeff() : 0.0;
-}
-
 }  // namespace
 
 bool is_infeasibility_certificate(const QuadraticProgram& problem, const QuadraticResult& at) {
@@ -40,7 +36,7 @@ bool is_infeasibility_certificate(const QuadraticProgram& problem, const Quadrat
     else
       residual = std::max(residual, std::abs(aty(i)));
   }
-  return value > kRounding * size && residual * (1.0 + largest(at.x)) < kCertificate * value;
+  return value > kRounding * size && residual * (1.0 + largest_size(at.x)) < kCertificate * value;
 }
 
 bool is_unbounded_ray(const QuadraticProgram& problem, const Eigen::VectorXd& x) {
@@ -51,16 +47,16 @@ bool is_unbounded_ray(const QuadraticProgram& problem, const Eigen::VectorXd& x)
   // Curvature counts against what each row of P could make of a point of this size: a long point
   // along a slight curvature is no ray.
   const VectorXd reach = problem.hessian.cwiseAbs().selfadjointView<Eigen::Lower>() *
-                         VectorXd::Constant(x.size(), largest(x));
+                         VectorXd::Constant(x.size(), largest_size(x));
   if ((px.cwiseAbs().array() > kCertificate * reach.array()).any()) return false;
-  double residual = largest(px);
+  double residual = largest_size(px);
   const auto add = [&](double v, double low, double high) {
     if (std::isfinite(low)) residual = std::max(residual, -v);
     if (std::isfinite(high)) residual = std::max(residual, v);
   };
   for (int i = 0; i < problem.variables(); ++i) add(x(i), problem.x_lower(i), problem.x_upper(i));
   for (int r = 0; r < problem.rows(); ++r) add(ax(r), problem.row_lower(r), problem.row_upper(r));
-  return residual * (1.0 + largest(problem.gradient)) < kCertificate * fall;
+  return residual * (1.0 + largest_size(problem.gradient)) < kCertificate * fall;
 }
 
 }  // namespace lapwing

@@ -7,10 +7,6 @@
 namespace lapwing {
 namespace {
 
-double largest(const Eigen::VectorXd& v) {
-  return v.size() ? v.cwiseAbs().maxCoeff() : 0.0;
-}
-
 // Worst violation of lower <= v <= upper; `scale` grows with |v| where a bound is finite.
 double violation(const Eigen::VectorXd& v, const Eigen::VectorXd& lower,
                  const Eigen::VectorXd& upper, double& scale) {
@@ -58,6 +54,10 @@ Eigen::VectorXd symmetric_product(const Eigen::SparseMatrix<double>& lower,
 
 }  // namespace
 
+double largest_size(const Eigen::VectorXd& v) {
+  return v.size() ? v.cwiseAbs().maxCoeff() : 0.0;
+}
+
 QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::VectorXd& x,
                              const Eigen::VectorXd& row_multipliers,
                              const Eigen::VectorXd& bound_multipliers) {
@@ -76,13 +76,14 @@ QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::Vecto
   const double dual = -0.5 * quadratic +
                       support(row_multipliers, problem.row_lower, problem.row_upper, leak, terms) +
                       support(bound_multipliers, problem.x_lower, problem.x_upper, leak, terms);
-  const double dual_scale = 1.0 + std::max({largest(px), largest(aty), largest(problem.gradient),
-                                            largest(bound_multipliers)});
+  const double dual_scale = 1.0 + std::max({largest_size(px), largest_size(aty),
+                                            largest_size(problem.gradient),
+                                            largest_size(bound_multipliers)});
   result.dual =
-      std::max(leak, largest(px + problem.gradient - aty - bound_multipliers)) / dual_scale;
+      std::max(leak, largest_size(px + problem.gradient - aty - bound_multipliers)) / dual_scale;
   result.gap = std::abs(primal - dual) / (1.0 + std::abs(primal));
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-  result.dual_rounding = kRoundings * kEpsilon * largest(magnitude) / dual_scale;
+  result.dual_rounding = kRoundings * kEpsilon * largest_size(magnitude) / dual_scale;
   result.gap_rounding = kRoundings * kEpsilon * terms / (1.0 + std::abs(primal));
   return result;
 }

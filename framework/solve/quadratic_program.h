@@ -66,4 +66,7 @@ QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::Vecto
                              const Eigen::VectorXd& row_multipliers,
                              const Eigen::VectorXd& bound_multipliers);
 
+// Of the entries without their signs; 0 where there is none.
+double largest_size(const Eigen::VectorXd& v);
+
 }  // namespace lapwing

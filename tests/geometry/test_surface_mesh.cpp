@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Pinhole kCamera{160, 120, 120, 120, 79.5, 59.5};
+constexpr Pinhole kMeshCamera{160, 120, 120, 120, 79.5, 59.5};
 
 // Looked at from places all around it.
 PointFusion fused_ball(double voxel, const DepthNoise& noise) {
@@ -25,7 +25,7 @@ PointFusion fused_ball(double voxel, const DepthNoise& noise) {
     const Vector3d out(across * std::cos(around), across * std::sin(around), up);
     const Pose pose =
         camera_pose(Vector3d(1, 2, 3) + 6 * out, std::atan2(-out.y(), -out.x()), -std::asin(up));
-    DepthImage image = render_depth(scene, pose, kCamera, 30, 2);
+    DepthImage image = render_depth(scene, pose, kMeshCamera, 30, 2);
     add_noise(image, noise, static_cast<std::uint64_t>(i));
     fusion.add({pose, image});
   }
@@ -53,7 +53,7 @@ TEST(PointFusion, LeavesOutWhatIsFarOrFlatOrAtAnEdge) {
   builder.box({5, -1, 0}, {5.2, 1, 2});
   const MeshScene scene(builder.take());
   const Pose pose = camera_pose({0, 0, 1}, 0, 0);
-  const DepthImage image = render_depth(scene, pose, kCamera, 100, 1);
+  const DepthImage image = render_depth(scene, pose, kMeshCamera, 100, 1);
   PointFusion fusion({.voxel = 0.1, .range = 8});
   fusion.add({pose, image});
   const auto points = fusion.points();
@@ -120,7 +120,7 @@ TEST(SurfaceMesh, OfRealPlacesIsNearThem) {
     const double around = 2 * std::numbers::pi * i / 16;
     const Pose pose = camera_pose({10 * std::cos(around), 10 * std::sin(around), 7},
                                   around + std::numbers::pi, -0.55);
-    fusion.add({pose, render_depth(scene, pose, kCamera, 30, 2)});
+    fusion.add({pose, render_depth(scene, pose, kMeshCamera, 30, 2)});
   }
   const TriangleMesh mesh = surface_from_points(fusion.points(), {.cell = 0.4, .trim = 0.8});
   double off = 0, count = 0, reconstructed = 0;

@@ -12,7 +12,7 @@ using namespace laboratory;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-const Registry& plugins() {
+const Registry& problem_plugins() {
   static const Registry registry({LAPWING_BUILD_DIR "/lib/plugins"});
   return registry;
 }
@@ -23,7 +23,7 @@ TrajectoryProblem pendulum(Horizon horizon = {.stages = 5, .step = 0.25}) {
   return problem;
 }
 
-std::string message_of(const std::function<void()>& call) {
+std::string message_of_error(const std::function<void()>& call) {
   try {
     call();
   } catch (const Error& error) {
@@ -33,7 +33,7 @@ std::string message_of(const std::function<void()>& call) {
 }
 
 void expect_message(const std::function<void()>& call, const std::vector<std::string>& parts) {
-  const std::string message = message_of(call);
+  const std::string message = message_of_error(call);
   for (const std::string& part : parts)
     EXPECT_NE(message.find(part), std::string::npos)
         << "'" << message << "' lacks '" << part << "'";
@@ -215,10 +215,10 @@ TEST(TrajectoryProblem, IntegralsDoNotDependOnTheNumberOfStages) {
   double previous = 1;
   for (const int intervals : {20, 80, 320}) {
     TrajectoryProblem problem(plain_vehicle(), {.stages = intervals + 1, .step = 2.0 / intervals});
-    problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
+    problem.add_model("quadrotor", problem_plugins().create<VehicleModel>("quadrotor"));
     Value parameters = Value::map();
     parameters.set("order", 3);
-    problem.add_cost("jerk", 1.0, plugins().create<CostTerm>("derivative", parameters));
+    problem.add_cost("jerk", 1.0, problem_plugins().create<CostTerm>("derivative", parameters));
     problem.finish();
     Stages at = problem.initial_guess();
     for (int i = 0; i <= intervals; ++i) at(0, i) = std::pow(i * 2.0 / intervals, 4) / 24;
@@ -232,7 +232,7 @@ TEST(TrajectoryProblem, IntegralsDoNotDependOnTheNumberOfStages) {
 TEST(TrajectoryProblem, ReadsKeyframesOffTheFlow) {
   // Constant acceleration: r = t^2 exactly, at any time.
   TrajectoryProblem problem(plain_vehicle(), {.stages = 4, .step = 1.0});
-  problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
+  problem.add_model("quadrotor", problem_plugins().create<VehicleModel>("quadrotor"));
   problem.add_constraint("read", std::make_unique<Read>());
   problem.finish();
   Stages at = problem.initial_guess();
@@ -254,7 +254,7 @@ TEST(TrajectoryProblem, ReadsKeyframesOffTheFlow) {
 
 TEST(TrajectoryProblem, GuessesFollowTheirTimes) {
   TrajectoryProblem problem(plain_vehicle(), {.stages = 5, .step = 1.0});
-  problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
+  problem.add_model("quadrotor", problem_plugins().create<VehicleModel>("quadrotor"));
   problem.add_block({.name = "target", .size = 3});
   problem.add_block({.name = "look", .size = 4, .topology = Topology::quaternion});
   problem.add_block({.name = "other", .size = 4, .topology = Topology::quaternion});

@@ -11,19 +11,24 @@ using FourLong = std::int64_t __attribute__((vector_size(32)));
 using FourInt = std::int32_t __attribute__((vector_size(16)));
 
 // More than one group of four hides how long each waits for its numbers.
-constexpr int kGroups = 2, kLanes = 4 * kGroups;
-constexpr std::size_t kBeam = 64;  // rays: a tile of a view
+constexpr int kGroups = 2;
+constexpr int kBeam = 64;  // rays: a tile of a view
 
-// Cells are mirrored along the axes on which a ray descends, so that every ray ascends; aligned
-// cubes stay aligned.
-struct Lanes {
-  FourInt cell[3], start[3];  // mirrored
+// Four rays that go together until the last of them has ended. Cells are mirrored along the axes on
+// which a ray descends, so that every ray ascends; aligned cubes stay aligned.
+struct Quad {
+  FourInt start[3];  // the cell that crossings are counted from
   Four first[3], spacing[3], rate[3];
-  Four entered, range;
-  FourInt edges;     // of the free box around the cell, as in Ahead
-  FourInt key;       // of the block, mirrored
-  FourInt places;    // of voxel, chunk and brick, a byte each
+  Four range;
+  FourInt descends;  // axes, as bits
   FourInt mirrored;  // what the places must be mirrored with
+  FourInt ahead;     // of its kAhead, in bytes
+
+  FourInt cell[3];
+  Four entered;
+  FourInt edges;   // of the free box around the cell, as in Ahead
+  FourInt key;     // of the block
+  FourInt places;  // of voxel, chunk and brick, a byte each
 };
 
 // By place: the parts that a ray from there can still come through in the 4^3 around, and in a
@@ -81,47 +86,36 @@ __attribute__((always_inline)) inline FourInt places_of(const FourInt& x, const 
   return spread(x) | spread(y) << 2 | spread(z) << 4;
 }
 
-// Rays before they start.
-struct Starts {
-  FourInt key[kBeam / 4], places[kBeam / 4], mirrored[kBeam / 4];  // as in Lanes
-  FourInt cell[3][kBeam / 4],
-      start[3][kBeam / 4];  // mirrored; counted from `start`, going on at `cell`
-  FourInt descends[kBeam / 4], along[kBeam / 4];  // axes, as bits; an axis or kAlongNone
-  Four first[3][kBeam / 4], spacing[3][kBeam / 4], rate[3][kBeam / 4];
+// Rays before they start; up to distance `from` everything is known to be free.
+struct Start {
+  const VoxelGrid& grid;
+  double from;
 
-  // Up to distance `from` everything is known to be free.
-  __attribute__((always_inline)) void prepare(const VoxelGrid& grid, std::span<const MapRay> rays,
-                                              double from) {
-    const int groups = static_cast<int>(rays.size() + 3) / 4;
-    for (int g = 0; g < groups; ++g) {
-      const auto ray = [&](int k) -> const MapRay& {
-        return rays[std::min(rays.size() - 1, static_cast<std::size_t>(4 * g + k))];
-      };
-      descends[g] = FourInt{};
-      Four size[3];
-      for (int i = 0; i < 3; ++i) {
-        const Four d = {ray(0).direction[i], ray(1).direction[i], ray(2).direction[i],
-                        ray(3).direction[i]};
-        const Four origin = {ray(0).origin[i], ray(1).origin[i], ray(2).origin[i],
-                             ray(3).origin[i]};
-        prepare_axis(grid, i, g, d, origin, from);
-        size[i] = d < 0 ? -d : d;
-      }
-      const Four by_x = 0.4 * size[0], by_y = 0.4 * size[1], by_z = 0.4 * size[2];
-      const FourLong x = (by_x > size[1]) & (by_x > size[2]),
-                     y = (by_y > size[0]) & (by_y > size[2]),
-                     z = (by_z > size[0]) & (by_z > size[1]);
-      along[g] = 3 + __builtin_convertvector(3 * x + 2 * y + z, FourInt);
-      mirrored[g] =
-          ((descends[g] & 1) * 3 | (descends[g] & 2) * 6 | (descends[g] & 4) * 12) * 0x010101;
-      key[g] = key_of(cell[0][g], cell[1][g], cell[2][g]);
-      places[g] = places_of(cell[0][g], cell[1][g], cell[2][g]) ^ mirrored[g];
+  __attribute__((always_inline)) void prepare(Quad& quad, const MapRay& a, const MapRay& b,
+                                              const MapRay& c, const MapRay& d) const {
+    quad.descends = FourInt{};
+    Four size[3];
+    for (int i = 0; i < 3; ++i) {
+      const Four direction = {a.direction[i], b.direction[i], c.direction[i], d.direction[i]};
+      const Four origin = {a.origin[i], b.origin[i], c.origin[i], d.origin[i]};
+      prepare_axis(quad, i, direction, origin);
+      size[i] = direction < 0 ? -direction : direction;
     }
+    const Four by_x = 0.4 * size[0], by_y = 0.4 * size[1], by_z = 0.4 * size[2];
+    const FourLong x = (by_x > size[1]) & (by_x > size[2]),
+                   y = (by_y > size[0]) & (by_y > size[2]), z = (by_z > size[0]) & (by_z > size[1]);
+    const FourInt along = kAlongNone + __builtin_convertvector(3 * x + 2 * y + z, FourInt);
+    quad.ahead = (quad.descends | along << 3) * static_cast<int>(sizeof(Ahead));
+    quad.mirrored =
+        ((quad.descends & 1) * 3 | (quad.descends & 2) * 6 | (quad.descends & 4) * 12) * 0x010101;
+    quad.range = Four{a.range, b.range, c.range, d.range};
+    quad.entered = Four{};
+    quad.key = key_of(quad.cell[0], quad.cell[1], quad.cell[2]);
+    quad.places = places_of(quad.cell[0], quad.cell[1], quad.cell[2]) ^ quad.mirrored;
   }
 
  private:
-  __attribute__((always_inline)) void prepare_axis(const VoxelGrid& grid, int i, int g, Four d,
-                                                   Four origin, double from) {
+  __attribute__((always_inline)) void prepare_axis(Quad& quad, int i, Four d, Four origin) const {
     const Four zero = {}, one = zero + 1;
     const FourLong falls = d < zero, moves = (d > RayWalk::kLevel) | (d < -RayWalk::kLevel);
     // VoxelGrid's arithmetic.
@@ -132,31 +126,30 @@ struct Starts {
     const Four face = (index + (d > zero ? one : zero)) * grid.resolution();
     const Four per_metre = one / d;
     const Four next = (face - origin) * per_metre, apart = d < zero ? -per_metre : per_metre;
-    first[i][g] = moves ? next : zero + RayWalk::kNever;
-    spacing[i][g] = moves ? grid.resolution() * apart : zero;
-    rate[i][g] = moves ? (falls ? -d : d) * grid.per_metre() : zero;
+    const Four first = moves ? next : zero + RayWalk::kNever;
+    const Four spacing = moves ? grid.resolution() * apart : zero;
+    const Four rate = moves ? (falls ? -d : d) * grid.per_metre() : zero;
     const Four nearest = __builtin_convertvector(
-        __builtin_convertvector((from - first[i][g]) * rate[i][g] + 0.5, FourInt), Four);
-    const Four count = nearest + (first[i][g] + nearest * spacing[i][g] < from ? one : zero);
+        __builtin_convertvector((from - first) * rate + 0.5, FourInt), Four);
+    const Four count = nearest + (first + nearest * spacing < from ? one : zero);
     const FourInt mirror = __builtin_convertvector(falls, FourInt);
-    start[i][g] = (__builtin_convertvector(index, FourInt) + kCenterKey) ^ (mirror & 0xffff);
-    cell[i][g] = start[i][g] + __builtin_convertvector(count, FourInt);
-    descends[g] |= mirror & (1 << i);
+    quad.first[i] = first;
+    quad.spacing[i] = spacing;
+    quad.rate[i] = rate;
+    quad.start[i] = (__builtin_convertvector(index, FourInt) + kCenterKey) ^ (mirror & 0xffff);
+    quad.cell[i] = quad.start[i] + __builtin_convertvector(count, FourInt);
+    quad.descends |= mirror & (1 << i);
   }
 };
 
-// What one lane needs beside its numbers.
-struct Lane {
-  const Block* block = nullptr;
-  const Ahead* ahead = nullptr;
-  std::int32_t block_key = 0;  // of the block at hand
-  int mirror[3] = {};          // 0 or 65535
-  int side[3] = {1, 1, 1};     // of a block through which the ray leaves: 0 lower, 1 higher
-  std::size_t ray = 0;
+// What goes on with four rays beside their numbers.
+struct Group {
+  Quad* quad = nullptr;    // none: idle
+  unsigned alive = 0;      // rays that have not ended, as bits
+  std::size_t ray = 0;     // the first of the four
+  const Block* block[4] = {};
+  std::int32_t block_key[4] = {};  // of the block at hand, as Quad's
 };
-
-constexpr FourLong kLane[4] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, -1}};
-constexpr FourInt kIntLane[4] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, -1}};
 
 class Caster {
  public:
@@ -169,56 +162,96 @@ class Caster {
         hits_(hits) {}
 
   __attribute__((always_inline)) void run() {
-    for (int lane = 0; lane < kLanes; ++lane) next_ray(lane);
-    while (busy_) {
+    for (;;) {
+      bool busy = false;
+      for (Group& group : groups_) {
+        if (!group.quad) start(group);
+        busy |= group.quad != nullptr;
+      }
+      if (!busy) return;
 #pragma GCC unroll 1
-      for (Lanes& lanes : lanes_) leave_boxes(lanes);
+      for (Group& group : groups_)
+        if (group.quad) leave_boxes(*group.quad);
 #pragma GCC unroll 1
-      for (int group = 0; group < kGroups; ++group) visit(group);
-      for (unsigned done = done_; done; done &= done - 1) next_ray(std::countr_zero(done));
-      done_ = 0;
+      for (Group& group : groups_)
+        if (group.quad) visit(group, group.quad->entered >= group.quad->range);
     }
   }
 
  private:
-  __attribute__((always_inline)) void visit(int group) {
-    Lanes& lanes = lanes_[group];
-    const FourLong far = lanes.entered >= lanes.range;
-    // Put together in registers: the four are read back as one.
-    lanes.edges = FourInt{visit(lanes, group, 0, far[0]), visit(lanes, group, 1, far[1]),
-                          visit(lanes, group, 2, far[2]), visit(lanes, group, 3, far[3])};
+  // The next four rays that get anywhere; none when all are under way, or for as long as other
+  // groups need the quads that the next beam would take.
+  __attribute__((always_inline)) void start(Group& group) {
+    while (!group.quad) {
+      if (next_ == beam_end_ && !next_beam()) return;
+      group.quad = &quads_[current_][(next_ - beam_first_) / 4];
+      group.ray = next_;
+      next_ = std::min(next_ + 4, beam_end_);
+      group.alive = (1u << (next_ - group.ray)) - 1;
+      for (int k = 0; k < 4; ++k) {
+        group.block[k] = nullptr;
+        group.block_key[k] = -1;
+      }
+      visit(group, FourLong{});
+    }
   }
 
-  __attribute__((always_inline)) int visit(const Lanes& lanes, int group, int k, bool far) {
-    const int lane = 4 * group + k;
+  __attribute__((always_inline)) bool next_beam() {
+    if (next_ == rays_.size()) return false;
+    const Quad* const quads = quads_[1 - current_];
+    for (const Group& group : groups_)
+      if (group.quad >= quads && group.quad < quads + kBeam / 4) return false;
+    current_ = 1 - current_;
+    beam_first_ = next_;
+    find_beam();
+    const Start start{grid_, beam_free_};
+    const auto ray = [&](std::size_t k) -> const MapRay& {
+      return rays_[std::min(k, beam_end_ - 1)];
+    };
+    Quad* quad = quads_[current_];
+    for (std::size_t k = beam_first_; k < beam_end_; k += 4)
+      start.prepare(*quad++, ray(k), ray(k + 1), ray(k + 2), ray(k + 3));
+    return true;
+  }
+
+  __attribute__((always_inline)) void visit(Group& group, FourLong far) {
+    // Put together in registers: the four are read back as one.
+    group.quad->edges = FourInt{visit(group, 0, far[0]), visit(group, 1, far[1]),
+                                visit(group, 2, far[2]), visit(group, 3, far[3])};
+    if (!group.alive) group.quad = nullptr;
+  }
+
+  __attribute__((always_inline)) int visit(Group& group, int k, bool far) {
+    if (!(group.alive >> k & 1)) return 0;
+    const std::size_t ray = group.ray + static_cast<std::size_t>(k);
     if (far) {
-      if (!(busy_ >> lane & 1)) return 0;
-      hits_[lane_[lane].ray] = nothing_within(rays_[lane_[lane].ray]);
+      hits_[ray] = nothing_within(rays_[ray]);
     } else {
-      const int edges = look(lanes, lane, k);
+      const int edges = look(group, k, hits_[ray]);
       if (edges >= 0) return edges;
     }
-    done_ |= 1u << lane;
+    group.alive &= ~(1u << k);
     return 0;
   }
 
   // The edges of the box around the cell in which all that lies ahead is free. Negative, and the
   // hit noted, where the cell is not free.
-  __attribute__((always_inline)) int look(const Lanes& lanes, int lane, int k) {
-    Lane& of = lane_[lane];
-    if (lanes.key[k] != of.block_key && !enter_block(lanes, of, k)) return -1;
-    const auto places = static_cast<unsigned>(lanes.places[k]);
-    const Block& block = *of.block;
-    const Ahead& ahead = *of.ahead;
+  __attribute__((always_inline)) int look(Group& group, int k, MapRayHit& hit) {
+    const Quad& quad = *group.quad;
+    if (quad.key[k] != group.block_key[k] && !enter_block(group, k, hit)) return -1;
+    const auto places = static_cast<unsigned>(quad.places[k]);
+    const Block& block = *group.block[k];
+    const Ahead& ahead = *reinterpret_cast<const Ahead*>(
+        reinterpret_cast<const char*>(kAhead.data()) + quad.ahead[k]);
     const unsigned at = places >> 16;
     if (block.all_free >> at & 1)  // most often, and then the brick itself need not be fetched
       return ahead
           .edges[4 + all(block.all_free, ahead.some[at]) + all(block.all_free, ahead.all[at])];
-    if (!(block.bricked >> at & 1)) return hit(lanes, of, k, state_of_brick(block, at));
+    if (!(block.bricked >> at & 1)) return note(quad, k, state_of_brick(block, at), hit);
     const DenseBrick& brick = *block.content[at].brick;
     const unsigned chunk = places >> 8 & 63, voxel = places & 63;
     const std::uint64_t free = brick.free[chunk];
-    if (!(free >> voxel & 1)) return hit(lanes, of, k, state_of_voxel(brick, chunk, voxel));
+    if (!(free >> voxel & 1)) return note(quad, k, state_of_voxel(brick, chunk, voxel), hit);
     // What lies ahead in ever larger boxes; their number is the level of the largest that is free.
     // Counted without branches, which nothing could predict.
     const std::uint64_t chunks = brick.all_free | std::uint64_t{1} << chunk;
@@ -235,28 +268,30 @@ class Caster {
   static int all(std::uint64_t word, std::uint64_t parts) { return (~word & parts) == 0; }
 
   // False, and the hit noted, where there is none.
-  __attribute__((always_inline)) bool enter_block(const Lanes& lanes, Lane& of, int k) {
-    const std::int32_t key = lanes.key[k], ahead = key - of.block_key;
-    of.block_key = key;
-    // Rays ascend, and mostly leave a block through one face.
-    if (of.block && ahead == 1)
-      of.block = of.block->next[of.side[0]][0];
-    else if (of.block && ahead == 1 << 10)
-      of.block = of.block->next[of.side[1]][1];
-    else if (of.block && ahead == 1 << 20)
-      of.block = of.block->next[of.side[2]][2];
+  __attribute__((always_inline)) bool enter_block(Group& group, int k, MapRayHit& hit) {
+    const Quad& quad = *group.quad;
+    const std::int32_t key = quad.key[k], ahead = key - group.block_key[k];
+    const int ascends = ~quad.descends[k];
+    const Block*& block = group.block[k];
+    group.block_key[k] = key;
+    // Rays ascend, and mostly leave a block through one face: its lower or its higher one.
+    if (block && ahead == 1)
+      block = block->next[ascends & 1][0];
+    else if (block && ahead == 1 << 10)
+      block = block->next[ascends >> 1 & 1][1];
+    else if (block && ahead == 1 << 20)
+      block = block->next[ascends >> 2 & 1][2];
     else
-      of.block = find_block(lanes, of, k);
-    if (of.block) return true;
-    hit(lanes, of, k, VoxelState::unknown);
-    of.block_key = -1;
+      block = find_block(quad, k);
+    if (block) return true;
+    note(quad, k, VoxelState::unknown, hit);
     return false;
   }
 
-  const Block* find_block(const Lanes& lanes, const Lane& of, int k) {
-    const int x = lanes.cell[0][k], y = lanes.cell[1][k], z = lanes.cell[2][k];
+  const Block* find_block(const Quad& quad, int k) {
+    const int x = quad.cell[0][k], y = quad.cell[1][k], z = quad.cell[2][k];
     if ((x | y | z) & ~0xffff) return nullptr;
-    const int cell[3] = {x ^ of.mirror[0], y ^ of.mirror[1], z ^ of.mirror[2]};
+    const int cell[3] = {x ^ mirror(quad, k, 0), y ^ mirror(quad, k, 1), z ^ mirror(quad, k, 2)};
     // Rays of a view start in the same block.
     const std::int32_t key = cell[0] >> 6 | (cell[1] >> 6) << 10 | (cell[2] >> 6) << 20;
     if (key != found_key_) {
@@ -265,6 +300,8 @@ class Caster {
     }
     return found_;
   }
+
+  static int mirror(const Quad& quad, int k, int i) { return (quad.descends[k] >> i & 1) * 0xffff; }
 
   VoxelState state_of_brick(const Block& block, unsigned at) const {
     return block.known >> at & 1 ? settings_.state(block.content[at].log_odds)
@@ -277,23 +314,22 @@ class Caster {
                                               : brick.alike(of));
   }
 
-  int hit(const Lanes& lanes, const Lane& of, int k, VoxelState state) {
+  static int note(const Quad& quad, int k, VoxelState state, MapRayHit& hit) {
     const auto key = [&](int i) {
-      return static_cast<std::uint16_t>(std::min(lanes.cell[i][k], 0xffff) ^ of.mirror[i]);
+      return static_cast<std::uint16_t>(std::min(quad.cell[i][k], 0xffff) ^ mirror(quad, k, i));
     };
-    hits_[of.ray] = {
-        {key(0), key(1), key(2)}, state, static_cast<float>(std::max(lanes.entered[k], 0.0))};
+    hit = {{key(0), key(1), key(2)}, state, static_cast<float>(std::max(quad.entered[k], 0.0))};
     return -1;
   }
 
-  // Every lane to the first cell outside its free box. A crossing that is nearest to the way out
+  // Every ray to the first cell outside its free box. A crossing that is nearest to the way out
   // is decided by its own distance, all others are clear.
-  __attribute__((always_inline)) static void leave_boxes(Lanes& lanes) {
+  __attribute__((always_inline)) static void leave_boxes(Quad& quad) {
     Four t[3];
     for (int i = 0; i < 3; ++i) {
       const FourInt made =
-          lanes.cell[i] - lanes.start[i] + (~lanes.cell[i] & (lanes.edges >> 8 * i & 63));
-      t[i] = lanes.first[i] + __builtin_convertvector(made, Four) * lanes.spacing[i];
+          quad.cell[i] - quad.start[i] + (~quad.cell[i] & (quad.edges >> 8 * i & 63));
+      t[i] = quad.first[i] + __builtin_convertvector(made, Four) * quad.spacing[i];
     }
     const FourLong xy = t[0] < t[1], xz = t[0] < t[2], yz = t[1] < t[2];
     const FourLong by_x = xy & xz, by_xy = by_x | (~xy & yz);
@@ -301,79 +337,19 @@ class Caster {
     const Four at = at_xy < t[2] ? at_xy : t[2];
     constexpr double kRounding = 6755399441055744.0;  // 1.5 * 2^52: adding it leaves no fraction
     for (int i = 0; i < 3; ++i) {
-      const Four nearest = ((at - lanes.first[i]) * lanes.rate[i] + kRounding) - kRounding;
-      const Four crossing = lanes.first[i] + nearest * lanes.spacing[i];
+      const Four nearest = ((at - quad.first[i]) * quad.rate[i] + kRounding) - kRounding;
+      const Four crossing = quad.first[i] + nearest * quad.spacing[i];
       // Crossings at one distance are made z before y before x.
       const FourLong made = i == 2   ? crossing <= at
                             : i == 1 ? (crossing < at) | ((crossing == at) & by_xy)
                                      : (crossing < at) | ((crossing == at) & by_x);
       const Four one = {1, 1, 1, 1};
       const Four count = nearest + (Four)((FourLong)one & made);
-      lanes.cell[i] = lanes.start[i] + __builtin_convertvector(count, FourInt);
+      quad.cell[i] = quad.start[i] + __builtin_convertvector(count, FourInt);
     }
-    lanes.entered = at;
-    lanes.key = key_of(lanes.cell[0], lanes.cell[1], lanes.cell[2]);
-    lanes.places = places_of(lanes.cell[0], lanes.cell[1], lanes.cell[2]) ^ lanes.mirrored;
-  }
-
-  // Fills a lane with the next ray that gets anywhere; without one the lane stays where it is.
-  __attribute__((always_inline)) void next_ray(int lane) {
-    Lane& of = lane_[lane];
-    while (next_ < rays_.size()) {
-      if (next_ == beam_end_) {
-        find_beam();
-        beam_first_ = next_;
-        starts_.prepare(grid_, rays_.subspan(next_, beam_end_ - next_), beam_free_);
-      }
-      of.ray = next_++;
-      const auto place = static_cast<int>(of.ray - beam_first_);
-      const int descends = starts_.descends[place / 4][place % 4];
-      for (int i = 0; i < 3; ++i) {
-        of.side[i] = ~descends >> i & 1;
-        of.mirror[i] = (descends >> i & 1) * 0xffff;
-      }
-      of.block = nullptr;
-      of.ahead =
-          &kAhead[static_cast<std::size_t>(descends | starts_.along[place / 4][place % 4] << 3)];
-      of.block_key = -1;
-      fill(lane, place, rays_[of.ray].range);
-      const int edges = look(lanes_[lane / 4], lane, lane % 4);
-      if (edges < 0) continue;
-      const FourInt four = {edges, edges, edges, edges};
-      lanes_[lane / 4].edges = kIntLane[lane % 4] ? four : lanes_[lane / 4].edges;
-      busy_ |= 1u << lane;
-      return;
-    }
-    busy_ &= ~(1u << lane);
-    lanes_[lane / 4].range = kLane[lane % 4] ? Four{-1, -1, -1, -1} : lanes_[lane / 4].range;
-  }
-
-  // Whole vectors are written: parts of them could not be read back as one without a wait.
-  __attribute__((always_inline)) void fill(int lane, int place, double range) {
-    Lanes& lanes = lanes_[lane / 4];
-    const FourLong here = kLane[lane % 4];
-    const FourInt here_int = kIntLane[lane % 4];
-    const auto set = [&](Four& four, double value) {
-      const Four values = {value, value, value, value};
-      four = here ? values : four;
-    };
-    const auto set_int = [&](FourInt& four, int value) {
-      const FourInt values = {value, value, value, value};
-      four = here_int ? values : four;
-    };
-    for (int i = 0; i < 3; ++i) {
-      const int g = place / 4, k = place % 4;
-      set(lanes.first[i], starts_.first[i][g][k]);
-      set(lanes.spacing[i], starts_.spacing[i][g][k]);
-      set(lanes.rate[i], starts_.rate[i][g][k]);
-      set_int(lanes.cell[i], starts_.cell[i][g][k]);
-      set_int(lanes.start[i], starts_.start[i][g][k]);
-    }
-    set(lanes.entered, 0);
-    set(lanes.range, range);
-    set_int(lanes.mirrored, starts_.mirrored[place / 4][place % 4]);
-    set_int(lanes.key, starts_.key[place / 4][place % 4]);
-    set_int(lanes.places, starts_.places[place / 4][place % 4]);
+    quad.entered = at;
+    quad.key = key_of(quad.cell[0], quad.cell[1], quad.cell[2]);
+    quad.places = places_of(quad.cell[0], quad.cell[1], quad.cell[2]) ^ quad.mirrored;
   }
 
   // Rays next to each other from one place, as of a view, go through the same free space: how far
@@ -430,14 +406,13 @@ class Caster {
   double beam_free_ = 0;          // m
   std::int32_t found_key_ = -1;   // of the block that was looked up last
   const Block* found_ = nullptr;
-  unsigned done_ = 0, busy_ = 0;  // lanes, as bits
-  Starts starts_;
-  Lanes lanes_[kGroups] = {};
-  Lane lane_[kLanes];
+  int current_ = 0;               // of the two: the beam at hand, and one that is ending
+  Quad quads_[2][kBeam / 4];
+  Group groups_[kGroups];
 };
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void run_avx2(Caster& caster) {
+__attribute__((target("avx2,bmi,bmi2"))) void run_avx2(Caster& caster) {
   caster.run();
 }
 #endif
@@ -448,7 +423,7 @@ void cast_rays(const BrickGrid& bricks, const MapSettings& settings, std::span<c
                std::span<MapRayHit> hits) {
   Caster caster(bricks, settings, rays, hits);
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return run_avx2(caster);
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) return run_avx2(caster);
 #endif
   caster.run();
 }

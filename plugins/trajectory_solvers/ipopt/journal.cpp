@@ -22,7 +22,7 @@ void JournalLines::flush() {
 
 void JournalLines::line(const std::string& text) {
   if (text.empty() || text.find("CPU secs") != text.npos) return;
-  log::debug("ipopt: " + text);
+  logging::debug("ipopt: " + text);
 }
 
 }  // namespace lapwing

@@ -46,7 +46,7 @@ TEST(Ipopt, EqualProblemsGiveEqualBytes) {
 
 TEST(Ipopt, PrintsIntoTheLogAlone) {
   expect_silence(kSolver);
-  const log::Capture capture;
+  const logging::Capture capture;
   solve(kSolver, problem_of(crossing()));
   const std::string text = capture.text();
   EXPECT_NE(text.find("debug: ipopt: Number of Iterations"), std::string::npos) << text;
