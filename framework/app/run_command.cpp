@@ -230,12 +230,14 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   outcome.folder = invocation.out.empty() ? run_folder(mission->name()) : invocation.out;
   logging::info("mission " + mission->name() + ", seed " + std::to_string(invocation.seed));
   outcome.result = mission->plan();
-  progress.clear();
   if (outcome.result.mapping) {
+    progress.clear();
     outcome.seconds = steady_seconds() - begin;
     return finish_mapping({outcome.result, outcome.folder, outcome.seconds}, invocation, capture);
   }
+  progress.report(-1, "certificate");
   outcome.certificate = verify(outcome.result.plan, outcome.result.obstacle_folder);
+  progress.clear();
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome);
   if (!outcome.result.plan.lights.empty()) outcome.long_exposure = photograph(outcome.result.plan);

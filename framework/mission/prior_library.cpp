@@ -262,6 +262,10 @@ int reconstruct(lua_State* state) {
   const Sandbox::ClockPause pause(Sandbox::of(state));
   std::vector<FusedPoint> points = prior.fusion->points();
   points.insert(points.end(), prior.earlier.begin(), prior.earlier.end());
+  const MissionRun& run = run_of(state);
+  if (run.settings.progress)
+    run.settings.progress->report(-1, "surface through " + std::to_string(points.size()) +
+                                          " points");
   TriangleMesh mesh;
   try {
     mesh = surface_from_points(points, {given.number("cell"), given.number("trim")});

@@ -11,6 +11,8 @@ namespace {
 
 using Pair = std::pair<int, int>;
 
+constexpr std::size_t kReported = 1000;  // pairs at a time
+
 // Every viewpoint with its nearest neighbours, each pair once, ascending.
 std::vector<Pair> neighbour_pairs(const std::vector<Viewpoint>& viewpoints, int neighbours,
                                   int threads) {
@@ -43,7 +45,8 @@ enum class Outcome { unmatched, blocked, straight, planned, cancelled };
 MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& viewpoints,
                          const std::vector<std::vector<VoxelKey>>& seen,
                          const MotionSettings& settings, std::uint64_t seed, int threads,
-                         const CancellationToken* cancellation) {
+                         const CancellationToken* cancellation,
+                         const std::function<void(std::size_t, std::size_t)>& report) {
   if (settings.alpha > 0 && seen.size() != viewpoints.size())
     throw Error("find_motions: what is seen belongs to other viewpoints");
   if (settings.neighbours < 1) throw InputError("motions: at least 1 neighbour must be tried");
@@ -57,7 +60,7 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
   std::vector<Outcome> outcomes(pairs.size(), Outcome::blocked);
   std::vector<ViewMotion> motions(pairs.size());
   const Random seeds(seed);
-  parallel_for(pairs.size(), threads, [&](std::size_t k) {
+  const auto try_pair = [&](std::size_t k) {
     if (cancellation && cancellation->cancelled()) {
       outcomes[k] = Outcome::cancelled;
       return;
@@ -90,7 +93,12 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
       return;
     outcomes[k] = Outcome::planned;
     motions[k] = {a, b, std::move(path.points), path.report.length};
-  });
+  };
+  for (std::size_t first = 0; first < pairs.size(); first += kReported) {
+    const std::size_t size = std::min(kReported, pairs.size() - first);
+    parallel_for(size, threads, [&](std::size_t k) { try_pair(first + k); });
+    if (report) report(first + size, pairs.size());
+  }
   graph.tried = static_cast<std::int64_t>(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (outcomes[k] == Outcome::cancelled) throw Cancelled();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -41,10 +42,12 @@ struct MotionGraph {
 
 // `seen`: what every viewpoint sees at the common low resolution, in the order of keys. Pairs are
 // shared among threads; the graph is the same for any number. Throws InputError for numbers of
-// neighbours and settings that make no sense, Error when the sizes differ.
+// neighbours and settings that make no sense, Error when the sizes differ. `report` is told how
+// many pairs of how many are done.
 MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& viewpoints,
                          const std::vector<std::vector<VoxelKey>>& seen,
                          const MotionSettings& settings, std::uint64_t seed, int threads,
-                         const CancellationToken* cancellation = nullptr);
+                         const CancellationToken* cancellation = nullptr,
+                         const std::function<void(std::size_t, std::size_t)>& report = {});
 
 }  // namespace lapwing

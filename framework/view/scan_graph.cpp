@@ -160,7 +160,7 @@ ScanGraph make_scan_graph(const FreeSpace& space, const VisibleVoxels& visible,
                           const ViewInformation& information, const std::vector<Viewpoint>& given,
                           const ScanGraphSettings& settings, const CancellationToken* cancellation,
                           Progress* progress) {
-  constexpr double kGrown = 0.02, kSeen = 0.85, kCompared = 0.95;  // shares of the work
+  constexpr double kGrown = 0.02, kSeen = 0.75, kCompared = 0.8;  // shares of the work
   const Random seeds(settings.seed);
   ScanGraph graph;
   graph.candidates =
@@ -185,9 +185,10 @@ ScanGraph make_scan_graph(const FreeSpace& space, const VisibleVoxels& visible,
         },
         [&](std::size_t place) { coarse[next++] = std::move(chunk[place]); });
   }
-  if (progress) progress->report(kCompared, "ways between views");
-  graph.motions = find_motions(space, views, coarse, settings.motions, seeds.split(1).bits(),
-                               settings.threads, cancellation);
+  const Share motions(progress, kCompared, 1);
+  graph.motions = find_motions(
+      space, views, coarse, settings.motions, seeds.split(1).bits(), settings.threads, cancellation,
+      [&](std::size_t done, std::size_t of) { motions.report(done, of, "way between views"); });
   return graph;
 }
 

@@ -64,12 +64,20 @@ double TourWork::seconds() const {
 
 bool TourWork::ended(std::int64_t evaluations, std::int64_t iterations) {
   if (ending_) return true;
+  const bool now = asked_++ % kClockEvery == 0;
+  if (now && request_->progress) {
+    double share = share_used(evaluations, iterations);
+    if (expected_ > 0)
+      share = std::max(share, static_cast<double>(iterations) / static_cast<double>(expected_));
+    request_->progress->report(share > 0 ? std::min(1.0, share) : -1,
+                               "tour: " + std::to_string(evaluations) + " gains computed");
+  }
   if (request_->cancellation && request_->cancellation->cancelled()) {
     ending_ = TourStatus::cancelled;
   } else if ((request_->evaluation_limit && evaluations >= *request_->evaluation_limit) ||
              (request_->iteration_limit && iterations >= *request_->iteration_limit)) {
     ending_ = TourStatus::iteration_limit;
-  } else if (request_->wall_clock_guard && asked_++ % kClockEvery == 0 &&
+  } else if (now && request_->wall_clock_guard &&
              seconds() >= *request_->wall_clock_guard) {
     ending_ = TourStatus::time_limit;
   }

@@ -75,6 +75,8 @@ class TourWork {
   // True once the search has to end; stays true. `evaluations` and `iterations` so far.
   bool ended(std::int64_t evaluations, std::int64_t iterations = 0);
   std::optional<TourStatus> ending() const { return ending_; }
+  // The iterations after which the solver ends by itself: for telling how far it has come.
+  void expect(std::int64_t iterations) { expected_ = iterations; }
   // How much of its limits is used, in [0, 1]; 0 without limits.
   double share_used(std::int64_t evaluations, std::int64_t iterations) const;
   double seconds() const;  // since it was made
@@ -84,6 +86,7 @@ class TourWork {
   const TourRequest* request_;
   std::chrono::steady_clock::time_point began_;
   std::optional<TourStatus> ending_;
+  std::int64_t expected_ = 0;
   int asked_ = 0;
 };
 

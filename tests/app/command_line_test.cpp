@@ -210,10 +210,12 @@ TEST_F(CommandLine, BadMissionsAreRefused) {
   refused_script("return {\n  kind = 'film'\n  name = 'x' }", {"shot.lua:3: '}' expected"});
   refused_script("local a\n\na.b = 3", {"shot.lua:3: attempt to index a nil value"});
   refused_script("while true do end", {"shot.lua:1: ", "raise sandbox."});
-  refused_script("while true do pcall(function() while true do end end) end",
-                 {"shot.lua:1: ", "raise sandbox."});
-  refused_script("local t = {}\nwhile true do t[#t + 1] = ('x'):rep(100000) .. #t end",
-                 {"shot.lua:2: ", "raise sandbox.memory"});
+  write("shot.lua", "while true do pcall(function() while true do end end) end");
+  refused({"run", "shot.lua", "--set", "sandbox.instructions=1000000"},
+          {"shot.lua:1: ", "raise sandbox.instructions"});
+  write("shot.lua", "local t = {}\nwhile true do t[#t + 1] = ('x'):rep(100000) .. #t end");
+  refused({"run", "shot.lua", "--set", "sandbox.memory=16"},
+          {"shot.lua:2: ", "raise sandbox.memory"});
   refused_script("\x1bLua\x54", {"shot.lua:1: this is precompiled Lua"});
   refused_script("\nos.execute('touch pwned')", {"shot.lua:2: attempt to index a nil value"});
   refused_script("\nio.open('pwned', 'w')", {"shot.lua:2: attempt to index a nil value"});

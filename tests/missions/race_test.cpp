@@ -4,12 +4,12 @@
 namespace lapwing {
 namespace {
 
-TEST_F(Race, SevenGatesAtTheLimitOfTheRotors) {
-  const Flown flown = fly("../racing/seven_gates.lua");
+TEST_F(Race, ThreeGatesAtTheLimitOfTheRotors) {
+  const Flown flown = fly("../racing/round_course.lua", "--set model=quadrotor_full --set laps=1");
   expect_certified(flown);
   const Plan plan = read_plan(flown.folder / "plan.json");
   EXPECT_EQ(plan.trajectory.model, MotionModel::rotors);
-  EXPECT_EQ(plan.task.gates.size(), 7u);
+  EXPECT_EQ(plan.task.gates.size(), 3u);
   const std::string report = read_file(flown.folder / "report.html");
   EXPECT_NE(report.find("Rotor thrusts"), std::string::npos);
 }

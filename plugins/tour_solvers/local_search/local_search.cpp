@@ -59,6 +59,7 @@ class Annealing {
       current_.state().set_evaluations(evaluations_);
       best_walk_ = std::move(first.walk);
     }
+    work_.expect(settings_.iterations);
     fill(current_, {.by_ratio = true});
     keep(current_);
     WorkingTour trial = current_;
@@ -68,7 +69,6 @@ class Annealing {
       if (accepted(trial)) {
         keep(trial);
         std::swap(current_, trial);
-        current_.state().set_evaluations(trial.state().evaluations());
         current_.state().set_evaluations(evaluations_);
       }
       trial = current_;

@@ -12,6 +12,16 @@ TEST_F(Race, TheKnownSevenGatesInTheirTime) {
   EXPECT_LE(solve_seconds(flown), 60);
 }
 
+TEST_F(Race, SevenGatesAtTheLimitOfTheRotors) {
+  const Flown flown = fly("../racing/seven_gates.lua");
+  expect_certified(flown);
+  const Plan plan = read_plan(flown.folder / "plan.json");
+  EXPECT_EQ(plan.trajectory.model, MotionModel::rotors);
+  EXPECT_EQ(plan.task.gates.size(), 7u);
+  const std::string report = read_file(flown.folder / "report.html");
+  EXPECT_NE(report.find("Rotor thrusts"), std::string::npos);
+}
+
 TEST_F(Race, FiftyRandomKeyframesInASecond) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Flown flown = race(keyframes(random_keyframes(seed)) + kGentle);

@@ -86,7 +86,7 @@ TEST_P(Memory, ALimitRefusesAndChangesNothing) {
   const auto map = make_map(GetParam(), value);
   std::vector<Eigen::Vector3f> points;
   Random random(3);
-  for (int k = 0; k < 1500; ++k)
+  for (int k = 0; k < 900; ++k)
     points.push_back(Eigen::Vector3d(random.normal(), random.normal(), random.normal())
                          .normalized()
                          .cast<float>() *
