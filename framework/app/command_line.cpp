@@ -1,4 +1,5 @@
 #include "framework/app/command_line.h"
+#include "framework/app/descriptions.h"
 #include "framework/app/evaluate_explore.h"
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
@@ -320,7 +321,7 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
 }
 
 void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
-                         PluginCheck& asked, Command& command) {
+                         Description& described, PluginCheck& asked, Command& command) {
   CLI::App* plugins = app.add_subcommand("plugins", "what plugins there are");
   plugins->require_subcommand(1);
   CLI::App* list = plugins->add_subcommand("list", "every plugin, by kind");
@@ -330,8 +331,10 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
   add_text(*show, "name", "[KIND/]NAME", "its name", [&](const std::string& given) {
     name = given;
   })->required();
+  show->add_flag("--markdown", described.markdown, "its parameters as a table of a README");
   add_json(*show, invocation);
-  show->callback([&] { command = [&] { return show_plugin(name, invocation); }; });
+  show->callback(
+      [&] { command = [&] { return show_plugin(name, described.markdown, invocation); }; });
   CLI::App* path = plugins->add_subcommand("path", "the folders that are searched");
   add_json(*path, invocation);
   path->callback([&] { command = [&] { return show_plugin_path(invocation); }; });
@@ -350,6 +353,22 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
            });
   add_json(*check, invocation);
   check->callback([&] { command = [&] { return check_plugins(asked, invocation); }; });
+}
+
+void add_description_commands(CLI::App& app, Invocation& invocation, Description& asked,
+                              Command& command) {
+  CLI::App* annotations = app.add_subcommand(
+      "annotations", "what scripts may call and set, for editors with a Lua language server");
+  CLI::App* schema = app.add_subcommand(
+      "schema", "a JSON schema of configurations, for editors that check YAML");
+  for (CLI::App* one : {annotations, schema})
+    add_text(*one, "-o,--output", "FILE", "the file to write; else standard output",
+             [&](const std::string& path) { asked.target = path; });
+  annotations->add_flag("--markdown", asked.markdown, "the calls alone, as a table of a README");
+  add_text(*schema, "kind", "KIND", "a kind of mission, or vehicle; else all missions",
+           [&](const std::string& given) { asked.kind = given; });
+  annotations->callback([&] { command = [&] { return write_annotations(asked, invocation); }; });
+  schema->callback([&] { command = [&] { return write_schema(asked, invocation); }; });
 }
 
 void add_new_commands(CLI::App& app, Invocation& invocation, NewFiles& wanted, Command& command) {
@@ -519,6 +538,7 @@ int run_command_line(int argc, const char* const* argv) {
   RaceRules rules;
   TrainRequest training;
   PluginCheck checking;
+  Description described;
   NewFiles wanted;
   Sweep sweep;
   ScanEvaluation asked;
@@ -533,7 +553,8 @@ int run_command_line(int argc, const char* const* argv) {
   add_map_commands(app, invocation, plan, target, command);
   add_scene_commands(app, invocation, plan, stated, target, command);
   add_race_command(app, invocation, plan, pilots, rules, target, command);
-  add_plugin_commands(app, invocation, name, checking, command);
+  add_plugin_commands(app, invocation, name, described, checking, command);
+  add_description_commands(app, invocation, described, command);
   add_new_commands(app, invocation, wanted, command);
   add_train_commands(app, invocation, training, command);
   CLI::App* evaluate = app.add_subcommand("evaluate", "studies: methods against each other");

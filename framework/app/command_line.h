@@ -86,7 +86,8 @@ struct SceneStatement {
 ExitStatus view_scene(const std::filesystem::path& file, const SceneStatement& stated,
                       const std::filesystem::path& target, const Invocation& invocation);
 ExitStatus list_plugins(const Invocation& invocation);
-ExitStatus show_plugin(const std::string& name, const Invocation& invocation);
+// With `markdown` the parameters as a table of a README.
+ExitStatus show_plugin(const std::string& name, bool markdown, const Invocation& invocation);
 ExitStatus show_plugin_path(const Invocation& invocation);
 // InputError naming the nearest.
 [[noreturn]] void refuse_unknown_plugin(const Registry& registry, const std::string& name);

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "framework/app/command_line.h"
+#include "framework/app/descriptions.h"
 #include "framework/core/json.h"
 
 namespace lapwing {
@@ -101,7 +102,7 @@ ExitStatus list_plugins(const Invocation& invocation) {
   return ExitStatus::done;
 }
 
-ExitStatus show_plugin(const std::string& name, const Invocation& invocation) {
+ExitStatus show_plugin(const std::string& name, bool markdown, const Invocation& invocation) {
   const Registry registry = invocation.registry();
   std::vector<const PluginEntry*> found;
   for (const PluginEntry& entry : registry.entries()) {
@@ -118,7 +119,10 @@ ExitStatus show_plugin(const std::string& name, const Invocation& invocation) {
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (i > 0) std::printf("\n");
-    print_plugin(*found[i]);
+    if (markdown)
+      std::printf("%s", parameters_as_markdown(*found[i]).c_str());
+    else
+      print_plugin(*found[i]);
   }
   return ExitStatus::done;
 }

@@ -25,7 +25,7 @@ namespace lapwing {
 
 namespace {
 
-struct Outcome {
+struct RunOutcome {
   MissionResult result;
   Certificate certificate;
   std::string status;  // ok, not_certified, infeasible, failed, cancelled
@@ -58,7 +58,7 @@ Value finite(double number) {
   return std::isfinite(number) ? Value(number) : Value();
 }
 
-Value json_of(const Outcome& outcome, const Invocation& invocation) {
+Value json_of(const RunOutcome& outcome, const Invocation& invocation) {
   const MissionResult& result = outcome.result;
   Value object = Value::map();
   object.set("mission", result.plan.mission);
@@ -98,7 +98,7 @@ std::string reported_misses(const Certificate& certificate) {
   return lines;
 }
 
-std::string in_words(const Outcome& outcome) {
+std::string in_words(const RunOutcome& outcome) {
   const std::string& status = outcome.status;
   if (status == "ok") return "certified" + reported_misses(outcome.certificate);
   std::string words = status == "not_certified" ? "not certified" : status;
@@ -110,7 +110,7 @@ std::string in_words(const Outcome& outcome) {
   return words;
 }
 
-void print_summary(const Outcome& outcome) {
+void print_summary(const RunOutcome& outcome) {
   const MissionResult& result = outcome.result;
   char line[160];
   std::snprintf(line, sizeof line, "  %.4g s of flight, solved by %s (%s) in %.3g s",
@@ -128,7 +128,7 @@ void print_summary(const Outcome& outcome) {
   std::cout << "  report: " << (outcome.folder / "report.html").string() << std::endl;
 }
 
-std::string report_page(const Outcome& outcome) {
+std::string report_page(const RunOutcome& outcome) {
   Report report = flight_report(outcome.result.plan, outcome.result.obstacle_folder);
   if (outcome.status == "cancelled") {
     report.status = "cancelled";
@@ -158,7 +158,7 @@ std::string report_page(const Outcome& outcome) {
   return render_html(report);
 }
 
-void write_files(const Outcome& outcome, const Registry& registry,
+void write_files(const RunOutcome& outcome, const Registry& registry,
                  const logging::Capture& capture) {
   const Plan& plan = outcome.result.plan;
   RunFiles files;
@@ -188,7 +188,7 @@ std::string photograph(const Plan& plan) {
   return encode_png(long_exposure(plan, flown, kWidth));
 }
 
-std::vector<RacedPilot> fly_pilots(const Outcome& outcome, const CancellationToken& token) {
+std::vector<RacedPilot> fly_pilots(const RunOutcome& outcome, const CancellationToken& token) {
   const Plan& plan = outcome.result.plan;
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   std::vector<RacedPilot> raced;
@@ -202,7 +202,7 @@ std::vector<RacedPilot> fly_pilots(const Outcome& outcome, const CancellationTok
   return raced;
 }
 
-void complete_plan(Outcome& outcome) {
+void complete_plan(RunOutcome& outcome) {
   Plan& plan = outcome.result.plan;
   plan.certificate = outcome.certificate.to_value();
   if (!outcome.result.notes.empty()) {
@@ -226,7 +226,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   const auto mission = load_mission(script, invocation, registry, &interruption.token(), &progress,
                                     [&progress] { progress.clear(); });
   registry.find("exporter", "csv");
-  Outcome outcome;
+  RunOutcome outcome;
   outcome.folder = invocation.out.empty() ? run_folder(mission->name()) : invocation.out;
   logging::info("mission " + mission->name() + ", seed " + std::to_string(invocation.seed));
   outcome.result = mission->plan();

@@ -43,14 +43,64 @@ bool CheckOptions::wants(const std::string& check) const {
   return only.empty() || std::find(only.begin(), only.end(), check) != only.end();
 }
 
+bool CheckOptions::wants_any(std::initializer_list<const char*> checks) const {
+  return std::any_of(checks.begin(), checks.end(), [&](const char* check) { return wants(check); });
+}
+
+std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
+  if (kind == CostTerm::kKind || kind == Constraint::kKind) {
+    std::vector<std::vector<std::string>> groups{
+        {"creation"}, {"values"},      {"derivatives"},      {"curvature"},
+        {"ranges"},   {"affine"},      {"degenerate input"}, {"repeatable"},
+        {"threads"},  {"allocations"}, {"identity"}};
+    if (kind == Constraint::kKind) groups.push_back({"bounds"});
+    return groups;
+  }
+  if (kind == VehicleModel::kKind)
+    return {{"creation"},    {"blocks"},
+            {"bounds"},      {"flow", "degenerate input"},
+            {"derivatives"}, {"curvature"},
+            {"halves"},      {"samples"},
+            {"ranges"},      {"repeatable", "threads", "allocations"},
+            {"affine"}};
+  if (kind == TrajectorySolver::kKind)
+    return {{"creation"},
+            {"point", "reported cost", "reported violations", "status", "optimum", "infeasible"},
+            {"warm start"},
+            {"repeatable"},
+            {"work limit"},
+            {"cancellation"}};
+  if (kind == Map::kKind)
+    return {{"creation"},
+            {"empty", "integration", "ray casts", "boxes", "import"},
+            {"touching", "means", "refusals"},
+            {"repeatable", "threads"},
+            {"round trip", "memory"}};
+  if (kind == PathPlanner::kKind)
+    return {{"creation"},
+            {"answers", "honest", "messages", "paths", "work limit"},
+            {"repeatable"},
+            {"cancellation", "wall clock"}};
+  if (kind == TourSolver::kKind)
+    return {{"creation"},
+            {"answers", "honest", "messages", "tours", "reported score", "reported seconds",
+             "upper bound"},
+            {"repeatable"},
+            {"initial tour"},
+            {"cancellation", "wall clock"}};
+  if (kind == ViewInformation::kKind)
+    return {{"creation"}, {"finite", "at least 0", "repeats", "alone"}, {"submodular"}};
+  if (kind == ViewUtility::kKind)
+    return {{"creation"}, {"finite"}, {"repeatable"}, {"threads"}, {"alone"}, {"truth"}};
+  if (kind == Exporter::kKind) return {{"creation"}, {"extension"}, {"repeatable", "contents"}};
+  return {};
+}
+
 std::vector<std::string> check_names(const std::string& kind) {
-  std::vector<std::string> names{"creation",   "values",  "derivatives", "curvature",
-                                 "ranges",     "affine",  "degenerate input",
-                                 "repeatable", "threads", "allocations", "identity"};
-  if (kind == CostTerm::kKind) return names;
-  names.push_back("bounds");
-  if (kind == Constraint::kKind) return names;
-  return {"behaviour"};
+  std::vector<std::string> names;
+  for (const auto& group : check_groups(kind))
+    names.insert(names.end(), group.begin(), group.end());
+  return names;
 }
 
 std::vector<CheckResult> check_cost_term(const Specimen<CostTerm>& subject,

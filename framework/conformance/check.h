@@ -52,10 +52,15 @@ struct CheckOptions {
   std::vector<std::string> only = {};
 
   bool wants(const std::string& check) const;
+  // Whether anything beyond creation is wanted.
+  bool wants_answers() const { return only != std::vector<std::string>{"creation"}; }
+  // Whether one of several is wanted.
+  bool wants_any(std::initializer_list<const char*> checks) const;
 };
 
 // The checks of a kind that can be asked for one by one, so that each may have a process of its
-// own. A kind whose checks hang together has one, "behaviour".
+// own. Those of one group look at the same answers and cost as much together as each alone.
+std::vector<std::vector<std::string>> check_groups(const std::string& kind);
 std::vector<std::string> check_names(const std::string& kind);
 
 std::vector<CheckResult> check_cost_term(const Specimen<CostTerm>& subject,
@@ -89,6 +94,8 @@ Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {
 // What a plugin of any kind says of itself: names, version, and a parameter table that agrees with
 // itself. Opens nothing.
 std::vector<CheckResult> check_description(const PluginEntry& entry);
+// Whether the plugin's library says of it what the sidecar beside it says.
+std::vector<CheckResult> check_sidecar(const PluginEntry& entry);
 // Whether parameters of the wrong type, out of range or unknown are refused with an InputError.
 std::vector<CheckResult> check_rubbish(const Registry& registry, const PluginEntry& entry);
 

@@ -4,7 +4,10 @@
 
 #include "framework/conformance/findings.h"
 #include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/core/json.h"
 #include "framework/export/exporter.h"
+#include "framework/plugin/sidecar.h"
 
 namespace lapwing {
 namespace {
@@ -97,6 +100,29 @@ std::vector<CheckResult> check_description(const PluginEntry& entry) {
   need(!entry.summary.empty() && entry.summary.find('\n') == std::string::npos,
        "the summary is not one line");
   for (const ParameterSpec& spec : entry.parameters.specs()) check_spec(spec, spec.name, findings);
+  return std::move(findings).results();
+}
+
+std::vector<CheckResult> check_sidecar(const PluginEntry& entry) {
+  Findings findings;
+  const auto text_of = [](const Value& value) { return to_json(value, -1); };
+  try {
+    const std::filesystem::path file =
+        std::filesystem::path(entry.library).replace_extension(".json");
+    const Value library = describe_as_value(entry.library);
+    const Value sidecar = from_json(read_file(file), file.string());
+    findings.expect("sidecar", text_of(library) == text_of(sidecar), [&] {
+      return "'" + file.string() + "' says another thing than the library: build it anew";
+    });
+    const std::vector<PluginEntry> entries = entries_from_sidecar(library, file);
+    const auto same = std::find_if(entries.begin(), entries.end(), [&](const PluginEntry& other) {
+      return other.kind == entry.kind && other.name == entry.name;
+    });
+    findings.expect("sidecar", same != entries.end(),
+                    [&] { return "the library holds no " + entry.kind + " '" + entry.name + "'"; });
+  } catch (const std::exception& error) {
+    findings.fail("sidecar", error.what());
+  }
   return std::move(findings).results();
 }
 

@@ -11,17 +11,20 @@ namespace lapwing {
 // Creates the subject for every case and calls `check(plugin, findings, first)`; `first`: with its
 // defaults. What it throws in creation or check becomes a finding; `what` names the check's call.
 template <class Kind, class Check>
-std::vector<CheckResult> check_every_case(const Specimen<Kind>& subject, const std::string& what,
+std::vector<CheckResult> check_every_case(const Specimen<Kind>& subject,
+                                          const CheckOptions& options, const std::string& what,
                                           const Check& check) {
-  Findings findings;
+  Findings findings(options);
   const StandardSetting standard(false);
   bool first = true;
   for (const ParameterCase& parameter_case : parameter_cases(subject.parameters, standard)) {
+    if (findings.settled()) break;
     findings.set_case(parameter_case.description);
     try {
       const std::unique_ptr<Kind> plugin = subject.create(parameter_case.parameters);
       findings.expect("creation", true, {});
-      findings.survives("exceptions", what, [&] { check(*plugin, findings, first); });
+      if (options.wants_answers())
+        findings.survives("exceptions", what, [&] { check(*plugin, findings, first); });
     } catch (const InputError& error) {
       findings.expect("creation", !parameter_case.must_work,
                       [&] { return std::string("refused: ") + error.what(); });

@@ -43,8 +43,9 @@ void check_writing(const Exporter& exporter, Findings& findings) {
 
 }  // namespace
 
-std::vector<CheckResult> check_exporter(const Specimen<Exporter>& subject, const CheckOptions&) {
-  return check_every_case(subject, "writing a plan",
+std::vector<CheckResult> check_exporter(const Specimen<Exporter>& subject,
+                                        const CheckOptions& options) {
+  return check_every_case(subject, options, "writing a plan",
                           [](const Exporter& exporter, Findings& findings, bool) {
                             check_writing(exporter, findings);
                           });

@@ -7,11 +7,18 @@ namespace lapwing {
 
 class Findings {
  public:
+  Findings() = default;
+  // Notes nothing but what `options` wants, and what stands in the way of every check: creation
+  // and exceptions.
+  explicit Findings(const CheckOptions& options) : only_(options.only) {}
+
   // Notes that `check` was made; `ok` false makes it fail with the first such message.
   void expect(const std::string& check, bool ok, const std::function<std::string()>& message);
   void fail(const std::string& check, const std::string& message);
   void skip(const std::string& check, const std::string& reason);
   bool failed(const std::string& check) const;
+  // Whether every check that was asked for by name has failed: there is nothing left to find.
+  bool settled() const;
 
   // Runs `call`; anything it throws fails `check`. Whether it came to its end.
   bool survives(const std::string& check, const std::string& where,
@@ -24,6 +31,8 @@ class Findings {
 
  private:
   CheckResult& result(const std::string& check);
+  bool noted(const std::string& check) const;
+  std::vector<std::string> only_;  // none: all
   std::vector<CheckResult> results_;
   std::string case_;
 };

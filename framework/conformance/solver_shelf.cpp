@@ -174,10 +174,10 @@ ShelfProblem keep_away() {
 
 std::vector<ShelfProblem> solver_shelf() {
   std::vector<ShelfProblem> shelf;
-  for (const auto make : {least_effort, full_push, wall, too_far, square_root, keep_away}) {
+  for (const auto make : {least_effort, full_push, wall, too_far, square_root, keep_away})
     shelf.push_back(make());
-    shelf.back().problem.finish();
-  }
+  add_small_programs(shelf);
+  for (ShelfProblem& item : shelf) item.problem.finish();
   return shelf;
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "framework/problem/trajectory_problem.h"
 
@@ -12,8 +14,11 @@ struct ShelfProblem {
   TrajectoryProblem problem;
   std::optional<double> optimum;  // absent: there is no feasible point
   bool curved = false;            // a solver may say that it does not take such problems
+  bool trap = false;  // so badly scaled that a solver may stop short, but must not say infeasible
 };
 
 std::vector<ShelfProblem> solver_shelf();
+// Quadratic programs of a few numbers, dense; not yet finished.
+void add_small_programs(std::vector<ShelfProblem>& shelf);
 
 }  // namespace lapwing

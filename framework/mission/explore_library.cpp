@@ -15,24 +15,6 @@
 #include "framework/mission/vectors.h"
 
 namespace lapwing {
-namespace {
-
-constexpr const char* kExplorationType = "exploration";
-constexpr int kMomentPixels = 480;
-
-struct Exploration {
-  EpisodeSettings settings;
-  EpisodeResult result;
-  std::shared_ptr<Map> map;
-  Viewpoint start;
-  ExplorationRecord record;
-  double seconds = 0;  // wall clock of choosing and mapping
-};
-
-struct ExplorationObject {
-  std::shared_ptr<Exploration> exploration;
-};
-
 ParameterTable explore_table() {
   ParameterTable camera;
   camera.integer("width", 160, "pixels", between(1, 10000))
@@ -71,6 +53,24 @@ ParameterTable explore_table() {
       .boolean("compare", false, "let the oracle explore from the same start");
   return table;
 }
+
+namespace {
+
+constexpr const char* kExplorationType = "exploration";
+constexpr int kMomentPixels = 480;
+
+struct Exploration {
+  EpisodeSettings settings;
+  EpisodeResult result;
+  std::shared_ptr<Map> map;
+  Viewpoint start;
+  ExplorationRecord record;
+  double seconds = 0;  // wall clock of choosing and mapping
+};
+
+struct ExplorationObject {
+  std::shared_ptr<Exploration> exploration;
+};
 
 EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   EpisodeSettings s;
@@ -167,15 +167,17 @@ Trajectory trajectory_of(const Exploration& e, bool gimbal) {
   return trajectory;
 }
 
-// exploration:plan{vehicle =, margin =}
+ParameterTable explored_plan_table() {
+  ParameterTable table;
+  table.number("margin", 0.4, "m", "that the certificate asks for", at_least(0));
+  return table;
+}
+
 int plan_exploration(lua_State* state) {
   MissionRun& run = run_of(state);
   const Exploration& e =
       *object_argument<ExplorationObject>(state, 1, kExplorationType).exploration;
-  static constexpr std::string_view kVehicle[] = {"vehicle"};
-  ParameterTable table;
-  table.number("margin", 0.4, "m", "that the certificate asks for", at_least(0));
-  const Parameters given = table_argument(state, 2, table, "plan", kVehicle);
+  const Parameters given = table_argument(state, 2, explored_plan_table(), "plan", kVehicleObject);
   // A ball within the box that was kept free.
   if (given.number("margin") > e.settings.body / 2)
     throw InputError(given.origin("margin"), "margin: at most half of the body's edge, " +
@@ -234,14 +236,23 @@ Value viewpoint_value(const Viewpoint& view) {
   return value;
 }
 
+constexpr BoundField kExplorationFields[] = {
+    {"end", "string", "what ended it, in a word"},
+    {"reason", "string", "the same in words"},
+    {"images", "integer", "that were taken"},
+    {"efficiency", "number", "the observed surface summed over images (thesis 5.6)"},
+    {"observed_surface", "number", "voxels of the surface, at the end"},
+    {"surface", "number", "voxels of it that can be seen at all"},
+    {"length", "number", "of the path, m"},
+    {"seconds", "number", "of computing"},
+    {"relative", "number?", "efficiency over the oracle's from the same start, with `compare`"},
+    {"views", "table[]", "{position, yaw, pitch} of every image, m and rad"},
+    {"cleared", "table", "the box that was taken to be free at the start: {lower, upper}, m"}};
+
 int exploration_field(lua_State* state) {
   const Exploration& e =
       *object_argument<ExplorationObject>(state, 1, kExplorationType).exploration;
   const std::string field = text_argument(state, 2, "exploration");
-  if (field == "plan") {
-    lua_pushcfunction(state, &guarded<plan_exploration>);
-    return 1;
-  }
   Value fields = Value::map();
   fields.set("end", to_string(e.result.end));
   fields.set("reason", explain(e.result.end));
@@ -262,18 +273,14 @@ int exploration_field(lua_State* state) {
   const double inside = e.map->grid().resolution() / 2;
   cleared.set("lower", triple_of(box.min().array() + inside));
   cleared.set("upper", triple_of(box.max().array() - inside));
-  const Value* found = fields.find(field);
-  if (!found) refuse_field("an exploration", field, fields);
-  push_value(state, *found);
-  return 1;
+  return push_field(state, "an exploration", field, fields, kExplorationFields);
 }
 
 }  // namespace
 
 int explore_surface(lua_State* state) {
   MissionRun& run = run_of(state);
-  static constexpr std::string_view kObjects[] = {"surface", "map", "utility"};
-  const Parameters given = table_argument(state, 2, explore_table(), "explore", kObjects);
+  const Parameters given = table_argument(state, 2, explore_table(), "explore", kExploreObjects);
   lua_getfield(state, 2, "surface");
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, -1, kSurfaceType);
   lua_getfield(state, 2, "map");
@@ -345,7 +352,11 @@ int explore_surface(lua_State* state) {
 }
 
 void open_explore_library(lua_State* state) {
-  define_type<ExplorationObject>(state, kExplorationType, nullptr, &guarded<exploration_field>);
+  static const Binding methods[] = {
+      {"plan", &guarded<plan_exploration>, "(wanted: @): lapwing.plan",
+       "its flown path as a plan, in the map that it made", &explored_plan_table, kVehicleObject}};
+  define_type<ExplorationObject>(state, kExplorationType, {methods}, &guarded<exploration_field>);
+  note_fields(state, kExplorationType, kExplorationFields);
 }
 
 }  // namespace lapwing

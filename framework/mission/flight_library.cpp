@@ -28,6 +28,8 @@ Points points_of(const Parameters& given, const std::string& key) {
   return points;
 }
 
+namespace {
+
 // run:fly(plan): how it comes out under control in still air; with strokes, how far the light is
 // from them.
 int fly_plan(lua_State* state) {
@@ -50,8 +52,6 @@ int fly_plan(lua_State* state) {
   return 1;
 }
 
-namespace {
-
 // What the vehicle can do, a share of it.
 MotionLimits limits_of(const Vehicle& v, double share) {
   MotionLimits limits;
@@ -67,13 +67,10 @@ MotionLimits limits_of(const Vehicle& v, double share) {
   return limits;
 }
 
-}  // namespace
+constexpr BoundField kPathVehicle[] = {
+    {"vehicle?", "lapwing.vehicle", "whose limits hold, in place of speed and acceleration"}};
 
-// run:time_path{points = {x, y, z, ...}, spacing =, rounding =, speed =, acceleration =}, or with
-// vehicle = and share = in place of the last two: {points = {x, y, z, ...}, times = {...}}, as fast
-// as the limits allow, from rest to rest.
-int time_path(lua_State* state) {
-  static constexpr std::string_view kVehicle[] = {"vehicle"};
+ParameterTable time_path_table() {
   ParameterTable table;
   table.required_numbers("points", 0, "m", "x, y, z of each point in turn, world")
       .number("spacing", 0.01, "m", "between the points of the answer", above(0))
@@ -81,7 +78,14 @@ int time_path(lua_State* state) {
       .number("share", 1, "", "of what the vehicle can do", {0, 1, true})
       .optional_number("speed", "m/s", "largest", above(0))
       .optional_number("acceleration", "m/s^2", "largest, along and across together", above(0));
-  const Parameters given = table_argument(state, 2, table, "time_path", kVehicle);
+  return table;
+}
+
+// run:time_path{points = {x, y, z, ...}, spacing =, rounding =, speed =, acceleration =}, or with
+// vehicle = and share = in place of the last two: {points = {x, y, z, ...}, times = {...}}, as fast
+// as the limits allow, from rest to rest.
+int time_path(lua_State* state) {
+  const Parameters given = table_argument(state, 2, time_path_table(), "time_path", kPathVehicle);
   lua_getfield(state, 2, "vehicle");
   const Vehicle* vehicle =
       lua_isnil(state, -1) ? nullptr : &object_argument<Vehicle>(state, -1, kVehicleType);
@@ -106,13 +110,17 @@ int time_path(lua_State* state) {
   return 1;
 }
 
-// run:path_distance{points = {x, y, z, ...}, path = {x, y, z, ...}}: how far the farthest of the
-// points is from the path, m.
-int path_distance(lua_State* state) {
+ParameterTable path_distance_table() {
   ParameterTable table;
   table.required_numbers("points", 0, "m", "x, y, z of each in turn, world")
       .required_numbers("path", 0, "m", "likewise");
-  const Parameters given = table_argument(state, 2, table, "path_distance");
+  return table;
+}
+
+// run:path_distance{points = {x, y, z, ...}, path = {x, y, z, ...}}: how far the farthest of the
+// points is from the path, m.
+int path_distance(lua_State* state) {
+  const Parameters given = table_argument(state, 2, path_distance_table(), "path_distance");
   const std::vector<Points> path = {points_of(given, "path")};
   double worst = 0;
   for (const Eigen::Vector3d& p : points_of(given, "points"))
@@ -121,12 +129,8 @@ int path_distance(lua_State* state) {
   return 1;
 }
 
-// run:pursue{vehicle =, points = {x, y, z, ...}, views = {{point =, yaw =}, ...}, speed =, ...}:
-// {duration =, views = {{arrival =, departure =, miss =}, ...}, lost =, position_error =}, as the
-// whole quadrotor flies it in still air.
-int pursue_path(lua_State* state) {
+ParameterTable pursue_table() {
   const PursuitSettings standard;
-  static constexpr std::string_view kVehicle[] = {"vehicle"};
   ParameterTable view;
   view.integer("point", 1, "of the path, from 1 on", at_least(1))
       .number("yaw", 0, "rad", "heading");
@@ -140,7 +144,14 @@ int pursue_path(lua_State* state) {
       .number("acceleration", standard.acceleration, "m/s^2", "largest", above(0))
       .boolean("stop", standard.stop, "at every view")
       .number("pause", standard.pause, "s", "in every view", between(0, 3600));
-  const Parameters given = table_argument(state, 2, table, "pursue", kVehicle);
+  return table;
+}
+
+// run:pursue{vehicle =, points = {x, y, z, ...}, views = {{point =, yaw =}, ...}, speed =, ...}:
+// {duration =, views = {{arrival =, departure =, miss =}, ...}, lost =, position_error =}, as the
+// whole quadrotor flies it in still air.
+int pursue_path(lua_State* state) {
+  const Parameters given = table_argument(state, 2, pursue_table(), "pursue", kVehicleObject);
   lua_getfield(state, 2, "vehicle");
   const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
   PursuitSettings settings;
@@ -175,6 +186,26 @@ int pursue_path(lua_State* state) {
   result.set("views", std::move(passed));
   push_value(state, result);
   return 1;
+}
+
+}  // namespace
+
+std::span<const Binding> flight_methods_of_run() {
+  static const Binding methods[] = {
+      {"fly", &guarded<fly_plan>, "(plan: lapwing.plan): table",
+       "the flight under control in still air: position_error, yaw_error, lost; of a drawing also "
+       "mean_drawing_error, worst_drawing_error"},
+      {"time_path", &guarded<time_path>, "(path: @): table",
+       "{points, times}: the path in even steps and when they are passed, as fast as the limits "
+       "allow, from rest to rest",
+       &time_path_table, kPathVehicle},
+      {"path_distance", &guarded<path_distance>, "(places: @): number",
+       "how far the farthest of the points is from the path, m", &path_distance_table},
+      {"pursue", &guarded<pursue_path>, "(path: @): table",
+       "a flight along straight lines by pure pursuit, simulated: duration, views, lost, "
+       "position_error",
+       &pursue_table, kVehicleObject}};
+  return methods;
 }
 
 }  // namespace lapwing

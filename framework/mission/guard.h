@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/mission/binding.h"
 #include "framework/mission/sandbox.h"
 
 namespace lapwing {
@@ -60,21 +61,24 @@ T& new_object(lua_State* state, const char* type_name, T value) {
   return *object;
 }
 
+// What a type's __index asks: its methods (upvalue 1), then the function of its fields (upvalue 2).
+int index_object(lua_State* state);
+
 // Declares a type: its methods, and optionally an __index function that is asked where there is no
 // such method. `type_name` is what error messages call it.
 template <class T>
-void define_type(lua_State* state, const char* type_name, const luaL_Reg* methods,
+void define_type(lua_State* state, const char* type_name, BindingLists methods,
                  lua_CFunction fields = nullptr) {
   luaL_newmetatable(state, type_name);
   lua_pushcfunction(state, &destroy_object<T>);
   lua_setfield(state, -2, "__gc");
   lua_pushliteral(state, "protected");
   lua_setfield(state, -2, "__metatable");
+  lua_newtable(state);
+  for (const std::span<const Binding> list : methods) bind_functions(state, type_name, list);
   if (fields) {
     lua_pushcfunction(state, fields);
-  } else {
-    lua_newtable(state);
-    if (methods) luaL_setfuncs(state, methods, 0);
+    lua_pushcclosure(state, &index_object, 2);
   }
   lua_setfield(state, -2, "__index");
   lua_pop(state, 1);

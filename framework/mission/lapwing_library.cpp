@@ -40,12 +40,16 @@ int read_yaml_data(lua_State* state) {
   return 1;
 }
 
-GeodeticPoint geodetic_argument(lua_State* state, int index, const char* what) {
+ParameterTable geodetic_table() {
   ParameterTable table;
   table.required_number("lat", "", "degrees north", between(-90, 90))
       .required_number("lon", "", "degrees east", between(-180, 180))
       .required_number("alt", "m", "metres above the ellipsoid");
-  const Parameters point = table_argument(state, index, table, what);
+  return table;
+}
+
+GeodeticPoint geodetic_argument(lua_State* state, int index, const char* what) {
+  const Parameters point = table_argument(state, index, geodetic_table(), what);
   return {point.number("lat"), point.number("lon"), point.number("alt")};
 }
 
@@ -102,16 +106,28 @@ Parameters table_argument(lua_State* state, int index, const ParameterTable& tab
 void open_lapwing_library(lua_State* state, MissionRun& run) {
   lua_pushlightuserdata(state, &run);
   lua_setfield(state, LUA_REGISTRYINDEX, "lapwing.run");
-  define_type<MissionOptions>(state, kOptionsType, nullptr, nullptr);
-  const luaL_Reg functions[] = {{"read_json", &guarded<read_json>},
-                                {"read_yaml", &guarded<read_yaml_data>},
-                                {"read_text", &guarded<read_text>},
-                                {"local_from_geodetic", &guarded<local_from_geodetic>},
-                                {"options", &guarded<options>},
-                                {"fail", &guarded<fail>},
-                                {nullptr, nullptr}};
+  define_type<MissionOptions>(state, kOptionsType, {});
+  note_fields(state, kOptionsType, {});
+  note_fields(state, "option", kDeclarationKeys);
+  note_fields(state, "mission", kMissionParts);
+  static const Binding functions[] = {
+      {"options", &guarded<options>,
+       "(declarations: lapwing.option[], given: table): lapwing.options",
+       "a mission's options: what may be set, and what the script sets"},
+      {"read_json", &guarded<read_json>, "(name: string, folder?: string): any",
+       "a table, from a file in the script's folder, a --data folder or configs/"},
+      {"read_yaml", &guarded<read_yaml_data>, "(name: string, folder?: string): any",
+       "the same from a YAML file"},
+      {"read_text", &guarded<read_text>, "(name: string, folder?: string): string",
+       "the text of such a file"},
+      {"local_from_geodetic", &guarded<local_from_geodetic>,
+       "(origin: lapwing.geodetic, point: lapwing.geodetic): number[]",
+       "{east, north, up} of the point from the origin, m"},
+      {"fail", &guarded<fail>, "(message: string)", "an error at the script's own line"}};
+  static const BoundTable tables[] = {{"geodetic", &geodetic_table, {}}};
   lua_newtable(state);
-  luaL_setfuncs(state, functions, 0);
+  bind_functions(state, "lapwing", functions);
+  note_tables(state, "lapwing", tables);
   lua_setglobal(state, "lapwing");
 }
 

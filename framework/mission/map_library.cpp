@@ -107,19 +107,15 @@ int discard(lua_State* state) {
   return 0;
 }
 
-// Fields: name, triangles, lower and upper (of its bounds), region = {lower =, upper =}.
+constexpr BoundField kSurfaceFields[] = {{"name", "string", "of its scene or file"},
+                                         {"triangles", "integer", "how many there are"},
+                                         {"lower", "number[]", "lowest corner of its bounds, m"},
+                                         {"upper", "number[]", "highest corner of its bounds, m"},
+                                         {"region", "table", "of interest: {lower, upper}, m"}};
+
 int surface_field(lua_State* state) {
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
   const std::string field = text_argument(state, 2, "surface");
-  static const luaL_Reg methods[] = {{"clearance", &guarded<clearance>},
-                                     {"covered", &guarded<covered>},
-                                     {"add_ground", &guarded<add_ground>},
-                                     {"discard", &guarded<discard>}};
-  for (const luaL_Reg& method : methods)
-    if (field == method.name) {
-      lua_pushcfunction(state, method.func);
-      return 1;
-    }
   Value region = Value::map(), fields = Value::map();
   region.set("lower", list_of(surface.region.min()));
   region.set("upper", list_of(surface.region.max()));
@@ -132,10 +128,7 @@ int surface_field(lua_State* state) {
     fields.set("upper", list_of(bounds.max()));
   }
   fields.set("region", std::move(region));
-  const Value* found = fields.find(field);
-  if (!found) refuse_field("a surface", field, fields);
-  push_value(state, *found);
-  return 1;
+  return push_field(state, "a surface", field, fields, kSurfaceFields);
 }
 
 // -- maps ----------------------------------------------------------------------------------------
@@ -182,8 +175,7 @@ std::string scanned(const Mapping& mapping, std::size_t asked, const std::string
 int scan(lua_State* state) {
   MissionRun& run = run_of(state);
   Mapping& mapping = *object_argument<MapObject>(state, 1, kMapType).mapping;
-  static constexpr std::string_view kObjects[] = {"surface"};
-  const Parameters given = table_argument(state, 2, scan_table(), "scan", kObjects);
+  const Parameters given = table_argument(state, 2, scan_table(), "scan", kSurfaceObject);
   lua_getfield(state, 2, "surface");
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, -1, kSurfaceType);
   if (!surface.scene) throw InputError("there is nothing left of '" + surface.name + "'");
@@ -264,21 +256,38 @@ int counts(lua_State* state) {
 }  // namespace
 
 void open_map_library(lua_State* state) {
-  static const luaL_Reg methods[] = {{"scan", &guarded<scan>},
-                                     {"scan_folder", &guarded<scan_folder>},
-                                     {"load", &guarded<load>},
-                                     {"counts", &guarded<counts>},
-                                     {nullptr, nullptr}};
-  define_type<MapObject>(state, kMapType, methods);
-  define_type<SurfaceObject>(state, kSurfaceType, nullptr, &guarded<surface_field>);
+  static const Binding methods[] = {
+      {"scan", &guarded<scan>, "(look: @)", "depth images of a surface, put into the map",
+       &scan_table, kSurfaceObject},
+      {"scan_folder", &guarded<scan_folder>, "(name: string)",
+       "the same from a folder of depth images"},
+      {"load", &guarded<load>, "(name: string)", "all of a map file of the same resolution"},
+      {"counts", &guarded<counts>, "(): table", "voxels and memory: known, free, occupied, bytes"}};
+  static const Binding of_surface[] = {
+      {"clearance", &guarded<clearance>, "(place: number[]): number",
+       "m to the nearest triangle, 50 at most"},
+      {"covered", &guarded<covered>, "(place: number[]): boolean",
+       "whether there is anything straight above"},
+      {"add_ground", &guarded<add_ground>, "()",
+       "adds a plane through its lowest point, 100 m beyond it on every side"},
+      {"discard", &guarded<discard>, "()", "nothing is left that anything could look at"}};
+  define_type<MapObject>(state, kMapType, {methods});
+  define_type<SurfaceObject>(state, kSurfaceType, {of_surface}, &guarded<surface_field>);
+  note_fields(state, kSurfaceType, kSurfaceFields);
 }
 
-std::span<const luaL_Reg> map_methods_of_run() {
-  static const luaL_Reg methods[] = {{"surface", &guarded<surface>},
-                                     {"read_surface", &guarded<read_surface>},
-                                     {"map", &guarded<map>},
-                                     {"map_resolution", &guarded<map_resolution>},
-                                     {"explore", &guarded<explore_surface>}};
+std::span<const Binding> map_methods_of_run() {
+  static const Binding methods[] = {
+      {"surface", &guarded<surface>, "(scene: lapwing.scene): lapwing.surface",
+       "a surface to look at, from a scene"},
+      {"read_surface", &guarded<read_surface>, "(name: string): lapwing.surface",
+       "the same from a mesh file"},
+      {"map", &guarded<map>, "(choice: lapwing.map_choice): lapwing.map",
+       "an empty map; a mission's `plan` may return it in place of a plan"},
+      {"map_resolution", &guarded<map_resolution>, "(name: string): number",
+       "the edge of a voxel of a map file, m"},
+      {"explore", &guarded<explore_surface>, "(settings: @): lapwing.exploration",
+       "an exploration of a surface, whatever came out", &explore_table, kExploreObjects}};
   return methods;
 }
 

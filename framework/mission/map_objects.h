@@ -8,8 +8,6 @@
 #include "framework/mission/map_work.h"
 #include "framework/mission/run.h"
 
-struct luaL_Reg;
-
 namespace lapwing {
 
 struct MapObject {
@@ -25,9 +23,12 @@ struct SurfaceObject {
 inline constexpr const char* kMapType = "map";
 inline constexpr const char* kSurfaceType = "surface";
 
+inline constexpr BoundField kSurfaceObject[] = {
+    {"surface", "lapwing.surface", "that is looked at"}};
+
 // Adds the types above; after open_lapwing_library.
 void open_map_library(lua_State* state);
 // surface, read_surface, map, map_resolution.
-std::span<const luaL_Reg> map_methods_of_run();
+std::span<const Binding> map_methods_of_run();
 
 }  // namespace lapwing

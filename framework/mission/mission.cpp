@@ -34,6 +34,19 @@ std::vector<std::filesystem::path> data_folders(const std::filesystem::path& scr
 
 }  // namespace
 
+void open_script_libraries(lua_State* state, MissionRun& run) {
+  open_lapwing_library(state, run);
+  open_symbolic_types(state);
+  open_symbolic_functions(state);
+  open_stage_values(state);
+  open_problem_library(state);
+  open_plan_library(state);
+  open_map_library(state);
+  open_scan_library(state);
+  open_explore_library(state);
+  open_scene_library(state);
+}
+
 struct Mission::Impl {
   Impl(const std::filesystem::path& script_file, MissionSettings given)
       : script(script_file),
@@ -53,16 +66,7 @@ struct Mission::Impl {
 
 void Mission::Impl::load() {
   sandbox.protect([this](lua_State* state) {
-    open_lapwing_library(state, run);
-    open_symbolic_types(state);
-    open_symbolic_functions(state);
-    open_stage_values(state);
-    open_problem_library(state);
-    open_plan_library(state);
-    open_map_library(state);
-    open_scan_library(state);
-    open_explore_library(state);
-    open_scene_library(state);
+    open_script_libraries(state, run);
     sandbox.run_script(state, script);
     read_mission(state);
   });

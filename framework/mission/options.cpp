@@ -9,9 +9,14 @@ namespace lapwing {
 namespace {
 
 const std::vector<std::string>& known_declaration_keys() {
-  static const std::vector<std::string> keys = {
-      "name",    "type",    "summary", "unit",  "default", "required", "minimum", "above",
-      "maximum", "choices", "size",    "table", "kind",    "words",    "settled", "under"};
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> names;
+    for (const BoundField& key : kDeclarationKeys) {
+      names.emplace_back(key.name);
+      if (names.back().ends_with('?')) names.back().pop_back();
+    }
+    return names;
+  }();
   return keys;
 }
 
@@ -100,12 +105,35 @@ OptionDeclarations OptionDeclarations::from_value(const Value& list) {
       if (const Value* own = declaration.find("table")) option.own = *own;
       declaration = without(declaration, {"table"});
     }
-    option.declaration = without(declaration, {"kind", "words", "settled", "under"});
+    if (const Value* also = declaration.find("also")) option.also = also->as_text();
+    option.declaration = without(declaration, {"kind", "words", "settled", "under", "also"});
     plain.push_back(option.declaration);
     declarations.options_.push_back(std::move(option));
   }
   ParameterTable::from_value(plain);  // refuses what is malformed or declared twice
   return declarations;
+}
+
+Value OptionDeclarations::to_value() const {
+  Value list = Value::list();
+  for (const Option& option : options_) {
+    Value entry = option.declaration;
+    if (!option.plugin_kind.empty()) {
+      entry.set("type", "plugin");
+      entry.set("kind", option.plugin_kind);
+      entry.set("under", option.under);
+      if (option.settled.is_map()) entry.set("settled", option.settled);
+      if (option.own.is_list()) entry.set("table", option.own);
+    }
+    if (option.vehicle) entry.set("type", "vehicle");
+    if (!option.also.empty()) entry.set("also", option.also);
+    if (!option.words.empty()) {
+      Value& words = entry.set("words", Value::list());
+      for (const std::string& word : option.words) words.push_back(word);
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
 }
 
 OptionDeclarations OptionDeclarations::from_options(const Value& options) {

@@ -10,20 +10,45 @@
 //       table = {...}: entries of the mission's own beside the plugin's parameters
 //   type = "vehicle"               a vehicle file's name, or a table as in such a file
 //   words = {"auto"}               on a number: these texts are allowed as well
+//   also = "string"                a short form that the kind itself writes out, for annotations
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "framework/core/parameters.h"
+#include "framework/mission/binding.h"
 #include "framework/plugin/registry.h"
 
 namespace lapwing {
+
+// The keys of a declaration.
+inline constexpr BoundField kDeclarationKeys[] = {
+    {"name", "string", "of the option"},
+    {"type", "string",
+     "boolean, integer, number, numbers, text, choice, table, tables, plugin, vehicle"},
+    {"summary?", "string", "one line"},
+    {"unit?", "string", "of a number or of numbers: m, s, m/s, deg, ..."},
+    {"default?", "any", "what it is where nobody sets it"},
+    {"required?", "boolean", "whether somebody must"},
+    {"minimum?", "number", "of a number, or of each of numbers"},
+    {"above?", "number", "the same; itself not allowed"},
+    {"maximum?", "number", "of a number, or of each of numbers"},
+    {"choices?", "string[]", "of a choice"},
+    {"size?", "integer", "how many numbers"},
+    {"table?", "lapwing.option[]", "entries of a table, or of each of tables"},
+    {"kind?", "string", "of a plugin: trajectory_solver, ..."},
+    {"words?", "string[]", "texts that are allowed in place of a number"},
+    {"settled?", "table<string, string>", "parameters of a plugin that cannot be set, and why"},
+    {"under?", "string", "the key that names a plugin, in place of `type`"},
+    {"also?", "string", "what else a script may give, for editors: a type as LuaLS writes it"}};
 
 class OptionDeclarations {
  public:
   // From what a script gave to lapwing.options. InputError naming what is malformed.
   static OptionDeclarations from_value(const Value& list);
+  // The list again: what `from_value` takes.
+  Value to_value() const;
   // A script that declares nothing: its own options with their types, as defaults.
   static OptionDeclarations from_options(const Value& options);
 
@@ -39,6 +64,7 @@ class OptionDeclarations {
     Value settled;               // of a plugin: parameters that cannot be set, and why
     std::string under = "type";  // of a plugin: the key that names it
     Value own;                   // of a plugin: entries of the mission's own; null or a list
+    std::string also;            // a short form, for annotations
     bool vehicle = false;
     std::vector<std::string> words;
   };

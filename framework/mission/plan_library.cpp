@@ -33,24 +33,17 @@ PluginChoice plugin_choice(lua_State* state, int index, const std::string& what)
   return choice;
 }
 
-void refuse_field(const std::string& what, const std::string& field, const Value& fields) {
-  std::vector<std::string> known;
-  for (const auto& [key, value] : fields.as_map()) known.push_back(key);
-  const std::string nearest = nearest_name(field, known);
-  throw InputError(what + " has no field '" + field + "'" +
-                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-}
-
 namespace {
 
 // -- run:solve
 // -------------------------------------------------------------------------------------
 
-// {warm_start = solution}
+constexpr BoundField kWarmStart[] = {
+    {"warm_start?", "lapwing.solution", "of a problem of the same size, to begin from"}};
+
 std::optional<WarmStart> warm_start_argument(lua_State* state, int index,
                                              const TrajectoryProblem& problem) {
   if (lua_isnoneornil(state, index)) return std::nullopt;
-  static constexpr std::string_view kWarmStart[] = {"warm_start"};
   table_argument(state, index, {}, "solve", kWarmStart);
   if (lua_getfield(state, index, "warm_start") == LUA_TNIL) return std::nullopt;
   const WarmStart& point = object_argument<SolutionObject>(state, -1, kSolutionType).result.point;
@@ -104,8 +97,19 @@ Value positions_of(const SolutionObject& solution) {
   return list;
 }
 
-// Fields of a solution: status, message, solver, cost, iterations, violations, legs (durations, s),
-// duration, defects (of each leg, as shares of what a certificate allows), path.
+constexpr BoundField kSolutionFields[] = {
+    {"status", "string",
+     "optimal, feasible, infeasible, iteration_limit, time_limit, cancelled, ..."},
+    {"message", "string", "what the solver says of it"},
+    {"solver", "string", "its name"},
+    {"cost", "number", "weighted, of all terms"},
+    {"iterations", "integer", "of the solver"},
+    {"violations", "table[]", "the worst of each constraint: {name, row, amount, time}"},
+    {"legs", "number[]", "durations of the legs, s"},
+    {"duration", "number", "s"},
+    {"defects", "number[]", "of each leg, as shares of what a certificate allows"},
+    {"path", "number[]", "x, y, z of every stage in turn, m, world"}};
+
 int solution_field(lua_State* state) {
   const SolutionObject& solution = object_argument<SolutionObject>(state, 1, kSolutionType);
   const SolveReport& report = solution.result.report;
@@ -140,10 +144,7 @@ int solution_field(lua_State* state) {
   fields.set("duration", solution.problem->time(at, horizon.stages - 1));
   fields.set("path", Value());
   if (field == "path") fields.set("path", positions_of(solution));
-  const Value* found = fields.find(field);
-  if (!found) refuse_field("a solution", field, fields);
-  push_value(state, *found);
-  return 1;
+  return push_field(state, "a solution", field, fields, kSolutionFields);
 }
 
 // Angles and rates, or false without a gimbal.
@@ -168,7 +169,24 @@ Value half_view_value(const Camera& camera) {
   return view;
 }
 
-// Fields of a vehicle: its name and the limits that a mission may plan with, SI and radians.
+// Its name and the limits that a mission may plan with.
+constexpr BoundField kVehicleFields[] = {
+    {"name", "string", "of the vehicle"},
+    {"mass", "number", "kg"},
+    {"speed_across", "number", "largest, m/s"},
+    {"climb_speed", "number", "largest, m/s"},
+    {"descent_speed", "number", "largest, m/s"},
+    {"acceleration_across", "number", "largest, m/s^2"},
+    {"acceleration_up", "number", "largest, m/s^2; math.huge where the file states none"},
+    {"acceleration_down", "number", "largest, m/s^2; math.huge where the file states none"},
+    {"yaw_rate", "number", "largest, rad/s"},
+    {"thrust_max", "number", "of all rotors, that is used, N"},
+    {"rotor_thrust_max", "number", "of one rotor, N"},
+    {"flight_time", "number", "of a battery, s"},
+    {"gimbal", "table|false",
+     "{yaw_min, yaw_max, pitch_min, pitch_max, yaw_rate, pitch_rate}, rad and rad/s; false: none"},
+    {"half_view", "table", "{across, up}: half the angle that the camera sees, rad"}};
+
 int vehicle_field(lua_State* state) {
   const Vehicle& vehicle = object_argument<Vehicle>(state, 1, kVehicleType);
   const std::string field = text_argument(state, 2, "vehicle");
@@ -188,10 +206,7 @@ int vehicle_field(lua_State* state) {
   fields.set("acceleration_down", vehicle.acceleration_down_max.value_or(infinite));
   fields.set("gimbal", gimbal_value(vehicle));
   fields.set("half_view", half_view_value(vehicle.camera));
-  const Value* found = fields.find(field);
-  if (!found) refuse_field("a vehicle", field, fields);
-  push_value(state, *found);
-  return 1;
+  return push_field(state, "a vehicle", field, fields, kVehicleFields);
 }
 
 // -- run:plan
@@ -305,13 +320,15 @@ std::vector<std::string> notes_argument(lua_State* state, int index, const Origi
   return notes;
 }
 
-// run:plan{problem =, solution =, task = {keyframes = ...}, budget =, geodetic_origin =,
-//          notes = {"sentence", ...}, figures = {...}, players = {{log =, ...}, ...}}
+constexpr BoundField kPlanObjects[] = {
+    {"solution", "lapwing.solution", "whose motion it is"},
+    {"notes?", "string[]", "sentences for the user"},
+    {"figures?", "table", "the kind's own figures, for --json"}};
+
 int plan(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
-  static constexpr std::string_view kObjects[] = {"solution", "notes", "figures"};
-  const Parameters given = table_argument(state, 2, plan_table(), "plan", kObjects);
+  const Parameters given = table_argument(state, 2, plan_table(), "plan", kPlanObjects);
   lua_getfield(state, 2, "solution");
   const SolutionObject& solution = object_argument<SolutionObject>(state, -1, kSolutionType);
   PlanObject made;
@@ -345,7 +362,10 @@ int plan(lua_State* state) {
   return 1;
 }
 
-// Fields of a plan: duration, s; of a scan also views = {{position =, yaw =, pitch =}, ...}.
+constexpr BoundField kPlanFields[] = {
+    {"duration", "number", "s"},
+    {"views", "table[]", "of a scan: {position, yaw, pitch}, m and rad"}};
+
 int plan_field(lua_State* state) {
   const Plan& plan = object_argument<PlanObject>(state, 1, kPlanType).plan;
   Value views = Value::list(), fields = Value::map();
@@ -361,10 +381,7 @@ int plan_field(lua_State* state) {
   fields.set("views", std::move(views));
   fields.set("duration", plan.trajectory.duration());
   const std::string field = text_argument(state, 2, "plan");
-  const Value* found = fields.find(field);
-  if (!found) refuse_field("a plan", field, fields);
-  push_value(state, *found);
-  return 1;
+  return push_field(state, "a plan", field, fields, kPlanFields);
 }
 
 // run:certify(plan): {feasible =, failures = {"sentence", ...}, checks = {...}}
@@ -392,7 +409,6 @@ int cancelled(lua_State* state) {
   return 1;
 }
 
-// run:progress(fraction, "words")
 int progress(lua_State* state) {
   Progress* progress = run_of(state).settings.progress;
   const double fraction = luaL_checknumber(state, 2);
@@ -436,40 +452,34 @@ int fail(lua_State* state) {
   throw InputError(origin, path + ": " + message);
 }
 
+std::span<const Binding> solving_methods() {
+  static const Binding methods[] = {
+      {"solve", &guarded<solve>,
+       "(problem: lapwing.problem, solver: lapwing.trajectory_solver, options?: @): "
+       "lapwing.solution",
+       "a solution, whatever came out", nullptr, kWarmStart},
+      {"plan", &guarded<plan>, "(made: @): lapwing.plan", "what a mission's `plan` returns",
+       &plan_table, kPlanObjects},
+      {"certify", &guarded<certify>, "(plan: lapwing.plan): table",
+       "the verifier's answer: `feasible`, `failures` (sentences), `checks`"},
+      {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user asked to end"},
+      {"progress", &guarded<progress>, "(fraction: number, words: string)",
+       "how far the work is, 0 to 1, and with what"},
+      {"fail", &guarded<fail>, "(option: string, message: string)",
+       "an error where that option was written"}};
+  return methods;
+}
+
 int run_field(lua_State* state) {
   const std::string field = text_argument(state, 2, "run");
   if (field == "options") {
     push_value(state, run_of(state).configuration);
     return 1;
   }
-  static const luaL_Reg methods[] = {{"vehicle", &guarded<vehicle_of_run>},
-                                     {"problem", &guarded<problem_of_run>},
-                                     {"solve", &guarded<solve>},
-                                     {"plan", &guarded<plan>},
-                                     {"certify", &guarded<certify>},
-                                     {"fly", &guarded<fly_plan>},
-                                     {"time_path", &guarded<time_path>},
-                                     {"pursue", &guarded<pursue_path>},
-                                     {"path_distance", &guarded<path_distance>},
-                                     {"cancelled", &guarded<cancelled>},
-                                     {"progress", &guarded<progress>},
-                                     {"fail", &guarded<fail>}};
   std::vector<std::string> known = {"options"};
-  for (const luaL_Reg& method : methods) {
-    if (field == method.name) {
-      lua_pushcfunction(state, method.func);
-      return 1;
-    }
-    known.emplace_back(method.name);
-  }
-  for (const auto more : {map_methods_of_run(), scan_methods_of_run()})
-    for (const luaL_Reg& method : more) {
-      if (field == method.name) {
-        lua_pushcfunction(state, method.func);
-        return 1;
-      }
-      known.emplace_back(method.name);
-    }
+  for (const auto list : {solving_methods(), problem_methods_of_run(), flight_methods_of_run(),
+                          map_methods_of_run(), scan_methods_of_run()})
+    for (const Binding& method : list) known.emplace_back(method.name);
   const std::string nearest = nearest_name(field, known);
   throw InputError("run has no '" + field + "'" +
                    (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
@@ -480,10 +490,18 @@ struct RunHandle {};
 }  // namespace
 
 void open_plan_library(lua_State* state) {
-  define_type<RunHandle>(state, kRunType, nullptr, &guarded<run_field>);
-  define_type<Vehicle>(state, kVehicleType, nullptr, &guarded<vehicle_field>);
-  define_type<SolutionObject>(state, kSolutionType, nullptr, &guarded<solution_field>);
-  define_type<PlanObject>(state, kPlanType, nullptr, &guarded<plan_field>);
+  static constexpr BoundField kRunFields[] = {{"options", "table", "the effective options"}};
+  define_type<RunHandle>(state, kRunType,
+                         {problem_methods_of_run(), solving_methods(), flight_methods_of_run(),
+                          map_methods_of_run(), scan_methods_of_run()},
+                         &guarded<run_field>);
+  note_fields(state, kRunType, kRunFields);
+  define_type<Vehicle>(state, kVehicleType, {}, &guarded<vehicle_field>);
+  note_fields(state, kVehicleType, kVehicleFields);
+  define_type<SolutionObject>(state, kSolutionType, {}, &guarded<solution_field>);
+  note_fields(state, kSolutionType, kSolutionFields);
+  define_type<PlanObject>(state, kPlanType, {}, &guarded<plan_field>);
+  note_fields(state, kPlanType, kPlanFields);
 }
 
 void push_run(lua_State* state) {

@@ -66,10 +66,7 @@ Prior& prior_argument(lua_State* state) {
   return *object_argument<PriorObject>(state, 1, kPriorType).prior;
 }
 
-// prior:look{surface =, poses = {{position =, yaw =, pitch =}}, camera =, range =, noise =}
-int look(lua_State* state) {
-  MissionRun& run = run_of(state);
-  Prior& prior = prior_argument(state);
+ParameterTable look_table() {
   ParameterTable noise;
   noise.number("dropped", 0, "", "share of the pixels without a measurement", between(0, 1))
       .number("sigma", 0, "m", "of the depth, normal", between(0, 100));
@@ -78,8 +75,14 @@ int look(lua_State* state) {
       .table("noise", noise, "of the sensor")
       .number("range", 60, "m", "largest depth", above(0))
       .tables("poses", viewpoint_table(), "of the camera", true);
-  static constexpr std::string_view kObjects[] = {"surface"};
-  const Parameters given = table_argument(state, 2, table, "look", kObjects);
+  return table;
+}
+
+// prior:look{surface =, poses = {{position =, yaw =, pitch =}}, camera =, range =, noise =}
+int look(lua_State* state) {
+  MissionRun& run = run_of(state);
+  Prior& prior = prior_argument(state);
+  const Parameters given = table_argument(state, 2, look_table(), "look", kSurfaceObject);
   lua_getfield(state, 2, "surface");
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, -1, kSurfaceType);
   if (!surface.scene) throw InputError("look: there is nothing left of '" + surface.name + "'");
@@ -143,12 +146,14 @@ void add_free(const std::array<int, 3>& low, const std::array<int, 3>& high, int
              leaves);
 }
 
+constexpr BoundField kFlownIn[] = {
+    {"surface?", "lapwing.surface", "the scene flown in: an error where it reaches into the box"}};
+
 // prior:open_air{lower =, upper =}: free as far as nothing was measured there. With `surface`, the
 // scene flown in, it is an error when that reaches into the box.
 int open_air(lua_State* state) {
   Prior& prior = prior_argument(state);
-  static constexpr std::string_view kObjects[] = {"surface"};
-  const Parameters given = table_argument(state, 2, box_table(), "open_air", kObjects);
+  const Parameters given = table_argument(state, 2, box_table(), "open_air", kFlownIn);
   const Eigen::AlignedBox3d box = box_of(given, "open_air");
   lua_getfield(state, 2, "surface");
   if (const auto* surface = test_object<SurfaceObject>(state, -1, kSurfaceType)) {
@@ -195,13 +200,17 @@ int open_air(lua_State* state) {
   return 0;
 }
 
+ParameterTable earlier_table() {
+  ParameterTable table;
+  table.required_text("map", ".ot or .bt").required_text("mesh", "a mesh, in metres with z up");
+  return table;
+}
+
 // prior:load{map = "a file", mesh = "a file"}: of an earlier flight.
 int load_prior(lua_State* state) {
   MissionRun& run = run_of(state);
   Prior& prior = prior_argument(state);
-  ParameterTable table;
-  table.required_text("map", ".ot or .bt").required_text("mesh", "a mesh, in metres with z up");
-  const Parameters given = table_argument(state, 2, table, "load");
+  const Parameters given = table_argument(state, 2, earlier_table(), "load");
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const std::string name = given.text("map"), mesh = given.text("mesh");
   const MapFile file = read_map_file(run.files.find(name, "maps"));
@@ -252,13 +261,17 @@ int load_prior(lua_State* state) {
   return 0;
 }
 
-// prior:reconstruct{cell =, trim =}: the mesh, from all that was seen so far.
-int reconstruct(lua_State* state) {
-  Prior& prior = prior_argument(state);
+ParameterTable reconstruct_table() {
   ParameterTable table;
   table.number("cell", 0.4, "m", "edge of the cells in which triangles are made", above(0))
       .number("trim", 0.8, "m", "surface farther from every point is left out", above(0));
-  const Parameters given = table_argument(state, 2, table, "reconstruct");
+  return table;
+}
+
+// prior:reconstruct{cell =, trim =}: the mesh, from all that was seen so far.
+int reconstruct(lua_State* state) {
+  Prior& prior = prior_argument(state);
+  const Parameters given = table_argument(state, 2, reconstruct_table(), "reconstruct");
   const Sandbox::ClockPause pause(Sandbox::of(state));
   std::vector<FusedPoint> points = prior.fusion->points();
   points.insert(points.end(), prior.earlier.begin(), prior.earlier.end());
@@ -278,42 +291,35 @@ int reconstruct(lua_State* state) {
   return 0;
 }
 
-// Fields: triangles, images, points; counts as of a map.
+constexpr BoundField kPriorFields[] = {
+    {"images", "integer", "depth images that were taken for it"},
+    {"triangles", "integer", "of its mesh; 0 before it has one"}};
+
 int prior_field(lua_State* state) {
   const PriorObject& object = object_argument<PriorObject>(state, 1, kPriorType);
-  static const luaL_Reg methods[] = {{"look", &guarded<look>},
-                                     {"open_air", &guarded<open_air>},
-                                     {"load", &guarded<load_prior>},
-                                     {"reconstruct", &guarded<reconstruct>}};
   const std::string field = text_argument(state, 2, "prior");
-  for (const luaL_Reg& method : methods)
-    if (field == method.name) {
-      lua_pushcfunction(state, method.func);
-      return 1;
-    }
   Value fields = Value::map();
   fields.set("images", static_cast<std::int64_t>(object.prior->views.size()));
   fields.set("triangles", object.prior->mesh ? static_cast<std::int64_t>(
                                                    object.prior->mesh->mesh().triangles.size())
                                              : std::int64_t{0});
-  const Value* found = fields.find(field);
-  if (!found) refuse_field("a prior", field, fields);
-  push_value(state, *found);
-  return 1;
+  return push_field(state, "a prior", field, fields, kPriorFields);
 }
 
-}  // namespace
-
-// run:prior{map = plugin, spacing =, range =, incidence_deg =, stride =}: nothing is known yet.
-int prior_of_run(lua_State* state) {
-  MissionRun& run = run_of(state);
+constexpr BoundField kPriorObjects[] = {{"map", "lapwing.map_choice", "of what is known"}};
+ParameterTable prior_table() {
   ParameterTable table;
   table.number("spacing", 0.3, "m", "between points of the surface", above(0))
       .number("range", 60, "m", "of depth that is used for the surface", above(0))
       .number("incidence_deg", 80, "deg", "between normal and ray, likewise", {1, 90})
       .integer("stride", 2, "every so many pixels, likewise", between(1, 64));
-  static constexpr std::string_view kObjects[] = {"map"};
-  const Parameters given = table_argument(state, 2, table, "prior", kObjects);
+  return table;
+}
+
+// run:prior{map = plugin, spacing =, range =, incidence_deg =, stride =}: nothing is known yet.
+int prior_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, prior_table(), "prior", kPriorObjects);
   lua_getfield(state, 2, "map");
   const PluginChoice chosen = plugin_choice(state, lua_gettop(state), "map");
   PriorObject object{std::make_shared<Prior>()};
@@ -329,8 +335,27 @@ int prior_of_run(lua_State* state) {
   return 1;
 }
 
+}  // namespace
+
+std::span<const Binding> prior_methods_of_run() {
+  static const Binding methods[] = {
+      {"prior", &guarded<prior_of_run>, "(settings: @): lapwing.prior",
+       "what is known of a place: nothing yet", &prior_table, kPriorObjects}};
+  return methods;
+}
+
 void open_prior_type(lua_State* state) {
-  define_type<PriorObject>(state, kPriorType, nullptr, &guarded<prior_field>);
+  static const Binding methods[] = {
+      {"look", &guarded<look>, "(look: @)", "depth images of a scene, into its map and its points",
+       &look_table, kSurfaceObject},
+      {"open_air", &guarded<open_air>, "(box: @)",
+       "a box that is said to be free: what was measured in it stays", &box_table, kFlownIn},
+      {"load", &guarded<load_prior>, "(files: @)", "map and mesh of an earlier flight",
+       &earlier_table},
+      {"reconstruct", &guarded<reconstruct>, "(settings: @)", "its mesh, from all that was seen",
+       &reconstruct_table}};
+  define_type<PriorObject>(state, kPriorType, {methods}, &guarded<prior_field>);
+  note_fields(state, kPriorType, kPriorFields);
 }
 
 }  // namespace lapwing

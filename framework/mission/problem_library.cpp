@@ -29,6 +29,16 @@ struct PluginArgument {
   Value parameters = Value::map();
 };
 
+ParameterTable plugin_frame_table() {
+  ParameterTable frame;
+  frame.required_text("type", "which plugin").optional_text("name", "its name in this problem");
+  return frame;
+}
+
+ParameterTable cost_frame_table() {
+  return plugin_frame_table().number("weight", 1.0, "", "weight of the term", at_least(0));
+}
+
 PluginArgument plugin_argument(lua_State* state, const char* what, bool weighted) {
   const Origin origin = Sandbox::of(state).script_position(state);
   if (!lua_istable(state, 2)) {
@@ -36,9 +46,7 @@ PluginArgument plugin_argument(lua_State* state, const char* what, bool weighted
                      std::string(what) + ": expected a table, got " + luaL_typename(state, 2));
   }
   const Value given = value_from_lua(state, 2, origin, what);
-  ParameterTable frame;
-  frame.required_text("type", "which plugin").optional_text("name", "its name in this problem");
-  if (weighted) frame.number("weight", 1.0, "", "weight of the term", at_least(0));
+  const ParameterTable frame = weighted ? cost_frame_table() : plugin_frame_table();
   Value own = Value::map();
   own.with_origin(origin);
   PluginArgument argument;
@@ -69,13 +77,17 @@ int add_model(lua_State* state) {
   return 0;
 }
 
-int add_block(lua_State* state) {
-  TrajectoryProblem& problem = open_problem(state);
+ParameterTable block_table() {
   ParameterTable table;
   table.required_text("name", "of the block")
       .integer("size", 1, "numbers in it", between(1, 64))
       .text("unit", "", "of each number");
-  const Parameters given = table_argument(state, 2, table, "add_block");
+  return table;
+}
+
+int add_block(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const Parameters given = table_argument(state, 2, block_table(), "add_block");
   BlockSpec block;
   block.name = given.text("name");
   block.size = static_cast<int>(given.integer("size"));
@@ -111,15 +123,19 @@ int add_constraint(lua_State* state) {
   return 0;
 }
 
-// problem:guess_path{times = {...}, positions = {{x, y, z}, ...}, yaws = {...}}
-int guess_path(lua_State* state) {
-  TrajectoryProblem& problem = open_problem(state);
-  const Origin origin = Sandbox::of(state).script_position(state);
-  static constexpr std::string_view kPositions[] = {"positions"};
+constexpr BoundField kGuessedPlaces[] = {{"positions", "number[][]", "m, world: {{x, y, z}, ...}"}};
+ParameterTable guessed_path_table() {
   ParameterTable table;
   table.required_numbers("times", 0, "s", "of the points")
       .numbers("yaws", {}, "rad", "at the points; none: 0");
-  const Parameters given = table_argument(state, 2, table, "guess_path", kPositions);
+  return table;
+}
+
+int guess_path(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  const Parameters given =
+      table_argument(state, 2, guessed_path_table(), "guess_path", kGuessedPlaces);
   std::vector<Eigen::Vector3d> positions;
   lua_getfield(state, 2, "positions");
   const Value points = value_from_lua(state, -1, origin, "guess_path.positions");
@@ -162,7 +178,6 @@ int finish(lua_State* state) {
   return 0;
 }
 
-// problem:set_parameter{term = "stay", name = "height", value = 4}
 int set_parameter(lua_State* state) {
   ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
   std::vector<ScriptTerm> none;
@@ -170,14 +185,18 @@ int set_parameter(lua_State* state) {
   return 0;
 }
 
-// problem:guess_block{block = "target", times = {...}, values = {{...}, ...}}
+constexpr BoundField kGuessedValues[] = {{"values", "number[][]", "of the block at these times"}};
+ParameterTable guessed_block_table() {
+  ParameterTable table;
+  table.required_text("block", "which block").required_numbers("times", 0, "s", "of the values");
+  return table;
+}
+
 int guess_block(lua_State* state) {
   TrajectoryProblem& problem = open_problem(state);
   const Origin origin = Sandbox::of(state).script_position(state);
-  static constexpr std::string_view kValues[] = {"values"};
-  ParameterTable table;
-  table.required_text("block", "which block").required_numbers("times", 0, "s", "of the values");
-  const Parameters given = table_argument(state, 2, table, "guess_block", kValues);
+  const Parameters given =
+      table_argument(state, 2, guessed_block_table(), "guess_block", kGuessedValues);
   lua_getfield(state, 2, "values");
   const Value list = value_from_lua(state, -1, origin, "guess_block.values");
   std::vector<Eigen::VectorXd> values;
@@ -271,11 +290,9 @@ ParameterTable leg_table() {
 
 }  // namespace
 
-// run:problem{vehicle = v, duration = 20, step = 0.1, environment = {...}, step_mode = "fixed"}:
-// as many stages as keep the step at or below `step`, evenly over the duration; or with
-// legs = {{duration = 2, intervals = 20}, ...} a step for each leg.
-int problem_of_run(lua_State* state) {
-  static constexpr std::string_view kVehicle[] = {"vehicle"};
+namespace {
+
+ParameterTable problem_table() {
   ParameterTable table;
   table.optional_number("duration", "s", "of the flight; needed without legs", above(0))
       .tables("legs", leg_table(), "parts with steps of their own")
@@ -284,7 +301,16 @@ int problem_of_run(lua_State* state) {
       .number("step", 0.1, "s", "longest time between two stages", above(0))
       .choice("step_mode", "fixed", {"fixed", "free"}, "free: the step is a variable")
       .table("environment", environment_table(), "what surrounds the flight");
-  const Parameters given = table_argument(state, 2, table, "problem", kVehicle);
+  return table;
+}
+
+}  // namespace
+
+// run:problem{vehicle = v, duration = 20, step = 0.1, environment = {...}, step_mode = "fixed"}:
+// as many stages as keep the step at or below `step`, evenly over the duration; or with
+// legs = {{duration = 2, intervals = 20}, ...} a step for each leg.
+int problem_of_run(lua_State* state) {
+  const Parameters given = table_argument(state, 2, problem_table(), "problem", kVehicleObject);
   lua_getfield(state, 2, "vehicle");
   const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
   constexpr double kRounding = 1e-9;  // of an interval
@@ -323,22 +349,54 @@ int vehicle_of_run(lua_State* state) {
   return 1;
 }
 
+std::span<const Binding> problem_methods_of_run() {
+  static const Binding methods[] = {
+      {"vehicle", &guarded<vehicle_of_run>, "(source: string|table): lapwing.vehicle",
+       "a vehicle, by the name of its file in configs/ or as a table like such a file"},
+      {"problem", &guarded<problem_of_run>, "(stated: @): lapwing.problem",
+       "a problem to be stated, over a duration or in legs with steps of their own", &problem_table,
+       kVehicleObject}};
+  return methods;
+}
+
 void open_problem_library(lua_State* state) {
-  const luaL_Reg methods[] = {{"add_model", &guarded<add_model>},
-                              {"add_block", &guarded<add_block>},
-                              {"add_cost", &guarded<add_cost>},
-                              {"add_constraint", &guarded<add_constraint>},
-                              {"guess_path", &guarded<guess_path>},
-                              {"guess_block", &guarded<guess_block>},
-                              {"guess_solution", &guarded<guess_solution>},
-                              {"nearest_obstacle", &guarded<nearest>},
-                              {"flight_zone_distance", &guarded<flight_zone_distance>},
-                              {"plan_way", &guarded<plan_way>},
-                              {"grow_corridor", &guarded<grow_corridor_of_problem>},
-                              {"set_parameter", &guarded<set_parameter>},
-                              {"finish", &guarded<finish>},
-                              {nullptr, nullptr}};
-  define_type<ProblemObject>(state, kProblemType, methods);
+  static const Binding methods[] = {
+      {"add_model", &guarded<add_model>, "(model: lapwing.vehicle_model)",
+       "a plugin by name, with its own parameters: how the vehicle moves"},
+      {"add_block", &guarded<add_block>, "(block: @)", "a free block", &block_table},
+      {"add_cost", &guarded<add_cost>, "(term: lapwing.cost_term|lapwing.own_cost)",
+       "what is bad: a plugin by name, or a function of the script's own"},
+      {"add_constraint", &guarded<add_constraint>,
+       "(constraint: lapwing.constraint|lapwing.own_constraint)",
+       "what must hold: a plugin by name, or a function of the script's own"},
+      {"set_parameter", &guarded<set_parameter>, "(change: @)",
+       "another value for a parameter of a term of the script's own, before the next solve",
+       &term_parameter_table, kTermParameterValue},
+      {"guess_path", &guarded<guess_path>, "(path: @)", "where solvers begin", &guessed_path_table,
+       kGuessedPlaces},
+      {"guess_block", &guarded<guess_block>, "(guess: @)",
+       "the same for one block: target, gimbal_pitch", &guessed_block_table, kGuessedValues},
+      {"guess_solution", &guarded<guess_solution>, "(solution: lapwing.solution)",
+       "begin, leg by leg, from the solution of a problem with the same legs"},
+      {"nearest_obstacle", &guarded<nearest>, "(place: number[]): number, string",
+       "distance of the nearest obstacle in m, negative inside, and its name"},
+      {"flight_zone_distance", &guarded<flight_zone_distance>, "(place: number[]): number, string",
+       "distance from the nearest face of a flight zone, negative outside, and its name"},
+      {"plan_way", &guarded<plan_way>, "(wanted: @): number[][]?, string?",
+       "a free way that keeps the margin and `more` metres, through a passage that none of the "
+       "`excluded` ways has; or nothing and why",
+       &way_table, kWayObjects},
+      {"grow_corridor", &guarded<grow_corridor_of_problem>, "(along: @): table[]",
+       "free boxes along a way, {from, to, lower, size}, parts in shares of its length", nullptr,
+       kCorridorWay},
+      {"finish", &guarded<finish>, "()", "binds everything; nothing can be added after"}};
+  static const BoundTable tables[] = {
+      {"plugin_frame", &plugin_frame_table, {}},
+      {"cost_frame", &cost_frame_table, {}},
+      {"own_cost", &own_cost_table, kOwnCostObjects},
+      {"own_constraint", &own_constraint_table, kOwnConstraintObjects}};
+  define_type<ProblemObject>(state, kProblemType, {methods});
+  note_tables(state, "lapwing", tables);
 }
 
 }  // namespace lapwing

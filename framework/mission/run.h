@@ -12,6 +12,7 @@
 
 #include "framework/core/progress.h"
 #include "framework/export/report.h"
+#include "framework/mission/binding.h"
 #include "framework/mission/data_files.h"
 #include "framework/mission/obstacle_files.h"
 #include "framework/mission/sandbox.h"
@@ -65,6 +66,9 @@ struct SolutionObject {
   SolveResult result;
 };
 
+// What several functions take beside plain data.
+inline constexpr BoundField kVehicleObject[] = {{"vehicle", "lapwing.vehicle", "that flies"}};
+
 // What `plan` returns, beside what the plan document holds.
 struct PlanObject {
   Plan plan;
@@ -98,6 +102,16 @@ inline constexpr const char* kSolutionType = "solution";
 inline constexpr const char* kPlanType = "plan";
 inline constexpr const char* kOptionsType = "lapwing.options";
 
+// What a mission script returns.
+inline constexpr BoundField kMissionParts[] = {
+    {"kind", "string", "of mission: film, race, ..."},
+    {"name", "string", "of the mission"},
+    {"options?", "lapwing.options|table", "what may be set"},
+    {"plan", "fun(run: lapwing.run): lapwing.plan|lapwing.map",
+     "called once the options are known"}};
+
+// All that scripts are given.
+void open_script_libraries(lua_State* state, MissionRun& run);
 // Each adds its part: the table `lapwing`, and the types above.
 void open_lapwing_library(lua_State* state, MissionRun& run);
 void open_problem_library(lua_State* state);
@@ -105,8 +119,7 @@ void open_plan_library(lua_State* state);
 // Pushes the object `run` that the plan function receives.
 void push_run(lua_State* state);
 // The methods of `run`, for the type's table.
-int problem_of_run(lua_State* state);
-int vehicle_of_run(lua_State* state);
+std::span<const Binding> problem_methods_of_run();  // vehicle, problem
 
 // "iqp" or {type = "iqp", ...}, as options that choose a plugin are given.
 struct PluginChoice {
@@ -114,10 +127,6 @@ struct PluginChoice {
   Value parameters = Value::map();
 };
 PluginChoice plugin_choice(lua_State* state, int index, const std::string& what);
-
-// InputError: "a plan has no field 'tme'; did you mean 'time'?"
-[[noreturn]] void refuse_field(const std::string& what, const std::string& field,
-                               const Value& fields);
 
 // The table argument at `index`, checked; keys in `without` are the caller's. The script's position
 // is the origin of every value.

@@ -163,21 +163,26 @@ std::vector<std::string> texts_of(const Value& list) {
   return texts;
 }
 
-}  // namespace
-
-// run:scan_plan{tour =, margin =, budget =, closed_loop_required =, seen_share =, notes =,
-//               figures =}
-int scan_plan_of_run(lua_State* state) {
-  MissionRun& run = run_of(state);
-  const Origin origin = Sandbox::of(state).script_position(state);
+constexpr BoundField kScanPlanObjects[] = {{"tour", "lapwing.tour", "that is flown"},
+                                           {"notes?", "string[]", "sentences for the user"},
+                                           {"figures?", "table", "of the tour, for --json"}};
+ParameterTable scan_plan_table() {
   ParameterTable table;
   table.number("margin", 0.4, "m", "kept from what is not free, and from the mesh", at_least(0))
       .required_number("budget", "s", "of flight", above(0))
       .number("seen_share", ScanTask{}.seen_share, "", "of the voxels that must be seen again",
               {0, 1, true})
       .boolean("closed_loop_required", true, "else tracking under control is reported only");
-  static constexpr std::string_view kObjects[] = {"tour", "notes", "figures"};
-  const Parameters given = table_argument(state, 2, table, "scan_plan", kObjects);
+  return table;
+}
+
+// run:scan_plan{tour =, margin =, budget =, closed_loop_required =, seen_share =, notes =,
+//               figures =}
+int scan_plan_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  const Parameters given =
+      table_argument(state, 2, scan_plan_table(), "scan_plan", kScanPlanObjects);
   lua_getfield(state, 2, "tour");
   const TourObject& tour = object_argument<TourObject>(state, -1, kTourType);
   if (tour.walk.size() < 2) throw InputError("scan_plan: a tour of one view is no flight");
@@ -223,6 +228,15 @@ int scan_plan_of_run(lua_State* state) {
   }
   new_object(state, kPlanType, std::move(made));
   return 1;
+}
+
+}  // namespace
+
+std::span<const Binding> scan_plan_methods_of_run() {
+  static const Binding methods[] = {{"scan_plan", &guarded<scan_plan_of_run>,
+                                     "(wanted: @): lapwing.plan", "a tour as a plan",
+                                     &scan_plan_table, kScanPlanObjects}};
+  return methods;
 }
 
 }  // namespace lapwing

@@ -209,13 +209,16 @@ std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {
   return free_in_both(free_space_of(map), with_room(free_space_of(prior.mesh), mesh_room));
 }
 
-}  // namespace
+constexpr BoundField kGraphObjects[] = {
+    {"prior", "lapwing.prior", "what is known of the place"},
+    {"vehicle", "lapwing.vehicle", "that flies"},
+    {"information", "lapwing.information", "what a view tells of a voxel"},
+    {"planner", "lapwing.path_planner", "of ways round obstacles"}};
 
 // run:scan_graph{prior =, vehicle =, region =, allowed =, starts =, ...}
 int scan_graph_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
-  static constexpr std::string_view kObjects[] = {"prior", "vehicle", "information", "planner"};
-  const Parameters given = table_argument(state, 2, graph_table(), "scan_graph", kObjects);
+  const Parameters given = table_argument(state, 2, graph_table(), "scan_graph", kGraphObjects);
   lua_getfield(state, 2, "prior");
   auto work = std::make_shared<ScanWork>();
   work->prior = object_argument<PriorObject>(state, -1, kPriorType).prior;
@@ -274,8 +277,6 @@ int scan_graph_of_run(lua_State* state) {
   return 1;
 }
 
-namespace {
-
 // "12 of 300 candidates are joined to the start; the largest island of the others has 200"
 std::string reach_in_words(const ScanWork& work, int start) {
   std::vector<int> sizes(work.island.size(), 0);
@@ -288,6 +289,16 @@ std::string reach_in_words(const ScanWork& work, int start) {
          " candidates are joined to the start by motions" +
          (other > 0 ? "; the largest island of the others has " + std::to_string(other) : "");
 }
+
+constexpr BoundField kGraphFields[] = {
+    {"candidates", "integer", "views"},
+    {"motions", "integer", "ways between two views"},
+    {"planned", "integer", "of them: round obstacles"},
+    {"unmatched", "integer", "pairs whose images could not be matched"},
+    {"blocked", "integer", "pairs without a free way"},
+    {"voxels", "integer", "that are scored"},
+    {"total", "number", "score of seeing all of them perfectly"},
+    {"reach", "string", "how many views can be reached from the start, in words"}};
 
 int graph_field(lua_State* state) {
   const ScanWork& work = *object_argument<GraphObject>(state, 1, kGraphType).work;
@@ -302,11 +313,24 @@ int graph_field(lua_State* state) {
   fields.set("total", graph.score->total());
   fields.set("reach", reach_in_words(work, 0));
   const std::string field = text_argument(state, 2, "scan graph");
-  const Value* found = fields.find(field);
-  if (!found) refuse_field("a scan graph", field, fields);
-  push_value(state, *found);
-  return 1;
+  return push_field(state, "a scan graph", field, fields, kGraphFields);
 }
+
+constexpr BoundField kTourFields[] = {
+    {"name", "string", "the solver's"},
+    {"status", "string", "optimal, feasible, infeasible, iteration_limit, ..."},
+    {"message", "string", "what the solver says of it"},
+    {"score", "number", "what its views show"},
+    {"upper_bound", "number?", "no tour shows more; nil where none was found"},
+    {"gap", "number", "share of the bound that is missing"},
+    {"seconds", "number", "of flight"},
+    {"budget", "number", "s"},
+    {"images", "integer", "different views in it"},
+    {"visits", "integer", "views in order, passed ones included"},
+    {"reachable", "integer", "views that some tour within the budget has"},
+    {"reachable_score", "number", "what they show together"},
+    {"evaluations", "integer", "of the score"},
+    {"iterations", "integer", "of the solver"}};
 
 int tour_field(lua_State* state) {
   const TourObject& tour = object_argument<TourObject>(state, 1, kTourType);
@@ -317,25 +341,27 @@ int tour_field(lua_State* state) {
              std::isfinite(tour.report.upper_bound) ? Value(tour.report.upper_bound) : Value());
   fields.set("gap", tour.report.gap);
   const std::string field = text_argument(state, 2, "tour");
-  const Value* found = fields.find(field);
-  if (!found) refuse_field("a tour", field, fields);
-  push_value(state, *found);
-  return 1;
+  return push_field(state, "a tour", field, fields, kTourFields);
 }
 
-}  // namespace
-
-// run:solve_tour{graph =, solver =, budget =, finish =, images =, initial = tour, iterations =}
-int solve_tour_of_run(lua_State* state) {
-  MissionRun& run = run_of(state);
+constexpr BoundField kTourObjects[] = {
+    {"graph", "lapwing.scan_graph", "of views"},
+    {"solver", "lapwing.tour_solver", "that looks for a tour"},
+    {"initial?", "lapwing.tour", "of the same graph, to begin from"}};
+ParameterTable tour_table() {
   ParameterTable table;
   table.required_number("budget", "s", "of flight", above(0))
       .integer("finish", 1, "candidate in which it ends, from 1, the start", at_least(1))
       .integer("images", 0, "most different images; 0 for any number", at_least(0))
       .integer("iterations", 0, "of the solver; 0 for its own", at_least(0))
       .integer("evaluations", 0, "of the score, in all; 0 for any number", at_least(0));
-  static constexpr std::string_view kObjects[] = {"graph", "solver", "initial"};
-  const Parameters given = table_argument(state, 2, table, "solve_tour", kObjects);
+  return table;
+}
+
+// run:solve_tour{graph =, solver =, budget =, finish =, images =, initial = tour, iterations =}
+int solve_tour_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, tour_table(), "solve_tour", kTourObjects);
   lua_getfield(state, 2, "graph");
   TourObject tour;
   tour.work = object_argument<GraphObject>(state, -1, kGraphType).work;
@@ -386,18 +412,29 @@ int solve_tour_of_run(lua_State* state) {
   return 1;
 }
 
+}  // namespace
+
 void open_scan_library(lua_State* state) {
   open_prior_type(state);
-  define_type<GraphObject>(state, kGraphType, nullptr, &guarded<graph_field>);
-  define_type<TourObject>(state, kTourType, nullptr, &guarded<tour_field>);
+  define_type<GraphObject>(state, kGraphType, {}, &guarded<graph_field>);
+  note_fields(state, kGraphType, kGraphFields);
+  define_type<TourObject>(state, kTourType, {}, &guarded<tour_field>);
+  note_fields(state, kTourType, kTourFields);
 }
 
-std::span<const luaL_Reg> scan_methods_of_run() {
-  static const luaL_Reg methods[] = {{"prior", &guarded<prior_of_run>},
-                                     {"scan_graph", &guarded<scan_graph_of_run>},
-                                     {"solve_tour", &guarded<solve_tour_of_run>},
-                                     {"scan_plan", &guarded<scan_plan_of_run>}};
-  return methods;
+std::span<const Binding> scan_methods_of_run() {
+  static const Binding own[] = {
+      {"scan_graph", &guarded<scan_graph_of_run>, "(settings: @): lapwing.scan_graph",
+       "views of a region, and ways between them", &graph_table, kGraphObjects},
+      {"solve_tour", &guarded<solve_tour_of_run>, "(settings: @): lapwing.tour",
+       "a tour of views within a budget", &tour_table, kTourObjects}};
+  static const std::vector<Binding> all = [] {
+    std::vector<Binding> list(std::begin(own), std::end(own));
+    for (const auto more : {prior_methods_of_run(), scan_plan_methods_of_run()})
+      list.insert(list.end(), more.begin(), more.end());
+    return list;
+  }();
+  return all;
 }
 
 }  // namespace lapwing

@@ -14,8 +14,6 @@
 #include "framework/view/scan_graph.h"
 #include "framework/view/tour_solver.h"
 
-struct luaL_Reg;
-
 namespace lapwing {
 
 // All that planning may know: made from depth images or files, never from the scene itself
@@ -69,13 +67,11 @@ inline constexpr const char* kTourType = "tour";
 
 void open_scan_library(lua_State* state);
 // prior, scan_graph, solve_tour, scan_plan.
-std::span<const luaL_Reg> scan_methods_of_run();
+std::span<const Binding> scan_methods_of_run();
 
-// Each is a method of `run`; see README.md.
-int prior_of_run(lua_State* state);
-int scan_graph_of_run(lua_State* state);
-int solve_tour_of_run(lua_State* state);
-int scan_plan_of_run(lua_State* state);
+// The parts of that list.
+std::span<const Binding> prior_methods_of_run();
+std::span<const Binding> scan_plan_methods_of_run();
 void open_prior_type(lua_State* state);
 
 // Arguments that several of them take: {position =, yaw =, pitch =}; {lower =, upper =};

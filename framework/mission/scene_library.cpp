@@ -75,12 +75,16 @@ std::vector<Eigen::Matrix<double, N, 1>> points_argument(lua_State* state, int i
   return points;
 }
 
-// lapwing.scene{name = "street", seed = 1}
-int scene(lua_State* state) {
+ParameterTable new_scene_table() {
   ParameterTable table;
   table.required_text("name", "of the scene")
       .integer("seed", 1, "of its random numbers", at_least(0));
-  const Parameters given = table_argument(state, 1, table, "lapwing.scene");
+  return table;
+}
+
+// lapwing.scene{name = "street", seed = 1}
+int scene(lua_State* state) {
+  const Parameters given = table_argument(state, 1, new_scene_table(), "lapwing.scene");
   SceneObject object{
       std::make_shared<SceneObject::Parts>(static_cast<std::uint64_t>(given.integer("seed")))};
   object.parts->name = given.text("name");
@@ -211,25 +215,38 @@ int triangles(lua_State* state) {
 }  // namespace
 
 void open_scene_library(lua_State* state) {
-  const luaL_Reg methods[] = {{"color", &guarded<color>},
-                              {"push", &guarded<push>},
-                              {"pop", &guarded<pop>},
-                              {"face", &guarded<face>},
-                              {"quad", &guarded<quad>},
-                              {"box", &guarded<box>},
-                              {"prism", &guarded<prism>},
-                              {"tube", &guarded<tube>},
-                              {"ball", &guarded<ball>},
-                              {"terrain", &guarded<terrain>},
-                              {"region", &guarded<region>},
-                              {"uniform", &guarded<uniform>},
-                              {"integer", &guarded<integer>},
-                              {"triangles", &guarded<triangles>},
-                              {nullptr, nullptr}};
-  define_type<SceneObject>(state, kSceneType, methods);
+  static const Binding methods[] = {
+      {"color", &guarded<color>, "(red: number, green: number, blue: number)",
+       "the colour, 0 to 255, of what follows"},
+      {"push", &guarded<push>, "(origin: number[], yaw?: number, scale?: number)",
+       "a frame, in which what follows is placed"},
+      {"pop", &guarded<pop>, "()", "back to the frame before"},
+      {"quad", &guarded<quad>, "(a: number[], b: number[], c: number[], d: number[])",
+       "a flat face, seen from where its corners go counter-clockwise"},
+      {"face", &guarded<face>, "(corners: number[][])", "the same with any number of corners"},
+      {"box", &guarded<box>, "(lower: number[], upper: number[])", "a box"},
+      {"prism", &guarded<prism>, "(corners: number[][], floor: number, ceiling: number)",
+       "a body over {x, y} corners"},
+      {"tube", &guarded<tube>,
+       "(from: number[], to: number[], radius: number, radius_to?: number, sides?: integer)",
+       "a bar, or a cone"},
+      {"ball", &guarded<ball>,
+       "(center: number[], radii: number[], detail?: integer, roughness?: number)", "an ellipsoid"},
+      {"terrain", &guarded<terrain>,
+       "(corner: number[], step: number, columns: integer, heights: number[])",
+       "a surface over a grid"},
+      {"region", &guarded<region>, "(lower: number[], upper: number[])",
+       "the region of interest, which a scene must name"},
+      {"uniform", &guarded<uniform>, "(low: number, high: number): number",
+       "a random number of the scene's seed"},
+      {"integer", &guarded<integer>, "(low: integer, high: integer): integer",
+       "the same, a whole one"},
+      {"triangles", &guarded<triangles>, "(): integer", "how many there are so far"}};
+  static const Binding functions[] = {{"scene", &guarded<scene>, "(settings: @): lapwing.scene",
+                                       "a scene to be built, in metres", &new_scene_table}};
+  define_type<SceneObject>(state, kSceneType, {methods});
   lua_getglobal(state, "lapwing");
-  lua_pushcfunction(state, &guarded<scene>);
-  lua_setfield(state, -2, "scene");
+  bind_functions(state, "lapwing", functions);
   lua_pop(state, 1);
 }
 

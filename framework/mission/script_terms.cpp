@@ -94,6 +94,21 @@ std::string one_of(const std::vector<std::string>& known) {
 
 }  // namespace
 
+ParameterTable own_cost_table() {
+  return script_term_table(ScriptTermKind::cost);
+}
+
+ParameterTable own_constraint_table() {
+  return script_term_table(ScriptTermKind::constraint);
+}
+
+ParameterTable term_parameter_table() {
+  ParameterTable table;
+  table.required_text("term", "name of a term of the script's own")
+      .required_text("name", "of one of its parameters");
+  return table;
+}
+
 bool is_script_term(lua_State* state, int index, ScriptTermKind kind) {
   if (!lua_istable(state, index)) return false;
   const bool has_type = lua_getfield(state, index, "type") != LUA_TNIL;
@@ -108,8 +123,9 @@ bool is_script_term(lua_State* state, int index, ScriptTermKind kind) {
 
 ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
   // What belongs to the other kind is left to the check, which says that it is unknown.
-  std::vector<std::string_view> apart{function_key(kind), "parameters"};
-  if (kind == ScriptTermKind::constraint) apart.insert(apart.end(), {"lower", "upper"});
+  const std::span<const BoundField> apart = kind == ScriptTermKind::constraint
+                                                ? std::span<const BoundField>(kOwnConstraintObjects)
+                                                : std::span<const BoundField>(kOwnCostObjects);
   const std::string call = std::string("add_") + word_of(kind);
   const Parameters given = table_argument(state, index, script_term_table(kind), call, apart);
   ScriptTerm term;
@@ -175,11 +191,8 @@ void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& prob
 }
 
 void set_term_parameter(lua_State* state, int index, std::vector<ScriptTerm>& terms) {
-  static constexpr std::string_view kValue[] = {"value"};
-  ParameterTable table;
-  table.required_text("term", "name of a term of the script's own")
-      .required_text("name", "of one of its parameters");
-  const Parameters given = table_argument(state, index, table, "set_parameter", kValue);
+  const Parameters given =
+      table_argument(state, index, term_parameter_table(), "set_parameter", kTermParameterValue);
   const Value value = field_value(state, index, "value", given.origin(), "set_parameter.value");
   const auto term = std::find_if(terms.begin(), terms.end(), [&](const ScriptTerm& entry) {
     return entry.name == given.text("term");

@@ -109,11 +109,6 @@ int stage_index(lua_State* state) {
   }
   const std::string name = at_this_line(
       state, [&] { return text_argument(state, 2, "a stage's field: the name of a block"); });
-  if (name == "subject" || name == "distance") {
-    lua_pushcfunction(state,
-                      name == "subject" ? &guarded<subject_of_stage> : &guarded<distance_of_stage>);
-    return 1;
-  }
   const int block = at_this_line(state, [&] { return recording.layout().index(name); });
   push_block(state, recording.read(stage.stage, block));
   return 1;
@@ -130,7 +125,19 @@ void push_stage(lua_State* state, int stage, std::uint64_t serial) {
 }
 
 void open_stage_values(lua_State* state) {
-  define_type<StageObject>(state, kStageType, nullptr, &guarded<stage_index>);
+  static const Binding methods[] = {
+      {"subject", &guarded<subject_of_stage>, "(name: string): lapwing.vector",
+       "where a subject of the environment is at that time, m"},
+      {"distance", &guarded<distance_of_stage>,
+       "(point: lapwing.vector, name?: string): lapwing.value",
+       "m from a point to the nearest obstacle, or to the one of that name; negative inside"}};
+  static constexpr BoundField kFields[] = {
+      {"time", "lapwing.value", "s"},
+      {"step", "lapwing.value", "s, to the next stage"},
+      {"[integer]", "lapwing.stage", "the stages after it: s[1], s[2], ..."},
+      {"[string]", "lapwing.vector", "every block of the problem: position, yaw, target, ..."}};
+  define_type<StageObject>(state, kStageType, {methods}, &guarded<stage_index>);
+  note_fields(state, kStageType, kFields);
   luaL_getmetatable(state, kStageType);
   lua_pushcfunction(state, &guarded<refuse_stage_change>);
   lua_setfield(state, -2, "__newindex");

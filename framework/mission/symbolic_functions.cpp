@@ -165,25 +165,35 @@ int make_vector(lua_State* state) {
 }  // namespace
 
 void open_symbolic_functions(lua_State* state) {
-  const luaL_Reg functions[] = {{"sin", &guarded<function_of_one<TapeOp::sin>>},
-                                {"cos", &guarded<function_of_one<TapeOp::cos>>},
-                                {"tan", &guarded<function_of_one<TapeOp::tan>>},
-                                {"exp", &guarded<function_of_one<TapeOp::exp>>},
-                                {"log", &guarded<function_of_one<TapeOp::log>>},
-                                {"sqrt", &guarded<function_of_one<TapeOp::sqrt>>},
-                                {"abs", &guarded<function_of_one<TapeOp::absolute>>},
-                                {"atan2", &guarded<angle_of_two>},
-                                {"max", &guarded<extreme_function<true>>},
-                                {"min", &guarded<extreme_function<false>>},
-                                {"where", &guarded<where_function>},
-                                {"dot", &guarded<dot_function>},
-                                {"cross", &guarded<cross_function>},
-                                {"norm", &guarded<norm_function>},
-                                {"normalize", &guarded<normalize_function>},
-                                {"vector", &guarded<make_vector>},
-                                {nullptr, nullptr}};
+  static constexpr const char* kOne = "(x: lapwing.value): lapwing.value";
+  static constexpr const char* kMany = "(...: lapwing.value): lapwing.value";
+  static const Binding functions[] = {
+      {"sin", &guarded<function_of_one<TapeOp::sin>>, kOne, "of an angle in rad"},
+      {"cos", &guarded<function_of_one<TapeOp::cos>>, kOne, "of an angle in rad"},
+      {"tan", &guarded<function_of_one<TapeOp::tan>>, kOne, "of an angle in rad"},
+      {"exp", &guarded<function_of_one<TapeOp::exp>>, kOne, "e to the power of x"},
+      {"log", &guarded<function_of_one<TapeOp::log>>, kOne, "the natural logarithm"},
+      {"sqrt", &guarded<function_of_one<TapeOp::sqrt>>, kOne, "the square root"},
+      {"abs", &guarded<function_of_one<TapeOp::absolute>>, kOne, "without its sign, rounded at 0"},
+      {"atan2", &guarded<angle_of_two>, "(y: lapwing.value, x: lapwing.value): lapwing.value",
+       "the angle of {x, y}, rad"},
+      {"max", &guarded<extreme_function<true>>, kMany, "the largest, rounded where two meet"},
+      {"min", &guarded<extreme_function<false>>, kMany, "the smallest, rounded where two meet"},
+      {"where", &guarded<where_function>,
+       "(x: lapwing.value, a: lapwing.value, b: lapwing.value): lapwing.value",
+       "a where x > 0, b elsewhere"},
+      {"dot", &guarded<dot_function>, "(a: lapwing.vector, b: lapwing.vector): lapwing.value",
+       "the scalar product"},
+      {"cross", &guarded<cross_function>, "(a: lapwing.vector, b: lapwing.vector): lapwing.vector",
+       "the vector product"},
+      {"norm", &guarded<norm_function>, "(v: lapwing.vector): lapwing.value",
+       "the length, rounded at 0"},
+      {"normalize", &guarded<normalize_function>, "(v: lapwing.vector): lapwing.vector",
+       "of length 1"},
+      {"vector", &guarded<make_vector>, "(...: lapwing.value): lapwing.vector",
+       "a vector of these numbers"}};
   lua_getglobal(state, "lapwing");
-  luaL_setfuncs(state, functions, 0);
+  bind_functions(state, "lapwing", functions);
   lua_pop(state, 1);
 }
 

@@ -220,7 +220,7 @@ void define_operators(lua_State* state, const char* type, lua_CFunction index,
       {"__concat", &guarded<refuse_text>},
       {"__newindex", &guarded<refuse_assignment>},
       {nullptr, nullptr}};
-  define_type<T>(state, type, nullptr, index);
+  define_type<T>(state, type, {}, index);
   luaL_getmetatable(state, type);
   luaL_setfuncs(state, operators, 0);
   luaL_setfuncs(state, more, 0);
@@ -362,6 +362,26 @@ void open_symbolic_types(lua_State* state) {
                                 {"__tostring", &guarded<vector_text>},
                                 {nullptr, nullptr}};
   define_operators<VectorObject>(state, kVectorType, &guarded<vector_index>, of_vector);
+  static constexpr const char* kValue = "lapwing.value";
+  static constexpr const char* kVector = "lapwing.symbolic_vector";
+  static constexpr BoundField kOfScalar[] = {{"operator add(lapwing.value)", kValue, "sum"},
+                                             {"operator sub(lapwing.value)", kValue, "difference"},
+                                             {"operator mul(lapwing.value)", kValue, "product"},
+                                             {"operator div(lapwing.value)", kValue, "quotient"},
+                                             {"operator pow(number)", kValue, "power"},
+                                             {"operator unm", kValue, "negative"}};
+  static constexpr BoundField kOfVector[] = {
+      {"x", kValue, "first entry"},
+      {"y", kValue, "second entry"},
+      {"z", kValue, "third entry"},
+      {"[integer]", kValue, "any entry, from 1"},
+      {"operator add(lapwing.vector)", kVector, "sum"},
+      {"operator sub(lapwing.vector)", kVector, "difference"},
+      {"operator mul(lapwing.value)", kVector, "scaled"},
+      {"operator div(lapwing.value)", kVector, "scaled"},
+      {"operator unm", kVector, "negative"}};
+  note_fields(state, "scalar", kOfScalar);
+  note_fields(state, "symbolic vector", kOfVector);
 }
 
 }  // namespace lapwing

@@ -66,18 +66,21 @@ std::vector<Way> excluded_argument(lua_State* state, const Origin& origin) {
 
 }  // namespace
 
-int plan_way(lua_State* state) {
-  MissionRun& run = run_of(state);
-  const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
-  const Origin origin = Sandbox::of(state).script_position(state);
-  static constexpr std::string_view kOwn[] = {"planner", "excluded"};
+ParameterTable way_table() {
   ParameterTable table;
   table.required_numbers("from", 3, "m", "world")
       .required_numbers("to", 3, "m", "world")
       .number("more", 0, "m", "kept beside the margin", at_least(0))
       .integer("tries", PassageSearch{}.tries, "of the planner, where ways are excluded",
                between(1, 1000));
-  const Parameters given = table_argument(state, 2, table, "plan_way", kOwn);
+  return table;
+}
+
+int plan_way(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  const Parameters given = table_argument(state, 2, way_table(), "plan_way", kWayObjects);
   PassageSearch search;
   search.excluded = excluded_argument(state, origin);
   search.tries = static_cast<int>(given.integer("tries"));
@@ -116,8 +119,7 @@ int plan_way(lua_State* state) {
 int grow_corridor_of_problem(lua_State* state) {
   const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
   const Origin origin = Sandbox::of(state).script_position(state);
-  static constexpr std::string_view kOwn[] = {"way"};
-  table_argument(state, 2, {}, "grow_corridor", kOwn);
+  table_argument(state, 2, {}, "grow_corridor", kCorridorWay);
   lua_getfield(state, 2, "way");
   const Way way =
       way_of(value_from_lua(state, -1, origin, "grow_corridor.way"), origin, "grow_corridor.way");

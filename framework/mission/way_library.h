@@ -1,9 +1,15 @@
 // Ways round what stands in the way: methods of a problem.
 #pragma once
 
-struct lua_State;
+#include "framework/mission/binding.h"
 
 namespace lapwing {
+
+ParameterTable way_table();
+inline constexpr BoundField kWayObjects[] = {
+    {"planner", "lapwing.path_planner", "that looks for it"},
+    {"excluded?", "number[][][]", "ways whose passages are not taken"}};
+inline constexpr BoundField kCorridorWay[] = {{"way", "number[][]", "places, m, world"}};
 
 // problem:plan_way{from =, to =, planner =, more =, excluded = {way, ...}, tries =}: {{x, y, z},
 // ...}, a free way that keeps the margin and `more` metres and goes through a passage that none of

@@ -138,6 +138,8 @@ local function mission(given, more, surface_of)
 end
 
 -- A scene that scripts/scene makes.
+---@param given lapwing.explore.of_scene
+---@return lapwing.mission
 function M.of_scene(given)
   return mission(given, {
     { name = "scene", type = "text", summary = "a scene of scripts/scene: downtown, street, ..." },
@@ -156,6 +158,8 @@ function M.of_scene(given)
 end
 
 -- A mesh file.
+---@param given lapwing.explore.of_mesh
+---@return lapwing.mission
 function M.of_mesh(given)
   return mission(given, {
       { name = "input", type = "text", summary = "a mesh of the user's own" },

@@ -101,8 +101,15 @@ local function mission(what, given, declared, shot_of)
            end }
 end
 
+---@class lapwing.film.shot
+---@field subject? lapwing.film.shot.subjects one alone, in place of `subjects`
+---@class lapwing.film.from_file
+---@field file? string in place of `input`
+
 -- film.shot { name =, duration =, subject = { position =, height = }, keyframes = { { time =,
 --             position =, look_at = }, ... }, obstacles = {...}, cuts = {...}, ... }
+---@param given lapwing.film.shot
+---@return lapwing.mission
 function film.shot(given)
   return mission("film.shot", given, of_shot, function(run)
     local o = run.options
@@ -111,6 +118,8 @@ function film.shot(given)
 end
 
 -- film.from_file { file = "shot_01.json", hard =, ... }; --set input=PATH replaces the file.
+---@param given lapwing.film.from_file
+---@return lapwing.mission
 function film.from_file(given)
   if type(given) == "table" then
     local options = {}

@@ -115,7 +115,8 @@ input.subject = {
   { name = "name", type = "text", summary = "by which keyframes ask for it" },
   { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
     summary = "of its middle, where it stands still" },
-  { name = "track", type = "tables", summary = "where it is, and when, straight in between",
+  { name = "track", type = "tables", also = "fun(time: number): number[]",
+    summary = "where it is, and when, straight in between",
     table = {
       { name = "time", type = "number", unit = "s", required = true, summary = "of the film" },
       { name = "position", type = "numbers", size = 3, unit = "m", required = true,
@@ -144,6 +145,7 @@ input.keyframe = {
     minimum = -1e6, maximum = 1e6, summary = "world: east, north, up" },
   { name = "yaw_deg", type = "number", unit = "deg", summary = "0 east, counter-clockwise" },
   { name = "look_at", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
+    also = "string",
     summary = "a point, or a subject's name; absent: as the keyframe before" },
   { name = "subject", type = "text", summary = "the subject looked at, by name" },
 }
@@ -162,7 +164,7 @@ input.obstacle = {
   { name = "radius", type = "number", unit = "m", above = 0, summary = "of a sphere" },
   { name = "lower", type = "numbers", size = 3, unit = "m", summary = "of a box" },
   { name = "upper", type = "numbers", size = 3, unit = "m", summary = "of a box" },
-  { name = "corners", type = "numbers", unit = "m",
+  { name = "corners", type = "numbers", unit = "m", also = "number[][]",
     summary = "of a zone: x and y in turn, or {{x, y}, ...}" },
   { name = "floor", type = "number", unit = "m", summary = "of a zone; absent: the ground" },
   { name = "ceiling", type = "number", unit = "m", summary = "of a zone; absent: all above" },
@@ -171,7 +173,7 @@ input.obstacle = {
 
 input.flight_zone = {
   { name = "name", type = "text", default = "", summary = "for messages" },
-  { name = "corners", type = "numbers", unit = "m", required = true,
+  { name = "corners", type = "numbers", unit = "m", required = true, also = "number[][]",
     summary = "x and y in turn, or {{x, y}, ...}" },
   { name = "floor", type = "number", unit = "m", summary = "absent: the ground and below" },
   { name = "ceiling", type = "number", unit = "m", summary = "absent: all above" },

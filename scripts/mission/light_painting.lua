@@ -187,6 +187,11 @@ local function mission(given)
            plan = painted }
 end
 
-M.text, M.picture, M.strokes = mission, mission, mission
+---@type fun(given: lapwing.light_painting.text): lapwing.mission
+M.text = mission
+---@type fun(given: lapwing.light_painting.picture): lapwing.mission
+M.picture = mission
+---@type fun(given: lapwing.light_painting.strokes): lapwing.mission
+M.strokes = mission
 
 return M

@@ -83,6 +83,8 @@ local function missing_input(what, example)
 end
 
 -- Views of a scene that scripts/scene makes, from a flight over and through it.
+---@param given lapwing.map.of_scene
+---@return lapwing.mission
 function M.of_scene(given)
   local own = {
     { name = "scene", type = "text", summary = "a scene of scripts/scene: street, suburb, ..." },
@@ -124,6 +126,8 @@ function M.of_scene(given)
 end
 
 -- Depth images with poses: a folder of NAME.depth.png, NAME.pose.txt and camera-intrinsics.txt.
+---@param given lapwing.map.of_folder
+---@return lapwing.mission
 function M.of_folder(given)
   local name = given.name
   given.name = nil
@@ -144,6 +148,8 @@ function M.of_folder(given)
 end
 
 -- A map file: .bt or .ot. The edge of its voxels is the file's.
+---@param given lapwing.map.of_file
+---@return lapwing.mission
 function M.of_file(given)
   local name = given.name
   given.name = nil

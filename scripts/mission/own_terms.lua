@@ -14,11 +14,12 @@ local name = { name = "name", type = "text", summary = "for messages and reports
 local plugin = { name = "type", type = "text", summary = "a plugin; absent: a function is given" }
 
 own.declared = {
-  { name = "costs", type = "tables", summary = "cost terms beside those of the mission", table = {
+  { name = "costs", type = "tables", summary = "cost terms beside those of the mission",
+    also = "(lapwing.cost_term|lapwing.own_cost)[]", table = {
     name, plugin, { name = "weight", type = "number", default = 1, minimum = 0, maximum = 1e9,
                     summary = "of its squares" } } },
   { name = "constraints", type = "tables", summary = "constraints beside those of the mission",
-    table = { name, plugin } },
+    also = "(lapwing.constraint|lapwing.own_constraint)[]", table = { name, plugin } },
 }
 local settled = { name = true, type = true, weight = true }
 

@@ -216,6 +216,8 @@ local function flown(run)
                                                         solution.status, solution.message) })
 end
 
+---@param given lapwing.race.course
+---@return lapwing.mission
 function M.course(given)
   local name = given.name
   given.name = nil

@@ -157,6 +157,11 @@ end
 
 -- A scene of scripts/scene, a mesh of the user's (`--set input=PATH`), or files of a real flight
 -- (`prior`).
-M.of_scene, M.of_mesh, M.of_prior = mission, mission, mission
+---@type fun(given: lapwing.scan.of_scene): lapwing.mission
+M.of_scene = mission
+---@type fun(given: lapwing.scan.of_mesh): lapwing.mission
+M.of_mesh = mission
+---@type fun(given: lapwing.scan.of_prior): lapwing.mission
+M.of_prior = mission
 
 return M

@@ -17,9 +17,15 @@ class Authoring : public CommandLine {
   std::map<std::string, std::string> outcomes(const std::string& mistake,
                                               const std::vector<std::string>& only,
                                               const std::string& limit = "60") {
+    return outcomes_of("cost_term/broken_" + mistake, "broken_terms", only, limit);
+  }
+  std::map<std::string, std::string> outcomes_of(const std::string& plugin,
+                                                 const std::string& folder,
+                                                 const std::vector<std::string>& only,
+                                                 const std::string& limit = "60") {
     std::vector<std::string> arguments{
-        "plugins", "check",         "cost_term/broken_" + mistake, "--json", "--limit",
-        limit,     "--plugin-path", kFixtures + "/broken_terms"};
+        "plugins", "check", plugin,          "--json",
+        "--limit", limit,   "--plugin-path", kFixtures + "/" + folder};
     for (const std::string& test : only) arguments.insert(arguments.end(), {"--only", test});
     const Finished finished = run(arguments);
     std::map<std::string, std::string> result;
@@ -72,6 +78,122 @@ TEST_F(Authoring, EveryTestBites) {
   }
 }
 
+// The other kinds: every mistake is found by the test that is meant for it.
+TEST_F(Authoring, EveryTestOfEveryKindBites) {
+  struct Case {
+    const char* plugin;
+    const char* test;
+    const char* says;
+  };
+  for (const Case& a : {
+           Case{"solver_point", "point", "returns no whole, finite point"},
+           {"solver_cost", "reported cost", "its point costs"},
+           {"solver_violations", "reported violations", "its point violates by"},
+           {"solver_status", "status", "says optimal, violates by"},
+           {"solver_optimum", "optimum", "says iteration_limit: gave up"},
+           {"solver_infeasible", "infeasible", "says iteration_limit: gave up"},
+           {"solver_warm", "warm start", "from its own optimum 9 iterations"},
+           {"solver_repeatable", "repeatable", "two runs end differently"},
+           {"solver_work", "work limit", "5 iterations where one was allowed"},
+           {"solver_cancellation", "cancellation", "cancelled before it began, says optimal"},
+           {"solver_refuses", "creation", "not even its own defaults will do"},
+           {"model_blocks", "blocks", "states come first, then inputs"},
+           {"model_bounds", "bounds", "bounds without anything between them"},
+           {"model_flow", "flow", "a step of no length moves the state"},
+           {"model_degenerate", "degenerate input", "not finite at zero"},
+           {"model_derivatives", "derivatives", "rate"},
+           {"model_curvature", "curvature", "rate"},
+           {"model_halves", "halves", ""},
+           {"model_samples", "samples", ""},
+           {"model_ranges", "ranges", "alone differs from the same in a range"},
+           {"model_repeatable", "repeatable", "the same inputs give two answers"},
+           {"model_threads", "threads", "four threads at once get other answers"},
+           {"model_allocations", "allocations", "heap allocations in calls"},
+           {"model_affine", "affine", "declared affine, but its Jacobian changes"},
+           {"planner_answers", "answers", "says iteration_limit (did not look), not found"},
+           {"planner_honest", "honest", "segment 1 of the planner's path is blocked"},
+           {"planner_throws", "honest", "no"},
+           {"planner_messages", "messages", "gives no reason"},
+           {"planner_work", "work limit", "took 6001 iterations of 6000"},
+           {"planner_repeatable", "repeatable", "another answer the second time"},
+           {"planner_cancellation", "cancellation", "cancelled before it began, says"},
+           {"planner_clock", "wall clock", "out of time, says"},
+           {"tours_answers", "answers", "finds no tour"},
+           {"tours_honest", "honest", "the solver returned no tour"},
+           {"tours_tours", "honest", "the solver's tour is none"},
+           {"tours_throws", "honest", "no"},
+           {"tours_messages", "messages", "gives no reason"},
+           {"tours_bound", "upper bound", "below the best tour's"},
+           {"tours_repeatable", "repeatable", "another answer the second time"},
+           {"tours_cancellation", "cancellation", "cancelled before it began, says optimal"},
+           {"tours_clock", "wall clock", "out of time, says iteration_limit"},
+           {"information_finite", "finite", "at 0.000000 m it tells inf"},
+           {"information_negative", "at least 0", "it tells -0."},
+           {"information_negative", "submodular", "of what others tell"},
+           {"information_repeats", "repeats", "something else when asked again"},
+           {"information_alone", "alone", "something else when asked alone"},
+           {"information_throws", "finite", "its contributions throws: no"},
+           {"utility_finite", "finite", "which is no finite number"},
+           {"utility_repeatable", "repeatable", "other values when asked again"},
+           {"utility_threads", "threads", "other values with four threads"},
+           {"utility_alone", "alone", "has another value when asked alone"},
+           {"utility_truth", "truth", "answers otherwise without it"},
+           {"exporter_extension", "extension", "does not begin with a dot"},
+           {"exporter_repeatable", "repeatable", "equal plans give other bytes"},
+           {"exporter_contents", "contents", "an empty file for a plan that has samples"},
+           {"exporter_silent", "contents", "refuses a plan without a reason"},
+           {"exporter_throws", "contents", "writing a plan throws: no"},
+           {"map_empty", "empty", "a new map knows voxels"},
+           {"map_integration", "integration", "has log odds"},
+           {"map_casts", "ray casts", ""},
+           {"map_boxes", "boxes", "free in one map and not in the other"},
+           {"map_touching", "touching", "a box that touches what is unknown is not free"},
+           {"map_import", "import", "observations"},
+           {"map_means", "means", ""},
+           {"map_repeatable", "repeatable", "the same scans give two maps"},
+           {"map_threads", "threads", "four threads give another map than one"},
+           {"map_round", "round trip", "make another map"},
+           {"map_memory", "memory", "says that it takes 0 bytes"},
+           {"map_refusals", "refusals", "but changes the map"},
+           {"map_refuses", "creation", "not even its own defaults will do"},
+       }) {
+    const auto found =
+        outcomes_of("broken_" + std::string(a.plugin), "broken_kinds", {a.test, "description"});
+    EXPECT_EQ(status_, 1) << a.plugin;
+    EXPECT_EQ(found.at(a.test), "failed") << a.plugin << ": " << message_;
+    EXPECT_EQ(found.at("description"), "passed") << a.plugin << ": " << message_;
+    EXPECT_NE(message_.find(a.says), std::string::npos) << a.plugin << ": " << message_;
+  }
+}
+
+// (A sound map is among the shipped plugins.)
+TEST_F(Authoring, WithoutAMistakeEveryKindPasses) {
+  for (const char* plugin :
+       {"solver", "model", "planner", "tours", "information", "utility", "exporter"}) {
+    const auto found = outcomes_of("broken_" + std::string(plugin), "broken_kinds", {});
+    EXPECT_EQ(status_, 0) << plugin << ": " << message_;
+    EXPECT_EQ(found.at("sidecar"), "passed");
+    EXPECT_EQ(found.at("rubbish"), "passed");
+    EXPECT_GE(found.size(), 6u);
+  }
+}
+
+// Tests that share a process are repeated each in its own where that process ends early.
+TEST_F(Authoring, ACrashOfAnyKindIsAResult) {
+  for (const char* plugin :
+       {"solver", "model", "planner", "tours", "information", "utility", "exporter", "map"}) {
+    const auto found =
+        outcomes_of("broken_" + std::string(plugin) + "_crashes", "broken_kinds", {});
+    EXPECT_EQ(status_, 1) << plugin;
+    EXPECT_EQ(found.at("creation"), "passed") << plugin << message_;
+    EXPECT_EQ(found.at("sidecar"), "passed") << plugin << message_;
+    int crashed = 0;
+    for (const auto& [test, outcome] : found) crashed += outcome == "crashed";
+    EXPECT_GE(crashed, 2) << plugin << message_;
+    EXPECT_NE(message_.find("Segmentation fault"), std::string::npos) << plugin << message_;
+  }
+}
+
 TEST_F(Authoring, ACrashIsAResult) {
   auto found = outcomes("crashes", {"creation", "values", "rubbish"});
   EXPECT_EQ(found.at("values"), "crashed");
@@ -108,8 +230,9 @@ TEST_F(Authoring, ALibraryThatDoesNotOpenSaysWhy) {
   }
   refused({"plugins", "check", "nothing.so"}, {"there is no library 'nothing.so'"});
   refused({"plugins", "check", "keyfarme"}, {"did you mean 'keyframe'?"});
-  refused({"plugins", "check", "cost_term/keyframe", "--only", "derivative"},
-          {"there is no test 'derivative' for it; there are description, rubbish, creation"});
+  refused(
+      {"plugins", "check", "cost_term/keyframe", "--only", "derivative"},
+      {"there is no test 'derivative' for it; there are description, sidecar, rubbish, creation"});
 }
 
 TEST_F(Authoring, ShippedPluginsPass) {

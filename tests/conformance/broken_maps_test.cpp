@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "framework/conformance/check.h"
-#include "framework/conformance/reference_map.h"
+#include "framework/map/plain_map.h"
 #include "framework/map/swept_box.h"
 
 namespace lapwing {
@@ -35,30 +35,30 @@ enum class Mistake {
   refuses
 };
 
-class BrokenMap final : public ReferenceMap {
+class BrokenMap final : public PlainMap {
  public:
   BrokenMap(const MapSettings& settings, Mistake mistake)
-      : ReferenceMap(settings), mistake_(mistake) {}
+      : PlainMap(settings), mistake_(mistake) {}
 
   void for_each_leaf(const std::function<void(const VoxelLeaf&)>& visit) const override {
     if (mistake_ == Mistake::order_wanders && voxels_.size() > 3) {
       std::vector<VoxelLeaf> leaves;
-      ReferenceMap::for_each_leaf([&](const VoxelLeaf& leaf) { leaves.push_back(leaf); });
+      PlainMap::for_each_leaf([&](const VoxelLeaf& leaf) { leaves.push_back(leaf); });
       std::rotate(leaves.begin(), leaves.begin() + ++visits_ % 3, leaves.end());
       for (const VoxelLeaf& leaf : leaves) visit(leaf);
       return;
     }
-    ReferenceMap::for_each_leaf(visit);
+    PlainMap::for_each_leaf(visit);
     if (mistake_ == Mistake::leaf_twice && voxels_.size() > 3)
       visit({voxels_.begin()->first, 0, 0, voxels_.begin()->second.log_odds});
   }
   VoxelCounts counts() const override {
-    VoxelCounts counts = ReferenceMap::counts();
+    VoxelCounts counts = PlainMap::counts();
     if (mistake_ == Mistake::counts_leaves) counts.known /= 2;
     return counts;
   }
   std::optional<VoxelBox> bounds() const override {
-    std::optional<VoxelBox> box = ReferenceMap::bounds();
+    std::optional<VoxelBox> box = PlainMap::bounds();
     if (box && mistake_ == Mistake::wrong_bounds) ++box->upper.z;
     if (!box && mistake_ == Mistake::knows_at_birth) return VoxelBox{};
     return box;
@@ -68,7 +68,7 @@ class BrokenMap final : public ReferenceMap {
   void insert(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& origin) override {
     const auto before = voxels_;
     if (mistake_ == Mistake::threads_lose_points && threads() > 1) points = points.subspan(1);
-    ReferenceMap::insert(points, origin);
+    PlainMap::insert(points, origin);
     if (mistake_ == Mistake::never_the_same) {
       static int maps = 0;
       voxels_[grid().key(points.front().cast<double>())].log_odds = 0.001f * ++maps;
@@ -76,7 +76,7 @@ class BrokenMap final : public ReferenceMap {
     if (mistake_ == Mistake::misses_win)  // a voxel with a point is passed as well
       for (const Eigen::Vector3f& p : points)
         voxels_[grid().key(p.cast<double>())].log_odds += settings().miss;
-    if (mistake_ == Mistake::scans_add_up) ReferenceMap::insert(points.subspan(1, 1), origin);
+    if (mistake_ == Mistake::scans_add_up) PlainMap::insert(points.subspan(1, 1), origin);
     for (auto& [key, voxel] : voxels_) {
       const auto found = before.find(key);
       const float old = found == before.end() ? 0 : found->second.log_odds;
@@ -89,7 +89,7 @@ class BrokenMap final : public ReferenceMap {
   }
   void assign(std::span<const VoxelLeaf> leaves) override {
     const auto before = voxels_;
-    ReferenceMap::assign(leaves);
+    PlainMap::assign(leaves);
     if (mistake_ == Mistake::import_rounds)
       for (const VoxelLeaf& leaf : leaves) {
         float& log_odds = voxels_[leaf.key].log_odds;
@@ -99,7 +99,7 @@ class BrokenMap final : public ReferenceMap {
     for (const auto& [key, voxel] : before) voxels_[key].log_odds += 0.25f;
   }
   void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const override {
-    ReferenceMap::cast_checked(rays, hits);
+    PlainMap::cast_checked(rays, hits);
     if (mistake_ == Mistake::one_reader_at_a_time) {
       const bool alone = ++readers_ == 1;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));  // so that readers meet
@@ -132,7 +132,7 @@ class BrokenMap final : public ReferenceMap {
   }
   void means_checked(int level, std::span<const VoxelKey> keys,
                      std::span<MeanReading> means) const override {
-    ReferenceMap::means_checked(level, keys, means);
+    PlainMap::means_checked(level, keys, means);
     if (mistake_ == Mistake::mean_of_known)
       for (MeanReading& mean : means) mean.occupancy = 2 * mean.occupancy - 0.5f;
   }
@@ -170,7 +170,7 @@ class Greedy final : public Map {
   bool sweep_checked(const SweptBox&) const override { return true; }
 
  private:
-  ReferenceMap inner_;
+  PlainMap inner_;
 };
 
 std::vector<std::string> failures(const std::vector<CheckResult>& results) {

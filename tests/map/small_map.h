@@ -1,7 +1,7 @@
 // A map to test what needs only a map's reads.
 #pragma once
 
-#include "framework/conformance/reference_map.h"
+#include "framework/map/plain_map.h"
 #include "framework/core/error.h"
 
 namespace lapwing {
@@ -12,9 +12,9 @@ inline MapSettings settings_with(double resolution) {
   return map_settings(check(map_parameters(), value));
 }
 
-class SmallMap final : public ReferenceMap {
+class SmallMap final : public PlainMap {
  public:
-  explicit SmallMap(double resolution = 0.5) : ReferenceMap(settings_with(resolution)) {}
+  explicit SmallMap(double resolution = 0.5) : PlainMap(settings_with(resolution)) {}
 };
 
 }  // namespace lapwing

@@ -10,6 +10,12 @@ lapwing_add_plugin(fixture duplicate SOURCES ${fixtures}/duplicate.cpp
 # Terms with one mistake each, for `lapwing plugins check`.
 lapwing_add_plugin(cost_term broken_term SOURCES ${fixtures}/broken_term.cpp
                    OUTPUT ${fixture_output}/broken_terms)
+# Plugins of the other kinds, likewise: without a mistake, and with one each.
+foreach(name broken_motion broken_views)
+  lapwing_add_plugin(fixture ${name} SOURCES ${fixtures}/${name}.cpp
+                     OUTPUT ${fixture_output}/broken_kinds)
+  add_dependencies(test_app lapwing_fixture_${name})
+endforeach()
 add_dependencies(test_app lapwing_cost_term_broken_term)
 add_dependencies(test_plugin lapwing_fixture_good lapwing_fixture_throwing
                  lapwing_fixture_duplicate)

@@ -1,4 +1,4 @@
-#include "framework/conformance/reference_map.h"
+#include "framework/map/plain_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,14 +43,14 @@ void pass(const VoxelGrid& grid, const Eigen::Vector3f& from, const Eigen::Vecto
 
 }  // namespace
 
-VoxelReading ReferenceMap::read(const VoxelKey& key) const {
+VoxelReading PlainMap::read(const VoxelKey& key) const {
   const auto found = voxels_.find(key);
   if (found == voxels_.end()) return {};
   const Voxel& voxel = found->second;
   return {true, settings().state(voxel.log_odds), voxel.log_odds, voxel.observations};
 }
 
-void ReferenceMap::insert(std::span<const Eigen::Vector3f> points_W,
+void PlainMap::insert(std::span<const Eigen::Vector3f> points_W,
                           const Eigen::Vector3f& origin_W) {
   std::vector<Eigen::Vector3f> ends(points_W.begin(), points_W.end());
   if (settings().mode == IntegrationMode::discretised) {
@@ -84,7 +84,7 @@ void ReferenceMap::insert(std::span<const Eigen::Vector3f> points_W,
   for (const VoxelKey& key : hit) update(key, settings().hit);
 }
 
-void ReferenceMap::assign(std::span<const VoxelLeaf> leaves) {
+void PlainMap::assign(std::span<const VoxelLeaf> leaves) {
   for (const VoxelLeaf& leaf : leaves) {
     const int edge = 1 << leaf.level;
     for (int k = 0; k < edge * edge * edge; ++k)
@@ -95,7 +95,7 @@ void ReferenceMap::assign(std::span<const VoxelLeaf> leaves) {
   }
 }
 
-MapRayHit ReferenceMap::first_hit(const MapRay& ray) const {
+MapRayHit PlainMap::first_hit(const MapRay& ray) const {
   // Every crossing of a face, then in order of distance; at one distance z before y before x.
   struct Crossing {
     double distance;
@@ -133,11 +133,11 @@ MapRayHit ReferenceMap::first_hit(const MapRay& ray) const {
   return {{}, VoxelState::free, static_cast<float>(ray.range)};
 }
 
-void ReferenceMap::cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const {
+void PlainMap::cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const {
   for (std::size_t k = 0; k < rays.size(); ++k) hits[k] = first_hit(rays[k]);
 }
 
-void ReferenceMap::means_checked(int level, std::span<const VoxelKey> keys,
+void PlainMap::means_checked(int level, std::span<const VoxelKey> keys,
                                  std::span<MeanReading> means) const {
   const int edge = 1 << level;
   for (std::size_t k = 0; k < keys.size(); ++k) {
@@ -155,7 +155,7 @@ void ReferenceMap::means_checked(int level, std::span<const VoxelKey> keys,
   }
 }
 
-bool ReferenceMap::sweep_checked(const SweptBox& box) const {
+bool PlainMap::sweep_checked(const SweptBox& box) const {
   for (int z = box.lower[2]; z <= box.upper[2]; ++z)
     for (int y = box.lower[1]; y <= box.upper[1]; ++y)
       for (int x = box.lower[0]; x <= box.upper[0]; ++x) {
@@ -167,11 +167,11 @@ bool ReferenceMap::sweep_checked(const SweptBox& box) const {
   return true;
 }
 
-void ReferenceMap::for_each_leaf(const std::function<void(const VoxelLeaf&)>& visit) const {
+void PlainMap::for_each_leaf(const std::function<void(const VoxelLeaf&)>& visit) const {
   for (const auto& [key, voxel] : voxels_) visit({key, 0, voxel.observations, voxel.log_odds});
 }
 
-std::optional<VoxelBox> ReferenceMap::bounds() const {
+std::optional<VoxelBox> PlainMap::bounds() const {
   if (voxels_.empty()) return std::nullopt;
   VoxelBox box{voxels_.begin()->first, voxels_.begin()->first};
   for (const auto& [key, voxel] : voxels_) {
@@ -183,7 +183,7 @@ std::optional<VoxelBox> ReferenceMap::bounds() const {
   return box;
 }
 
-VoxelCounts ReferenceMap::counts() const {
+VoxelCounts PlainMap::counts() const {
   VoxelCounts counts;
   for (const auto& [key, voxel] : voxels_) {
     const VoxelState state = settings().state(voxel.log_odds);
@@ -194,7 +194,7 @@ VoxelCounts ReferenceMap::counts() const {
   return counts;
 }
 
-std::size_t ReferenceMap::bytes() const {
+std::size_t PlainMap::bytes() const {
   return sizeof *this + voxels_.size() * 64;
 }
 

@@ -15,7 +15,7 @@ struct VoxelKeyHash {
   }
 };
 
-class ReferenceMap : public Map {
+class PlainMap : public Map {
  public:
   using Map::Map;
 

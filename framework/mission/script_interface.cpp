@@ -1,0 +1,71 @@
+#include "framework/mission/script_interface.h"
+
+#include <algorithm>
+
+#include <lua.hpp>
+
+#include "framework/core/files.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/options.h"
+
+namespace lapwing {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Modules that declare options.
+std::vector<std::string> mission_modules(const fs::path& scripts) {
+  std::vector<std::string> names;
+  for (const auto& item : fs::directory_iterator(scripts / "mission"))
+    if (item.path().extension() == ".lua" &&
+        read_file(item.path()).find("lapwing.options(") != std::string::npos)
+      names.push_back(item.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// Calls every function of the module on top of the stack with an empty table. What returns a
+// mission of the module's kind makes such missions.
+void ask_functions(lua_State* state, const std::string& kind, std::vector<MissionFunction>& found) {
+  const int module = lua_gettop(state);
+  if (!lua_istable(state, module)) return;
+  std::vector<std::string> names;
+  for (lua_pushnil(state); lua_next(state, module); lua_pop(state, 1))
+    if (lua_type(state, -2) == LUA_TSTRING && lua_isfunction(state, -1))
+      names.emplace_back(lua_tostring(state, -2));
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) {
+    lua_settop(state, module);
+    lua_getfield(state, module, name.c_str());
+    lua_newtable(state);
+    if (lua_pcall(state, 1, 1, 0) != LUA_OK || !lua_istable(state, -1)) continue;
+    const int mission = lua_gettop(state);
+    lua_getfield(state, mission, "kind");
+    if (lua_type(state, -1) != LUA_TSTRING || lua_tostring(state, -1) != kind) continue;
+    lua_getfield(state, mission, "options");
+    if (const auto* options = test_object<MissionOptions>(state, -1, kOptionsType))
+      found.push_back({kind, name, options->declarations.to_value()});
+  }
+}
+
+}  // namespace
+
+ScriptInterface read_script_interface(const MissionSettings& settings) {
+  ScriptInterface interface;
+  MissionRun run{settings, DataFiles({settings.configs}), "", "", Value::map(), 0, {}};
+  Sandbox sandbox(settings.limits, settings.seed, {settings.scripts}, settings.print);
+  sandbox.protect([&](lua_State* state) {
+    note_bindings(state, interface.types);
+    open_script_libraries(state, run);
+    for (const std::string& name : mission_modules(settings.scripts)) {
+      lua_settop(state, 0);
+      sandbox.require(state, "mission." + name);
+      ask_functions(state, name, interface.missions);
+    }
+    lua_settop(state, 0);
+  });
+  return interface;
+}
+
+}  // namespace lapwing
