@@ -142,7 +142,8 @@ ParameterTable& ParameterTable::add(ParameterSpec spec) {
   return *this;
 }
 
-ParameterTable& ParameterTable::boolean(std::string_view name, bool default_value, std::string_view summary) {
+ParameterTable& ParameterTable::boolean(std::string_view name, bool default_value,
+                                        std::string_view summary) {
   ParameterSpec spec = make_spec(name, ParameterType::boolean, summary);
   spec.default_value = default_value;
   return add(std::move(spec));
@@ -156,8 +157,9 @@ ParameterTable& ParameterTable::integer(std::string_view name, std::int64_t defa
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::number(std::string_view name, double default_value, std::string_view unit,
-                                       std::string_view summary, Range range) {
+ParameterTable& ParameterTable::number(std::string_view name, double default_value,
+                                       std::string_view unit, std::string_view summary,
+                                       Range range) {
   ParameterSpec spec = make_spec(name, ParameterType::number, summary);
   spec.default_value = default_value;
   spec.unit = unit;
@@ -181,7 +183,8 @@ ParameterTable& ParameterTable::optional_number(std::string_view name, std::stri
 }
 
 ParameterTable& ParameterTable::numbers(std::string_view name, std::vector<double> default_value,
-                                        std::string_view unit, std::string_view summary, Range range) {
+                                        std::string_view unit, std::string_view summary,
+                                        Range range) {
   ParameterSpec spec = make_spec(name, ParameterType::numbers, summary);
   spec.default_value = Value::list();
   for (const double number : default_value) spec.default_value.push_back(number);
@@ -191,14 +194,16 @@ ParameterTable& ParameterTable::numbers(std::string_view name, std::vector<doubl
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::required_numbers(std::string_view name, int size, std::string_view unit,
+ParameterTable& ParameterTable::required_numbers(std::string_view name, int size,
+                                                 std::string_view unit,
                                                  std::string_view summary, Range range) {
   optional_numbers(name, size, unit, summary, range);
   specs_.back().required = true;
   return *this;
 }
 
-ParameterTable& ParameterTable::optional_numbers(std::string_view name, int size, std::string_view unit,
+ParameterTable& ParameterTable::optional_numbers(std::string_view name, int size,
+                                                 std::string_view unit,
                                                  std::string_view summary, Range range) {
   ParameterSpec spec = make_spec(name, ParameterType::numbers, summary);
   spec.size = size;
@@ -232,13 +237,15 @@ ParameterTable& ParameterTable::choice(std::string_view name, std::string_view d
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::table(std::string_view name, ParameterTable table, std::string_view summary) {
+ParameterTable& ParameterTable::table(std::string_view name, ParameterTable table,
+                                      std::string_view summary) {
   ParameterSpec spec = make_spec(name, ParameterType::table, summary);
   spec.table = std::make_shared<const ParameterTable>(std::move(table));
   return add(std::move(spec));
 }
 
-ParameterTable& ParameterTable::tables(std::string_view name, ParameterTable table, std::string_view summary,
+ParameterTable& ParameterTable::tables(std::string_view name, ParameterTable table,
+                                       std::string_view summary,
                                        bool required) {
   ParameterSpec spec = make_spec(name, ParameterType::tables, summary);
   spec.table = std::make_shared<const ParameterTable>(std::move(table));
