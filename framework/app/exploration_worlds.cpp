@@ -61,6 +61,8 @@ World load_world(const WorldName& name, const Registry& registry, const Invocati
   settings.configs = shipped_folder("configs");
   settings.data = invocation.data;
   settings.registry = &registry;
+  // No option of these commands could raise it, and a machine with much else to do is slow.
+  settings.limits.seconds = 600;
   Value options = Value::map();
   options.set("seed", static_cast<std::int64_t>(name.seed));
   GeneratedScene made = generate_scene(script, options, settings);
