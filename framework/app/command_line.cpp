@@ -27,6 +27,7 @@ namespace {
 
 constexpr std::uint64_t kMostThreads = 1024;
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;  // JSON readers hold no more
+constexpr const char* kMovesHelp = "step, turn_deg, body or clear, as a mission's `moves`";
 
 using Command = std::function<ExitStatus()>;
 
@@ -426,6 +427,7 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
            [&](const std::string& given) { request.explorer = given; });
   add_repeated(*dataset, "--explorer-set", "KEY=VALUE", request.explorer_overrides,
                "set one parameter of the utility that explores, as model=FILE");
+  add_repeated(*dataset, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
   add_count(*dataset, "--episodes", 1, 100'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*dataset, "--steps", 1, 100'000, "of each episode",
@@ -451,6 +453,7 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
   add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds,
                "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
   add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; else every one");
+  add_repeated(*made, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
   add_count(*made, "--episodes", 1, 10'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*made, "--steps", 1, 100'000, "of each episode",

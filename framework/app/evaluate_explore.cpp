@@ -29,18 +29,28 @@ struct Trial {
   }
 };
 
+// Student's t of 97.5 %, by degrees of freedom less one.
+constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,
+                               2.262,  2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
+                               2.110,  2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
+                               2.060,  2.056, 2.052, 2.048, 2.045, 2.042};
+
 struct Mean {
-  double mean = 0, deviation = 0;
+  double mean = std::nan(""), deviation = std::nan("");
   std::size_t count = 0;
-  // Half the width of the 95 % interval of the mean, by the normal distribution.
+  // Half the width of the 95 % interval of the mean; beyond 31 values by the normal distribution.
   double interval() const {
-    return count > 1 ? 1.96 * deviation / std::sqrt(static_cast<double>(count)) : std::nan("");
+    if (count < 2) return std::nan("");
+    const double t = count - 2 < std::size(kStudent) ? kStudent[count - 2] : 1.96;
+    return t * deviation / std::sqrt(static_cast<double>(count));
   }
 };
 
 Mean mean_of(const std::vector<double>& values) {
   Mean result;
   result.count = values.size();
+  if (values.empty()) return result;
+  result.mean = 0;
   for (const double v : values) result.mean += v / static_cast<double>(values.size());
   double squares = 0;
   for (const double v : values) squares += (v - result.mean) * (v - result.mean);
@@ -118,7 +128,7 @@ std::string number(double value) {
 struct Summary {
   std::string table =
       "world,utility,episodes,efficiency,efficiency_deviation,relative,"
-      "relative_deviation,relative_interval\n";
+      "relative_deviation,relative_interval,below_learned,below_learned_interval\n";
   std::string curves = "world,utility,images,observed,observed_deviation\n";
   Report report;
   Table shown;
@@ -141,24 +151,32 @@ void summarise_world(Summary& summary, const std::string& world,
     for (const double v : curve) sum += v;
     return sum;
   };
-  std::vector<double> oracle;
-  if (std::find(utilities.begin(), utilities.end(), "oracle") != utilities.end())
-    for (const auto& curve : curves("oracle")) oracle.push_back(efficiency(curve));
+  const auto efficiencies_of = [&](const char* utility) {
+    std::vector<double> found;
+    if (std::find(utilities.begin(), utilities.end(), utility) != utilities.end())
+      for (const auto& curve : curves(utility)) found.push_back(efficiency(curve));
+    return found;
+  };
+  const std::vector<double> oracle = efficiencies_of("oracle"),
+                            learned = efficiencies_of("learned");
   for (const std::string& utility : utilities) {
     const auto all = curves(utility);
-    std::vector<double> raw, relative;
+    std::vector<double> raw, relative, below;
     for (std::size_t e = 0; e < all.size(); ++e) {
       raw.push_back(efficiency(all[e]));
-      if (e < oracle.size() && oracle[e] > 0) relative.push_back(raw.back() / oracle[e]);
+      if (e >= oracle.size() || !(oracle[e] > 0)) continue;
+      relative.push_back(raw.back() / oracle[e]);
+      if (!learned.empty()) below.push_back((learned[e] - raw.back()) / oracle[e]);
     }
-    const Mean efficiencies = mean_of(raw);
-    const Mean shares = relative.empty() ? Mean{std::nan(""), std::nan(""), 0} : mean_of(relative);
+    const Mean efficiencies = mean_of(raw), shares = mean_of(relative), behind = mean_of(below);
     summary.table += world + "," + utility + "," + std::to_string(raw.size()) + "," +
                      number(efficiencies.mean) + "," + number(efficiencies.deviation) + "," +
                      number(shares.mean) + "," + number(shares.deviation) + "," +
-                     number(shares.interval()) + "\n";
-    summary.shown.rows.push_back({{world, utility, efficiencies.mean, efficiencies.deviation,
-                                   shares.mean, shares.deviation, shares.interval()}});
+                     number(shares.interval()) + "," + number(behind.mean) + "," +
+                     number(behind.interval()) + "\n";
+    summary.shown.rows.push_back(
+        {{world, utility, efficiencies.mean, efficiencies.deviation, shares.mean, shares.deviation,
+          shares.interval(), behind.mean, behind.interval()}});
     Series series{utility, {0}, {0}};
     for (int t = 0; t < request.steps; ++t) {
       std::vector<double> at;
@@ -175,8 +193,8 @@ void summarise_world(Summary& summary, const std::string& world,
 }
 
 void print_table(const Table& table) {
-  std::printf("%-22s %-18s %12s %10s %9s %9s %9s\n", "world", "utility", "efficiency", "deviation",
-              "relative", "deviation", "95 % +-");
+  std::printf("%-22s %-18s %12s %10s %9s %9s %9s %9s %9s\n", "world", "utility", "efficiency",
+              "deviation", "relative", "deviation", "95 % +-", "behind", "95 % +-");
   for (const TableRow& row : table.rows) {
     std::printf("%-22s %-18s", std::get<std::string>(row.cells[0]).c_str(),
                 std::get<std::string>(row.cells[1]).c_str());
@@ -206,6 +224,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   setup.episode.lookahead = request.lookahead;
+  const Value moves = setup.set_moves(request.moves);
   setup.episode.cancellation = &interruption.token();
   if (request.sigma > 0 || request.dropped > 0)
     setup.episode.sensor.noise = DepthNoise{request.dropped, request.sigma};
@@ -229,6 +248,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   stated.set("stereo", request.stereo);
   stated.set("lookahead", request.lookahead);
   stated.set("parameters", parameters);
+  if (!request.moves.empty()) stated.set("moves", moves);
   const fs::path settings_file = request.folder / "settings.json";
   if (request.resume && fs::exists(settings_file) &&
       !(from_json(read_file(settings_file), settings_file.string()) == stated))
@@ -264,9 +284,15 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   summary.report.subtitle = std::to_string(request.episodes) + " episodes of " +
                             std::to_string(request.steps) + " images in each world";
   summary.shown.title = "Efficiency (5.6), and relative to the oracle's from the same start";
-  summary.shown.columns = {
-      {"world", ""},    {"utility", ""},   {"efficiency", ""},         {"deviation", ""},
-      {"relative", ""}, {"deviation", ""}, {"95 % interval, half", ""}};
+  summary.shown.columns = {{"world", ""},
+                           {"utility", ""},
+                           {"efficiency", ""},
+                           {"deviation", ""},
+                           {"relative", ""},
+                           {"deviation", ""},
+                           {"95 % interval, half", ""},
+                           {"below learned", ""},
+                           {"95 % interval, half", ""}};
   for (const WorldName& name : names) summarise_world(summary, name.text(), utilities, request);
   summary.report.sections.insert(summary.report.sections.begin(), {"Table", {summary.shown}});
   write_file_atomically(request.folder / "table.csv", summary.table);

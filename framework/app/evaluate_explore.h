@@ -8,6 +8,7 @@ namespace lapwing {
 struct ExploreEvaluation {
   std::vector<std::string> worlds;     // "downtown:101-104", "street", files
   std::vector<std::string> utilities;  // empty: all that are shipped
+  std::vector<std::string> moves;      // "clear=2": ExplorationSetup::set_moves
   std::int64_t episodes = 10;          // of each world, with the same starts for every utility
   int steps = 200, lookahead = 1;
   double sigma = 0, dropped = 0;  // of the camera's depth (table 5.4); replayed without
@@ -20,7 +21,8 @@ struct ExploreEvaluation {
 //
 // Every episode is a file in FOLDER/episodes, whole or not there; from these come table.csv
 // (efficiency, and relative to the oracle's of the same start, with standard deviations and 95 %
-// intervals), curves.csv, report.html. Wall-clock figures stand apart, in FOLDER/seconds.
+// intervals by Student's t; how far each stays below `learned`, start by start), curves.csv,
+// report.html. Wall-clock figures stand apart, in FOLDER/seconds.
 ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& invocation);
 
 }  // namespace lapwing

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "framework/config/overrides.h"
 #include "framework/config/shipped.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/mission/scene_script.h"
@@ -60,6 +61,8 @@ World load_world(const WorldName& name, const Registry& registry, const Invocati
   settings.configs = shipped_folder("configs");
   settings.data = invocation.data;
   settings.registry = &registry;
+  // No option of these commands could raise it, and a machine with much else to do is slow.
+  settings.limits.seconds = 600;
   Value options = Value::map();
   options.set("seed", static_cast<std::int64_t>(name.seed));
   GeneratedScene made = generate_scene(script, options, settings);
@@ -77,6 +80,25 @@ ExplorationSetup::ExplorationSetup() : map(Value::map()) {
   map.set("miss", 0.1);
   map.set("maximum_range", episode.sensor.range);
   map.set("observations", true);
+}
+
+Value ExplorationSetup::set_moves(const std::vector<std::string>& given) {
+  Value moves = Value::map();
+  for (const std::string& text : given) apply_override(moves, text);
+  const Parameters p =
+      check(ParameterTable()
+                .number("step", episode.step, "m", "to a neighbour", above(0))
+                .number("turn_deg", episode.turn * 180 / EIGEN_PI, "deg", "to a neighbour",
+                        between(1, 180))
+                .number("body", episode.body, "m", "edge of the box that must be free", above(0))
+                .number("clear", episode.clear, "m", "edge of the box that is free at the start",
+                        above(0)),
+            moves, "moves");
+  episode.step = p.number("step");
+  episode.turn = p.number("turn_deg") * EIGEN_PI / 180;
+  episode.body = p.number("body");
+  episode.clear = p.number("clear");
+  return moves;
 }
 
 ObservedSurface::NewMap ExplorationSetup::new_map(const Registry& registry) const {

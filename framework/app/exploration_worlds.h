@@ -31,6 +31,9 @@ struct ExplorationSetup {
   Value map;  // parameters of the backend
 
   ExplorationSetup();
+  // "clear=2": how the camera moves, by the names of the mission's `moves`; what is given comes
+  // back as a map. InputError for others and for what makes no sense.
+  Value set_moves(const std::vector<std::string>& given);
   ObservedSurface::NewMap new_map(const Registry& registry) const;
 };
 

@@ -77,6 +77,7 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   if (names.empty()) throw InputError("train dataset: name a world with --world NAME:FIRST-LAST");
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
+  setup.set_moves(request.moves);
   setup.episode.show_truth = request.explorer == "oracle";
   setup.episode.cancellation = &interruption.token();
   Value explorer = Value::map();

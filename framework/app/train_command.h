@@ -10,6 +10,7 @@ struct TrainRequest {
   std::string explorer = "oracle";   // dataset: the utility that chooses; the oracle judges
   std::vector<std::string> explorer_overrides;  // dataset: its parameters, as "model=FILE"
   std::vector<std::string> worlds;   // dataset: "downtown:1-8", files
+  std::vector<std::string> moves;    // dataset: "clear=2", ExplorationSetup::set_moves
   std::int64_t episodes = 4;         // dataset: of each world
   int steps = 200;                   // dataset: of each episode
   std::filesystem::path samples;     // fit, score: a folder

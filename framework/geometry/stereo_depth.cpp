@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 
 #include "framework/core/error.h"
@@ -13,6 +14,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSky = 0.9;      // brightness
+constexpr double kClouds = 0.1;   // share of it that clouds take or add: without them no far shift
+constexpr double kCloudsAt = 20;  // m, where a cloud's bumps would be as wide as those of a wall
 constexpr double kFinest = 0.05;  // m, wavelength of the texture's smallest bumps
 constexpr int kOctaves = 7;       // each twice as long as the one before
 constexpr int kFine = 2;          // rays a pixel, across and down
@@ -58,12 +61,14 @@ double texture(const Vector3d& p, double pixel_width) {
 
 class Painter {
  public:
-  Painter(const MeshScene& scene, const Pose& camera, const Pinhole& pinhole, double range)
+  Painter(const MeshScene& scene, const Pose& camera, const Pinhole& pinhole, double range,
+          double clouds)
       : scene_(scene),
         position_(camera.position),
         to_world_(camera.orientation.toRotationMatrix()),
         pinhole_(pinhole),
-        range_(range) {}
+        range_(range),
+        clouds_(clouds) {}
 
   std::uint8_t pixel(int x, int y) const {
     double sum = 0;
@@ -79,12 +84,19 @@ class Painter {
     const double length = ray.norm();
     const Vector3d direction = to_world_ * (ray / length);
     const MeshHit hit = scene_.cast({position_, direction, range_ * length});
-    if (hit.triangle < 0) return kSky;
+    if (hit.triangle < 0) return sky(direction);
     const Vector3d p = position_ + hit.distance * direction;
     const double pixel_width = hit.distance / length / pinhole_.focal_x;
     // The light comes from above and stays where it is when the camera moves.
     const double light = 0.55 + 0.25 * hit.normal.z() + 0.1 * hit.normal.x();
     return std::clamp(tone(hit.triangle) * light * (1 + 0.6 * texture(p, pixel_width)), 0.0, 1.0);
+  }
+
+  // It belongs to directions alone: infinitely far, so that both pictures show the same.
+  double sky(const Vector3d& direction) const {
+    if (clouds_ == 0) return kSky;
+    const double bumps = texture(kCloudsAt * direction, kCloudsAt / pinhole_.focal_x);
+    return std::clamp(kSky * (1 + clouds_ * bumps), 0.0, 1.0);
   }
 
   double tone(int triangle) const {
@@ -98,8 +110,23 @@ class Painter {
   Vector3d position_;
   Eigen::Matrix3d to_world_;
   const Pinhole& pinhole_;
-  double range_;
+  double range_, clouds_;
 };
+
+GreyPicture paint(const MeshScene& scene, const Pose& camera, const Pinhole& pinhole, double range,
+                  double clouds, int threads) {
+  check_camera(pinhole, range);
+  const Painter painter(scene, camera, pinhole, range, clouds);
+  GreyPicture picture{pinhole.width, pinhole.height, {}};
+  const auto width = static_cast<std::size_t>(pinhole.width);
+  picture.pixels.resize(width * static_cast<std::size_t>(pinhole.height));
+  parallel_for(static_cast<std::size_t>(pinhole.height), threads, [&](std::size_t y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      picture.pixels[y * width + x] = painter.pixel(static_cast<int>(x), static_cast<int>(y));
+    }
+  });
+  return picture;
+}
 
 // The picture right of a border of `left` columns that repeat its first: OpenCV leaves out as many
 // columns as it looks for shifts, though far things there are in both pictures.
@@ -112,6 +139,19 @@ cv::Mat image_of(const GreyPicture& picture, int left) {
     std::copy_n(row, width, image.ptr(y) + left);
   }
   return image;
+}
+
+// Whether brightness changes along the row in a square about a pixel: by a grey level a pixel.
+bool textured(const GreyPicture& picture, int x, int y, int block) {
+  const int half = std::max(block / 2, 1);
+  int change = 0, pairs = 0;
+  for (int j = std::max(y - half, 0); j <= std::min(y + half, picture.height - 1); ++j)
+    for (int i = std::max(x - half, 0); i < std::min(x + half, picture.width - 1); ++i) {
+      const std::uint8_t* pixel = picture.pixels.data() + j * picture.width + i;
+      change += std::abs(pixel[1] - pixel[0]);
+      ++pairs;
+    }
+  return change >= pairs;
 }
 
 void check_options(const Pinhole& pinhole, const StereoOptions& options) {
@@ -134,17 +174,7 @@ void check_options(const Pinhole& pinhole, const StereoOptions& options) {
 
 GreyPicture render_textured(const MeshScene& scene, const Pose& camera, const Pinhole& pinhole,
                             double range, int threads) {
-  check_camera(pinhole, range);
-  const Painter painter(scene, camera, pinhole, range);
-  GreyPicture picture{pinhole.width, pinhole.height, {}};
-  const auto width = static_cast<std::size_t>(pinhole.width);
-  picture.pixels.resize(width * static_cast<std::size_t>(pinhole.height));
-  parallel_for(static_cast<std::size_t>(pinhole.height), threads, [&](std::size_t y) {
-    for (std::size_t x = 0; x < width; ++x) {
-      picture.pixels[y * width + x] = painter.pixel(static_cast<int>(x), static_cast<int>(y));
-    }
-  });
-  return picture;
+  return paint(scene, camera, pinhole, range, 0, threads);
 }
 
 DepthImage match_stereo(const GreyPicture& left, const GreyPicture& right, const Pinhole& pinhole,
@@ -173,7 +203,10 @@ DepthImage match_stereo(const GreyPicture& left, const GreyPicture& right, const
   for (int y = 0; y < pinhole.height; ++y) {
     for (int x = 0; x < pinhole.width; ++x) {
       const double pixels = shift.at<std::int16_t>(y, shifts + x) / 16.0;
-      if (pixels <= 0 || pixels > x || scale / pixels < options.nearest) continue;
+      // Below 0 is no match; 0 is one of things infinitely far, or of none: where all shifts are as
+      // good, the matcher names the least.
+      if (pixels < 0 || pixels > x || scale / pixels < options.nearest) continue;
+      if (pixels == 0 && !textured(left, x, y, options.block)) continue;
       const auto place = static_cast<std::size_t>(y) * static_cast<std::size_t>(pinhole.width);
       image.depth[place + static_cast<std::size_t>(x)] = static_cast<float>(scale / pixels);
     }
@@ -186,13 +219,14 @@ DepthImage stereo_depth(const MeshScene& scene, const Pose& camera, const Pinhol
   check_options(pinhole, options);
   Pose other = camera;
   other.position += camera.orientation * Vector3d(options.baseline, 0, 0);
-  // What lies a little beyond the range shows, so that it is matched rather than taken for sky.
+  // What lies beyond the range shows, so that it is matched rather than taken for something near.
   const double seen = 2 * range;
   DepthImage image =
-      match_stereo(render_textured(scene, camera, pinhole, seen, threads),
-                   render_textured(scene, other, pinhole, seen, threads), pinhole, options);
+      match_stereo(paint(scene, camera, pinhole, seen, kClouds, threads),
+                   paint(scene, other, pinhole, seen, kClouds, threads), pinhole, options);
+  // A match beyond the range is a measurement: nothing was found within it.
   for (float& depth : image.depth)
-    if (depth > range) depth = 0;
+    if (depth > range) depth = std::numeric_limits<float>::infinity();
   return image;
 }
 

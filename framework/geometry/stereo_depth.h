@@ -26,12 +26,14 @@ struct StereoOptions {
 GreyPicture render_textured(const MeshScene& scene, const Pose& camera, const Pinhole& pinhole,
                             double range, int threads);
 
-// Depth in the left picture; 0 where no match was found. Throws InputError for pictures that differ
-// in size from the pinhole and for options without sense.
+// Depth in the left picture; 0 where no match was found, infinity where both pictures show the same
+// texture in the same place. Throws InputError for pictures that differ in size from the pinhole
+// and for options without sense.
 DepthImage match_stereo(const GreyPicture& left, const GreyPicture& right, const Pinhole& pinhole,
                         const StereoOptions& options);
 
-// All of it, for a left camera at `camera`; depths beyond `range` are no measurement.
+// All of it, for a left camera at `camera`, under a sky with faint clouds, infinitely far;
+// infinity, as of render_depth, where the match lies beyond `range`.
 DepthImage stereo_depth(const MeshScene& scene, const Pose& camera, const Pinhole& pinhole,
                         double range, const StereoOptions& options, int threads);
 

@@ -135,7 +135,8 @@ TEST(StereoDepth, FindsWallAndGround) {
   int found = 0, right = 0, there = 0;
   for (std::size_t i = 0; i < truth.depth.size(); ++i) {
     if (std::isfinite(truth.depth[i])) ++there;
-    if (stereo.depth[i] == 0 || !std::isfinite(truth.depth[i])) continue;
+    if (stereo.depth[i] == 0 || std::isinf(stereo.depth[i]) || !std::isfinite(truth.depth[i]))
+      continue;
     ++found;
     // Half a pixel of disparity.
     const double d = static_cast<double>(truth.depth[i]);
@@ -143,6 +144,31 @@ TEST(StereoDepth, FindsWallAndGround) {
   }
   EXPECT_GT(found, 0.85 * there);
   EXPECT_GT(right, 0.95 * found);
+}
+
+// What is measured beyond the range is free up to it: ground far away, and clouds.
+TEST(StereoDepth, FindsNothingWithinRangeInTheSkyAndFarAway) {
+  const MeshScene scene = wall_and_ground();
+  const Pose pose = camera_pose({0, 0, 5}, EIGEN_PI, -0.1);  // away from the wall
+  const DepthImage truth = render_depth(scene, pose, kCamera, 200, 2);
+  const DepthImage stereo = stereo_depth(scene, pose, kCamera, 20, {}, 2);
+  int sky = 0, open = 0, near_sky = 0, far = 0, far_open = 0;
+  for (std::size_t i = 0; i < truth.depth.size(); ++i) {
+    const bool nothing = std::isinf(stereo.depth[i]);
+    if (std::isinf(truth.depth[i])) {
+      ++sky;
+      open += nothing;
+      near_sky += !nothing && stereo.depth[i] > 0;
+    } else if (truth.depth[i] > 30) {
+      ++far;
+      far_open += nothing;
+    }
+  }
+  ASSERT_GT(sky, 1000);
+  ASSERT_GT(far, 200);
+  EXPECT_GT(open, 0.8 * sky);
+  EXPECT_LT(near_sky, 0.05 * sky);
+  EXPECT_GT(far_open, 0.7 * far);
 }
 
 TEST(StereoDepth, RefusesWhatItCannotMatch) {

@@ -141,7 +141,19 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   for (const char* file : {"table.csv", "curves.csv", "report.html"})
     EXPECT_EQ(read_file(whole / file), read_file(broken / file)) << file;
   EXPECT_NE(read_file(whole / "table.csv").find("yard.obj,oracle,2"), std::string::npos);
+  // Of two episodes the interval is 12.706 (Student's t) standard deviations over root 2.
+  std::istringstream table(read_file(whole / "table.csv"));
+  std::string line, cell;
+  while (std::getline(table, line) && line.find("frontier") == line.npos) continue;
+  std::vector<std::string> cells;
+  for (std::istringstream row(line); std::getline(row, cell, ',');) cells.push_back(cell);
+  ASSERT_GE(cells.size(), 8u) << line;
+  EXPECT_GT(std::stod(cells[6]), 0);
+  EXPECT_NEAR(std::stod(cells[7]), 12.706 * std::stod(cells[6]) / std::sqrt(2.0), 1e-4);
   EXPECT_EQ(evaluate("--resume --seed 5", broken), 2);  // other settings
+  EXPECT_EQ(evaluate("--resume --moves clear=3", broken), 2);
+  EXPECT_EQ(evaluate("--moves clear=0.5", folder_ / "small"), 2);  // the body does not fit
+  EXPECT_EQ(evaluate("--moves leap=3", folder_ / "unknown"), 2);
 }
 
 }  // namespace
