@@ -81,9 +81,6 @@ void say(const Invocation& invocation, const std::vector<fs::path>& files,
 
 ExitStatus new_plugin(const NewFiles& wanted, const Invocation& invocation) {
   const fs::path templates = shipped_folder("scripts") / "templates" / "plugins";
-  if (wanted.kind == "map")
-    throw InputError(
-        "a map takes more than a page: copy plugins/maps/octomap, the shortest one there is");
   expect_kind(wanted.kind, kinds_in(templates), "plugin");
   expect_snake_case(wanted.name);
   const fs::path folder = wanted.folder / wanted.name;

@@ -1,5 +1,6 @@
 // A map that is slow and plainly right: one entry for every known voxel, every question answered
-// voxel by voxel. What other backends are compared with.
+// voxel by voxel. What other backends are compared with, and may begin from: whoever overrides a
+// function must give the same answers.
 #pragma once
 
 #include <unordered_map>

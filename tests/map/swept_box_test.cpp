@@ -93,12 +93,12 @@ TEST(Uncertainty, FallsByAFactorWithEachObservation) {
   Value value = Value::map();
   value.set("observations", true);
   value.set("resolution", 0.5);
-  ReferenceMap map(map_settings(check(map_parameters(), value)));
+  PlainMap map(map_settings(check(map_parameters(), value)));
   EXPECT_EQ(map.uncertainty(0), 1);
   EXPECT_NEAR(map.uncertainty(1), 0.6065306597126334, 1e-12);  // exp(-0.5), eta of reading 5.2
   EXPECT_NEAR(map.uncertainty(4), 0.1353352832366127, 1e-12);
   value.set("information", 2.0);
-  EXPECT_NEAR(ReferenceMap(map_settings(check(map_parameters(), value))).uncertainty(1),
+  EXPECT_NEAR(PlainMap(map_settings(check(map_parameters(), value))).uncertainty(1),
               0.1353352832366127, 1e-12);
   // Over 2^3 voxels, one of them measured twice.
   map.integrate(std::vector<Eigen::Vector3f>{{0.3f, 0.3f, 0.3f}}, {0.2f, 0.2f, 0.2f});
