@@ -29,7 +29,7 @@ struct Trial {
   }
 };
 
-// Student's t of 97.5 %, by degrees of freedom less one.
+// Student's t of 97.5 %: of 1 degree of freedom, of 2, ...
 constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,
                                2.262,  2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
                                2.110,  2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
@@ -168,15 +168,15 @@ void summarise_world(Summary& summary, const std::string& world,
       relative.push_back(raw.back() / oracle[e]);
       if (!learned.empty()) below.push_back((learned[e] - raw.back()) / oracle[e]);
     }
-    const Mean efficiencies = mean_of(raw), shares = mean_of(relative), behind = mean_of(below);
+    const Mean efficiencies = mean_of(raw), shares = mean_of(relative), lacks = mean_of(below);
     summary.table += world + "," + utility + "," + std::to_string(raw.size()) + "," +
                      number(efficiencies.mean) + "," + number(efficiencies.deviation) + "," +
                      number(shares.mean) + "," + number(shares.deviation) + "," +
-                     number(shares.interval()) + "," + number(behind.mean) + "," +
-                     number(behind.interval()) + "\n";
+                     number(shares.interval()) + "," + number(lacks.mean) + "," +
+                     number(lacks.interval()) + "\n";
     summary.shown.rows.push_back(
         {{world, utility, efficiencies.mean, efficiencies.deviation, shares.mean, shares.deviation,
-          shares.interval(), behind.mean, behind.interval()}});
+          shares.interval(), lacks.mean, lacks.interval()}});
     Series series{utility, {0}, {0}};
     for (int t = 0; t < request.steps; ++t) {
       std::vector<double> at;
@@ -194,7 +194,7 @@ void summarise_world(Summary& summary, const std::string& world,
 
 void print_table(const Table& table) {
   std::printf("%-22s %-18s %12s %10s %9s %9s %9s %9s %9s\n", "world", "utility", "efficiency",
-              "deviation", "relative", "deviation", "95 % +-", "behind", "95 % +-");
+              "deviation", "relative", "deviation", "95 % +-", "below", "95 % +-");
   for (const TableRow& row : table.rows) {
     std::printf("%-22s %-18s", std::get<std::string>(row.cells[0]).c_str(),
                 std::get<std::string>(row.cells[1]).c_str());

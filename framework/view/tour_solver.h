@@ -72,7 +72,8 @@ class TourWork {
  public:
   explicit TourWork(const TourRequest& request);
 
-  // True once the search has to end; stays true. `evaluations` and `iterations` so far.
+  // True once the search has to end; stays true. `evaluations` and `iterations` so far, which the
+  // request's progress is told now and then.
   bool ended(std::int64_t evaluations, std::int64_t iterations = 0);
   std::optional<TourStatus> ending() const { return ending_; }
   // The iterations after which the solver ends by itself: for telling how far it has come.

@@ -1,6 +1,7 @@
 #include "tests/bench/bench_problems.h"
 
 #include "framework/core/random.h"
+#include "framework/solve/local_program.h"
 
 namespace lapwing {
 namespace {
@@ -66,13 +67,7 @@ TrajectoryProblem quadratic_flight(const Registry& registry, double seconds, std
 QuadraticProgram program_of(const TrajectoryProblem& problem) {
   LocalModel model;
   problem.linearise(problem.initial_guess(), model);
-  return {model.hessian,
-          model.gradient,
-          model.jacobian,
-          model.row_lower - model.values,
-          model.row_upper - model.values,
-          model.step_lower,
-          model.step_upper};
+  return local_program(model);
 }
 
 }  // namespace lapwing

@@ -40,6 +40,13 @@ class Race : public Filming {
       EXPECT_LE(s.acceleration.norm(), 5.001);
     }
   }
+  static void expect_flown_by_rotors(const Flown& flown, std::size_t gates) {
+    expect_certified(flown);
+    const Plan plan = read_plan(flown.folder / "plan.json");
+    EXPECT_EQ(plan.trajectory.model, MotionModel::rotors);
+    EXPECT_EQ(plan.task.gates.size(), gates);
+    EXPECT_NE(read_file(flown.folder / "report.html").find("Rotor thrusts"), std::string::npos);
+  }
   static double time_of(const Flown& flown) {
     return flown.result.at("race").at("time").as_number();
   }

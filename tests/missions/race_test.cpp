@@ -6,12 +6,7 @@ namespace {
 
 TEST_F(Race, ThreeGatesAtTheLimitOfTheRotors) {
   const Flown flown = fly("../racing/round_course.lua", "--set model=quadrotor_full --set laps=1");
-  expect_certified(flown);
-  const Plan plan = read_plan(flown.folder / "plan.json");
-  EXPECT_EQ(plan.trajectory.model, MotionModel::rotors);
-  EXPECT_EQ(plan.task.gates.size(), 3u);
-  const std::string report = read_file(flown.folder / "report.html");
-  EXPECT_NE(report.find("Rotor thrusts"), std::string::npos);
+  expect_flown_by_rotors(flown, 3);
 }
 
 TEST_F(Race, APointMassAsFastAsOthers) {

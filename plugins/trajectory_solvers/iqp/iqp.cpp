@@ -22,6 +22,7 @@
 #include "framework/plugin/plugin.h"
 #include "framework/solve/elastic.h"
 #include "framework/solve/interior_point.h"
+#include "framework/solve/local_program.h"
 #include "framework/solve/solve_record.h"
 #include "framework/solve/trajectory_solver.h"
 
@@ -224,13 +225,7 @@ void Solve::linearise() {
 }
 
 Solve::Step Solve::quadratic_step() {
-  program_.hessian = model_.hessian;
-  program_.gradient = model_.gradient;
-  program_.jacobian = model_.jacobian;
-  program_.row_lower = model_.row_lower - model_.values;
-  program_.row_upper = model_.row_upper - model_.values;
-  program_.x_lower = model_.step_lower;
-  program_.x_upper = model_.step_upper;
+  program_ = local_program(model_);
   InteriorPointOptions options;
   options.cancellation = request_.cancellation;
   options.tolerance = program_tolerance_;

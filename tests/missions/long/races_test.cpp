@@ -14,12 +14,7 @@ TEST_F(Race, TheKnownSevenGatesInTheirTime) {
 
 TEST_F(Race, SevenGatesAtTheLimitOfTheRotors) {
   const Flown flown = fly("../racing/seven_gates.lua");
-  expect_certified(flown);
-  const Plan plan = read_plan(flown.folder / "plan.json");
-  EXPECT_EQ(plan.trajectory.model, MotionModel::rotors);
-  EXPECT_EQ(plan.task.gates.size(), 7u);
-  const std::string report = read_file(flown.folder / "report.html");
-  EXPECT_NE(report.find("Rotor thrusts"), std::string::npos);
+  expect_flown_by_rotors(flown, 7);
 }
 
 TEST_F(Race, FiftyRandomKeyframesInASecond) {

@@ -1,0 +1,84 @@
+// The command line for authors of plugins and missions.
+#include <CLI/CLI.hpp>
+
+#include "framework/app/command_options.h"
+#include "framework/app/descriptions.h"
+#include "framework/app/new_files.h"
+#include "framework/app/plugin_check.h"
+
+namespace lapwing {
+
+void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
+                         Description& described, PluginCheck& asked, Command& command) {
+  CLI::App* plugins = app.add_subcommand("plugins", "what plugins there are");
+  plugins->require_subcommand(1);
+  CLI::App* list = plugins->add_subcommand("list", "every plugin, by kind");
+  add_json(*list, invocation);
+  list->callback([&] { command = [&] { return list_plugins(invocation); }; });
+  CLI::App* show = plugins->add_subcommand("show", "a plugin's parameters");
+  add_text(*show, "name", "[KIND/]NAME", "its name", [&](const std::string& given) {
+    name = given;
+  })->required();
+  show->add_flag("--markdown", described.markdown, "its parameters as a table of a README");
+  add_json(*show, invocation);
+  show->callback(
+      [&] { command = [&] { return show_plugin(name, described.markdown, invocation); }; });
+  CLI::App* path = plugins->add_subcommand("path", "the folders that are searched");
+  add_json(*path, invocation);
+  path->callback([&] { command = [&] { return show_plugin_path(invocation); }; });
+  CLI::App* check = plugins->add_subcommand(
+      "check", "what every plugin of its kind must pass, each test in a process of its own");
+  add_text(*check, "plugin", "FILE.so|[KIND/]NAME", "a library, or the name of a plugin",
+           [&](const std::string& given) { asked.target = given; })
+      ->required();
+  add_repeated(*check, "--only", "TEST", asked.only, "this test alone; repeatable");
+  add_text(*check, "--limit", "S", "s that one test may take; else 60",
+           [&](const std::string& text) {
+             asked.limit = read_number("--limit", text);
+             if (!(asked.limit > 0))
+               throw CLI::ValidationError("--limit",
+                                          "expected a number above 0, not '" + text + "'");
+           });
+  add_json(*check, invocation);
+  check->callback([&] { command = [&] { return check_plugins(asked, invocation); }; });
+}
+
+void add_description_commands(CLI::App& app, Invocation& invocation, Description& asked,
+                              Command& command) {
+  CLI::App* annotations = app.add_subcommand(
+      "annotations", "what scripts may call and set, for editors with a Lua language server");
+  CLI::App* schema = app.add_subcommand(
+      "schema", "a JSON schema of configurations, for editors that check YAML");
+  for (CLI::App* one : {annotations, schema})
+    add_text(*one, "-o,--output", "FILE", "the file to write; else standard output",
+             [&](const std::string& path) { asked.target = path; });
+  annotations->add_flag("--markdown", asked.markdown, "the calls alone, as a table of a README");
+  add_text(*schema, "kind", "KIND", "a kind of mission, or vehicle; else all missions",
+           [&](const std::string& given) { asked.kind = given; });
+  annotations->callback([&] { command = [&] { return write_annotations(asked, invocation); }; });
+  schema->callback([&] { command = [&] { return write_schema(asked, invocation); }; });
+}
+
+void add_new_commands(CLI::App& app, Invocation& invocation, NewFiles& wanted, Command& command) {
+  CLI::App* made = app.add_subcommand("new", "files to begin from");
+  made->require_subcommand(1);
+  CLI::App* plugin = made->add_subcommand(
+      "plugin", "a folder with a plugin that builds, passes its tests and says what it does");
+  CLI::App* mission = made->add_subcommand("mission", "a mission script with comments that teach");
+  for (CLI::App* one : {plugin, mission}) {
+    add_text(*one, "kind", "KIND", one == plugin ? "cost_term, constraint, ..." : "film, race, ...",
+             [&](const std::string& given) { wanted.kind = given; })
+        ->required();
+    add_text(*one, "name", one == plugin ? "NAME" : "FILE",
+             one == plugin ? "its name, in snake_case; also the folder's" : "the file to write",
+             [&](const std::string& given) { wanted.name = given; })
+        ->required();
+    add_json(*one, invocation);
+  }
+  add_text(*plugin, "--in", "DIR", "where the folder is made; else here",
+           [&](const std::string& given) { wanted.folder = given; });
+  plugin->callback([&] { command = [&] { return new_plugin(wanted, invocation); }; });
+  mission->callback([&] { command = [&] { return new_mission(wanted, invocation); }; });
+}
+
+}  // namespace lapwing

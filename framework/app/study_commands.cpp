@@ -1,0 +1,155 @@
+// The command line of studies and of training.
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "framework/app/command_options.h"
+#include "framework/app/evaluate_explore.h"
+#include "framework/app/train_command.h"
+
+namespace lapwing {
+
+namespace {
+
+constexpr const char* kMovesHelp = "step, turn_deg, body or clear, as a mission's `moves`";
+
+std::uint64_t read_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size() || seed > kLargestSeed)
+    throw CLI::ValidationError("--seeds", "expected whole numbers, not '" + text + "'");
+  return seed;
+}
+
+}  // namespace
+
+void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluation& asked,
+                       Command& command) {
+  CLI::App* scan = evaluate.add_subcommand(
+      "scan", "scan tours and their rivals, judged by the models that their images would make");
+  add_text(*scan, "missions", "MISSION.lua...", "scans to plan by every method",
+           [&](const std::string& path) { asked.missions.emplace_back(path); })
+      ->required()
+      ->expected(1, 1000);
+  add_repeated(*scan, "--method", "NAME", asked.methods,
+               "a tour solver (milp, milp:nodes=100, cost_benefit+local_search) or a pattern "
+               "(circle_50, ellipse_60x40, meander_85x100, hemisphere_60); else all");
+  add_text(*scan, "--seeds", "N,N,...", "of the missions; else 1", [&](const std::string& text) {
+    asked.seeds.clear();
+    read_list(text, [&](const std::string& part) { asked.seeds.push_back(read_seed(part)); });
+  });
+  add_text(*scan, "--budgets", "S,S,...", "of flight; else each mission's own",
+           [&](const std::string& text) {
+             read_list(text, [&](const std::string& part) {
+               asked.budgets.push_back(read_number("--budgets", part));
+             });
+           });
+  add_text(*scan, "--noise", "SIGMA[,DROPPED]",
+           "of the judged depth: m, and the share of pixels without any; else ideal",
+           [&](const std::string& text) {
+             std::vector<double> numbers;
+             read_list(text, [&](const std::string& part) {
+               numbers.push_back(read_number("--noise", part));
+             });
+             if (numbers.empty() || numbers.size() > 2)
+               throw CLI::ValidationError("--noise", "expected SIGMA or SIGMA,DROPPED");
+             asked.noise = DepthNoise{numbers.size() > 1 ? numbers[1] : 0, numbers[0]};
+           });
+  add_text(*scan, "--guard", "S", "of wall clock that one solver may take; else 300",
+           [&](const std::string& text) { asked.guard = read_number("--guard", text); });
+  scan->add_flag("--photos", asked.photos,
+                 "render photographs along each tour and ask COLMAP how many fit into one model");
+  scan->add_flag("--resume", asked.resume, "go on with a study that was ended");
+  add_repeated(*scan, "--config", "FILE", invocation.configs,
+               "a configuration file or its name in configs/, of all missions");
+  add_repeated(*scan, "--set", "KEY=VALUE", invocation.overrides, "set one option of all missions");
+  add_repeated(*scan, "--data", "DIR", invocation.data, "a folder that the scripts may read");
+  add_text(*scan, "--out", "DIR", "folder of the results; else out/evaluate_scan",
+           [&](const std::string& path) { invocation.out = path; });
+  add_threads(*scan, invocation, "rows at once; else one per core");
+  scan->add_flag("--quiet", invocation.quiet, "no progress, no tables");
+  add_json(*scan, invocation);
+  scan->callback([&] { command = [&] { return evaluate_scan(asked, invocation); }; });
+}
+
+void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& request,
+                        Command& command) {
+  CLI::App* train = app.add_subcommand("train", "learned utilities: samples, training, judging");
+  train->require_subcommand(1);
+  const auto add = [&](const char* name, const char* help, const char* target) {
+    CLI::App* made = train->add_subcommand(name, help);
+    add_text(*made, "-o,--output", "PATH", target, [&](const std::string& path) {
+      request.target = path;
+    })->required();
+    add_text(*made, "--utility", "NAME", "the utility that is trained; else learned",
+             [&](const std::string& given) { request.utility = given; });
+    add_repeated(*made, "--set", "KEY=VALUE", invocation.overrides,
+                 "set one parameter of the network or its training");
+    add_threads(*made, invocation, "threads to use; else one per core");
+    add_seed(*made, invocation.seed, "of all random numbers");
+    made->add_flag("--quiet", invocation.quiet, "no lines of progress");
+    return made;
+  };
+  const auto add_samples = [&](CLI::App& made) {
+    add_text(made, "samples", "DIR", "a folder of samples", [&](const std::string& path) {
+      request.samples = path;
+    })->required();
+    add_json(made, invocation);
+  };
+  CLI::App* dataset = add("dataset", "samples from episodes of the oracle", "a folder");
+  add_repeated(*dataset, "--world", "NAME[:FIRST-LAST]", request.worlds,
+               "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
+  add_text(*dataset, "--explorer", "NAME", "the utility that explores; else the oracle",
+           [&](const std::string& given) { request.explorer = given; });
+  add_repeated(*dataset, "--explorer-set", "KEY=VALUE", request.explorer_overrides,
+               "set one parameter of the utility that explores, as model=FILE");
+  add_repeated(*dataset, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
+  add_count(*dataset, "--episodes", 1, 100'000, "of each world",
+            [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
+  add_count(*dataset, "--steps", 1, 100'000, "of each episode",
+            [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
+  CLI::App* fit = add("fit", "train a model", "the model's file");
+  add_samples(*fit);
+  add_text(*fit, "--validation", "DIR", "samples of other worlds or episodes",
+           [&](const std::string& path) { request.validation = path; })
+      ->required();
+  for (CLI::App* made : {dataset, fit})
+    made->add_flag("--resume", request.resume, "go on with what is there");
+  CLI::App* score = add("score", "rank correlation and loss of a model", "the model's file");
+  add_samples(*score);
+  dataset->callback([&] { command = [&] { return make_dataset(request, invocation); }; });
+  fit->callback([&] { command = [&] { return fit_model(request, invocation); }; });
+  score->callback([&] { command = [&] { return score_model(request, invocation); }; });
+}
+
+void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,
+                          Command& command) {
+  CLI::App* made =
+      evaluate.add_subcommand("explore", "utilities against the oracle, tables 5.1 on");
+  add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds,
+               "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
+  add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; else every one");
+  add_repeated(*made, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
+  add_count(*made, "--episodes", 1, 10'000, "of each world",
+            [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
+  add_count(*made, "--steps", 1, 100'000, "of each episode",
+            [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
+  add_count(*made, "--lookahead", 1, 4, "views of the ways that are valued; else 1",
+            [&](std::uint64_t count) { request.lookahead = static_cast<int>(count); });
+  add_text(*made, "--sigma", "M", "noise of the depth; the views are replayed without",
+           [&](const std::string& text) { request.sigma = read_number("--sigma", text); });
+  add_text(*made, "--dropped", "SHARE", "of the pixels without a measurement",
+           [&](const std::string& text) { request.dropped = read_number("--dropped", text); });
+  add_text(*made, "--stereo", "M", "depth by a pair of cameras so far apart, likewise",
+           [&](const std::string& text) { request.stereo = read_number("--stereo", text); });
+  add_repeated(*made, "--set", "UTILITY.KEY=VALUE", invocation.overrides,
+               "set one parameter of a utility");
+  add_text(*made, "-o,--output", "DIR", "folder of the results; else out/evaluate_explore",
+           [&](const std::string& path) { request.folder = path; });
+  add_threads(*made, invocation, "threads to use; else one per core");
+  add_seed(*made, invocation.seed, "of the starts");
+  made->add_flag("--resume", request.resume, "keep the episodes that are there");
+  made->add_flag("--quiet", invocation.quiet, "no lines of progress");
+  made->callback([&] { command = [&] { return evaluate_explore(request, invocation); }; });
+}
+
+}  // namespace lapwing
