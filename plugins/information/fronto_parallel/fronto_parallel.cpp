@@ -4,11 +4,13 @@
 //   vi_i = exp(-max(gamma - T_i, 0) / F_i)     gamma: angle between the ray and the normal
 //   vi_r = exp(-max(T_r - px, 0) / F_r)        px: pixels that the voxel's edge takes
 //
-// Back faces tell nothing; where the normal is not known a constant takes the place of vi_i.
+// Back faces tell nothing, and so does what lies beyond the distance up to which depth will be used
+// for the model, where one is given; where the normal is not known a constant takes the place of vi_i.
 //
 //   information: fronto_parallel
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/core/units.h"
 #include "framework/plugin/plugin.h"
@@ -33,7 +35,8 @@ class FrontoParallel final : public ViewInformation {
                 at_least(0))
         .number("pixels_falloff", 3, "px", "below it, the pixels that cost a factor e", above(0))
         .number("unknown_normal", 0.2, "", "in place of the angle's factor without a normal",
-                between(0, 1));
+                between(0, 1))
+        .optional_number("farthest", "m", "distance beyond which a view tells nothing", above(0));
   }
   explicit FrontoParallel(const Parameters& p)
       : views_(p.number("views")),
@@ -41,7 +44,9 @@ class FrontoParallel final : public ViewInformation {
         incidence_falloff_(radians(p.number("incidence_falloff_deg"))),
         pixels_(p.number("pixels")),
         pixels_falloff_(p.number("pixels_falloff")),
-        unknown_normal_(p.number("unknown_normal")) {}
+        unknown_normal_(p.number("unknown_normal")),
+        farthest_(p.has("farthest") ? p.number("farthest")
+                                    : std::numeric_limits<double>::infinity()) {}
 
   void contributions(std::span<const VoxelSight> sights, std::span<float> values) const override {
     for (std::size_t k = 0; k < sights.size(); ++k)
@@ -50,6 +55,7 @@ class FrontoParallel final : public ViewInformation {
 
  private:
   double square(const VoxelSight& sight) const {
+    if (sight.distance > farthest_) return 0;
     if (!sight.incidence) return unknown_normal_;
     if (*sight.incidence >= radians(90)) return 0;
     return std::exp(-std::max(*sight.incidence - incidence_, 0.0) / incidence_falloff_);
@@ -59,6 +65,7 @@ class FrontoParallel final : public ViewInformation {
   }
 
   double views_, incidence_, incidence_falloff_, pixels_, pixels_falloff_, unknown_normal_;
+  double farthest_;  // m
 };
 
 }  // namespace
