@@ -1,6 +1,8 @@
 // What is described once: tables in READMEs, schemas beside configurations and annotations are what
 // the program writes. LAPWING_DESCRIBE=write in the environment writes them anew.
+#include <map>
 #include <regex>
+#include <set>
 
 #include "framework/app/descriptions.h"
 #include "framework/config/yaml.h"
@@ -166,6 +168,47 @@ TEST(Described, EveryMissionFunctionIsAsked) {
             "explore.of_mesh explore.of_scene film.from_file film.shot light_painting.picture "
             "light_painting.strokes light_painting.text map.of_file map.of_folder map.of_scene "
             "race.course scan.of_mesh scan.of_prior scan.of_scene ");
+}
+
+// The words in code of a text.
+std::set<std::string> words_in_code(const std::string& text) {
+  std::set<std::string> words;
+  const std::regex code("`([^`\n]+)`"), word("[A-Za-z_][A-Za-z0-9_]*");
+  for (std::sregex_iterator at(text.begin(), text.end(), code), end; at != end; ++at) {
+    const std::string inside = (*at)[1];
+    for (std::sregex_iterator w(inside.begin(), inside.end(), word); w != end; ++w)
+      words.insert(w->str());
+  }
+  return words;
+}
+
+// The README of missions is written by hand: it explains every option that there is, and its tables
+// begin with no option that there is not.
+TEST(Described, OptionsInTheReadmeOfTheirMission) {
+  const std::string text = read_file(kTree / "scripts/mission/README.md");
+  std::map<std::string, std::set<std::string>> options;  // by kind
+  for (const MissionFunction& mission : shipped_interface().missions)
+    for (const Value& option : mission.declarations.as_list())
+      options[mission.kind].insert(option.at("name").as_text());
+  EXPECT_EQ(options.size(), 6u);
+  for (const auto& [kind, names] : options) {
+    const std::size_t from = text.find("\n## " + kind + "\n");
+    ASSERT_NE(from, std::string::npos) << kind;
+    const std::string section = text.substr(from, text.find("\n## ", from + 1) - from);
+    const std::set<std::string> explained = words_in_code(section);
+    for (const std::string& name : names)
+      EXPECT_TRUE(explained.contains(name)) << "missions of kind " << kind << " have an option '"
+                                            << name << "' that their README does not explain";
+    const std::size_t table = section.find("\n| option |"), end = section.find("\n\n", table);
+    ASSERT_NE(table, std::string::npos) << kind;
+    std::istringstream rows(section.substr(table, end - table));
+    for (std::string row; std::getline(rows, row);) {
+      if (row.rfind("| `", 0) != 0) continue;
+      for (const std::string& name : words_in_code(row.substr(0, row.find('|', 1))))
+        EXPECT_TRUE(names.contains(name) || (kind == "film" && name == "subject"))  // short form
+            << "missions of kind " << kind << " have no option '" << name << "'";
+    }
+  }
 }
 
 TEST_F(CommandLine, SaysWhatThereIs) {
