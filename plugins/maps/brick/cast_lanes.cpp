@@ -122,7 +122,7 @@ class Caster {
       const double from = free[static_cast<std::size_t>(k / RayBeam::kQuadsAPart)];
       rays.known_free = from > 0;
       rays.quad.prepare(grid_, start, beam_.directions(k));
-      rays.quad.go_to(from);
+      if (rays.known_free) rays.quad.go_to(from);
     }
     batch.count = RayBeam::kRays / 4;
   }
@@ -145,7 +145,6 @@ class Caster {
       }
     }
     rays.quad.prepare(grid_, start, direction);
-    rays.quad.go_to(0);
   }
 
   __attribute__((always_inline)) void visit(Group& group) {

@@ -128,7 +128,7 @@ struct Quad {
       spacing[i] = moves ? grid.resolution() * (falls ? -per_metre : per_metre) : zero;
       rate[i] = moves ? size[i] * grid.per_metre() : zero;
       const FourInt mirror = __builtin_convertvector(falls, FourInt);
-      start[i] = from[i].cell ^ (mirror & 0xffff);
+      cell[i] = start[i] = from[i].cell ^ (mirror & 0xffff);
       descends |= mirror & (1 << i);
     }
     const Four by_x = 0.4 * size[0], by_y = 0.4 * size[1], by_z = 0.4 * size[2];
@@ -137,6 +137,8 @@ struct Quad {
     const FourInt along = kAlongNone + __builtin_convertvector(3 * x + 2 * y + z, FourInt);
     ahead = (descends | along << 3) * static_cast<int>(sizeof(Ahead));
     mirrored = mirror_of_places(descends);
+    entered = zero;
+    find_places();
   }
 
   const Ahead& ahead_of(int ray) const {
@@ -171,7 +173,7 @@ struct Quad {
     find_places();
   }
 
-  // Every ray to a distance at which nothing is known of its crossings.
+  // Every ray from its start to a distance that is not 0.
   __attribute__((always_inline)) void go_to(double at) {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
