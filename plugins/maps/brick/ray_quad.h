@@ -161,7 +161,7 @@ struct Quad {
     const Four at = at_xy < t[2] ? at_xy : t[2];
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
-      const Four number = nearest((at - first[i]) * rate[i]);
+      const Four number = nearest(i, at);
       const Four crossing = first[i] + number * spacing[i];
       // Crossings at one distance are made z before y before x.
       move(i, number,
@@ -177,7 +177,7 @@ struct Quad {
   __attribute__((always_inline)) void go_to(double at) {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
-      const Four number = nearest((at - first[i]) * rate[i]);
+      const Four number = nearest(i, at);
       move(i, number, first[i] + number * spacing[i] < at);
     }
     entered = Four{} + at;
@@ -192,9 +192,13 @@ struct Quad {
   }
 
  private:
-  __attribute__((always_inline)) static Four nearest(const Four& x) {
+  // The number of the crossing along axis i that is nearest to a distance. Those that a ray would
+  // have made before its start do not count, near as they are where it starts on a face.
+  template <class Numbers>
+  __attribute__((always_inline)) Four nearest(int i, const Numbers& at) const {
     constexpr double kRounding = 6755399441055744.0;  // 1.5 * 2^52: adding it leaves no fraction
-    return (x + kRounding) - kRounding;
+    const Four number = ((at - first[i]) * rate[i] + kRounding) - kRounding;
+    return number > 0 ? number : Four{};
   }
 
   // To the cell after crossing `number`, or before it.

@@ -87,7 +87,7 @@ TEST(EqualCasts, InWholeViews) {
     std::vector<MapRay> rays;
     for (const Eigen::Vector3d& ray_C : tiled_pixel_rays(pinhole))
       rays.push_back({from, (camera.orientation * ray_C).normalized(),
-                      view % 2 ? 40 : random.uniform(0.01, 12)});
+                      view % 2 ? 40 : random.uniform(0.01, 2)});
     std::vector<MapRayHit> hits(rays.size()), right(rays.size());
     pair.brick->cast(rays, hits);
     pair.octomap->cast(rays, right);
