@@ -1,4 +1,7 @@
 // Explorations end to end.
+#include <array>
+#include <map>
+
 #include "tests/missions/flown_film.h"
 
 namespace lapwing {
@@ -124,7 +127,8 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
     const std::string line = std::string(LAPWING_BUILD_DIR) +
                              "/bin/lapwing evaluate explore --world '" +
                              (folder_ / "yard.obj").string() +
-                             "' --utility frontier --utility oracle --episodes 2 --steps 3 "
+                             "' --utility frontier --utility oracle --utility learned --episodes 2 "
+                             "--steps 3 "
                              "--quiet -o '" +
                              out.string() + "' " + more;
     return WEXITSTATUS(std::system(line.c_str()));
@@ -135,21 +139,48 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   int removed = 0;
   for (const auto& entry : fs::directory_iterator(broken / "episodes"))
     if (++removed % 2 == 0) fs::remove(entry.path());
-  EXPECT_EQ(removed, 4);
+  EXPECT_EQ(removed, 6);
   fs::remove(broken / "table.csv");
   ASSERT_EQ(evaluate("--resume", broken), 0);
   for (const char* file : {"table.csv", "curves.csv", "report.html"})
     EXPECT_EQ(read_file(whole / file), read_file(broken / file)) << file;
   EXPECT_NE(read_file(whole / "table.csv").find("yard.obj,oracle,2"), std::string::npos);
-  // Of two episodes the interval is 12.706 (Student's t) standard deviations over root 2.
+  // The table's figures anew from the episodes themselves.
+  std::map<std::string, std::array<double, 2>> efficiency;  // by utility: of both episodes
+  for (const auto& entry : fs::directory_iterator(whole / "episodes")) {
+    const Value episode = from_json(read_file(entry.path()), "episode");
+    double& sum = efficiency[episode.at("utility").as_text()]
+                            [static_cast<std::size_t>(episode.at("episode").as_integer() - 1)];
+    const Value::List& observed = episode.at("observed").as_list();
+    for (const Value& seen : observed) sum += seen.as_number();
+    // It stays as it is after an early end.
+    for (std::size_t k = observed.size(); k < 3; ++k) sum += observed.back().as_number();
+  }
+  ASSERT_EQ(efficiency.size(), 3u);
+  const auto [oracle_1, oracle_2] = efficiency["oracle"];
+  const auto [learned_1, learned_2] = efficiency["learned"];
   std::istringstream table(read_file(whole / "table.csv"));
-  std::string line, cell;
-  while (std::getline(table, line) && line.find("frontier") == line.npos) continue;
-  std::vector<std::string> cells;
-  for (std::istringstream row(line); std::getline(row, cell, ',');) cells.push_back(cell);
-  ASSERT_GE(cells.size(), 8u) << line;
-  EXPECT_GT(std::stod(cells[6]), 0);
-  EXPECT_NEAR(std::stod(cells[7]), 12.706 * std::stod(cells[6]) / std::sqrt(2.0), 1e-4);
+  int rows = 0;
+  for (std::string line, cell; std::getline(table, line);) {
+    std::vector<std::string> cells;
+    for (std::istringstream row(line); std::getline(row, cell, ',');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 10u) << line;
+    if (cells[0] != "yard.obj") continue;
+    ++rows;
+    const auto [first, second] = efficiency.at(cells[1]);
+    EXPECT_NEAR(std::stod(cells[3]), (first + second) / 2, 1e-3 * first);
+    // Mean, deviation and interval of two: 12.706 (Student's t) deviations over root 2.
+    const auto expect_mean = [&](int at, double a, double b) {
+      EXPECT_NEAR(std::stod(cells[at]), (a + b) / 2, 1e-4) << line;
+      const double deviation = std::abs(a - b) / std::sqrt(2.0);
+      return 12.706 * deviation / std::sqrt(2.0);
+    };
+    EXPECT_NEAR(std::stod(cells[7]), expect_mean(5, first / oracle_1, second / oracle_2), 1e-4);
+    EXPECT_NEAR(std::stod(cells[9]),
+                expect_mean(8, (learned_1 - first) / oracle_1, (learned_2 - second) / oracle_2),
+                1e-4);
+  }
+  EXPECT_EQ(rows, 3);
   EXPECT_EQ(evaluate("--resume --seed 5", broken), 2);  // other settings
   EXPECT_EQ(evaluate("--resume --moves clear=3", broken), 2);
   EXPECT_EQ(evaluate("--moves clear=0.5", folder_ / "small"), 2);  // the body does not fit
