@@ -20,9 +20,11 @@ install(FILES plugin/lapwing_plugin.cmake plugin/plugin_exports.map DESTINATION 
 foreach(place build install)
   set(LAPWING_PLUGIN_CMAKE "\${CMAKE_CURRENT_LIST_DIR}/lapwing_plugin.cmake")
   set(config ${CMAKE_CURRENT_BINARY_DIR}/installed/lapwing-config.cmake)
+  file(RELATIVE_PATH LAPWING_PREFIX /prefix/${package} /prefix)
   if(place STREQUAL build)
     set(LAPWING_PLUGIN_CMAKE ${CMAKE_CURRENT_SOURCE_DIR}/plugin/lapwing_plugin.cmake)
     set(config ${CMAKE_BINARY_DIR}/lapwing-config.cmake)
+    set(LAPWING_PREFIX "")  # plugins are not installed into a build tree
   endif()
   configure_file(lapwing-config.cmake.in ${config} @ONLY)
 endforeach()

@@ -4,6 +4,7 @@
 #include "framework/app/evaluate_explore.h"
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
+#include "framework/app/plugin_guard.h"
 #include "framework/app/sweep_command.h"
 #include "framework/app/train_command.h"
 
@@ -217,6 +218,11 @@ ExitStatus guarded_command(const Command& command, const Invocation& invocation)
 
 void print_json(const Value& value) {
   std::cout << to_json(value) << std::endl;
+}
+
+Registry Invocation::registry() const {
+  guard_plugin_calls(call_limit_from_environment());
+  return Registry(plugin_search_path(plugin_path));
 }
 
 int run_command_line(int argc, const char* const* argv) {

@@ -34,7 +34,8 @@ struct Invocation {
   bool json = false;
   bool quiet = false;
 
-  Registry registry() const { return Registry(plugin_search_path(plugin_path)); }
+  // Whoever has one may call plugins: from now on they are guarded (app/plugin_guard.h).
+  Registry registry() const;
 };
 
 // Parses, runs one command, reports errors on standard error (and with --json as the one object on

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
@@ -40,6 +41,17 @@ void expect_snake_case(const std::string& name) {
       name.find("__") == std::string::npos && std::all_of(name.begin(), name.end(), fits))
     return;
   throw InputError("'" + name + "' is no name for a plugin: expected snake_case, such as keep_low");
+}
+
+// A class of the kernel's that has the name: pages of errors by the compiler, said in one line.
+void expect_free_class(const std::string& name, const std::string& class_name,
+                       const fs::path& templates) {
+  std::istringstream taken(read_file(templates / "taken_names.txt"));
+  for (std::string one; taken >> one;)
+    if (one == class_name)
+      throw InputError("'" + name + "' cannot be a plugin's name: its class would be " +
+                       class_name + ", which is one of the kernel's; choose another, such as my_" +
+                       name);
 }
 
 // keep_low: KeepLow
@@ -83,6 +95,9 @@ ExitStatus new_plugin(const NewFiles& wanted, const Invocation& invocation) {
   const fs::path templates = shipped_folder("scripts") / "templates" / "plugins";
   expect_kind(wanted.kind, kinds_in(templates), "plugin");
   expect_snake_case(wanted.name);
+  expect_free_class(wanted.name, in_pascal_case(wanted.name), templates.parent_path());
+  if (!wanted.folder.empty() && !fs::is_directory(wanted.folder))
+    throw InputError("--in: '" + wanted.folder.string() + "' is no folder");
   const fs::path folder = wanted.folder / wanted.name;
   if (fs::exists(folder)) throw InputError("'" + folder.string() + "' exists already");
   const Registry registry = invocation.registry();
@@ -119,9 +134,13 @@ ExitStatus new_mission(const NewFiles& wanted, const Invocation& invocation) {
     throw InputError("'" + wanted.name +
                      "' is no name for a script: expected one that ends in .lua");
   if (fs::exists(file)) throw InputError("'" + file.string() + "' exists already");
-  write_file_atomically(file, filled_in(read_file(templates / (wanted.kind + ".lua.in")), "@NAME@",
-                                        file.stem().string()));
-  say(invocation, {file}, "\nRun it:\n  lapwing run " + file.string() + "\n");
+  const std::string text = read_file(templates / (wanted.kind + ".lua.in"));
+  write_file_atomically(file, filled_in(text, "@NAME@", file.stem().string()));
+  // What a script says of its time is said before it is run as well.
+  const std::size_t takes = text.find("-- Takes ");
+  const std::string time =
+      takes == text.npos ? "" : text.substr(takes + 3, text.find('\n', takes) - takes - 2);
+  say(invocation, {file}, "\nRun it:\n  lapwing run " + file.string() + "\n" + time);
   return ExitStatus::done;
 }
 

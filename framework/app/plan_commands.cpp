@@ -61,10 +61,14 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
   const Registry registry = invocation.registry();
   const Plan plan = read_plan(file);
   const auto exporter = registry.create<Exporter>(format);
-  if (exporter->file_extension().empty()) {
-    write_folder_atomically(target, exporter->write_folder(plan));
+  const bool folder =
+      in_plugin(*exporter, "file_extension", [&] { return exporter->file_extension().empty(); });
+  if (folder) {
+    write_folder_atomically(
+        target, in_plugin(*exporter, "write_folder", [&] { return exporter->write_folder(plan); }));
   } else {
-    write_file_atomically(target, exporter->write(plan));
+    write_file_atomically(target,
+                          in_plugin(*exporter, "write", [&] { return exporter->write(plan); }));
   }
   return ExitStatus::done;
 }

@@ -36,4 +36,14 @@ void Diagnostics::throw_if_any() const {
   if (!empty()) throw InputError(to_string());
 }
 
+std::string cure_of_plugin(std::string_view plugin) {
+  return "; try it alone: lapwing plugins check " + std::string(plugin);
+}
+
+PluginError plugin_failure(std::string_view plugin, std::string_view call,
+                           const std::string& what) {
+  return PluginError("plugin '" + std::string(plugin) + "' failed in " + std::string(call) + ": " +
+                     what + cure_of_plugin(plugin));
+}
+
 }  // namespace lapwing

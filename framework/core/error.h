@@ -7,6 +7,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lapwing {
@@ -62,13 +63,16 @@ class Diagnostics {
   std::vector<std::string> lines_;
 };
 
+// "; try it alone: lapwing plugins check keep_low": what to do about a plugin.
+std::string cure_of_plugin(std::string_view plugin);
+
+// "plugin 'keep_low' failed in evaluate: no", and the cure.
+PluginError plugin_failure(std::string_view plugin, std::string_view call, const std::string& what);
+
 // Runs `body`, the call named `call` of plugin `plugin`. InputError, PluginError and Cancelled
 // pass; anything else that it throws becomes a PluginError with both names.
 template <class Body>
-decltype(auto) call_plugin(const std::string& plugin, const std::string& call, Body&& body) {
-  const auto failed = [&](const std::string& what) {
-    return PluginError("plugin '" + plugin + "' failed in " + call + ": " + what);
-  };
+decltype(auto) call_plugin(std::string_view plugin, std::string_view call, Body&& body) {
   try {
     return body();
   } catch (const InputError&) {
@@ -78,9 +82,9 @@ decltype(auto) call_plugin(const std::string& plugin, const std::string& call, B
   } catch (const Cancelled&) {
     throw;
   } catch (const std::exception& error) {
-    throw failed(error.what());
+    throw plugin_failure(plugin, call, error.what());
   } catch (...) {
-    throw failed("an exception of unknown type");
+    throw plugin_failure(plugin, call, "an exception of unknown type");
   }
 }
 

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "framework/core/active_call.h"
+
 namespace lapwing {
 
 int available_threads() {
@@ -19,7 +21,17 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     return;
   }
   tbb::task_arena arena(most);
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+  const ActiveCallName caller = active_call();
+  if (!caller.name) {
+    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+    return;
+  }
+  // The other threads are in the caller's plugin as well.
+  const auto marked = [&](std::size_t i) {
+    const ActiveCall mark(caller.name, caller.call, caller.length);
+    body(i);
+  };
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, marked); });
 }
 
 void on_this_thread(const std::function<void()>& body) {

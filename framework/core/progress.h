@@ -4,13 +4,19 @@
 #include <atomic>
 #include <string>
 
+#include "framework/core/active_call.h"
+
 namespace lapwing {
 
 // Set from a signal handler or another thread; read between units of work. Lock-free.
 class CancellationToken {
  public:
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  // Whoever asks is at work: a plugin's long call that neither asks nor evaluates seems to hang.
+  bool cancelled() const {
+    show_activity();
+    return cancelled_.load(std::memory_order_relaxed);
+  }
 
  private:
   std::atomic<bool> cancelled_{false};

@@ -142,7 +142,7 @@ class Explorer {
 
 void Explorer::begin(const Viewpoint& start) {
   known_.pitch = start.pitch;
-  utility_.require_fit(known_);
+  in_plugin(utility_, "require_fit", [&] { utility_.require_fit(known_); });
   if (!map_.grid().contains(start.position))
     throw InputError("the start lies outside the largest map");
   const Eigen::AlignedBox3d cleared = cleared_box(map_.grid(), start.position, settings_.clear);
@@ -260,8 +260,7 @@ void Explorer::look(EpisodeStep& taken, int place) {
       reach_box(map_.grid(), taken.view, settings_.sensor.pinhole, settings_.sensor.range));
   // Where the body is there is nothing else, whatever a noisy image says.
   if (!graph_.free(taken.view, taken.view))
-    means_.touch(
-        clear_box(map_, cleared_box(map_.grid(), taken.view.position, settings_.body)));
+    means_.touch(clear_box(map_, cleared_box(map_.grid(), taken.view.position, settings_.body)));
   graph_.look_again();
   const double mapped = wall_seconds();
   observed_.update(map_, taken.view);

@@ -11,14 +11,17 @@ void ViewUtility::score(const EpisodeView& known, std::span<const Viewpoint> vie
   if (views.size() != values.size()) throw Error("as many values as views are needed");
   if (!known.map || !known.means) throw Error("a utility needs a map and its means");
   if (views.empty()) return;
-  values_of(known, views, values);
+  in_plugin(*this, "values_of", [&] { values_of(known, views, values); });
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (std::isfinite(values[i])) continue;
     const Viewpoint& view = views[i];
-    throw Error("the utility of the view from (" + std::to_string(view.position.x()) + ", " +
-                std::to_string(view.position.y()) + ", " + std::to_string(view.position.z()) +
-                ") with yaw " + std::to_string(view.yaw) + " is " + std::to_string(values[i]) +
-                ", which is no finite number");
+    const std::string wrong = "the utility of the view from (" + std::to_string(view.position.x()) +
+                              ", " + std::to_string(view.position.y()) + ", " +
+                              std::to_string(view.position.z()) + ") with yaw " +
+                              std::to_string(view.yaw) + " is " + std::to_string(values[i]) +
+                              ", which is no finite number";
+    if (!plugin_name()) throw Error(wrong);
+    throw plugin_failure(plugin_name(), "values_of", wrong);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/plugin_object.h"
 #include "framework/explore/map_means.h"
 #include "framework/map/map.h"
 #include "framework/view/viewpoint.h"
@@ -37,7 +38,7 @@ struct EpisodeView {
   int threads = 1;                  // results are the same for any number
 };
 
-class ViewUtility {
+class ViewUtility : public PluginObject {
  public:
   using Interface = ViewUtility;
   static constexpr const char* kKind = "utility";

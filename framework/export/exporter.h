@@ -4,11 +4,12 @@
 #include <string>
 
 #include "framework/core/folders.h"
+#include "framework/core/plugin_object.h"
 #include "framework/trajectory/plan.h"
 
 namespace lapwing {
 
-class Exporter {
+class Exporter : public PluginObject {
  public:
   using Interface = Exporter;
   static constexpr const char* kKind = "exporter";

@@ -68,7 +68,7 @@ void Map::integrate(std::span<const Eigen::Vector3f> points_W, const Eigen::Vect
     if (!inside(grid_, points_W[k]))
       throw InputError("point " + std::to_string(k) + " of a scan lies at " +
                        text(points_W[k].cast<double>()) + "; " + reach_of(grid_));
-  if (!points_W.empty()) insert(points_W, origin_W);
+  if (!points_W.empty()) in_plugin(*this, "insert", [&] { insert(points_W, origin_W); });
 }
 
 void Map::integrate(const PosedDepthImage& measured) {
@@ -89,7 +89,7 @@ void Map::import(std::span<const VoxelLeaf> leaves) {
     leaf.log_odds = std::clamp(leaf.log_odds, settings_.clamp_min, settings_.clamp_max);
     if (!settings_.observations) leaf.observations = 0;
   }
-  if (!clamped.empty()) assign(clamped);
+  if (!clamped.empty()) in_plugin(*this, "assign", [&] { assign(clamped); });
 }
 
 void Map::read_states(std::span<const VoxelKey> keys, std::span<VoxelState> states) const {
@@ -109,10 +109,12 @@ void Map::cast(std::span<const MapRay> rays, std::span<MapRayHit> hits) const {
     const std::size_t count = std::min(rays.size() - first, kRaysAPart);
     bool all = true;  // without branches: there are many, and hardly ever a bad one
     for (const MapRay& ray : rays.subspan(first, count)) all &= castable(grid_, ray);
-    if (all)
-      cast_checked(rays.subspan(first, count), hits.subspan(first, count));
-    else
+    if (!all) {
       refused = true;
+      return;
+    }
+    in_plugin(*this, "cast",
+              [&] { cast_checked(rays.subspan(first, count), hits.subspan(first, count)); });
   });
   if (refused) refuse_rays(grid_, rays);
 }
@@ -137,7 +139,7 @@ bool Map::swept_box_free(const Eigen::Vector3d& from_W, const Eigen::Vector3d& t
   const SweptBox box(grid_, from_W, to_W, half);
   for (int i = 0; i < 3; ++i)
     if (box.lower[i] < 0 || box.upper[i] >= kKeyCount) return false;
-  return sweep_checked(box);
+  return in_plugin(*this, "swept_box_free", [&] { return sweep_checked(box); });
 }
 
 void Map::read_means(int level, std::span<const VoxelKey> keys,
@@ -145,7 +147,7 @@ void Map::read_means(int level, std::span<const VoxelKey> keys,
   if (level < 0 || level > 10)
     throw InputError("means over cubes of level " + std::to_string(level) + "; levels are 0 to 10");
   if (keys.size() != means.size()) throw Error("as many means as keys are needed");
-  means_checked(level, keys, means);
+  in_plugin(*this, "read_means", [&] { means_checked(level, keys, means); });
 }
 
 void Map::require_memory(std::size_t bytes) const {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "framework/core/plugin_object.h"
 #include "framework/geometry/depth_image.h"
 #include "framework/map/map_settings.h"
 #include "framework/map/voxel.h"
@@ -48,7 +49,7 @@ struct VoxelCounts {
   std::uint64_t known = 0, free = 0, occupied = 0;  // known: free, occupied or in between
 };
 
-class Map {
+class Map : public PluginObject {
  public:
   using Interface = Map;
   static constexpr const char* kKind = "map";

@@ -4,13 +4,12 @@
 
 #include <lua.hpp>
 
-#include "framework/core/active_call.h"
 #include "framework/core/log.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
-#include "framework/mission/players.h"
 #include "framework/mission/map_objects.h"
+#include "framework/mission/players.h"
 #include "framework/mission/run.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/vectors.h"
@@ -76,15 +75,17 @@ int solve(lua_State* state) {
   solution.solver = argument.type;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    const ActiveCall mark(argument.type.c_str(), "solve", false);
-    solution.result = call_plugin(argument.type, "solve",
-                                  [&] { return solver->solve(*object.problem, request); });
+    solution.result = solve_by(*solver, *object.problem, request);
   }
   const SolveReport& report = solution.result.report;
+  if (report.status == SolveStatus::numerical_error && solution.result.point.stages.size() > 0) {
+    const std::string fault = object.problem->script_fault(solution.result.point.stages);
+    if (!fault.empty()) throw InputError(fault);
+  }
   run.solve_seconds += report.seconds;
   logging::info(argument.type + ": " + to_string(report.status) + " after " +
-            std::to_string(report.iterations) + " iterations" +
-            (report.message.empty() ? "" : "; " + report.message));
+                std::to_string(report.iterations) + " iterations" +
+                (report.message.empty() ? "" : "; " + report.message));
   new_object(state, kSolutionType, std::move(solution));
   return 1;
 }
@@ -320,10 +321,9 @@ std::vector<std::string> notes_argument(lua_State* state, int index, const Origi
   return notes;
 }
 
-constexpr BoundField kPlanObjects[] = {
-    {"solution", "lapwing.solution", "whose motion it is"},
-    {"notes?", "string[]", "sentences for the user"},
-    {"figures?", "table", "the kind's own figures, for --json"}};
+constexpr BoundField kPlanObjects[] = {{"solution", "lapwing.solution", "whose motion it is"},
+                                       {"notes?", "string[]", "sentences for the user"},
+                                       {"figures?", "table", "the kind's own figures, for --json"}};
 
 int plan(lua_State* state) {
   MissionRun& run = run_of(state);

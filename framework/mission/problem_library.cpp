@@ -103,7 +103,9 @@ bool add_own_term(lua_State* state, ScriptTermKind kind) {
   if (!is_script_term(state, 2, kind)) return false;
   ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
   if (!object.terms) object.terms = std::make_shared<std::vector<ScriptTerm>>();
-  object.terms->push_back(read_script_term(state, 2, kind));
+  ScriptTerm term = read_script_term(state, 2, kind);
+  expect_new_name(term, *object.terms);
+  object.terms->push_back(std::move(term));
   return true;
 }
 
@@ -175,6 +177,9 @@ int finish(lua_State* state) {
   if (object.terms)
     for (ScriptTerm& term : *object.terms) add_script_term(state, term, problem);
   problem.finish();
+  if (!object.terms) return 0;
+  const Stages guess = problem.initial_guess();
+  for (ScriptTerm& term : *object.terms) check_script_term(state, term, problem, guess);
   return 0;
 }
 

@@ -109,6 +109,42 @@ ParameterTable term_parameter_table() {
   return table;
 }
 
+namespace {
+
+// The commonest slip: `value` for `residual`, or a slip of the pen. `index` is a table without a
+// plugin's `type` and without the function's own key.
+void refuse_misnamed_function(lua_State* state, int index, ScriptTermKind kind) {
+  lua_pushnil(state);
+  while (lua_next(state, index)) {
+    if (lua_isfunction(state, -1) && lua_type(state, -2) == LUA_TSTRING)
+      throw InputError(place_of_function(state, lua_gettop(state)),
+                       std::string("add_") + word_of(kind) + ": '" + lua_tostring(state, -2) +
+                           "' is a function; did you mean `" + function_key(kind) +
+                           "`, which is the function of a " + word_of(kind) + "'s own?");
+    lua_pop(state, 1);
+  }
+}
+
+// "add_cost 'keep_low'", as messages call what is wrong in its table.
+std::string call_of(lua_State* state, int index, ScriptTermKind kind) {
+  std::string call = std::string("add_") + word_of(kind);
+  if (lua_getfield(state, index, "name") == LUA_TSTRING)
+    call += std::string(" '") + lua_tostring(state, -1) + "'";
+  lua_pop(state, 1);
+  return call;
+}
+
+// Where the function is written, which stands in the term's own table; else the line that is run.
+Origin origin_of_term(lua_State* state, int index, ScriptTermKind kind) {
+  Origin place;
+  if (lua_getfield(state, index, function_key(kind)) == LUA_TFUNCTION)
+    place = place_of_function(state, lua_gettop(state));
+  lua_pop(state, 1);
+  return place.line > 0 ? place : Sandbox::of(state).script_position(state);
+}
+
+}  // namespace
+
 bool is_script_term(lua_State* state, int index, ScriptTermKind kind) {
   if (!lua_istable(state, index)) return false;
   const bool has_type = lua_getfield(state, index, "type") != LUA_TNIL;
@@ -118,6 +154,7 @@ bool is_script_term(lua_State* state, int index, ScriptTermKind kind) {
     throw InputError(Sandbox::of(state).script_position(state),
                      std::string("add_") + word_of(kind) + ": give a plugin's `type` or a `" +
                          function_key(kind) + "` of your own, not both");
+  if (!has_type && own == LUA_TNIL) refuse_misnamed_function(state, index, kind);
   return !has_type && own != LUA_TNIL;
 }
 
@@ -126,12 +163,18 @@ ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
   const std::span<const BoundField> apart = kind == ScriptTermKind::constraint
                                                 ? std::span<const BoundField>(kOwnConstraintObjects)
                                                 : std::span<const BoundField>(kOwnCostObjects);
-  const std::string call = std::string("add_") + word_of(kind);
-  const Parameters given = table_argument(state, index, script_term_table(kind), call, apart);
+  const std::string call = call_of(state, index, kind);
   ScriptTerm term;
   term.kind = kind;
+  term.origin = origin_of_term(state, index, kind);
+  std::vector<std::string_view> without;
+  for (const BoundField& field : apart) {
+    const std::string_view key = field.name;
+    without.push_back(key.ends_with('?') ? key.substr(0, key.size() - 1) : key);
+  }
+  const Parameters given = check(script_term_table(kind),
+                                 value_from_lua(state, index, term.origin, call, without), call);
   term.name = given.text("name");
-  term.origin = given.origin();
   term.width = given.number("smoothing");
   term.shape.window = static_cast<int>(given.integer("window"));
   const auto times = given.numbers("times");
@@ -154,10 +197,12 @@ ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
     if (!upper.is_null()) term.upper = numbers_of(upper, call + ".upper");
   }
   read_parameters(field_value(state, index, "parameters", term.origin, call + ".parameters"), term);
-  if (lua_getfield(state, index, function_key(kind)) != LUA_TFUNCTION)
-    throw InputError(term.origin, call + ": " + function_key(kind) +
-                                      ": expected a function of a stage, got " +
-                                      describe_symbolic(state, -1));
+  if (lua_getfield(state, index, function_key(kind)) != LUA_TFUNCTION || lua_iscfunction(state, -1))
+    throw InputError(term.origin,
+                     call + ": " + function_key(kind) +
+                         ": expected a function of a stage, function(s) return ... end, got " +
+                         (lua_iscfunction(state, -1) ? "one that is not written in Lua"
+                                                     : describe_symbolic(state, -1)));
   term.function = luaL_ref(state, LUA_REGISTRYINDEX);
   return term;
 }
@@ -170,8 +215,6 @@ void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& prob
     recording.record(lua_gettop(state), term.shape);
     lua_pop(state, 1);
   }
-  luaL_unref(state, LUA_REGISTRYINDEX, term.function);
-  term.function = LUA_NOREF;
   term.shape.parameters = term.parameters.values;
   if (!term.shape.times.empty() && term.shape.window > 1)
     throw InputError(term.origin, what + ": at given times there is no neighbouring stage to read");
@@ -188,6 +231,25 @@ void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& prob
                        what + ": lower is above upper in result " + std::to_string(r + 1));
   problem.add_constraint(term.name,
                          tape_constraint(term.shape, std::move(lower), std::move(upper)));
+}
+
+void check_script_term(lua_State* state, ScriptTerm& term, const TrajectoryProblem& problem,
+                       const Eigen::MatrixXd& guess) {
+  const std::string what = std::string(word_of(term.kind)) + " '" + term.name + "'";
+  lua_rawgeti(state, LUA_REGISTRYINDEX, term.function);
+  TermRecording recording(state, what, problem, term.parameters, term.width);
+  recording.check(lua_gettop(state), term.shape, guess);
+  lua_pop(state, 1);
+  luaL_unref(state, LUA_REGISTRYINDEX, term.function);
+  term.function = LUA_NOREF;
+}
+
+void expect_new_name(const ScriptTerm& term, const std::vector<ScriptTerm>& terms) {
+  for (const ScriptTerm& other : terms)
+    if (other.name == term.name)
+      throw InputError(term.origin, std::string("add_") + word_of(term.kind) + " '" + term.name +
+                                        "': there is a term of that name already (" +
+                                        other.origin.to_string() + "); give it another name");
 }
 
 void set_term_parameter(lua_State* state, int index, std::vector<ScriptTerm>& terms) {

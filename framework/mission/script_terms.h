@@ -57,6 +57,12 @@ bool is_script_term(lua_State* state, int index, ScriptTermKind kind);
 ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind);
 // Records the term and adds it to the problem, which keeps its parameters alive.
 void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& problem);
+// Once the problem is finished: whether the term is what its function says, also where solvers
+// begin.
+void check_script_term(lua_State* state, ScriptTerm& term, const TrajectoryProblem& problem,
+                       const Eigen::MatrixXd& guess);
+// InputError where one of them has its name: `set_parameter` could not tell them apart.
+void expect_new_name(const ScriptTerm& term, const std::vector<ScriptTerm>& terms);
 // {term =, name =, value =} at `index`. InputError naming the terms or parameters there are.
 void set_term_parameter(lua_State* state, int index, std::vector<ScriptTerm>& terms);
 

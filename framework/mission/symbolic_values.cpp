@@ -174,7 +174,10 @@ int vector_index(lua_State* state) {
   lua_Integer at = 0;
   if (lua_type(state, 2) == LUA_TNUMBER && lua_isinteger(state, 2)) {
     at = lua_tointeger(state, 2);
-    if (at == size + 1) {  // where ipairs ends
+    lua_Debug caller;
+    const bool by_lua = lua_getstack(state, 1, &caller) && lua_getinfo(state, "S", &caller) &&
+                        std::string_view(caller.what) != "C";
+    if (at == size + 1 && !by_lua) {  // where ipairs ends
       lua_pushnil(state);
       return 1;
     }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "framework/core/log.h"
 #include "framework/core/parameters.h"
 #include "framework/mission/guard.h"
 
@@ -12,9 +12,7 @@ namespace lapwing {
 namespace {
 
 constexpr const char* kRecordingKey = "lapwing.term_recording";
-constexpr int kPoints = 32;
-constexpr int kWholePoints = 8;      // of these, with whole numbers
-constexpr double kAgreement = 1e-9;  // relative
+constexpr std::size_t kManyOperations = 20'000;  // of a tape: a solve takes minutes
 
 int refuse_parameter(lua_State* state) {
   std::vector<std::string> known;
@@ -35,10 +33,38 @@ std::uint64_t next_serial() {
   return ++serial;
 }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+// "sin" of "bad argument #1 to 'sin' (...)": what stands between two texts; empty where they do
+// not.
+std::string text_between(const std::string& text, std::string_view before, std::string_view after) {
+  const std::size_t begin = text.find(before);
+  if (begin == text.npos) return "";
+  const std::size_t from = begin + before.size(), end = text.find(after, from);
+  return end == text.npos ? "" : text.substr(from, end - from);
+}
+
+std::vector<std::string> functions_of_lapwing(lua_State* state) {
+  std::vector<std::string> names;
+  lua_getglobal(state, "lapwing");
+  lua_pushnil(state);
+  while (lua_next(state, -2)) {
+    if (lua_type(state, -2) == LUA_TSTRING && lua_isfunction(state, -1))
+      names.emplace_back(lua_tostring(state, -2));
+    lua_pop(state, 1);
+  }
+  lua_pop(state, 1);
+  return names;
+}
+
+// What to write instead of what Lua itself complains of; empty where nothing is known.
+std::string remedy_for(lua_State* state, const std::string& complaint) {
+  const std::vector<std::string> known = functions_of_lapwing(state);
+  const std::string taken = text_between(complaint, "bad argument #", "(number expected, got v");
+  const std::string of_math = text_between(taken, "to '", "'");
+  if (std::find(known.begin(), known.end(), of_math) != known.end())
+    return ": write lapwing." + of_math;
+  const std::string missing = text_between(complaint, "call a nil value (field '", "')");
+  const std::string nearest = missing.empty() ? "" : nearest_name(missing, known);
+  return nearest.empty() ? "" : "; did you mean lapwing." + nearest + "?";
 }
 
 }  // namespace
@@ -95,40 +121,6 @@ SymbolicEntries TermRecording::read(int stage, int block) {
   return entries;
 }
 
-void TermRecording::begin_point(int point) {
-  constexpr std::uint64_t kSeed = 32;
-  symbolic_ = false;
-  point_ = point;
-  random_ = Random(kSeed).split(point);
-  numbers_.clear();
-  point_parameters_ = *parameters_.values;
-  if (point % 2 == 1)
-    for (double& value : point_parameters_) value += random_.uniform(-0.5, 0.5) * (1 + value);
-}
-
-const std::vector<double>& TermRecording::numbers(int stage, int block) {
-  const auto [place, fresh] = numbers_.try_emplace({stage, block});
-  std::vector<double>& values = place->second;
-  if (!fresh) return values;
-  constexpr double kScales[] = {1, 10, 100};
-  const BlockSpec& spec = layout_.block(block);
-  const Horizon& horizon = problem_.horizon();
-  values.resize(spec.size);
-  for (double& value : values)
-    value = point_ == 0             ? 0.0
-            : point_ < kWholePoints ? static_cast<double>(random_.integer(-5, 5))
-                                    : random_.uniform(-1, 1) * kScales[point_ % 3];
-  if (spec.name == "time") values[0] = horizon.duration() * point_ / kPoints + stage * horizon.step;
-  if (spec.name == "step") values[0] = horizon.step * (point_ == 0 ? 1 : random_.uniform(0.5, 2));
-  if (spec.topology == Topology::quaternion) {
-    double squares = 0;
-    for (const double value : values) squares += value * value;
-    if (squares == 0) values[0] = squares = 1;
-    for (double& value : values) value /= std::sqrt(squares);
-  }
-  return values;
-}
-
 void TermRecording::push_parameters() {
   lua_newtable(state_);
   for (const TermParameter& parameter : parameters_.list) {
@@ -153,12 +145,27 @@ void TermRecording::push_parameters() {
 
 // ---- what it returns ----------------------------------------------------------------------------
 
-Origin TermRecording::place_of(int function) const {
+Origin place_of_function(lua_State* state, int function) {
   lua_Debug record;
-  lua_pushvalue(state_, function);
-  lua_getinfo(state_, ">S", &record);
+  lua_pushvalue(state, function);
+  lua_getinfo(state, ">S", &record);
   if (record.source[0] != '@') return {};
   return {record.source + 1, record.linedefined};
+}
+
+// What Lua itself raised says neither which term it was nor what to write.
+void TermRecording::raise(int message) {
+  if (lua_type(state_, message) != LUA_TSTRING) lua_error(state_);
+  std::string text = lua_tostring(state_, message);
+  if (text.find(setting_.what) == text.npos) {
+    const std::size_t place = text.find(".lua:");
+    const std::size_t after = place == text.npos ? text.npos : text.find(": ", place);
+    const std::string remedy = remedy_for(state_, text);
+    text.insert(after == text.npos ? 0 : after + 2, setting_.what + ": ");
+    text += remedy;
+  }
+  push_text(state_, text);
+  lua_error(state_);
 }
 
 void TermRecording::collect(int index, int depth, SymbolicEntries& rows) {
@@ -188,14 +195,14 @@ SymbolicEntries TermRecording::call(int function) {
   lua_pushvalue(state_, function);
   push_stage(state_, 0, setting_.serial);
   push_parameters();
-  lua_call(state_, 2, LUA_MULTRET);
+  if (lua_pcall(state_, 2, LUA_MULTRET, 0) != LUA_OK) raise(lua_gettop(state_));
   SymbolicEntries rows;
   const int results = lua_gettop(state_) - top;
   try {
     if (results == 0) throw InputError("the function returns nothing; expected numbers or vectors");
     for (int i = 1; i <= results; ++i) collect(top + i, 0, rows);
   } catch (const InputError& error) {
-    throw InputError(place_of(function), setting_.what + ": " + error.what());
+    throw InputError(place_of_function(state_, function), setting_.what + ": " + error.what());
   }
   lua_settop(state_, top);
   return rows;
@@ -230,7 +237,7 @@ void TermRecording::record(int function, TapeFunction& result) {
   std::vector<int> outputs, places;
   for (const SymbolicScalar& row : rows) {
     if (row.known() && !std::isfinite(row.value))
-      throw InputError(place_of(function),
+      throw InputError(place_of_function(state_, function),
                        setting_.what + ": returns no finite number whatever the stage is");
     outputs.push_back(symbolic_node(setting_, row));
   }
@@ -241,70 +248,14 @@ void TermRecording::record(int function, TapeFunction& result) {
     return layout_.block(inputs_[input].block).role == BlockRole::clock && !free;
   });
   result.tape = std::make_shared<const Tape>(setting_.graph, outputs, places, width);
-  compare(function, result);
-}
-
-// ---- whether it decides -------------------------------------------------------------------------
-
-std::string TermRecording::values_here() const {
-  std::string text;
-  for (const auto& [key, values] : numbers_) {
-    text += (text.empty() ? "" : ", ") + layout_.block(key.second).name +
-            (key.first ? "[" + std::to_string(key.first) + "]" : "") + " = ";
-    for (std::size_t i = 0; i < values.size(); ++i)
-      text += (i ? " " : values.size() > 1 ? "{" : "") + short_number(values[i]);
-    if (values.size() > 1) text += "}";
-  }
-  return text;
-}
-
-void TermRecording::compare(int function, const TapeFunction& result) {
-  const Origin place = place_of(function);
-  std::vector<bool> finite(result.tape->rows(), false);
-  setting_.serial = next_serial();  // what was kept from the recording is not taken
-  for (int point = 0; point < kPoints; ++point) {
-    begin_point(point);
-    check_point(place, result, call(function), finite);
-  }
-  const auto never = std::find(finite.begin(), finite.end(), false);
-  if (never != finite.end())
-    throw InputError(place, setting_.what + ": result " +
-                                std::to_string(never - finite.begin() + 1) +
-                                " is no finite number at any of " + std::to_string(kPoints) +
-                                " points tried, such as " + values_here());
-}
-
-void TermRecording::check_point(const Origin& place, const TapeFunction& result,
-                                const SymbolicEntries& rows, std::vector<bool>& finite) {
-  const auto decides = [&](const std::string& difference) {
-    throw InputError(
-        place, setting_.what + ": " + difference + ", where " + values_here() +
-                   ": the function decides by a value (if, ==, and, or), which is done once, while "
-                   "it is recorded, or depends on something that changes from call to call; use "
-                   "lapwing.where(x, a, b), which is a where x > 0 and b elsewhere");
-  };
-  const Tape& tape = *result.tape;
-  if (static_cast<int>(rows.size()) != tape.rows())
-    decides("on plain numbers it returns " + std::to_string(rows.size()) + " numbers, on a stage " +
-            std::to_string(tape.rows()));
-  std::vector<double> inputs, values(tape.rows());
-  for (int stage = 0; stage < result.window; ++stage)
-    for (const std::string& name : result.blocks) {
-      const std::vector<double>& block = numbers(stage, layout_.index(name));
-      inputs.insert(inputs.end(), block.begin(), block.end());
-    }
-  Workspace workspace;
-  tape.evaluate(1, inputs.data(), point_parameters_.data(), values.data(), nullptr, workspace);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (!rows[r].known()) decides("on plain numbers it returns a formula");
-    const double plain = rows[r].value;
-    // (-1) ^ 2 is a number, as a formula with a varying exponent it is none.
-    if (!std::isfinite(plain) || !std::isfinite(values[r])) continue;
-    finite[r] = true;
-    if (!(std::abs(plain - values[r]) <= kAgreement * (1 + std::abs(plain))))
-      decides("on plain numbers result " + std::to_string(r + 1) + " is " + short_number(plain) +
-              ", as recorded " + short_number(values[r]));
-  }
+  const std::string place = place_of_function(state_, function).to_string();
+  result.written_at = (place.empty() ? "" : place + ": ") + setting_.what;
+  if (inputs_.empty() && parameters_.list.empty())
+    logging::warning(result.written_at + ": is the same number whatever the stage is");
+  if (setting_.graph.nodes().size() > kManyOperations)
+    logging::warning(result.written_at + ": takes " +
+                     std::to_string(setting_.graph.nodes().size()) +
+                     " operations at every stage; solving will be slow");
 }
 
 }  // namespace lapwing

@@ -1,13 +1,15 @@
 // Recording what the function of a term does, as a tape (problem/tape.h).
 //
 // The function runs once on symbolic values of a stage; what it returns is compiled. Lua cannot
-// trap every way to decide by a value (`x == 3`, `x and a or b`), so the function also runs on
-// plain numbers at 32 seeded points, whole ones among them: where the tape says something else, the
+// trap every way to decide by a value (`x == 3`, `x and a or b`), so once the problem is finished
+// the function also runs on plain numbers: at 32 seeded points, at stages of the first guess, and
+// with every number set to those that stand in its lines. Where the tape says something else, the
 // function decided, or depends on something that changes from call to call, and that is an error.
 #pragma once
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +44,10 @@ class TermRecording {
   // which is at least the one that is there. InputError for whatever is wrong with it.
   void record(int function, TapeFunction& result);
 
+  // Whether the tape says what the function says; `guess` is the finished problem's. InputError
+  // with the place, and the numbers where it does not, or where it has no value anywhere.
+  void check(int function, const TapeFunction& result, const Eigen::MatrixXd& guess);
+
   // For the stage that the function is given.
   const StageLayout& layout() const { return layout_; }
   const TrajectoryProblem& problem() const { return problem_; }
@@ -59,11 +65,11 @@ class TermRecording {
   // Runs the function and returns all numbers that it returned.
   SymbolicEntries call(int function);
   void collect(int index, int depth, SymbolicEntries& rows);
-  Origin place_of(int function) const;
+  void raise(int message);  // does not return
+  std::vector<double> literals(int function) const;
   const std::vector<double>& numbers(int stage, int block);
   void begin_point(int point);
   void list_inputs(TapeFunction& result, std::vector<int>& places, int& width) const;
-  void compare(int function, const TapeFunction& result);
   void check_point(const Origin& place, const TapeFunction& result, const SymbolicEntries& rows,
                    std::vector<bool>& finite);
   std::string values_here() const;
@@ -79,7 +85,13 @@ class TermRecording {
   std::vector<double> point_parameters_;
   Random random_{1};
   int point_ = 0;
+  std::optional<double> literal_;           // every number of this point
+  const Eigen::MatrixXd* guess_ = nullptr;  // the point is this stage of it, where that is one
+  int guess_stage_ = -1;
 };
+
+// Where a function of a script begins; nothing for one of C++.
+Origin place_of_function(lua_State* state, int function);
 
 // Adds the type of a stage; pushes one, `stage` places after the window's first.
 void open_stage_values(lua_State* state);

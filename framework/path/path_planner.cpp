@@ -122,6 +122,11 @@ PathResult PathPlanner::plan(const PathProblem& problem, const PathRequest& requ
     report.seconds = now() - began;
     return result;
   };
+  const auto broken = [&](const std::string& promise) {
+    const char* const name = plugin_name();
+    return finish(PathStatus::failed,
+                  name ? plugin_failure(name, "search", promise).what() : promise);
+  };
   try {
     std::string wrong = problem_of(problem);
     if (!wrong.empty()) return finish(PathStatus::unsupported, wrong);
@@ -134,15 +139,15 @@ PathResult PathPlanner::plan(const PathProblem& problem, const PathRequest& requ
       report.straight = true;
       return finish(PathStatus::found, "the straight line is free");
     }
-    Search searched = search(problem, request);
+    Search searched = in_plugin(
+        *this, "search", [&] { return search(problem, request); }, CallLength::lengthy);
     report.iterations = searched.iterations;
     if (searched.status != PathStatus::found) return finish(searched.status, searched.message);
     const bool ends = searched.points.size() >= 2 && searched.points.front() == problem.start &&
                       searched.points.back() == problem.goal;
-    if (!ends) return finish(PathStatus::failed, "the planner's path does not join start and goal");
+    if (!ends) return broken("the planner's path does not join start and goal");
     if (const auto blocked = blocked_segment(problem, searched.points)) {
-      return finish(PathStatus::failed,
-                    "segment " + std::to_string(*blocked) + " of the planner's path is blocked");
+      return broken("segment " + std::to_string(*blocked) + " of the planner's path is blocked");
     }
     result.points = without_detours(problem, std::move(searched.points));
     return finish(PathStatus::found, searched.message);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/plugin_object.h"
 #include "framework/core/progress.h"
 #include "framework/core/value.h"
 #include "framework/path/free_space.h"
@@ -61,7 +62,7 @@ struct PathResult {
   std::vector<Eigen::Vector3d> points;  // from start to goal; empty unless found
 };
 
-class PathPlanner {
+class PathPlanner : public PluginObject {
  public:
   using Interface = PathPlanner;
   static constexpr const char* kKind = "path_planner";

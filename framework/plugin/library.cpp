@@ -1,25 +1,45 @@
 #include "framework/plugin/library.h"
 
 #include <dlfcn.h>
+#include <execinfo.h>
 
+#include <array>
+#include <atomic>
+#include <cstring>
 #include <map>
 #include <mutex>
 
+#include "framework/core/active_call.h"
 #include "framework/core/error.h"
 
 namespace lapwing {
 
 namespace {
 
+// Every library that was opened, for `library_in_stack`: never shortened.
+constexpr int kMostOpened = 512;
+std::array<std::atomic<const char*>, kMostOpened> opened_libraries;
+std::atomic<int> opened_count{0};
+
+void note_opened(const std::filesystem::path& path) {
+  const int place = opened_count.load();  // under the lock of open_library
+  if (place == kMostOpened) return;
+  opened_libraries[place] = lasting_text(path.string());
+  opened_count = place + 1;
+}
+
 const PluginLibrary* open_new(const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& why) {
     throw InputError("cannot open plugin library '" + path.string() + "': " + why);
   };
+  // Static objects are made in there; and of a file that was cut off even the loader crashes.
+  const ActiveCall mark(lasting_text(path.string()), "dlopen");
   void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
     const char* why = ::dlerror();
     refuse(why ? why : "unknown reason");
   }
+  note_opened(path);
   // Never closed, not even when it is refused: its static objects may be registered somewhere.
   void* symbol = ::dlsym(handle, kPluginLibrarySymbol);
   if (!symbol) {
@@ -28,7 +48,7 @@ const PluginLibrary* open_new(const std::filesystem::path& path) {
   }
   const auto function = reinterpret_cast<PluginLibraryFunction>(symbol);
   const PluginLibrary* library =
-      call_plugin(path.filename().string(), kPluginLibrarySymbol, [&] { return function(); });
+      call_plugin(path.string(), kPluginLibrarySymbol, [&] { return function(); });
   if (!library || !library->abi_tag) refuse("it returns no description of itself");
   require_abi_tag(library->abi_tag, path);
   if (library->count == 0) refuse("it holds no plugin");
@@ -36,6 +56,19 @@ const PluginLibrary* open_new(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+const char* library_in_stack() {
+  constexpr int kDeepest = 64;
+  void* frames[kDeepest];
+  const int depth = ::backtrace(frames, kDeepest);
+  for (int k = 0; k < depth; ++k) {
+    Dl_info info{};
+    if (::dladdr(frames[k], &info) == 0 || !info.dli_fname) continue;
+    for (int i = 0; i < opened_count.load(); ++i)
+      if (std::strcmp(opened_libraries[i].load(), info.dli_fname) == 0) return info.dli_fname;
+  }
+  return nullptr;
+}
 
 const PluginLibrary& open_library(const std::filesystem::path& path) {
   static std::mutex mutex;

@@ -13,6 +13,11 @@ namespace lapwing {
 // the file and says why: the loader's own reason, the missing symbol, or both tags and the cure.
 const PluginLibrary& open_library(const std::filesystem::path& path);
 
+// The plugin library that the calling thread's stack leads through, or null: for code that no call
+// is marked of (active_call.h), as destructors are. May be called in a signal handler once it was
+// called before: it loads what it needs then.
+const char* library_in_stack();
+
 // InputError, naming both tags and the cure, when `tag` is not this host's.
 void require_abi_tag(const std::string& tag, const std::filesystem::path& library);
 

@@ -172,7 +172,8 @@ const PluginEntry& Registry::find(std::string_view kind, std::string_view name,
     message += "; no plugin of that kind was found in";
     for (const fs::path& folder : impl_->folders) message += " " + in_quotes(folder.string());
   } else {
-    message += "; known: " + list;
+    message +=
+        "; known: " + list + "; those of a folder of your own are found with --plugin-path FOLDER";
   }
   throw InputError(origin, message);
 }
@@ -182,10 +183,18 @@ void* Registry::create_untyped(std::string_view kind, std::string_view name, con
   const PluginEntry& entry = find(kind, name, given.origin());
   const Parameters parameters = check(entry.parameters, given, key_path);
   const PluginDescriptor& descriptor = impl_->descriptor(entry);
-  const ActiveCall mark(entry.name.c_str(), "create");
-  void* created = call_plugin(entry.name, "create", [&] { return descriptor.create(parameters); });
-  if (!created) throw PluginError("plugin '" + entry.name + "' failed in create: it returned null");
+  const char* const known = lasting_name(kind, name);
+  const ActiveCall mark(known, "create");
+  void* created = call_plugin(known, "create", [&] { return descriptor.create(parameters); });
+  if (!created) throw plugin_failure(known, "create", "it returned null");
   return created;
+}
+
+const char* Registry::lasting_name(std::string_view kind, std::string_view name) const {
+  for (const PluginEntry& entry : impl_->entries)
+    if (entry.name == name && entry.kind != kind)
+      return lasting_text(std::string(kind) + "/" + std::string(name));
+  return lasting_text(name);
 }
 
 const void* Registry::extension(std::string_view kind, std::string_view name,
@@ -196,7 +205,9 @@ const void* Registry::extension(std::string_view kind, std::string_view name,
     return nullptr;
   }
   const PluginDescriptor& descriptor = impl_->descriptor(entry);
-  for (const Extension& extension : call_plugin(entry.name, "extensions", descriptor.extensions)) {
+  const char* const known = lasting_name(kind, name);
+  const ActiveCall mark(known, "extensions");
+  for (const Extension& extension : call_plugin(known, "extensions", descriptor.extensions)) {
     if (extension.id == id) return extension.table;
   }
   return nullptr;

@@ -10,9 +10,11 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "framework/core/parameters.h"
+#include "framework/core/plugin_object.h"
 #include "framework/plugin/plugin.h"
 
 namespace lapwing {
@@ -23,9 +25,9 @@ struct PluginEntry {
   std::string version;
   std::string summary;
   std::string reference;
-  std::string preset_of;            // the plugin that this is another name of, or empty
+  std::string preset_of;  // the plugin that this is another name of, or empty
   std::vector<std::string> extensions;
-  ParameterTable parameters;        // a preset's defaults are already laid over the plugin's
+  ParameterTable parameters;  // a preset's defaults are already laid over the plugin's
   std::string abi_tag;
   std::filesystem::path library;
 };
@@ -55,8 +57,11 @@ class Registry {
   template <class Interface>
   std::unique_ptr<Interface> create(std::string_view name, const Value& given = {},
                                     const std::string& key_path = "") const {
-    return std::unique_ptr<Interface>(
+    std::unique_ptr<Interface> created(
         static_cast<Interface*>(create_untyped(Interface::kKind, name, given, key_path)));
+    if constexpr (std::is_base_of_v<PluginObject, Interface>)
+      created->set_plugin_name(lasting_name(Interface::kKind, name));
+    return created;
   }
 
   // The extension's table, or null.
@@ -65,6 +70,8 @@ class Registry {
  private:
   void* create_untyped(std::string_view kind, std::string_view name, const Value& given,
                        const std::string& key_path) const;
+  // As `lapwing plugins check` takes it: with its kind where another kind has one of that name.
+  const char* lasting_name(std::string_view kind, std::string_view name) const;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

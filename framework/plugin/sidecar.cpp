@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "framework/core/active_call.h"
 #include "framework/core/json.h"
 #include "framework/plugin/library.h"
 
@@ -38,6 +39,7 @@ Value describe_presets(const PluginDescriptor& descriptor, const ParameterTable&
 
 Value describe_plugin(const PluginDescriptor& descriptor) {
   const std::string name = text_or_empty(descriptor.text.name);
+  const ActiveCall mark(lasting_text(name), "describe");
   Value map = Value::map();
   map.set("kind", text_or_empty(descriptor.kind));
   map.set("name", name);

@@ -21,9 +21,9 @@ std::string seconds_text(double seconds) {
 
 BoundFunction::BoundFunction(std::string name, StageFunction& function, const StageColumns& columns,
                              const ProblemSetting& setting)
-    : name_(std::move(name)), function_(&function) {
+    : name_(std::move(name)), function_(&function), written_at_(function.written_at()) {
   try {
-    shape_ = function.bind(setting);
+    shape_ = in_plugin(function, "bind", [&] { return function.bind(setting); });
   } catch (const InputError& error) {
     throw InputError(name_ + ": " + error.what());
   }
@@ -229,8 +229,7 @@ void BoundFunction::flow_between(const StageColumns& columns, const BoundModel& 
   std::vector<double> x(arguments), next(model.states), jacobian(model.states * arguments);
   columns.gather_model(model, at, stage, offset_[instance], x.data());
   Workspace workspace;
-  model.model->flow({0, 1}, x.data(), next.data(), derivative ? jacobian.data() : nullptr,
-                    workspace);
+  model.flow(x.data(), next.data(), derivative ? jacobian.data() : nullptr, workspace);
   int state = 0;
   for (const int b : model.state_blocks) {
     const int size = layout.block(b).size;
@@ -251,31 +250,18 @@ void BoundFunction::flow_between(const StageColumns& columns, const BoundModel& 
   }
 }
 
+// The function's own name stands for a plugin's where no registry made it.
+const char* BoundFunction::plugin_name() const {
+  return function_->plugin_name() ? function_->plugin_name() : name_.c_str();
+}
+
 // What goes wrong in the function's own code is told with its name.
 template <class Body>
 void BoundFunction::guarded_call(const char* call, const Body& body) const {
-  const ActiveCall mark(name_.c_str(), call);
-  call_plugin(name_, call, body);
-}
-
-// Where a problem is linearised every number counts: one that is not finite is named here, and not
-// found in a matrix later.
-void BoundFunction::expect_finite(int first, int count, const double* values,
-                                  const double* derivatives) const {
-  const int m = rows(), n = derivatives ? inputs_ : 0;
-  bool finite = true;
-  for (int k = 0; k < count * m; ++k) finite &= values[k] - values[k] == 0;
-  for (int k = 0; k < count * m * n; ++k) finite &= derivatives[k] - derivatives[k] == 0;
-  if (finite) return;
-  for (int k = 0; k < count * m; ++k) {
-    bool fine = std::isfinite(values[k]);
-    const char* const what = fine ? "a derivative" : "a value";
-    for (int i = 0; i < n; ++i) fine &= std::isfinite(derivatives[k * n + i]);
-    if (!fine)
-      throw PluginError("plugin '" + name_ + "' failed in evaluate: " + what + " of " +
-                        row_name(first + k / m, k % m) +
-                        " is not a finite number; 'lapwing plugins check' tries it alone");
-  }
+  if (!written_at_.empty()) return body();  // a tape: none but the kernel's code
+  const char* const plugin = plugin_name();
+  const ActiveCall mark(plugin, call);
+  call_plugin(plugin, call, body);
 }
 
 const double* BoundFunction::evaluate(const StageColumns& columns, const Stages& at, double* values,
@@ -295,9 +281,10 @@ const double* BoundFunction::evaluate(const StageColumns& columns, const Stages&
     double* const out =
         compute ? jacobian->data() + static_cast<std::size_t>(first) * m * width_ : nullptr;
     double* const derivatives = !compute ? nullptr : in_place ? out : j;
-    guarded_call("evaluate",
-                 [&] { function_->evaluate({first, count}, x, v, derivatives, workspace); });
-    if (jacobian) expect_finite(first, count, v, derivatives);
+    guarded_call("evaluate", [&] {
+      function_->evaluate({first, count}, x, v, derivatives, workspace);
+    });
+    if (jacobian) expect_finite(columns.layout, {first, count}, x, v, derivatives);
     for (int k = 0; k < count; ++k) {
       double* const row = compute ? out + static_cast<std::size_t>(k) * m * width_ : nullptr;
       if (compute && !in_place) {
@@ -401,8 +388,8 @@ void BoundFunction::add_flow_curvature(const StageColumns& columns, const Stages
     }
     columns.gather_model(model, at, stage, offset_[instance], x.data());
     Workspace workspace;
-    model.model->flow({0, 1}, x.data(), next.data(), jacobian.data(), workspace);
-    model.model->curvature({0, 1}, x.data(), multipliers.data(), bend.data(), workspace);
+    model.flow(x.data(), next.data(), jacobian.data(), workspace);
+    model.curvature(x.data(), multipliers.data(), bend.data(), workspace);
     const Eigen::VectorXd pull = jacobian.transpose() * multipliers;
     RowMajor chain = RowMajor::Zero(n, width_);
     int argument = 0;

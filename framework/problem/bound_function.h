@@ -41,6 +41,10 @@ class BoundFunction {
   const double* evaluate(const StageColumns& columns, const Stages& at, double* values,
                          std::vector<double>* jacobian, Workspace& workspace) const;
 
+  // Of a function of a script: the first instance whose slope grows without bound where it stands,
+  // or that has no value next to it, in words with its place in the script; empty for none.
+  std::string fault_at(const StageColumns& columns, const Stages& at) const;
+
   // hessian [instances][width][width], written whole: sum_r multipliers_r d2 value_r.
   void curvature(const StageColumns& columns, const Stages& at, const double* multipliers,
                  std::vector<double>& hessian, Workspace& workspace) const;
@@ -48,9 +52,14 @@ class BoundFunction {
  private:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+  const char* plugin_name() const;
   template <class Body>
   void guarded_call(const char* call, const Body& body) const;
-  void expect_finite(int first, int count, const double* values, const double* derivatives) const;
+  void expect_finite(const StageLayout& layout, InstanceRange range, const double* inputs,
+                     const double* values, const double* derivatives) const;
+  std::string fault_of(const StageLayout& layout, int instance, int row, const char* what,
+                       const double* inputs) const;
+  int row_without_slope(double* inputs, Workspace& workspace) const;
   void list_instances(const StageColumns& columns);
   int end_of_leg(const Horizon& horizon, double time) const;
   void list_columns(const StageColumns& columns);
@@ -70,6 +79,7 @@ class BoundFunction {
 
   std::string name_;
   StageFunction* function_;
+  std::string written_at_;  // by a script; else empty
   FunctionShape shape_;
   std::vector<std::string> row_names_;
   std::vector<int> stage_;       // first stage of each instance

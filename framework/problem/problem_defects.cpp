@@ -30,7 +30,7 @@ std::vector<double> TrajectoryProblem::leg_defects(const Stages& at) const {
     for (int i = 0; i + 1 < columns.horizon.stages; ++i) {
       columns.gather_model(model, at, i, columns.step(at, i) / kFine, x.data());
       for (int k = 0; k < kFine; ++k) {
-        model.model->flow({0, 1}, x.data(), next.data(), nullptr, workspace);
+        model.flow(x.data(), next.data(), nullptr, workspace);
         std::copy(next.begin(), next.end(), x.begin());
       }
       const double* reached = next.data();

@@ -86,8 +86,7 @@ void evaluate_model_step(const StageColumns& columns, const BoundModel& model, c
   if (derivatives) jacobian.resize(model.states, model.arguments());
   columns.gather_model(model, at, stage, columns.step(at, stage), x.data());
   Workspace workspace;
-  model.model->flow({0, 1}, x.data(), next.data(), derivatives ? jacobian.data() : nullptr,
-                    workspace);
+  model.flow(x.data(), next.data(), derivatives ? jacobian.data() : nullptr, workspace);
   result.values.resize(model.state_tangents);
   RowMajor flow;
   if (derivatives) {
@@ -127,7 +126,7 @@ Stages TrajectoryProblem::simulate(const Stages& at) const {
     for (const BoundModel& model : columns.models) {
       std::vector<double> x(model.arguments()), next(model.states);
       columns.gather_model(model, flown, i, columns.step(flown, i), x.data());
-      model.model->flow({0, 1}, x.data(), next.data(), nullptr, workspace);
+      model.flow(x.data(), next.data(), nullptr, workspace);
       const double* from = next.data();
       for (const int b : model.state_blocks) {
         const BlockSpec& block = layout.block(b);
@@ -214,7 +213,7 @@ void TrajectoryProblem::Impl::dynamics_curvature(const Stages& at, const double*
     RowMajor jacobian(model.states, n), bend(n, n), tangent;
     for (int i = 0; i + 1 < columns.horizon.stages; ++i) {
       columns.gather_model(model, at, i, columns.step(at, i), x.data());
-      model.model->flow({0, 1}, x.data(), next.data(), jacobian.data(), workspace);
+      model.flow(x.data(), next.data(), jacobian.data(), workspace);
       const RowMajor chain = argument_chain(columns, model, at, i);
       const auto width = chain.cols();
       const auto all = static_cast<Eigen::Index>(curvature_columns(columns, model, i).size());
@@ -240,7 +239,7 @@ void TrajectoryProblem::Impl::dynamics_curvature(const Stages& at, const double*
         state += block.size;
       }
       bend.setZero();
-      model.model->curvature({0, 1}, x.data(), ambient.data(), bend.data(), workspace);
+      model.curvature(x.data(), ambient.data(), bend.data(), workspace);
       tangent.topLeftCorner(width, width) += product(chain.transpose(), product(bend, chain));
       add_retraction_curvature(columns, model, at, i, jacobian.transpose().lazyProduct(ambient),
                                tangent);

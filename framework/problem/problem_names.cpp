@@ -141,4 +141,16 @@ std::vector<Violation> TrajectoryProblem::violations(const Stages& at) const {
   return std::move(worst).sorted();
 }
 
+std::string TrajectoryProblem::script_fault(const Stages& at) const {
+  for (const CostEntry& cost : impl_->costs) {
+    const std::string fault = cost.bound->fault_at(impl_->columns, at);
+    if (!fault.empty()) return fault;
+  }
+  for (const ConstraintEntry& entry : impl_->constraints) {
+    const std::string fault = entry.bound->fault_at(impl_->columns, at);
+    if (!fault.empty()) return fault;
+  }
+  return "";
+}
+
 }  // namespace lapwing

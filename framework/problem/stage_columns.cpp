@@ -2,6 +2,18 @@
 
 namespace lapwing {
 
+void BoundModel::flow(const double* arguments, double* next, double* jacobian,
+                      Workspace& workspace) const {
+  in_plugin(*model, "flow", [&] { model->flow({0, 1}, arguments, next, jacobian, workspace); });
+}
+
+void BoundModel::curvature(const double* arguments, const double* multipliers, double* hessian,
+                           Workspace& workspace) const {
+  in_plugin(*model, "curvature", [&] {
+    model->curvature({0, 1}, arguments, multipliers, hessian, workspace);
+  });
+}
+
 void StageColumns::gather_model(const BoundModel& model, const Stages& at, int stage,
                                 double duration, double* arguments) const {
   for (const auto* blocks : {&model.state_blocks, &model.input_blocks})

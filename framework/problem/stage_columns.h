@@ -22,6 +22,10 @@ struct BoundModel {
   int first_row = 0;  // of its dynamics
 
   int arguments() const { return states + inputs + 1; }
+  // Of one instance, told of with the plugin's name where it fails (vehicle_model.h).
+  void flow(const double* arguments, double* next, double* jacobian, Workspace& workspace) const;
+  void curvature(const double* arguments, const double* multipliers, double* hessian,
+                 Workspace& workspace) const;
 };
 
 struct StageColumns {

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/plugin_object.h"
 #include "framework/problem/block.h"
 #include "framework/problem/horizon.h"
 #include "framework/trajectory/environment.h"
@@ -72,7 +73,7 @@ struct InstanceRange {
   int count = 0;
 };
 
-class StageFunction {
+class StageFunction : public PluginObject {
  public:
   virtual ~StageFunction() = default;
 
@@ -90,6 +91,10 @@ class StageFunction {
   // halves). Called only where the shape is not affine.
   virtual void curvature(InstanceRange range, const double* inputs, const double* multipliers,
                          double* hessian, Workspace& workspace) const = 0;
+
+  // Of a function of a script where it stands and what it is, "shot.lua:12: cost 'keep_low'"; of a
+  // plugin's nothing.
+  virtual std::string written_at() const { return {}; }
 };
 
 }  // namespace lapwing

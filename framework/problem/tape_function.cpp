@@ -38,6 +38,8 @@ class OfTape : public Base {
                               hessian, workspace);
   }
 
+  std::string written_at() const override { return function_.written_at; }
+
  private:
   TapeFunction function_;
 };

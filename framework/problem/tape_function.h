@@ -22,6 +22,7 @@ struct TapeFunction {
   bool affine = false;
   std::vector<TimeSpan> spans = {}, except = {};  // as `ask_within` takes them
   std::shared_ptr<const Tape> tape;
+  std::string written_at = {};  // "shot.lua:12: cost 'keep_low'": for messages
   // Read at every evaluation: may be changed between two solves, never during one.
   std::shared_ptr<const std::vector<double>> parameters;
 };

@@ -63,10 +63,10 @@ TrajectoryProblem::TrajectoryProblem(TrajectoryProblem&&) noexcept = default;
 void TrajectoryProblem::add_model(std::string name, std::unique_ptr<VehicleModel> model) {
   impl_->expect_unfinished();
   StageColumns& columns = impl_->columns;
-  model->bind(impl_->vehicle);
+  in_plugin(*model, "bind", [&] { model->bind(impl_->vehicle); });
   BoundModel bound;
   bound.name = std::move(name);
-  for (const BlockSpec& block : model->blocks()) {
+  for (const BlockSpec& block : in_plugin(*model, "blocks", [&] { return model->blocks(); })) {
     if (block.role != BlockRole::state && block.role != BlockRole::input)
       throw Error(bound.name + ": block '" + block.name + "' is neither state nor input");
     const bool state = block.role == BlockRole::state;
@@ -193,7 +193,7 @@ void TrajectoryProblem::Impl::model_bounds() {
     const int owner = static_cast<int>(bound_owners.size());
     bound_owners.push_back(model.name);
     std::vector<double> lower(model.states + model.inputs), upper(lower.size());
-    model.model->bounds(lower.data(), upper.data());
+    in_plugin(*model.model, "bounds", [&] { model.model->bounds(lower.data(), upper.data()); });
     int number = 0;
     for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
       for (const int index : *blocks) {
@@ -229,7 +229,9 @@ void TrajectoryProblem::Impl::bind_terms() {
     const int numbers = bound.instances() * bound.rows();
     entry.lower.resize(numbers);
     entry.upper.resize(numbers);
-    entry.constraint->bounds({0, bound.instances()}, entry.lower.data(), entry.upper.data());
+    in_plugin(*entry.constraint, "bounds", [&] {
+      entry.constraint->bounds({0, bound.instances()}, entry.lower.data(), entry.upper.data());
+    });
     for (int r = 0; r < numbers; ++r)
       if (std::isnan(entry.lower[r]) || std::isnan(entry.upper[r]))
         throw Error(entry.name + ": a bound is not a number");
@@ -316,7 +318,8 @@ Stages TrajectoryProblem::initial_guess() const {
       samples[i].force = impl_->vehicle.mass * kGravity * Eigen::Vector3d::UnitZ();
     for (const BoundModel& model : columns.models) {
       std::vector<double> numbers(model.states + model.inputs);
-      model.model->from_sample(samples[i], numbers.data());
+      in_plugin(*model.model, "from_sample",
+                [&] { model.model->from_sample(samples[i], numbers.data()); });
       const double* from = numbers.data();
       for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
         for (const int b : *blocks) {
@@ -361,7 +364,8 @@ Stages TrajectoryProblem::retract(const Stages& at, const Eigen::VectorXd& step)
 Trajectory TrajectoryProblem::trajectory(const Stages& at) const {
   const StageColumns& columns = impl_->columns;
   Trajectory result;
-  for (const BoundModel& model : columns.models) model.model->describe(result);
+  for (const BoundModel& model : columns.models)
+    in_plugin(*model.model, "describe", [&] { model.model->describe(result); });
   const int target = columns.layout.find("target");
   result.has_target = target >= 0 && columns.layout.block(target).size == 3;
   result.samples.resize(columns.horizon.stages);
@@ -373,7 +377,7 @@ Trajectory TrajectoryProblem::trajectory(const Stages& at) const {
     for (const BoundModel& model : columns.models) {
       std::vector<double> numbers(model.arguments());
       columns.gather_model(model, at, i, 0.0, numbers.data());
-      model.model->to_sample(numbers.data(), sample);
+      in_plugin(*model.model, "to_sample", [&] { model.model->to_sample(numbers.data(), sample); });
     }
     if (result.has_target) sample.target = at.col(i).segment<3>(columns.layout.offset(target));
     // A heading read off an orientation, on the turn of the sample before.

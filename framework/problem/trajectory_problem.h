@@ -130,6 +130,9 @@ class TrajectoryProblem {
   // small steps of the models lead, as a share of what a certificate allows: 1 mm, 1 cm/s, 0.2
   // degrees, 2 degrees/s. What has another unit does not count.
   std::vector<double> leg_defects(const Stages& at) const;
+  // Where a solver could not go on: the function of a script that has no finite derivative at that
+  // point, in words with its place, time and what to write instead; empty for none.
+  std::string script_fault(const Stages& at) const;
   // Worst violation of every constraint, model and bound by name; largest first.
   std::vector<Violation> violations(const Stages& at) const;
 

@@ -8,12 +8,13 @@
 
 #include <vector>
 
+#include "framework/core/plugin_object.h"
 #include "framework/problem/stage_function.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace lapwing {
 
-class VehicleModel {
+class VehicleModel : public PluginObject {
  public:
   using Interface = VehicleModel;
   static constexpr const char* kKind = "vehicle_model";

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/plugin_object.h"
 #include "framework/core/progress.h"
 #include "framework/problem/trajectory_problem.h"
 
@@ -69,7 +70,7 @@ struct SolveResult {
   WarmStart point;  // the best iterate, to be read or to start from
 };
 
-class TrajectorySolver {
+class TrajectorySolver : public PluginObject {
  public:
   using Interface = TrajectorySolver;
   static constexpr const char* kKind = "trajectory_solver";
@@ -78,5 +79,10 @@ class TrajectorySolver {
   virtual SolveResult solve(const TrajectoryProblem& problem,
                             const SolveRequest& request) const = 0;
 };
+
+// What `solver` answers: how it is called everywhere. PluginError, with its name, where it throws
+// or answers with numbers that are not finite or a point of another size.
+SolveResult solve_by(const TrajectorySolver& solver, const TrajectoryProblem& problem,
+                     const SolveRequest& request);
 
 }  // namespace lapwing

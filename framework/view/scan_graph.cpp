@@ -152,7 +152,15 @@ std::vector<float> contributions_of(const std::vector<SeenVoxel>& seen,
   sights.reserve(seen.size());
   for (const SeenVoxel& voxel : seen) sights.push_back(voxel.sight);
   std::vector<float> values(sights.size(), 0.0f);
-  information.contributions(sights, values);
+  in_plugin(information, "contributions", [&] { information.contributions(sights, values); });
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (values[k] >= 0 && std::isfinite(values[k])) continue;
+    const std::string wrong = "a voxel " + std::to_string(sights[k].distance) + " m away tells " +
+                              std::to_string(values[k]) +
+                              "; expected a finite number of at least 0";
+    if (!information.plugin_name()) throw Error(wrong);
+    throw plugin_failure(information.plugin_name(), "contributions", wrong);
+  }
   return values;
 }
 

@@ -63,6 +63,7 @@ double TourWork::seconds() const {
 }
 
 bool TourWork::ended(std::int64_t evaluations, std::int64_t iterations) {
+  show_activity();
   if (ending_) return true;
   const bool now = asked_++ % kClockEvery == 0;
   if (now && request_->progress) {
@@ -77,8 +78,7 @@ bool TourWork::ended(std::int64_t evaluations, std::int64_t iterations) {
   } else if ((request_->evaluation_limit && evaluations >= *request_->evaluation_limit) ||
              (request_->iteration_limit && iterations >= *request_->iteration_limit)) {
     ending_ = TourStatus::iteration_limit;
-  } else if (now && request_->wall_clock_guard &&
-             seconds() >= *request_->wall_clock_guard) {
+  } else if (now && request_->wall_clock_guard && seconds() >= *request_->wall_clock_guard) {
     ending_ = TourStatus::time_limit;
   }
   return ending_.has_value();
@@ -104,6 +104,11 @@ TourResult TourSolver::solve(const TourProblem& problem, const TourRequest& requ
     report.wall_seconds = work.seconds();
     return result;
   };
+  const auto broken = [&](const std::string& promise) {
+    const char* const name = plugin_name();
+    return finish(TourStatus::failed,
+                  name ? plugin_failure(name, "search", promise).what() : promise);
+  };
   try {
     report.upper_bound = std::numeric_limits<double>::infinity();
     const std::string hindrance = problem.why_infeasible();
@@ -122,13 +127,14 @@ TourResult TourSolver::solve(const TourProblem& problem, const TourRequest& requ
       }
     }
     work.ended(0);  // cancelled or out of time before it began: the search says what it has
-    Search searched = search(problem, work);
+    Search searched = in_plugin(
+        *this, "search", [&] { return search(problem, work); }, CallLength::lengthy);
     if (work.ending() && searched.status == TourStatus::feasible) searched.status = *work.ending();
     report.evaluations = searched.evaluations;
     report.iterations = searched.iterations;
     if (!searched.walk.empty()) {
       const std::string wrong = problem.problem_of(searched.walk);
-      if (!wrong.empty()) return finish(TourStatus::failed, "the solver's tour is none: " + wrong);
+      if (!wrong.empty()) return broken("the solver's tour is none: " + wrong);
     }
     result.walk = std::move(searched.walk);
     const bool begun_better =
@@ -140,8 +146,8 @@ TourResult TourSolver::solve(const TourProblem& problem, const TourRequest& requ
     }
     if (result.walk.empty()) {
       const bool claims = searched.status == TourStatus::feasible;
-      return finish(claims ? TourStatus::failed : searched.status,
-                    claims ? "the solver returned no tour" : searched.message);
+      if (claims) return broken("the solver returned no tour");
+      return finish(searched.status, searched.message);
     }
     report.score = problem.score_of(result.walk);
     report.seconds_used = problem.seconds_of(result.walk);

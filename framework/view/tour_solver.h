@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/plugin_object.h"
 #include "framework/core/progress.h"
 #include "framework/core/value.h"
 #include "framework/view/tour_problem.h"
@@ -91,7 +92,7 @@ class TourWork {
   int asked_ = 0;
 };
 
-class TourSolver {
+class TourSolver : public PluginObject {
  public:
   using Interface = TourSolver;
   static constexpr const char* kKind = "tour_solver";

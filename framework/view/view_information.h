@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "framework/core/plugin_object.h"
 #include "framework/map/voxel.h"
 
 namespace lapwing {
@@ -18,7 +19,7 @@ struct VoxelSight {
   std::optional<float> incidence;  // rad, ray against the surface's normal; absent: not known
 };
 
-class ViewInformation {
+class ViewInformation : public PluginObject {
  public:
   using Interface = ViewInformation;
   static constexpr const char* kKind = "information";

@@ -2,6 +2,8 @@
 // what has one mistake each.
 #include <sys/resource.h>
 
+#include <regex>
+
 #include "framework/core/json.h"
 #include "tests/app/program_fixture.h"
 #include "tests/guide.h"
@@ -242,6 +244,28 @@ TEST_F(Authoring, ShippedPluginsPass) {
   }
 }
 
+// Names whose class would be one of the kernel's: all that a plugin's source can see.
+TEST_F(Authoring, NamesOfTheKernelsClassesAreRefused) {
+  for (const char* name : {"cost_term", "stage", "rows", "differentiable_cost", "map"})
+    refused({"new", "plugin", "cost_term", name},
+            {"'" + std::string(name) + "' cannot be a plugin's name", "my_" + std::string(name)});
+  const std::string taken =
+      "\n" + read_file(fs::path(LAPWING_SOURCE_DIR) / "scripts/templates/taken_names.txt");
+  const std::regex declared("(^|\n)(class|struct|enum class|using) ([A-Z][A-Za-z0-9]*)");
+  for (const char* room : {"core", "geometry", "trajectory", "vehicle", "map", "path", "problem",
+                           "solve", "view", "explore", "verify", "export", "plugin"})
+    for (const auto& file :
+         fs::directory_iterator(fs::path(LAPWING_SOURCE_DIR) / "framework" / room)) {
+      if (file.path().extension() != ".h") continue;
+      const std::string text = read_file(file.path());
+      for (std::sregex_iterator found(text.begin(), text.end(), declared), end; found != end;
+           ++found)
+        EXPECT_NE(taken.find("\n" + (*found)[3].str() + "\n"), std::string::npos)
+            << (*found)[3] << " of " << file.path()
+            << " is missing in scripts/templates/taken_names.txt";
+    }
+}
+
 // A flight with a broken plugin ends with the plugin's name and the right status.
 TEST_F(Authoring, ABrokenPluginIsNamedByTheRun) {
   struct Case {
@@ -293,6 +317,7 @@ TEST_F(Authoring, TheGuideOfPluginsHolds) {
   EXPECT_EQ(status, 0) << log;
   EXPECT_NE(log.find("100% tests passed, 0 tests failed out of 1"), std::string::npos) << log;
   EXPECT_NE(log.find("low: certified"), std::string::npos) << log;
+  EXPECT_NE(log.find("stays below a height"), std::string::npos) << log;
   EXPECT_LT(seconds_of_children() - began, 60);
   const std::string source = read_file(folder_ / "keep_low/keep_low.cpp");
   EXPECT_LE(std::count(source.begin(), source.end(), '\n'), 60);
@@ -302,6 +327,8 @@ TEST_F(Authoring, TheGuideOfPluginsHolds) {
   refused({"new", "plugin", "cost_trem", "x"}, {"did you mean 'cost_term'?"});
   refused({"new", "plugin", "cost_term", "KeepLow"}, {"expected snake_case"});
   refused({"new", "plugin", "cost_term", "keyframe"}, {"choose another name"});
+  refused({"new", "plugin", "cost_term", "low", "--in", "nowhere/at/all"},
+          {"--in: 'nowhere/at/all' is no folder"});
 }
 
 TEST_F(Authoring, NewMissionsOfEveryKindAreRight) {

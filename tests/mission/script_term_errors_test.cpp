@@ -28,6 +28,14 @@ TEST_F(TermTest, DecidingIsFoundOut) {
           "the function decides by a value (if, ==, and, or), which is done once");
   refuses(cost("  if s.position.x == 2 then return 1, 2 end\n  return s.yaw"),
           "on plain numbers it returns 2 numbers, on a stage 1");
+  // Whatever the number is that it compares with: it stands in a line, or in a local.
+  for (const char* number : {"3", "-4", "12.5"})
+    refuses(
+        cost("  if s.position.z == " + std::string(number) + " then return 9 end\n  return s.yaw"),
+        "the function decides");
+  refuses("local limit <const> = 77\nlocal most = limit + 0.5\n" +
+              cost("  if s.position.z == most then return 9 end\n  return s.yaw"),
+          "the function decides");
   refuses(cost("  return s.yaw * math.random()"), "depends on something that changes from call");
   refuses(cost("  return type(s.yaw) == 'number' and 1 or s.yaw"), "the function decides");
   refuses("local n = 0\n" + cost("  n = n + 1\n  return n * s.yaw"), "the function decides");
@@ -65,10 +73,18 @@ TEST_F(TermTest, WrongNamesAndResultsAreNamed) {
   refuses(cost("  return s.yaw, nil"), "got nothing");
   refuses(cost("  return s"), "got a stage");
   refuses(cost("  return 0 / 0"), "returns no finite number whatever the stage is");
-  refuses(cost("  return lapwing.log(-1 - s.yaw ^ 2)"),
-          "result 1 is no finite number at any of 32");
-  refuses(cost("  return math.sin(s.yaw)"),
-          "got value of a stage (which the functions of `lapwing` take)");
+  refuses(cost("  return lapwing.log(-1 - s.yaw ^ 2)"), "is no finite number at any of ");
+  refuses(
+      cost("  return math.sin(s.yaw)"),
+      "shot.lua:3: cost 'mine': bad argument #1 to 'sin' (number expected, got value of a stage "
+      "(which the functions of `lapwing` take)): write lapwing.sin");
+  refuses(cost("  return lapwing.sinn(s.yaw)"),
+          "shot.lua:3: cost 'mine': attempt to call a nil value (field 'sinn'); did you mean "
+          "lapwing.sin?");
+  refuses(cost("  local x = s.yaw\n  for i = 1, 2e6 do x = x + lapwing.sin(x * i) end\n  return x"),
+          "cost 'mine': ");
+  refuses(cost("  while true do end"), "cost 'mine': ");
+  refuses(cost("  return s.position[4]"), "a vector of 3 numbers has no '4'");
   refuses(cost("  return s[11].yaw"), "s[11]: the last neighbour that there can be here is s[10]");
   refuses(cost("  return s[0.5].yaw"), "expected a whole number, at least 0");
   refuses(cost("  return s:subject('wlaker')"), "did you mean 'walker'?");
@@ -79,16 +95,81 @@ TEST_F(TermTest, WrongNamesAndResultsAreNamed) {
       "shot.lua:3: cost 'mine': no parameter 'heigth' in its `parameters`; did you mean 'height'?");
 }
 
+// A film of two keyframes with one cost, whose function is line 4.
+std::string flight(const std::string& from, const std::string& to, const std::string& residual) {
+  return "local film = require 'mission.film'\nreturn film.shot { name = 'f', keyframes = { { "
+         "position = "
+         "{" +
+         from + "} }, { position = {" + to +
+         "} } },\ncosts = { { name = 'mine', weight = 0.01,\n"
+         "residual = function(s) return " +
+         residual + " end } } }";
+}
+
+// Numbers beyond those of the seeded points are tried where the flight is.
+TEST_F(TermTest, ATermThatHasValuesOnlyWhereTheFlightIsIsTaken) {
+  const auto mission =
+      load(flight("0, 0, 120", "8, 0, 125", "lapwing.sqrt(s.position.z - 100) - 4"));
+  mission->configure({}, {});
+  EXPECT_EQ(mission->plan().report.status, SolveStatus::optimal);
+  expect(flight("0, 0, 20", "8, 0, 25", "lapwing.sqrt(s.position.z - 200)"),
+         "shot.lua:4: cost 'mine': a value of result 1 is no finite number at 0 s");
+}
+
+// A value or a slope that is none in a solve is the script's fault, not a plugin's.
+TEST_F(TermTest, NumbersThatAreNoneInASolveAreNamed) {
+  const std::string log = error(flight("0, 0, 2", "8, 0, 12", "lapwing.log(s.position.z - 5)"));
+  EXPECT_EQ(log.rfind("shot.lua:4: cost 'mine': a value of result 1 is no "
+                      "finite number at 0 s, where position = {0, 0, 2}: keep roots",
+                      0),
+            0u)
+      << log;
+  for (const char* kinked : {"lapwing.sqrt(s.position.y)", "s.position.y ^ 1.5"}) {
+    const std::string root = error(flight("0, 0, 2", "8, 0, 12", kinked));
+    EXPECT_NE(
+        root.find("shot.lua:4: cost 'mine': the derivative of result 1 is no finite number at "),
+        root.npos)
+        << root;
+    EXPECT_NE(root.find("write lapwing.sqrt(lapwing.max(x, 0) + 1e-6) for lapwing.sqrt(x)"),
+              root.npos)
+        << root;
+  }
+  // What is written instead flies.
+  const auto mission =
+      load(flight("0, 0, 2", "8, 0, 12", "lapwing.sqrt(lapwing.max(s.position.y, 0) + 1e-6)"));
+  mission->configure({}, {});
+  EXPECT_EQ(mission->plan().report.status, SolveStatus::optimal);
+}
+
 TEST_F(TermTest, WrongTablesAreNamed) {
-  refuses("p:add_cost { name = 'mine', residual = 'position.z' }",
-          "shot.lua:2: add_cost: residual: expected a function of a stage, got a string");
+  refuses("p:add_cost { name = 'mine', value = function(s) return s.yaw end }",
+          "shot.lua:2: add_cost: 'value' is a function; did you mean `residual`");
+  refuses("p:add_cost { name = 'mine', residul = function(s) return s.yaw end }",
+          "add_cost: 'residul' is a function; did you mean `residual`");
+  refuses("p:add_constraint { name = 'mine', upper = 1, residual = function(s) return s.yaw end }",
+          "add_constraint: 'residual' is a function; did you mean `value`");
+  refuses(
+      "p:add_cost { name = 'mine', residual = lapwing.sin }",
+      "shot.lua:2: add_cost 'mine': residual: expected a function of a stage, function(s) return "
+      "... end, got one that is not written in Lua");
+  refuses(
+      "local terms = {\n  { name = 'mine', weigth = 2,\n    residual = function(s) return s.yaw "
+      "end } }\nfor _, t in ipairs(terms) do p:add_cost(t) end",
+      "shot.lua:4: add_cost 'mine'.weigth: unknown key; did you mean 'weight'?");
+  const std::string twice = "{ name = 'mine', residual = function(s) return s.yaw end }";
+  refuses("p:add_cost " + twice + "\np:add_cost " + twice,
+          "shot.lua:3: add_cost 'mine': there is a term of that name already (shot.lua:2)");
+  refuses(
+      "p:add_cost { name = 'mine', residual = 'position.z' }",
+      "shot.lua:2: add_cost 'mine': residual: expected a function of a stage, function(s) return "
+      "... end, got a string");
   refuses("p:add_cost { residual = function(s) return s.yaw end }", "name: missing");
   refuses("p:add_cost { name = 'mine', wieght = 2, residual = function(s) return s.yaw end }",
-          "add_cost.wieght: unknown key; did you mean 'weight'?");
+          "add_cost 'mine'.wieght: unknown key; did you mean 'weight'?");
   refuses("p:add_cost { name = 'mine', type = 'keyframe', residual = function(s) return 1 end }",
           "add_cost: give a plugin's `type` or a `residual` of your own, not both");
   refuses("p:add_constraint { name = 'mine', value = function(s) return s.yaw end }",
-          "add_constraint: give `lower`, `upper` or both");
+          "add_constraint 'mine': give `lower`, `upper` or both");
   refuses(
       "p:add_constraint { name = 'mine', lower = {0, 1}, value = function(s) return s.yaw end }",
       "constraint 'mine': lower has 2 numbers, the function returns 1");

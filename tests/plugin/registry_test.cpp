@@ -113,7 +113,8 @@ TEST_F(RegistryTest, NamesTheNearestOfUnknownNames) {
   });
   EXPECT_EQ(message,
             "shot.lua:3: unknown fixture 'goood'; did you mean 'good'?; "
-            "known: doubled, good, throwing");
+            "known: doubled, good, throwing; those of a folder of your own are found with "
+            "--plugin-path FOLDER");
   EXPECT_SAYS(refusal([&] { plugins.find("cost_term", "good"); }), "its kind is fixture");
   EXPECT_SAYS(refusal([&] { plugins.find("cost_term", "x"); }), folder_.string());
   fs::remove(folder_ / "throwing.json");
@@ -162,7 +163,9 @@ TEST_F(RegistryTest, ExceptionsOfAPluginEndTheCallNotTheHost) {
     create("standard");
     FAIL() << "nothing was thrown";
   } catch (const PluginError& error) {
-    EXPECT_STREQ(error.what(), "plugin 'throwing' failed in create: index 7");
+    EXPECT_STREQ(error.what(),
+                 "plugin 'throwing' failed in create: index 7; try it alone: lapwing plugins check "
+                 "throwing");
   }
   EXPECT_THROW(create("number"), PluginError);
   EXPECT_THROW(create("cancelled"), Cancelled);

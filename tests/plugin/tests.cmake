@@ -16,7 +16,9 @@ foreach(name broken_motion broken_views)
                      OUTPUT ${fixture_output}/broken_kinds)
   add_dependencies(test_app lapwing_fixture_${name})
 endforeach()
-add_dependencies(test_app lapwing_cost_term_broken_term)
+# Plugins of every kind that misbehave in a call.
+lapwing_add_plugin(fixture rogue SOURCES ${fixtures}/rogue.cpp OUTPUT ${fixture_output}/rogue)
+add_dependencies(test_app lapwing_cost_term_broken_term lapwing_fixture_rogue)
 add_dependencies(test_plugin lapwing_fixture_good lapwing_fixture_throwing
                  lapwing_fixture_duplicate)
 
