@@ -76,7 +76,8 @@ void refuse_unknown_plugin(const Registry& registry, const std::string& name) {
   const std::string nearest = nearest_name(name, names);
   throw InputError(
       "there is no plugin '" + name + "'" +
-      (nearest.empty() ? "; see 'lapwing plugins list'" : "; did you mean '" + nearest + "'?"));
+      (nearest.empty() ? "; see 'lapwing plugins list'" : "; did you mean '" + nearest + "'?") +
+      "; one of a folder of your own is found with --plugin-path FOLDER");
 }
 
 ExitStatus list_plugins(const Invocation& invocation) {

@@ -91,8 +91,9 @@ double seconds_since(Clock::time_point then) {
 }
 
 // A brief call is watched by how long it takes; a lengthy one by how long nothing was evaluated or
-// asked by anyone.
+// asked by anyone, with more patience: a library's one step may be long.
 [[noreturn]] void watch_calls(double seconds) {
+  constexpr double kPatience = 5;
   const auto pause = std::chrono::duration<double>(std::clamp(seconds / 4, 0.05, 5.0));
   std::map<std::uint64_t, Clock::time_point> seen;  // by the number of a call, since when
   std::uint64_t activity = activity_of_calls();
@@ -105,7 +106,7 @@ double seconds_since(Clock::time_point then) {
     std::map<std::uint64_t, Clock::time_point> still;
     for (const RunningCall& call : running_calls()) {
       if (call.length == CallLength::lengthy) {
-        if (seconds_since(active) >= seconds)
+        if (seconds_since(active) >= kPatience * seconds)
           end_for(call, ": it neither evaluates nor asks whether it was cancelled");
         continue;
       }

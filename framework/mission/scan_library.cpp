@@ -265,14 +265,15 @@ int scan_graph_of_run(lua_State* state) {
   work->island = islands_of(work->graph);
   const ScanGraph& graph = work->graph;
   logging::info("candidates: " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
-            std::to_string(graph.candidates.blocked) + " places blocked, " +
-            std::to_string(graph.candidates.crowded) + " too near to others); motions: " +
-            std::to_string(graph.motions.motions.size()) + " of " +
-            std::to_string(graph.motions.tried) + " (" + std::to_string(graph.motions.unmatched) +
-            " unmatched, " + std::to_string(graph.motions.blocked) + " blocked, " +
-            std::to_string(graph.motions.planned) +
-            " round obstacles); voxels: " + std::to_string(graph.voxels.size()) +
-            "; score: " + std::to_string(graph.score->bytes() >> 20) + " MiB");
+                std::to_string(graph.candidates.blocked) + " places blocked, " +
+                std::to_string(graph.candidates.crowded) +
+                " too near to others); motions: " + std::to_string(graph.motions.motions.size()) +
+                " of " + std::to_string(graph.motions.tried) + " (" +
+                std::to_string(graph.motions.unmatched) + " unmatched, " +
+                std::to_string(graph.motions.blocked) + " blocked, " +
+                std::to_string(graph.motions.planned) +
+                " round obstacles); voxels: " + std::to_string(graph.voxels.size()) +
+                "; score: " + std::to_string(graph.score->bytes() >> 20) + " MiB");
   new_object(state, kGraphType, GraphObject{std::move(work)});
   return 1;
 }
@@ -398,16 +399,20 @@ int solve_tour_of_run(lua_State* state) {
     const Sandbox::ClockPause pause(Sandbox::of(state));
     if (run.settings.observe_tour) run.settings.observe_tour(work, definition);
     const TourProblem problem(std::move(definition));
+    const std::string wrong = request.initial ? problem.problem_of(*request.initial) : "";
+    if (!wrong.empty())
+      throw InputError("solve_tour: the initial tour is none of this problem: " + wrong);
     TourResult result = solver->solve(problem, request);
+    if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     tour.report = result.report;
     tour.walk = std::move(result.walk);
   }
   run.solve_seconds += tour.report.wall_seconds;
-  logging::info(chosen.type + ": " + to_string(tour.report.status) + ", score " +
-            std::to_string(tour.report.score) + ", " + std::to_string(tour.report.seconds_used) +
-            " s, " + std::to_string(tour.report.images) + " images, " +
-            std::to_string(tour.report.evaluations) + " evaluations" +
-            (tour.report.message.empty() ? "" : "; " + tour.report.message));
+  logging::info(
+      chosen.type + ": " + to_string(tour.report.status) + ", score " +
+      std::to_string(tour.report.score) + ", " + std::to_string(tour.report.seconds_used) + " s, " +
+      std::to_string(tour.report.images) + " images, " + std::to_string(tour.report.evaluations) +
+      " evaluations" + (tour.report.message.empty() ? "" : "; " + tour.report.message));
   new_object(state, kTourType, std::move(tour));
   return 1;
 }

@@ -84,9 +84,10 @@ std::string TermRecording::values_here() const {
 // those that it was made with, and its parameters.
 std::vector<double> TermRecording::literals(int function) const {
   constexpr std::size_t kMostLiterals = 64;
+  constexpr double kLargest = 1000;  // where rounding is no difference yet
   std::vector<double> found;
   const auto add = [&](double value) {
-    if (found.size() < kMostLiterals && std::isfinite(value) &&
+    if (found.size() < kMostLiterals && std::abs(value) <= kLargest &&
         std::find(found.begin(), found.end(), value) == found.end())
       found.push_back(value);
   };

@@ -104,6 +104,7 @@ int plan_way(lua_State* state) {
     found = find_passage(*planner, problem, request, search);
   }
   const PathReport& report = found.path.report;
+  if (report.status == PathStatus::failed) throw PluginError(report.message);
   if (report.status != PathStatus::found) {
     lua_pushnil(state);
     push_text(state, std::string(to_string(report.status)) +

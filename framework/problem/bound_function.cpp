@@ -258,7 +258,10 @@ const char* BoundFunction::plugin_name() const {
 // What goes wrong in the function's own code is told with its name.
 template <class Body>
 void BoundFunction::guarded_call(const char* call, const Body& body) const {
-  if (!written_at_.empty()) return body();  // a tape: none but the kernel's code
+  if (!written_at_.empty()) {  // a tape: none but the kernel's code
+    show_activity();
+    return body();
+  }
   const char* const plugin = plugin_name();
   const ActiveCall mark(plugin, call);
   call_plugin(plugin, call, body);

@@ -327,6 +327,7 @@ TEST_F(Authoring, TheGuideOfPluginsHolds) {
   refused({"new", "plugin", "cost_trem", "x"}, {"did you mean 'cost_term'?"});
   refused({"new", "plugin", "cost_term", "KeepLow"}, {"expected snake_case"});
   refused({"new", "plugin", "cost_term", "keyframe"}, {"choose another name"});
+  refused({"plugins", "show", "keep_low"}, {"--plugin-path FOLDER"});
   refused({"new", "plugin", "cost_term", "low", "--in", "nowhere/at/all"},
           {"--in: 'nowhere/at/all' is no folder"});
 }
@@ -336,6 +337,8 @@ TEST_F(Authoring, NewMissionsOfEveryKindAreRight) {
     const std::string file = std::string("my_") + kind + ".lua";
     Finished finished = run({"new", "mission", kind, file});
     ASSERT_EQ(finished.status, 0) << finished.err;
+    // Who has to wait is told before.
+    EXPECT_EQ(finished.out.find("Takes minutes") != std::string::npos, kind == std::string("scan"));
     finished = run({"config", file});
     EXPECT_EQ(finished.status, 0) << finished.err;
   }

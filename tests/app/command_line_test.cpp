@@ -11,6 +11,7 @@
 
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/plugin/abi.h"
 #include "tests/app/program_fixture.h"
 
 namespace lapwing {
@@ -267,11 +268,12 @@ TEST_F(CommandLine, APluginOfAnotherAbiIsRefused) {
   const fs::path original = fs::path(LAPWING_BUILD_DIR) / "lib/plugins/trajectory_solvers";
   std::string sidecar = read_file(original / "iqp.json");
   sidecar = replaced(replaced(sidecar, "\"iqp\"", "\"alien\""), "iqp.so", "alien.so");
-  write("plugins/alien.json", replaced(sidecar, "lapwing 1;", "lapwing 9;"));
-  write("plugins/alien.so", replaced(read_file(original / "iqp.so"), "lapwing 1;", "lapwing 9;"));
+  const std::string tag = kAbiTag, number = tag.substr(0, tag.find(';') + 1);
+  write("plugins/alien.json", replaced(sidecar, number, "lapwing 9;"));
+  write("plugins/alien.so", replaced(read_file(original / "iqp.so"), number, "lapwing 9;"));
   write("shot.lua", film("solver = 'alien',"));
   refused({"--plugin-path", "plugins", "run", "shot.lua"},
-          {"shot.lua:2: ", "plugins/alien.so", "lapwing 9;", "lapwing 1;", "rebuild the plugin"});
+          {"shot.lua:2: ", "plugins/alien.so", "lapwing 9;", number, "rebuild the plugin"});
 }
 
 TEST_F(CommandLine, CtrlCKeepsTheBestSoFar) {

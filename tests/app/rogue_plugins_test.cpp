@@ -305,6 +305,39 @@ TEST_F(RogueCommands, EndWithTheNameOfThePlugin) {
   ::unsetenv("LAPWING_CALL_LIMIT");
 }
 
+// What reports instead of throwing: a planner and a tour solver that break their promise.
+TEST_F(RogueCommands, ASearchThatBreaksItsPromiseEndsTheMission) {
+  write("way.lua",
+        "return { kind = 'film', name = 'way', options = {}, plan = function(run)\n"
+        "  local p = run:problem { vehicle = run:vehicle('vehicles/solo'), duration = 1,\n"
+        "    environment = { boxes = { { lower = {-0.2, -6, 0}, upper = {0.2, 6, 4} } } } }\n"
+        "  p:plan_way { from = {-5, 0, 2}, to = {5, 0, 2}, planner = 'rogue_planner' }\nend }\n");
+  ends({"run", "way.lua", "--quiet"},
+       "plugin 'rogue_planner' failed in search: segment 1 of the planner's path is blocked");
+  write("hut.obj",
+        "v -3 -2.5 0\nv 3 -2.5 0\nv 3 2.5 0\nv -3 2.5 0\nv -3 -2.5 4\nv 3 -2.5 4\nv 3 2.5 4\n"
+        "v -3 2.5 4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\nf 4 3 2 1\n");
+  write("hut.lua", R"(local scan = require "mission.scan"
+return scan.of_mesh {
+  name = "hut", input = "hut.obj", ground = true, safe_height = 7, reach = 8, resolution = 0.4,
+  region = { lower = {-4, -3.5, -0.5}, upper = {4, 3.5, 4.5} },
+  flights = { { pattern = "circle", height = 9, views = 8, reach = 4 } },
+  camera = { width = 120, height = 90, focal = 70 },
+  surface = { spacing = 0.5, cell = 0.6, trim = 1.2 },
+  candidates = { most = 40, step = 3, distance_apart = 2 },
+  motions = { coarse = 40, alpha = 0.2 }, tour = { budget = 60 },
+}
+)");
+  const auto with = [](const std::string& option) {
+    return std::vector<std::string>{"run", "hut.lua", "--quiet", "--set", option};
+  };
+  ends(with("tour.solver=rogue_tours"),
+       "plugin 'rogue_tours' failed in search: the solver's tour is none: view ");
+  std::vector<std::string> maps = with("map.type=rogue_map");
+  maps.insert(maps.end(), {"--set", "map.where=insert", "--set", "map.how=exits"});
+  ends(maps, "plugin 'rogue_map' ended the program in insert" + cure("rogue_map"));
+}
+
 TEST_F(RogueCommands, ExportIsGuardedAsWell) {
   write("shot.lua", hover(""));
   run({"run", "shot.lua", "--out", "hop", "--quiet"});

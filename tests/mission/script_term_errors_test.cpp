@@ -1,4 +1,5 @@
 // What a script may get wrong in a term of its own: file, line, and what to write instead.
+#include "framework/core/log.h"
 #include "tests/mission/term_fixture.h"
 
 namespace lapwing {
@@ -139,6 +140,22 @@ TEST_F(TermTest, NumbersThatAreNoneInASolveAreNamed) {
       load(flight("0, 0, 2", "8, 0, 12", "lapwing.sqrt(lapwing.max(s.position.y, 0) + 1e-6)"));
   mission->configure({}, {});
   EXPECT_EQ(mission->plan().report.status, SolveStatus::optimal);
+}
+
+// What is allowed, but hardly meant.
+TEST_F(TermTest, ConstantAndHugeTermsAreWarnedOf) {
+  const auto warned = [&](const std::string& terms) {
+    const logging::Capture capture;
+    stated(terms);
+    return capture.text();
+  };
+  EXPECT_NE(warned(cost("  return 3")).find("shot.lua:2: cost 'mine': is the same number whatever"),
+            std::string::npos);
+  const std::string huge = "  local x = s.yaw\n  for i = 1, 3e4 do x = x + lapwing.sin(x) end\n";
+  EXPECT_NE(
+      warned(cost(huge + "  return x")).find("operations at every stage; solving will be slow"),
+      std::string::npos);
+  EXPECT_EQ(warned(cost("  return s.yaw")).find("cost 'mine'"), std::string::npos);
 }
 
 TEST_F(TermTest, WrongTablesAreNamed) {
