@@ -32,7 +32,17 @@ bool is_good(const Tested& test) {
 }
 
 std::string word_of(Outcome outcome) {
-  return outcome == Outcome::passed ? "passed" : outcome == Outcome::failed ? "failed" : "skipped";
+  switch (outcome) {
+    case Outcome::passed:
+      return "passed";
+    case Outcome::failed:
+      return "failed";
+    case Outcome::warned:
+      return "warned";
+    case Outcome::skipped:
+      break;
+  }
+  return "skipped";
 }
 
 // Runs `work`, whose results come back as data, in a copy of this process that writes nothing of

@@ -19,7 +19,11 @@ Value plugin_value(const PluginEntry& entry, bool with_parameters) {
   object.set("reference", entry.reference);
   if (!entry.preset_of.empty()) object.set("preset_of", entry.preset_of);
   object.set("library", entry.library.string());
-  if (with_parameters) object.set("parameters", entry.parameters.to_value());
+  if (with_parameters) {
+    Value& declares = object.set("declares", Value::list());
+    for (const std::string& id : entry.extensions) declares.push_back(id);
+    object.set("parameters", entry.parameters.to_value());
+  }
   return object;
 }
 
@@ -55,6 +59,11 @@ void print_plugin(const PluginEntry& entry) {
   if (!entry.reference.empty()) std::printf("  after %s\n", entry.reference.c_str());
   if (!entry.preset_of.empty()) {
     std::printf("  another name of %s, with other defaults\n", entry.preset_of.c_str());
+  }
+  if (!entry.extensions.empty()) {
+    std::string all;
+    for (const std::string& id : entry.extensions) all += (all.empty() ? "" : ", ") + id;
+    std::printf("  declares: %s\n", all.c_str());
   }
   std::printf("  %s\n", entry.library.c_str());
   if (entry.parameters.specs().empty()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/conformance/differences.h"
 #include "framework/conformance/function_checks.h"
 #include "framework/export/exporter.h"
 
@@ -12,7 +13,7 @@ namespace {
 // Bounds are numbers, in order, and a range states the same as its instances one by one.
 void check_bounds(const BoundSubject& subject, Findings& findings) {
   const auto& constraint = static_cast<const Constraint&>(subject.function);
-  const int m = subject.shape.rows, count = subject.count;
+  const int m = subject.shape.rows, count = subject.count();
   std::vector<double> lower(count * m, std::nan("")), upper(lower), low(m), high(m);
   constraint.bounds({0, count}, lower.data(), upper.data());
   for (int k = 0; k < count; ++k) {
@@ -20,9 +21,8 @@ void check_bounds(const BoundSubject& subject, Findings& findings) {
     for (int r = 0; r < m; ++r) {
       const double l = lower[k * m + r], u = upper[k * m + r];
       const std::string at = "row " + std::to_string(r) + " of instance " + std::to_string(k);
-      findings.expect("bounds", l <= u && l < HUGE_VAL && u > -HUGE_VAL, [&] {
-        return at + " lies between " + std::to_string(l) + " and " + std::to_string(u);
-      });
+      findings.expect("bounds", l <= u && l < HUGE_VAL && u > -HUGE_VAL,
+                      [&] { return at + " lies between " + text_of(l) + " and " + text_of(u); });
       findings.expect("bounds", low[r] == l && high[r] == u,
                       [&] { return at + " has other bounds alone than in a range"; });
     }
@@ -50,9 +50,9 @@ bool CheckOptions::wants_any(std::initializer_list<const char*> checks) const {
 std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
   if (kind == CostTerm::kKind || kind == Constraint::kKind) {
     std::vector<std::vector<std::string>> groups{
-        {"creation"}, {"values"},      {"derivatives"},      {"curvature"},
-        {"ranges"},   {"affine"},      {"degenerate input"}, {"repeatable"},
-        {"threads"},  {"allocations"}, {"identity"}};
+        {"creation"}, {"values", "pattern"}, {"derivatives"}, {"curvature"}, {"ranges"},
+        {"affine"},   {"degenerate input"},  {"repeatable"},  {"threads"},   {"allocations"},
+        {"identity"}, {"invariance"}};
     if (kind == Constraint::kKind) groups.push_back({"bounds"});
     return groups;
   }
@@ -69,7 +69,8 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
             {"warm start"},
             {"repeatable"},
             {"work limit"},
-            {"cancellation"}};
+            {"cancellation"},
+            {"wall clock"}};
   if (kind == Map::kKind)
     return {{"creation"},
             {"empty", "integration", "ray casts", "boxes", "import"},
@@ -83,15 +84,14 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
             {"cancellation", "wall clock"}};
   if (kind == TourSolver::kKind)
     return {{"creation"},
-            {"answers", "honest", "messages", "tours", "reported score", "reported seconds",
-             "upper bound"},
+            {"answers", "honest", "messages", "tours", "work", "upper bound"},
             {"repeatable"},
-            {"initial tour"},
             {"cancellation", "wall clock"}};
   if (kind == ViewInformation::kKind)
     return {{"creation"}, {"finite", "at least 0", "repeats", "alone"}, {"submodular"}};
   if (kind == ViewUtility::kKind)
-    return {{"creation"}, {"finite"}, {"repeatable"}, {"threads"}, {"alone"}, {"truth"}};
+    return {{"creation"}, {"finite"}, {"repeatable"}, {"threads"},
+            {"alone"},    {"truth"},  {"monotone"},   {"submodular"}};
   if (kind == Exporter::kKind) return {{"creation"}, {"extension"}, {"repeatable", "contents"}};
   return {};
 }
@@ -105,17 +105,17 @@ std::vector<std::string> check_names(const std::string& kind) {
 
 std::vector<CheckResult> check_cost_term(const Specimen<CostTerm>& subject,
                                          const CheckOptions& options) {
-  Findings findings;
-  check_stage_function(subject.parameters, subject.create, options, findings,
+  Findings findings(options);
+  check_stage_function({subject.parameters, subject.create, subject.declares}, options, findings,
                        [](const BoundSubject&) {});
   return std::move(findings).results();
 }
 
 std::vector<CheckResult> check_constraint(const Specimen<Constraint>& subject,
                                           const CheckOptions& options) {
-  Findings findings;
-  check_stage_function(subject.parameters, subject.create, options, findings,
-                       [&](const BoundSubject& bound) {
+  Findings findings(options);
+  check_stage_function({subject.parameters, subject.create, subject.declares, true}, options,
+                       findings, [&](const BoundSubject& bound) {
                          if (options.wants("bounds")) check_bounds(bound, findings);
                        });
   return std::move(findings).results();

@@ -6,6 +6,7 @@
 // subject throws becomes a finding. They are seeded and repeat.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -27,12 +28,12 @@ namespace lapwing {
 
 class Exporter;  // export/exporter.h
 
-enum class Outcome { passed, failed, skipped };
+enum class Outcome { passed, failed, skipped, warned };  // warned: likely a slip, no mistake
 
 struct CheckResult {
   std::string name;  // "derivatives", "threads", ...
   Outcome outcome = Outcome::passed;
-  std::string message;  // why it failed or was skipped: the first case found
+  std::string message;  // why it failed, was skipped or warned of: the first case found
 };
 
 template <class Kind>
@@ -41,6 +42,13 @@ struct Specimen {
   ParameterTable parameters;
   // From parameters that lack defaults; throws InputError for bad ones.
   std::function<std::unique_ptr<Kind>(const Value&)> create;
+  // Extensions of its descriptor: what it says of itself beyond its kind (problem/invariance.h,
+  // explore/view_utility.h).
+  std::vector<std::string> declares = {};
+
+  bool says(const std::string& id) const {
+    return std::find(declares.begin(), declares.end(), id) != declares.end();
+  }
 };
 
 struct CheckOptions {
@@ -86,9 +94,11 @@ std::vector<CheckResult> check_exporter(const Specimen<Exporter>& subject,
 
 template <class Kind>
 Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {
-  return {entry.name, entry.parameters, [&registry, name = entry.name](const Value& given) {
+  return {entry.name, entry.parameters,
+          [&registry, name = entry.name](const Value& given) {
             return registry.create<Kind>(name, given);
-          }};
+          },
+          entry.extensions};
 }
 
 // What a plugin of any kind says of itself: names, version, and a parameter table that agrees with

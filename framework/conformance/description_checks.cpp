@@ -8,6 +8,7 @@
 #include "framework/core/json.h"
 #include "framework/export/exporter.h"
 #include "framework/plugin/sidecar.h"
+#include "framework/problem/invariance.h"
 
 namespace lapwing {
 namespace {
@@ -35,6 +36,15 @@ bool is_snake_case(const std::string& name) {
   };
   return !name.empty() && name[0] >= 'a' && name[0] <= 'z' &&
          std::all_of(name.begin(), name.end(), fits);
+}
+
+// Words that are checked must be spelled as they are known, on plugins of the kind they speak of.
+bool may_declare(const std::string& kind, const std::string& id) {
+  const bool term = kind == CostTerm::kKind || kind == Constraint::kKind;
+  if (id == kMonotone || id == kSubmodular) return kind == ViewUtility::kKind;
+  if (!id.starts_with("invariant")) return true;
+  return term && (id == kInvariantToTranslation || id == kInvariantToRotationAboutZ ||
+                  id == kInvariantToTime);
 }
 
 bool is_version(const std::string& version) {
@@ -99,6 +109,8 @@ std::vector<CheckResult> check_description(const PluginEntry& entry) {
   need(is_version(entry.version), "the version '" + entry.version + "' is not like 1.0.0");
   need(!entry.summary.empty() && entry.summary.find('\n') == std::string::npos,
        "the summary is not one line");
+  for (const std::string& id : entry.extensions)
+    need(may_declare(entry.kind, id), "a " + entry.kind + " cannot declare '" + id + "'");
   for (const ParameterSpec& spec : entry.parameters.specs()) check_spec(spec, spec.name, findings);
   return std::move(findings).results();
 }

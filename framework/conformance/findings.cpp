@@ -12,7 +12,7 @@ CheckResult& Findings::result(const std::string& check) {
 }
 
 bool Findings::noted(const std::string& check) const {
-  return only_.empty() || check == "creation" || check == "exceptions" ||
+  return only_.empty() || check == "creation" || check == "exceptions" || check == "shape" ||
          std::find(only_.begin(), only_.end(), check) != only_.end();
 }
 
@@ -35,6 +35,14 @@ void Findings::skip(const std::string& check, const std::string& reason) {
   for (const CheckResult& known : results_)
     if (known.name == check) return;
   results_.push_back({check, Outcome::skipped, reason});
+}
+
+void Findings::warn(const std::string& check, const std::string& message) {
+  if (!noted(check)) return;
+  CheckResult& entry = result(check);
+  if (entry.outcome == Outcome::failed || entry.outcome == Outcome::warned) return;
+  entry.outcome = Outcome::warned;
+  entry.message = case_.empty() ? message : message + " (" + case_ + ")";
 }
 
 bool Findings::failed(const std::string& check) const {

@@ -16,6 +16,8 @@ class Findings {
   void expect(const std::string& check, bool ok, const std::function<std::string()>& message);
   void fail(const std::string& check, const std::string& message);
   void skip(const std::string& check, const std::string& reason);
+  // Something that is likely a slip: said where nothing worse is known of the check.
+  void warn(const std::string& check, const std::string& message);
   bool failed(const std::string& check) const;
   // Whether every check that was asked for by name has failed: there is nothing left to find.
   bool settled() const;

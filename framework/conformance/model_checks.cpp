@@ -150,7 +150,7 @@ class ModelCheck {
         x, stated, 1e-6);
     findings_.expect("derivatives", worst.excess <= 1, [&] {
       return "d " + name_of(worst.row) + " / d " + name_of(worst.column) + ": says " +
-             std::to_string(worst.stated) + ", differences give " + std::to_string(worst.expected);
+             text_of(worst.stated) + ", differences give " + text_of(worst.expected);
     });
   }
 
@@ -171,7 +171,7 @@ class ModelCheck {
         x, stated, 1e-5);
     findings_.expect("curvature", worst.excess <= 1, [&] {
       return "d2 / d " + name_of(worst.row) + " d " + name_of(worst.column) + ": says " +
-             std::to_string(worst.stated) + ", differences give " + std::to_string(worst.expected);
+             text_of(worst.stated) + ", differences give " + text_of(worst.expected);
     });
   }
 

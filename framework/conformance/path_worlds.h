@@ -20,6 +20,7 @@ class BlockSpace final : public FreeSpace {
   bool swept_box_free(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                       const Eigen::Vector3d& half) const override;
   Eigen::AlignedBox3d bounds() const override;
+  const std::vector<Eigen::AlignedBox3d>& blocks() const { return blocks_; }
 
  private:
   std::vector<Eigen::AlignedBox3d> blocks_;

@@ -1,5 +1,8 @@
 #include "framework/conformance/solver_shelf.h"
 
+#include <chrono>
+#include <thread>
+
 #include "framework/conformance/standard_setting.h"
 #include "framework/problem/differentiable.h"
 
@@ -170,7 +173,52 @@ ShelfProblem keep_away() {
   return {"curved constraint", std::move(problem), 0.64, true};
 }
 
+// The last place to some power, watched.
+class Watched final : public DifferentiableCost<Watched, 1> {
+  using Formula = DifferentiableCost<Watched, 1>;
+
+ public:
+  Watched(Watch& watch, int power) : watch_(watch), power_(power) {}
+  FunctionShape declare(const ProblemSetting& setting) {
+    return {.blocks = {setting.layout.index("place")},
+            .rows = 1,
+            .stages = {kStages - 1},
+            .affine = power_ == 1};
+  }
+  template <class T>
+  void residual(const Stage<T>& stage, Rows<T>& rows) const {
+    const T& x = stage.scalar(0);
+    rows[0] = power_ == 1 ? x : x * x;
+  }
+  void evaluate(InstanceRange range, const double* inputs, double* values, double* jacobian,
+                Workspace& workspace) const override {
+    Formula::evaluate(range, inputs, values, jacobian, workspace);
+    if (watch_.pause > 0) std::this_thread::sleep_for(std::chrono::duration<double>(watch_.pause));
+    if (++watch_.calls == watch_.cancel_after) watch_.token.cancel();
+  }
+
+ private:
+  Watch& watch_;
+  int power_;
+};
+
+TrajectoryProblem watched(Watch& watch, int power) {
+  TrajectoryProblem problem = cart(100);
+  start_at(problem, 100);
+  problem.add_cost("watched", 1.0, std::make_unique<Watched>(watch, power));
+  problem.finish();
+  return problem;
+}
+
 }  // namespace
+
+TrajectoryProblem watched_problem(Watch& watch) {
+  return watched(watch, 2);
+}
+
+TrajectoryProblem watched_quadratic_problem(Watch& watch) {
+  return watched(watch, 1);
+}
 
 std::vector<ShelfProblem> solver_shelf() {
   std::vector<ShelfProblem> shelf;

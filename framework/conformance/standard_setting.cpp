@@ -42,6 +42,11 @@ Plausible plausible(const StandardSetting& standard, const BlockSpec& block, int
   return result;
 }
 
+// Places some hundred metres away, motion a few times as fast.
+double far_spread(double spread) {
+  return spread >= 20 ? 15 * spread : 4 * spread;
+}
+
 }  // namespace
 
 Vehicle standard_vehicle() {
@@ -116,6 +121,12 @@ StandardSetting::StandardSetting(bool step_free)
   add("step", 1, BlockRole::clock);
 }
 
+StandardSetting StandardSetting::long_flight() {
+  StandardSetting setting(false);
+  setting.horizon.stages = 3001;
+  return setting;
+}
+
 Instances instances_of(const FunctionShape& shape, const Horizon& horizon) {
   Instances result{shape.times};
   if (!shape.times.empty()) return result;
@@ -135,20 +146,23 @@ std::vector<InputPlace> input_places(const FunctionShape& shape, const StageLayo
 }
 
 std::vector<double> make_inputs(const StandardSetting& standard, const FunctionShape& shape,
-                                InputKind kind, Random& random) {
+                                const std::vector<double>& times, InputKind kind, Random& random) {
   const std::vector<InputPlace> places = input_places(shape, standard.layout);
   const std::size_t per_stage = places.size() / shape.window;
+  const bool by_chance = kind == InputKind::random || kind == InputKind::far;
+  const bool free_clock = standard.horizon.step_free && by_chance;
   std::vector<double> result;
-  for (const double time : instances_of(shape, standard.horizon).times) {
-    const double step = standard.horizon.step_free && kind == InputKind::random
-                            ? random.uniform(0.1, 0.4)
-                            : standard.horizon.step;
+  result.reserve(times.size() * places.size());
+  for (const double instance : times) {
+    const double step = free_clock ? random.uniform(0.1, 0.4) : standard.horizon.step;
+    const double time = free_clock ? instance * random.uniform(0.5, 2) : instance;
     const std::size_t first = result.size();
     Eigen::Vector4d turn(1, 0, 0, 0);
     for (std::size_t k = 0; k < places.size(); ++k) {
       const BlockSpec& block = standard.layout.block(places[k].block);
       const Plausible range = plausible(standard, block, places[k].component);
-      double value = range.middle + range.spread * random.uniform(-1, 1);
+      const double spread = kind == InputKind::far ? far_spread(range.spread) : range.spread;
+      double value = range.middle + spread * random.uniform(-1, 1);
       if (kind == InputKind::zero) value = 0;
       if (block.topology == Topology::quaternion) {
         if (kind != InputKind::zero && places[k].component == 0) {

@@ -21,6 +21,8 @@ struct StandardSetting {
   Environment environment;
 
   explicit StandardSetting(bool step_free);
+  // The same over ten minutes, with a fixed step.
+  static StandardSetting long_flight();
   ProblemSetting setting() const { return {layout, horizon, vehicle, environment}; }
 };
 
@@ -39,12 +41,13 @@ struct InputPlace {
 };
 std::vector<InputPlace> input_places(const FunctionShape& shape, const StageLayout& layout);
 
-enum class InputKind { random, zero, coincident };
+enum class InputKind { random, far, zero, coincident };
 
-// Inputs of all instances, [count][n]: plausible numbers for known blocks, unit quaternions, true
-// times; `zero` has zeros but for the clock and orientations, `coincident` equal stages. The clock
-// is the setting's, but a free step varies when random.
+// Inputs of instances at `times`, [count][n]: plausible numbers for known blocks, unit quaternions,
+// true times; `far` has places up to some hundred metres away and faster motion, `zero` has zeros
+// but for the clock and orientations, `coincident` equal stages. The clock is the setting's, but a
+// free step, and with it the time, varies when random or far.
 std::vector<double> make_inputs(const StandardSetting& standard, const FunctionShape& shape,
-                                InputKind kind, Random& random);
+                                const std::vector<double>& times, InputKind kind, Random& random);
 
 }  // namespace lapwing

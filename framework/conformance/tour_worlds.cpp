@@ -127,6 +127,50 @@ double best_score_by_enumeration(const TourDefinition& d) {
   return best;
 }
 
+std::string fault_of_walk(const TourDefinition& d, const std::vector<int>& walk) {
+  const int n = d.score->views();
+  if (walk.empty() || walk.front() != d.start || walk.back() != d.end)
+    return "does not go from the start to the end";
+  const Matrix direct = direct_seconds(d, n);
+  const auto stop = [&](int v) {
+    return d.view_seconds.size() > 1 ? d.view_seconds[v] : d.view_seconds.front();
+  };
+  std::vector<int> visits(n, 0);
+  for (const int v : walk) {
+    if (v < 0 || v >= n) return "visits view " + std::to_string(v) + ", which there is not";
+    ++visits[v];
+  }
+  // Start and end are stopped at once, every other view whenever it is reached.
+  double seconds = stop(d.start) + (d.start == d.end ? 0 : stop(d.end));
+  for (std::size_t i = 1; i < walk.size(); ++i) {
+    const double way = direct[walk[i - 1]][walk[i]];
+    if (walk[i - 1] == walk[i] || way == kNever)
+      return "goes from " + std::to_string(walk[i - 1]) + " to " + std::to_string(walk[i]) +
+             ", where no motion leads";
+    seconds += way + (walk[i] == d.start || walk[i] == d.end ? 0 : stop(walk[i]));
+  }
+  int images = 0;
+  for (int v = 0; v < n; ++v) {
+    const bool closes = v == d.start && d.start == d.end;
+    if (!d.legs.empty() && visits[v] > (closes ? 2 : 1))
+      return "visits view " + std::to_string(v) + " twice";
+    images += visits[v] > 0;
+  }
+  if (seconds > d.budget + kRounding * (1 + d.budget))
+    return "takes " + std::to_string(seconds) + " s of a budget of " + std::to_string(d.budget) +
+           " s";
+  if (d.image_limit && images > *d.image_limit)
+    return "takes " + std::to_string(images) + " images where " + std::to_string(*d.image_limit) +
+           " are allowed";
+  return "";
+}
+
+double score_of_walk(const TourDefinition& d, const std::vector<int>& walk) {
+  unsigned set = 0;
+  for (const int v : walk) set |= 1u << v;
+  return score_of(*d.score, set);
+}
+
 TourDefinition random_tour(std::uint64_t seed, const TourWorldOptions& options) {
   Random random(seed);
   const int n = options.views;

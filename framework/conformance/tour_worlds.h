@@ -14,6 +14,12 @@ namespace lapwing {
 // Negative where there is no tour.
 double best_score_by_enumeration(const TourDefinition& definition);
 
+// What is wrong with a walk, "" when nothing is; likewise of `definition` alone: a motion for every
+// pair, ends, the budget, the number of images, nothing visited twice where legs are stated.
+std::string fault_of_walk(const TourDefinition& definition, const std::vector<int>& walk);
+// Of the views of a walk together.
+double score_of_walk(const TourDefinition& definition, const std::vector<int>& walk);
+
 struct TourWorldOptions {
   int views = 10;
   int voxels = 40;

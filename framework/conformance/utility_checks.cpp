@@ -1,30 +1,41 @@
 // What every plugin of kind `utility` must pass.
 #include <cmath>
+#include <deque>
 
+#include "framework/conformance/differences.h"
 #include "framework/conformance/every_case.h"
+#include "framework/core/random.h"
 #include "framework/map/plain_map.h"
 
 namespace lapwing {
 namespace {
 
-// What an exploration knows of a room after two looks, or before the first; and views to ask about:
-// in what is known, at its border, beyond it, and the other way round.
+constexpr int kAnywhere = 10;
+
+// What an exploration knows of a room after some looks, or before the first; and views to ask
+// about: in what is known, at its border, beyond it, the other way round, and anywhere.
 struct UtilityWorld {
   class Told final : public TrueGain {
    public:
+    explicit Told(int looks) : looks_(looks) {}
     double gain(const Viewpoint& view) const override {
-      return 10 + 5 * std::sin(view.position.x() + view.yaw);
+      return (10 + 5 * std::sin(view.position.x() + view.yaw)) / (1 + looks_);
     }
+
+   private:
+    int looks_;
   };
 
   std::string name;
+  int looks = 0;
   std::unique_ptr<PlainMap> map;
   std::unique_ptr<MapMeans> means;
   Told told;
   EpisodeView known;
   std::vector<Viewpoint> views;
 
-  UtilityWorld(std::string named, int looks) : name(std::move(named)) {
+  UtilityWorld(std::string named, int looked, std::uint64_t seed)
+      : name(std::move(named)), looks(looked), told(looked) {
     MapSettings settings;
     settings.resolution = 0.4;
     settings.hit = log_odds_of(0.9);
@@ -36,7 +47,10 @@ struct UtilityWorld {
     settings.maximum_range = 20;
     settings.observations = true;
     map = std::make_unique<PlainMap>(settings);
-    for (int look = 0; look < looks; ++look) look_around({look - 0.3, 0.2, 1.5 + 0.1 * look});
+    // From the middle, then from aside and from outside of the opening.
+    const Eigen::Vector3d places[] = {
+        {-0.3, 0.2, 1.5}, {0.7, 0.2, 1.6}, {-4, -2.5, 0.5}, {4.5, 2.9, 2.5}, {9, 0, 1}};
+    for (int look = 0; look < looks; ++look) look_around(places[look]);
     means = std::make_unique<MapMeans>(*map);
     if (const auto bounds = map->bounds()) means->touch(*bounds);
     const double pitch = -10 * EIGEN_PI / 180;
@@ -45,6 +59,12 @@ struct UtilityWorld {
              {{2.6, 1.5, 1.6}, 2.9, pitch},
              {{5.9, 0, 1.5}, 3.1, pitch},
              {{40, -30, 12}, -1.5, pitch}};
+    Random random(seed + static_cast<std::uint64_t>(looks));
+    for (int k = 0; k < kAnywhere; ++k)
+      views.push_back({{-6 + 15 * (k + random.uniform()) / kAnywhere, random.uniform(-4, 4),
+                        random.uniform(-0.8, 3.8)},
+                       random.uniform(-3, 3),
+                       pitch});
   }
 
   // A room of 12 m x 8 m x 5 m with an opening in its wall to the east.
@@ -63,6 +83,34 @@ struct UtilityWorld {
   }
 };
 
+// A utility that declares it is worth no less than 0 (monotone), and no more the more is known
+// (submodular): asked about the same views along a chain of looks.
+void check_chain(const ViewUtility& utility, const std::deque<UtilityWorld>& chain, bool monotone,
+                 bool submodular, Findings& findings) {
+  std::vector<double> before;
+  for (const UtilityWorld& world : chain) {
+    std::vector<double> now(chain.front().views.size());
+    try {
+      utility.require_fit(world.known);
+    } catch (const InputError&) {
+      continue;  // trained with another mapping
+    }
+    utility.score(world.known, chain.front().views, now);
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      const auto at = [&] { return world.name + ": view " + std::to_string(k); };
+      if (monotone)
+        findings.expect("monotone", now[k] >= 0, [&] {
+          return at() + " is worth " + text_of(now[k]) + ", less than nothing";
+        });
+      if (submodular && !before.empty())
+        findings.expect("submodular", now[k] <= before[k] + 1e-9 * std::abs(before[k]), [&] {
+          return at() + " is worth " + text_of(now[k]) + ", with less known " + text_of(before[k]);
+        });
+    }
+    before = std::move(now);
+  }
+}
+
 class UtilityCheck {
  public:
   // With other parameters than its defaults two views are enough.
@@ -75,7 +123,9 @@ class UtilityCheck {
         defaults_(defaults),
         views_(std::span(world.views).first(defaults ? world.views.size() : 2)) {}
 
-  void run() {
+  // Thorough: more than that values are finite.
+  void run(bool thorough) {
+    if (!thorough && !options_.wants("finite")) return;
     try {
       utility_.require_fit(world_.known);
     } catch (const InputError&) {
@@ -84,8 +134,8 @@ class UtilityCheck {
     const std::vector<double> values = asked(1);
     for (std::size_t k = 0; k < values.size(); ++k)
       findings_.expect("finite", std::isfinite(values[k]),
-                       [&] { return place(k) + " is worth " + std::to_string(values[k]); });
-    if (!defaults_) return;
+                       [&] { return place(k) + " is worth " + text_of(values[k]); });
+    if (!thorough) return;
     if (options_.wants("repeatable"))
       findings_.expect("repeatable", asked(1) == values,
                        [&] { return world_.name + ": other values when asked again"; });
@@ -138,12 +188,24 @@ class UtilityCheck {
 
 std::vector<CheckResult> check_utility(const Specimen<ViewUtility>& subject,
                                        const CheckOptions& options) {
-  const UtilityWorld nothing("nothing known", 0), room("a room seen twice", 2);
+  const bool monotone = subject.says(kMonotone) && options.wants("monotone");
+  const bool submodular = subject.says(kSubmodular) && options.wants("submodular");
+  const bool chain = monotone || submodular;
+  std::deque<UtilityWorld> worlds;  // which point into themselves
+  const auto need = [&](const char* name, int looks, bool always) {
+    if (always || chain || options.wants("finite")) worlds.emplace_back(name, looks, options.seed);
+  };
+  need("nothing known", 0, false);
+  need("a room seen twice", 2, true);
+  need("a room seen from all sides", 5, false);
   return check_every_case(subject, options, "its values",
                           [&](const ViewUtility& utility, Findings& findings, bool defaults) {
+                            if (defaults && chain)
+                              check_chain(utility, worlds, monotone, submodular, findings);
                             if (!defaults && !options.wants("finite")) return;
-                            for (const UtilityWorld* world : {&nothing, &room})
-                              UtilityCheck(utility, *world, options, findings, defaults).run();
+                            for (const UtilityWorld& world : worlds)
+                              UtilityCheck(utility, world, options, findings, defaults)
+                                  .run(defaults && world.looks == 2);
                           });
 }
 

@@ -19,6 +19,12 @@ namespace lapwing {
 // Of a descriptor: the utility reads `EpisodeView::truth`.
 inline constexpr const char* kNeedsGroundTruth = "needs_ground_truth";
 
+// Of a descriptor, and held to by the checks of plugins. A utility values one view after what is
+// known, so that the words speak of one more view: no view takes anything away (every value is at
+// least 0), and a view is worth no more after more has been looked at than after less.
+inline constexpr const char* kMonotone = "monotone";
+inline constexpr const char* kSubmodular = "submodular";
+
 // What only a simulation knows. Thread-safe.
 class TrueGain {
  public:

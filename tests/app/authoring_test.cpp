@@ -71,13 +71,94 @@ TEST_F(Authoring, EveryTestBites) {
                         {"allocations", "allocations", "heap allocations in calls"},
                         {"throws", "values", "throws: no"},
                         {"refuses", "creation", "not even its own defaults will do"},
-                        {"creates", "creation", "not made"}}) {
+                        {"creates", "creation", "not made"},
+                        {"tiny", "derivatives", "says 0, differences give"},
+                        {"masked", "derivatives", "says 0, differences give 0.5 "},
+                        {"late", "derivatives", "a flight of 600 s"},
+                        {"high", "values", "is nan"},
+                        {"narrow", "derivatives", "d row 0 / d position[0] of stage 0"},
+                        {"remembers", "allocations", "inputs that it was not asked before"},
+                        {"single", "allocations", "one instance alone"},
+                        {"overwrites", "curvature", "must add to what is there"}}) {
     const auto found = outcomes(a.mistake, {a.test, "description"});
     EXPECT_EQ(status_, 1) << a.mistake;
     EXPECT_EQ(found.at(a.test), "failed") << a.mistake << ": " << message_;
     EXPECT_EQ(found.at("description"), "passed") << a.mistake << ": " << message_;
     EXPECT_NE(message_.find(a.says), std::string::npos) << a.mistake << ": " << message_;
   }
+}
+
+TEST_F(Authoring, EveryTestOfConstraintsAndDeclarationsBites) {
+  struct Case {
+    const char* plugin;
+    const char* test;
+    const char* says;
+  };
+  for (const Case& a :
+       {Case{"constraint/broken_constraint_bounds", "bounds", "lies between 2 and 1"},
+        {"constraint/broken_constraint_alone", "bounds", "has other bounds alone than in a range"},
+        {"constraint/broken_constraint_identity", "identity", "but returns other numbers"},
+        {"cost_term/broken_invariance_translation", "invariance",
+         "declares invariant_to_translation, but the length of its residuals changes from"},
+        {"cost_term/broken_invariance_rotation", "invariance",
+         "declares invariant_to_rotation_about_z, but the length of its residuals changes"},
+        {"cost_term/broken_invariance_time", "invariance", "declares invariant_to_time, but"}}) {
+    const auto found = outcomes_of(a.plugin, "broken_terms", {});
+    EXPECT_EQ(status_, 1) << a.plugin;
+    for (const auto& [test, outcome] : found)
+      EXPECT_EQ(outcome == "failed", test == a.test) << a.plugin << " " << test << ": " << message_;
+    EXPECT_NE(message_.find(a.says), std::string::npos) << a.plugin << ": " << message_;
+  }
+  for (const char* sound : {"constraint/broken_constraint", "cost_term/broken_invariance"}) {
+    const auto found = outcomes_of(sound, "broken_terms", {});
+    EXPECT_EQ(status_, 0) << sound << message_;
+  }
+  EXPECT_EQ(outcomes_of("cost_term/broken_invariance", "broken_terms", {}).at("invariance"),
+            "passed");
+}
+
+// What is likely a slip and no mistake.
+TEST_F(Authoring, WhatIsReadAndNeverUsedIsWarnedOf) {
+  const auto found = outcomes("idle", {});
+  EXPECT_EQ(status_, 0) << message_;
+  EXPECT_EQ(found.at("pattern"), "warned");
+  EXPECT_NE(message_.find("it reads position[1], and no result depends on it"), std::string::npos)
+      << message_;
+}
+
+// All tests of a plugin with one mistake: none fails but what the mistake is meant for.
+TEST_F(Authoring, OnlyWhatIsMeantFails) {
+  using Names = std::set<std::string>;
+  const auto failed = [](const std::map<std::string, std::string>& found) {
+    Names names;
+    for (const auto& [test, outcome] : found)
+      if (outcome == "failed" || outcome == "crashed") names.insert(test);
+    return names;
+  };
+  // A wrong derivative is at odds with the second ones as well.
+  for (const auto& [mistake, tests] : {std::pair<const char*, Names>{"values", {"values"}},
+                                       {"curvature", {"curvature"}},
+                                       {"derivatives", {"curvature", "derivatives"}},
+                                       {"tiny", {"derivatives"}},
+                                       {"late", {"curvature", "derivatives"}},
+                                       {"ranges", {"ranges"}},
+                                       {"remembers", {"allocations"}},
+                                       {"single", {"allocations"}},
+                                       {"degenerate", {"degenerate input"}}})
+    EXPECT_EQ(failed(outcomes(mistake, {})), tests) << mistake << ": " << message_;
+  for (const auto& [plugin, tests] :
+       {std::pair<const char*, Names>{"solver_cost", {"reported cost"}},
+        {"solver_work", {"work limit"}},
+        {"model_samples", {"samples"}},
+        {"planner_messages", {"messages"}},
+        {"tours_silent", {"work"}},
+        {"tours_bound", {"upper bound"}},
+        {"information_crowd", {"alone", "submodular"}},
+        {"utility_many", {"alone"}},
+        {"utility_submodular", {"submodular"}},
+        {"exporter_extension", {"extension"}}})
+    EXPECT_EQ(failed(outcomes_of("broken_" + std::string(plugin), "broken_kinds", {})), tests)
+        << plugin << ": " << message_;
 }
 
 // The other kinds: every mistake is found by the test that is meant for it.
@@ -98,6 +179,9 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"solver_repeatable", "repeatable", "two runs end differently"},
            {"solver_work", "work limit", "5 iterations where one was allowed"},
            {"solver_cancellation", "cancellation", "cancelled before it began, says optimal"},
+           {"solver_overworks", "work limit", "it reports 1 iterations of a solve with"},
+           {"solver_deaf", "cancellation", "cancelled after 3 evaluations, it makes"},
+           {"solver_clock", "wall clock", "without any time, it makes"},
            {"solver_refuses", "creation", "not even its own defaults will do"},
            {"model_blocks", "blocks", "states come first, then inputs"},
            {"model_bounds", "bounds", "bounds without anything between them"},
@@ -105,8 +189,8 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"model_degenerate", "degenerate input", "not finite at zero"},
            {"model_derivatives", "derivatives", "rate"},
            {"model_curvature", "curvature", "rate"},
-           {"model_halves", "halves", ""},
-           {"model_samples", "samples", ""},
+           {"model_halves", "halves", "one step and two of half its length end"},
+           {"model_samples", "samples", "a sample read back differs by"},
            {"model_ranges", "ranges", "alone differs from the same in a range"},
            {"model_repeatable", "repeatable", "the same inputs give two answers"},
            {"model_threads", "threads", "four threads at once get other answers"},
@@ -114,6 +198,9 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"model_affine", "affine", "declared affine, but its Jacobian changes"},
            {"planner_answers", "answers", "says iteration_limit (did not look), not found"},
            {"planner_honest", "honest", "segment 1 of the planner's path is blocked"},
+           {"planner_honest", "paths", "segment 1 runs through a block"},
+           {"planner_deaf", "cancellation", "cancelled within its search, it asks the space"},
+           {"planner_late", "wall clock", "without any time it takes 0.3"},
            {"planner_throws", "honest", "no"},
            {"planner_messages", "messages", "gives no reason"},
            {"planner_work", "work limit", "took 6001 iterations of 6000"},
@@ -123,19 +210,31 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"tours_answers", "answers", "finds no tour"},
            {"tours_honest", "honest", "the solver returned no tour"},
            {"tours_tours", "honest", "the solver's tour is none"},
+           {"tours_tours", "tours", "its walk does not go from the start to the end"},
+           {"tours_budget", "tours", "of a budget of"},
+           {"tours_silent", "work", "reports no evaluation of a tour of"},
+           {"tours_deaf", "work", "in none of its searches it asks whether the work has to end"},
+           {"tours_late", "wall clock", "without any time it takes 0.3"},
            {"tours_throws", "honest", "no"},
            {"tours_messages", "messages", "gives no reason"},
            {"tours_bound", "upper bound", "below the best tour's"},
            {"tours_repeatable", "repeatable", "another answer the second time"},
            {"tours_cancellation", "cancellation", "cancelled before it began, says optimal"},
            {"tours_clock", "wall clock", "out of time, says iteration_limit"},
-           {"information_finite", "finite", "at 0.000000 m it tells inf"},
+           {"information_finite", "finite", "at 0 m it tells inf"},
            {"information_negative", "at least 0", "it tells -0."},
            {"information_negative", "submodular", "of what others tell"},
            {"information_repeats", "repeats", "something else when asked again"},
            {"information_alone", "alone", "something else when asked alone"},
+           {"information_far", "finite", "it tells nan"},
+           {"information_without_normal", "finite", "it tells nan"},
+           {"information_crowd", "submodular", "to fewer"},
            {"information_throws", "finite", "its contributions throws: no"},
            {"utility_finite", "finite", "which is no finite number"},
+           {"utility_somewhere", "finite", "which is no finite number"},
+           {"utility_many", "alone", "has another value when asked alone"},
+           {"utility_monotone", "monotone", "less than nothing"},
+           {"utility_submodular", "submodular", "with less known"},
            {"utility_repeatable", "repeatable", "other values when asked again"},
            {"utility_threads", "threads", "other values with four threads"},
            {"utility_alone", "alone", "has another value when asked alone"},
@@ -147,11 +246,11 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"exporter_throws", "contents", "writing a plan throws: no"},
            {"map_empty", "empty", "a new map knows voxels"},
            {"map_integration", "integration", "has log odds"},
-           {"map_casts", "ray casts", ""},
+           {"map_casts", "ray casts", " meets "},
            {"map_boxes", "boxes", "free in one map and not in the other"},
            {"map_touching", "touching", "a box that touches what is unknown is not free"},
            {"map_import", "import", "observations"},
-           {"map_means", "means", ""},
+           {"map_means", "means", "level "},
            {"map_repeatable", "repeatable", "the same scans give two maps"},
            {"map_threads", "threads", "four threads give another map than one"},
            {"map_round", "round trip", "make another map"},

@@ -146,6 +146,10 @@ TEST_F(CommandLine, PluginsAreListedAndShown) {
   EXPECT_NE(finished.out.find("time"), std::string::npos);
   finished = run({"plugins", "show", "cost_term/keyframe", "--json"});
   EXPECT_EQ(from_json(finished.out, "stdout").at("plugins").as_list().size(), 1u);
+  finished = run({"plugins", "show", "input_limits"});
+  EXPECT_NE(finished.out.find("declares: invariant_to_translation, invariant_to_time"),
+            std::string::npos)
+      << finished.out;
   refused({"plugins", "show", "keyfrme"}, {"did you mean 'keyframe'?"});
   fs::create_directories(folder_ / "mine");
   finished = run({"plugins", "path", "--plugin-path", "mine"});

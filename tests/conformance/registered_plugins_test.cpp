@@ -1,6 +1,6 @@
 // Every plugin of the build tree passes what its kind must pass.
-#include "framework/conformance/check.h"
 #include "framework/app/allocation_counter.h"
+#include "framework/conformance/check.h"
 
 namespace lapwing {
 
@@ -18,9 +18,8 @@ const Registry& plugins() {
 std::vector<PluginEntry> checked_entries() {
   std::vector<PluginEntry> result;
   for (const PluginEntry& entry : plugins().entries())
-    for (const char* kind :
-         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner",
-          "tour_solver", "utility", "exporter"})
+    for (const char* kind : {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map",
+                             "path_planner", "tour_solver", "information", "utility", "exporter"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }
@@ -79,6 +78,8 @@ TEST(EveryPlugin, IsThere) {
                                    {"path_planner", "rrt_connect"},
                                    {"path_planner", "informed_rrt_star"},
                                    {"path_planner", "bit_star"},
+                                   {"information", "uniform"},
+                                   {"information", "fronto_parallel"},
                                    {"tour_solver", "greedy"},
                                    {"tour_solver", "cost_benefit"},
                                    {"tour_solver", "recursive_greedy"},

@@ -8,6 +8,7 @@
 //   p:add_constraint { type = "box_obstacle" }
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 #include "framework/problem/path_clearance.h"
 
 namespace lapwing {
@@ -19,6 +20,10 @@ class BoxObstacle final : public DifferentiableConstraint<BoxObstacle, 7> {
                                     "the path keeps out of the environment's boxes",
                                     "thesis 3.6, obstacle avoidance, for boxes"};
   static ParameterTable parameters() { return {}; }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit BoxObstacle(const Parameters&) {}
 
   FunctionShape declare(const ProblemSetting& setting) {

@@ -9,6 +9,7 @@
 //   p:add_constraint { type = "clearance" }
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 #include "framework/problem/path_clearance.h"
 
 namespace lapwing {
@@ -20,6 +21,10 @@ class Clearance final : public DifferentiableConstraint<Clearance, 7> {
                                     "the path keeps away from the environment's meshes and maps",
                                     "thesis 2.1, Collision"};
   static ParameterTable parameters() { return {}; }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit Clearance(const Parameters&) {}
 
   FunctionShape declare(const ProblemSetting& setting) {

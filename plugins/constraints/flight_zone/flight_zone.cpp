@@ -7,6 +7,7 @@
 //   p:add_constraint { type = "flight_zone" }
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 #include "framework/problem/path_clearance.h"
 #include "framework/problem/zone_prism.h"
 
@@ -18,6 +19,10 @@ class FlightZone final : public DifferentiableConstraint<FlightZone, 7> {
   static constexpr PluginText kText{"flight_zone", "1.0.0",
                                     "the path stays inside the environment's flight zones", ""};
   static ParameterTable parameters() { return {}; }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit FlightZone(const Parameters&) {}
 
   FunctionShape declare(const ProblemSetting& setting) {

@@ -16,6 +16,7 @@
 #include "framework/core/units.h"
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 
 namespace lapwing {
 namespace {
@@ -36,6 +37,11 @@ class InputLimits final : public DifferentiableConstraint<InputLimits, 4> {
                 {.minimum = 0, .maximum = 1, .minimum_excluded = true});
   }
 
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTranslation, nullptr},
+                                    {kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit InputLimits(const Parameters& parameters)
       : norm_(parameters.boolean("norm")),
         inscribed_(parameters.text("across") == "inscribed"),

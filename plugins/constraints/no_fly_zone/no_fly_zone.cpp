@@ -9,6 +9,7 @@
 //   p:add_constraint { type = "no_fly_zone" }
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 #include "framework/problem/path_clearance.h"
 #include "framework/problem/zone_prism.h"
 
@@ -22,6 +23,10 @@ class NoFlyZone final : public DifferentiableConstraint<NoFlyZone, 7> {
   static constexpr PluginText kText{"no_fly_zone", "1.0.0",
                                     "the path keeps out of the environment's zones", ""};
   static ParameterTable parameters() { return {}; }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit NoFlyZone(const Parameters&) {}
 
   FunctionShape declare(const ProblemSetting& setting) {

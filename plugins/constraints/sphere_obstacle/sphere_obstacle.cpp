@@ -6,6 +6,7 @@
 //   p:add_constraint { type = "sphere_obstacle" }
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 #include "framework/problem/path_clearance.h"
 
 namespace lapwing {
@@ -17,6 +18,10 @@ class SphereObstacle final : public DifferentiableConstraint<SphereObstacle, 7> 
                                     "the path keeps out of the environment's spheres",
                                     "thesis 3.6, obstacle avoidance"};
   static ParameterTable parameters() { return {}; }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit SphereObstacle(const Parameters&) {}
 
   FunctionShape declare(const ProblemSetting& setting) {

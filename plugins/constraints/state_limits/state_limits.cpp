@@ -14,6 +14,7 @@
 #include "framework/core/units.h"
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 
 namespace lapwing {
 namespace {
@@ -39,6 +40,10 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
         .optional_numbers("upper", 3, "m", "highest position, world");
   }
 
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit StateLimits(const Parameters& parameters)
       : given_(parameters), sides_(static_cast<int>(parameters.integer("sides"))) {
     if (sides_ % 2 != 0)

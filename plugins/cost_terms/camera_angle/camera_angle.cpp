@@ -10,6 +10,7 @@
 #include "framework/plugin/plugin.h"
 #include "framework/problem/camera_error.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 #include "framework/problem/time_spans.h"
 
 namespace lapwing {
@@ -22,6 +23,12 @@ class CameraAngle final : public DifferentiableCost<CameraAngle, 9> {
   static ParameterTable parameters() {
     return ParameterTable{}.tables("except", time_span_table(),
                                    "spans of time in which it may look anywhere: cuts");
+  }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTranslation, nullptr},
+                                    {kInvariantToRotationAboutZ, nullptr},
+                                    {kInvariantToTime, nullptr}};
+    return all;
   }
   explicit CameraAngle(const Parameters& parameters) : except_(time_spans(parameters, "except")) {}
 

@@ -11,6 +11,7 @@
 
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 #include "framework/problem/time_spans.h"
 
 namespace lapwing {
@@ -41,6 +42,12 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
         {"target_derivative", "penalises a derivative of the target, E^{t,d}", of("target", 3)}};
   }
 
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTranslation, nullptr},
+                                    {kInvariantToRotationAboutZ, nullptr},
+                                    {kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit Derivative(const Parameters& parameters)
       : order_(static_cast<int>(parameters.integer("order"))),
         except_(time_spans(parameters, "except")) {
@@ -103,17 +110,16 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
         for (int q = 0; q <= order_; ++q) table[q] = stage[q].data(b)[i];
         for (int level = 1; level <= order_; ++level)
           for (int q = 0; q + level <= order_; ++q)
-            table[q] =
-                double(level) * (table[q + 1] - table[q]) / (times[q + level] - times[q]);
+            table[q] = double(level) * (table[q + 1] - table[q]) / (times[q + level] - times[q]);
         rows[row] = table[0];
       }
     }
   }
 
   std::vector<std::string> names_;
-  std::vector<int> sizes_;   // of the blocks
-  std::vector<bool> held_;   // inputs
-  bool even_ = true;         // one step for all
+  std::vector<int> sizes_;  // of the blocks
+  std::vector<bool> held_;  // inputs
+  bool even_ = true;        // one step for all
   int order_;
   std::vector<TimeSpan> except_;
 };

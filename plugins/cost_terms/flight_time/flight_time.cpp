@@ -9,6 +9,7 @@
 
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 
 namespace lapwing {
 namespace {
@@ -18,6 +19,12 @@ class FlightTime final : public DifferentiableCost<FlightTime, 1> {
   static constexpr PluginText kText{"flight_time", "1.0.0", "the duration of the flight",
                                     "thesis 3.7.2"};
   static ParameterTable parameters() { return {}; }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTranslation, nullptr},
+                                    {kInvariantToRotationAboutZ, nullptr},
+                                    {kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit FlightTime(const Parameters&) {}
 
   FunctionShape declare(const ProblemSetting& setting) {

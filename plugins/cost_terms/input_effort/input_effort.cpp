@@ -9,6 +9,7 @@
 #include "framework/core/units.h"
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 
 namespace lapwing {
 namespace {
@@ -18,6 +19,12 @@ class InputEffort final : public DifferentiableCost<InputEffort, 4> {
   static constexpr PluginText kText{
       "input_effort", "1.0.0", "penalises forces and yaw torques beyond hovering", "thesis 3.5.2"};
   static ParameterTable parameters() { return {}; }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTranslation, nullptr},
+                                    {kInvariantToRotationAboutZ, nullptr},
+                                    {kInvariantToTime, nullptr}};
+    return all;
+  }
   explicit InputEffort(const Parameters&) {}
 
   FunctionShape declare(const ProblemSetting& setting) {

@@ -11,6 +11,7 @@
 #include "framework/plugin/plugin.h"
 #include "framework/problem/camera_error.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/invariance.h"
 #include "framework/problem/time_spans.h"
 
 namespace lapwing {
@@ -26,6 +27,12 @@ class Skewness final : public DifferentiableCost<Skewness> {
         .required_number("height", "m", "of what is filmed, from foot to top", above(0))
         .tables("spans", time_span_table(), "spans of time in which it is asked; none: always")
         .tables("except", time_span_table(), "spans of time in which any view will do: cuts");
+  }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kInvariantToTranslation, nullptr},
+                                    {kInvariantToRotationAboutZ, nullptr},
+                                    {kInvariantToTime, nullptr}};
+    return all;
   }
   explicit Skewness(const Parameters& parameters)
       : height_(parameters.number("height")),

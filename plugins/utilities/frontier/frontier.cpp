@@ -19,6 +19,10 @@ class Frontier final : public ViewUtility {
     return ParameterTable().integer("pixel_step", 2, "a ray through every so many pixels and rows",
                                     between(1, 64));
   }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kMonotone, nullptr}};
+    return all;
+  }
   explicit Frontier(const Parameters& p) : step_(static_cast<int>(p.integer("pixel_step"))) {}
 
  protected:

@@ -19,6 +19,10 @@ class ProximityCount final : public ViewUtility {
         .number("maximum_distance", 4, "m", "behind the surface, where voxels no longer count",
                 between(0.1, 100));
   }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kMonotone, nullptr}};
+    return all;
+  }
   explicit ProximityCount(const Parameters& p)
       : step_(static_cast<int>(p.integer("pixel_step"))), farthest_(p.number("maximum_distance")) {}
 
