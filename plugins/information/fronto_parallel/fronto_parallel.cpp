@@ -5,7 +5,8 @@
 //   vi_r = exp(-max(T_r - px, 0) / F_r)        px: pixels that the voxel's edge takes
 //
 // Back faces tell nothing, and so does what lies beyond the distance up to which depth will be used
-// for the model, where one is given; where the normal is not known a constant takes the place of vi_i.
+// for the model, where one is given; where the normal is not known a constant takes the place of
+// vi_i.
 //
 //   information: fronto_parallel
 #include <algorithm>
