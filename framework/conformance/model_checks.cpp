@@ -36,6 +36,11 @@ class ModelCheck {
       if (options_.wants("halves")) halves(x);
       if (options_.wants("samples")) samples(x);
     }
+    for (int point = 0; point < kModelPoints; ++point) {
+      const std::vector<double> x = arguments(kModelStep, 40);
+      if (options_.wants("derivatives")) derivatives(x);
+      if (options_.wants("curvature")) curvature(x);
+    }
     if (options_.wants("ranges")) ranges();
     if (options_.wants_any({"repeatable", "threads", "allocations"})) threads_and_allocations();
     if (model_.affine() && options_.wants("affine")) affine();
@@ -60,12 +65,12 @@ class ModelCheck {
     return fits && order && n_ > 0;
   }
 
-  std::vector<double> arguments(double step) {
+  std::vector<double> arguments(double step, double spread = 2) {
     std::vector<double> x;
     for (const auto* blocks : {&states_, &inputs_})
       for (const BlockSpec& block : *blocks) {
         const std::size_t first = x.size();
-        for (int i = 0; i < block.size; ++i) x.push_back(random_.uniform(-2, 2));
+        for (int i = 0; i < block.size; ++i) x.push_back(random_.uniform(-spread, spread));
         if (block.topology == Topology::quaternion)
           Eigen::Map<Eigen::VectorXd>(x.data() + first, block.size).normalize();
       }
@@ -271,12 +276,18 @@ class ModelCheck {
                      [] { return "four threads at once get other answers than one alone"; });
     if (!options_.allocations)
       return findings_.skip("allocations", "this program does not count them");
-    const std::int64_t before = options_.allocations();
-    call(x, lambda, first, count, workspace);
-    const std::int64_t made = options_.allocations() - before;
-    findings_.expect("allocations", made == 0, [&] {
-      return std::to_string(made) + " heap allocations in calls that come again and again";
-    });
+    const auto expect_none = [&](const std::vector<double>& at, int stages, const char* what) {
+      const std::int64_t before = options_.allocations();
+      call(at, lambda, first, stages, workspace);
+      const std::int64_t made = options_.allocations() - before;
+      findings_.expect("allocations", made == 0, [&] {
+        return std::to_string(made) +
+               " heap allocations in calls that come again and again: " + what;
+      });
+    };
+    expect_none(x, count, "the same inputs twice");
+    expect_none(many(count), count, "inputs that it was not asked before");
+    expect_none(arguments(kModelStep), 1, "one stage alone");
   }
 
   void affine() {

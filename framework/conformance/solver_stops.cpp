@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kToStop = 12;       // evaluations that a solver may still make once it is to stop
 constexpr int kOfIteration = 20;  // evaluations that one iteration may take
-constexpr double kPause = 0.02;   // s, of one evaluation
-constexpr double kGuard = 0.1;    // s
+constexpr double kPause = 0.01;   // s, of one evaluation
+constexpr double kGuard = 0.05;   // s
 
 class CancelAtReport final : public Progress {
  public:
@@ -93,13 +93,14 @@ class SolverStops {
   // Every evaluation sleeps, so that the guard passes after five of them.
   void out_of_time() {
     for (const double guard : {0.0, kGuard}) {
+      if (findings_.failed("wall clock")) return;
       Watch watch;
       watch.pause = kPause;
       SolveRequest request;
       request.wall_clock_guard = guard;
       const SolveResult result = solve(watch, request);
       stopped("wall clock",
-              guard == 0 ? "without any time" : "with 0.1 s for evaluations of 0.02 s",
+              guard == 0 ? "without any time" : "with 0.05 s for evaluations of 0.01 s",
               static_cast<int>(guard / kPause), watch, result, SolveStatus::time_limit);
     }
   }

@@ -195,6 +195,7 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"model_repeatable", "repeatable", "the same inputs give two answers"},
            {"model_threads", "threads", "four threads at once get other answers"},
            {"model_allocations", "allocations", "heap allocations in calls"},
+           {"model_remembers", "allocations", "inputs that it was not asked before"},
            {"model_affine", "affine", "declared affine, but its Jacobian changes"},
            {"planner_answers", "answers", "says iteration_limit (did not look), not found"},
            {"planner_honest", "honest", "segment 1 of the planner's path is blocked"},

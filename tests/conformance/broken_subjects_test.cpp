@@ -1,9 +1,9 @@
 // The checks catch what authors get wrong: subjects broken on purpose, one mistake each.
 #include <atomic>
 
+#include "framework/app/allocation_counter.h"
 #include "framework/conformance/check.h"
 #include "framework/problem/differentiable.h"
-#include "framework/app/allocation_counter.h"
 
 namespace lapwing {
 namespace {
@@ -173,6 +173,26 @@ TEST(BrokenTerm, MessagesNameTheEntry) {
       EXPECT_NE(result.message.find("position[0] of stage 0"), std::string::npos) << result.message;
       EXPECT_NE(result.message.find("defaults"), std::string::npos) << result.message;
     }
+}
+
+// Words that are held to must be known ones, on plugins that they speak of.
+TEST(BrokenDescription, IsCaught) {
+  const auto judged = [](const std::string& kind, const std::string& word) {
+    PluginEntry entry;
+    entry.kind = kind;
+    entry.name = "handmade";
+    entry.version = "1.0.0";
+    entry.summary = "says one word of itself";
+    entry.extensions = {word};
+    return failures(check_description(entry));
+  };
+  const std::vector<std::string> wrong{"description"};
+  EXPECT_TRUE(judged("cost_term", "invariant_to_translation").empty());
+  EXPECT_TRUE(judged("utility", "monotone").empty());
+  EXPECT_TRUE(judged("utility", "needs_ground_truth").empty());
+  EXPECT_EQ(judged("cost_term", "invariant_to_translaton"), wrong);
+  EXPECT_EQ(judged("map", "invariant_to_time"), wrong);
+  EXPECT_EQ(judged("constraint", "monotone"), wrong);
 }
 
 // Parameters that the table allows and the plugin cannot bear.

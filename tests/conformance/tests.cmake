@@ -2,9 +2,12 @@
 get_property(all_plugins GLOBAL PROPERTY LAPWING_PLUGINS)
 add_dependencies(test_conformance ${all_plugins})
 target_sources(test_conformance PRIVATE ${PROJECT_SOURCE_DIR}/framework/app/allocation_counter.cpp)
-# What takes half a minute by itself runs with the long tests.
-set(slow_solvers "Registered/EveryPlugin.Conforms/tour_solver_recursive_greedy:Registered/EveryPlugin.Conforms/tour_solver_milp")
-set_tests_properties(conformance PROPERTIES ENVIRONMENT "GTEST_FILTER=-${slow_solvers}")
+# What takes some ten seconds by itself runs with the long tests.
+set(slow_plugins tour_solver_recursive_greedy tour_solver_milp path_planner_rrt_star
+    path_planner_informed_rrt_star)
+list(TRANSFORM slow_plugins PREPEND Registered/EveryPlugin.Conforms/)
+list(JOIN slow_plugins ":" slow_plugins)
+set_tests_properties(conformance PROPERTIES ENVIRONMENT "GTEST_FILTER=-${slow_plugins}")
 add_test(NAME conformance_long COMMAND test_conformance)
 set_tests_properties(conformance_long PROPERTIES LABELS long TIMEOUT 240
-                     ENVIRONMENT "GTEST_FILTER=${slow_solvers}")
+                     ENVIRONMENT "GTEST_FILTER=${slow_plugins}")
