@@ -7,6 +7,7 @@ add_dependencies(test_vehicle_models ${all_plugins})
 # A cost term copied into a new folder is picked up with one CMake line and no kernel edit.
 add_executable(check_plugin_folder ${CMAKE_CURRENT_LIST_DIR}/copied_term/check_plugin_folder.cpp)
 target_link_libraries(check_plugin_folder PRIVATE lapwing)
+target_precompile_headers(check_plugin_folder REUSE_FROM lapwing_precompiled)
 add_test(NAME copied_term COMMAND ${CMAKE_COMMAND}
   -DLAPWING_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DLAPWING_BUILD_DIR=${CMAKE_BINARY_DIR}
   -DBUILD_TYPE=${CMAKE_BUILD_TYPE} -DSANITIZE=${LAPWING_SANITIZE} -DGENERATOR=${CMAKE_GENERATOR}

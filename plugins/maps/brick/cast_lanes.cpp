@@ -25,6 +25,7 @@ struct Waiting {
 // What goes on with four rays beside their numbers.
 struct Group {
   Waiting* rays = nullptr;  // none: idle
+  bool under_way = false;   // else nobody has looked at where they begin
   unsigned alive = 0;       // rays that have not ended, as bits
   Four range;               // m
   Place place[4];
@@ -51,7 +52,7 @@ class Caster {
       if (!busy) return;
 #pragma GCC unroll 1
       for (Group& group : groups_)
-        if (group.rays) group.rays->quad.leave_boxes(group.edges);
+        if (group.rays && group.under_way) group.rays->quad.leave_boxes(group.edges);
 #pragma GCC unroll 1
       for (Group& group : groups_)
         if (group.rays) visit(group);
@@ -68,24 +69,19 @@ class Caster {
     int count = 0;
   };
 
-  // The next four rays that get anywhere; none when all are under way, or for as long as other
-  // groups need what the next batch would take.
+  // The next four rays; none when all are under way, or for as long as other groups need what the
+  // next batch would take.
   __attribute__((always_inline)) void start(Group& group) {
-    while (!group.rays) {
-      Batch& batch = batches_[current_];
-      if (started_ == batch.count) {
-        if (!next_batch()) return;
-        continue;
-      }
-      Waiting& rays = batch.waiting[started_++];
-      group.rays = &rays;
-      group.alive = (1u << rays.count) - 1;
-      group.range = Four{rays_[rays.ray[0]].range, rays_[rays.ray[1]].range,
-                         rays_[rays.ray[2]].range, rays_[rays.ray[3]].range};
-      for (Place& place : group.place) place = {};
-      group.edges = FourInt{};
-      if (!rays.known_free) visit(group);
-    }
+    while (started_ == batches_[current_].count)
+      if (!next_batch()) return;
+    Waiting& rays = batches_[current_].waiting[started_++];
+    group.rays = &rays;
+    group.under_way = rays.known_free;
+    group.alive = (1u << rays.count) - 1;
+    group.range = Four{rays_[rays.ray[0]].range, rays_[rays.ray[1]].range, rays_[rays.ray[2]].range,
+                       rays_[rays.ray[3]].range};
+    for (Place& place : group.place) place = {};
+    group.edges = FourInt{};
   }
 
   __attribute__((always_inline)) bool next_batch() {
@@ -148,6 +144,7 @@ class Caster {
   }
 
   __attribute__((always_inline)) void visit(Group& group) {
+    group.under_way = true;
     const Quad& quad = group.rays->quad;
     const FourLong far = quad.entered >= group.range;
     if (group.alive == 15 && quad.together() && none(far)) {
