@@ -10,7 +10,7 @@
 namespace lapwing {
 namespace {
 
-enum class Mistake {
+enum class MapMistake {
   none,
   misses_win,
   scans_add_up,
@@ -37,10 +37,11 @@ enum class Mistake {
 
 class BrokenMap final : public PlainMap {
  public:
-  BrokenMap(const MapSettings& settings, Mistake mistake) : PlainMap(settings), mistake_(mistake) {}
+  BrokenMap(const MapSettings& settings, MapMistake mistake)
+      : PlainMap(settings), mistake_(mistake) {}
 
   void for_each_leaf(const std::function<void(const VoxelLeaf&)>& visit) const override {
-    if (mistake_ == Mistake::order_wanders && voxels_.size() > 3) {
+    if (mistake_ == MapMistake::order_wanders && voxels_.size() > 3) {
       std::vector<VoxelLeaf> leaves;
       PlainMap::for_each_leaf([&](const VoxelLeaf& leaf) { leaves.push_back(leaf); });
       std::rotate(leaves.begin(), leaves.begin() + ++visits_ % 3, leaves.end());
@@ -48,58 +49,58 @@ class BrokenMap final : public PlainMap {
       return;
     }
     PlainMap::for_each_leaf(visit);
-    if (mistake_ == Mistake::leaf_twice && voxels_.size() > 3)
+    if (mistake_ == MapMistake::leaf_twice && voxels_.size() > 3)
       visit({voxels_.begin()->first, 0, 0, voxels_.begin()->second.log_odds});
   }
   VoxelCounts counts() const override {
     VoxelCounts counts = PlainMap::counts();
-    if (mistake_ == Mistake::counts_leaves) counts.known /= 2;
+    if (mistake_ == MapMistake::counts_leaves) counts.known /= 2;
     return counts;
   }
   std::optional<VoxelBox> bounds() const override {
     std::optional<VoxelBox> box = PlainMap::bounds();
-    if (box && mistake_ == Mistake::wrong_bounds) ++box->upper.z;
-    if (!box && mistake_ == Mistake::knows_at_birth) return VoxelBox{};
+    if (box && mistake_ == MapMistake::wrong_bounds) ++box->upper.z;
+    if (!box && mistake_ == MapMistake::knows_at_birth) return VoxelBox{};
     return box;
   }
 
  protected:
   void insert(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& origin) override {
     const auto before = voxels_;
-    if (mistake_ == Mistake::threads_lose_points && threads() > 1) points = points.subspan(1);
+    if (mistake_ == MapMistake::threads_lose_points && threads() > 1) points = points.subspan(1);
     PlainMap::insert(points, origin);
-    if (mistake_ == Mistake::never_the_same) {
+    if (mistake_ == MapMistake::never_the_same) {
       static int maps = 0;
       voxels_[grid().key(points.front().cast<double>())].log_odds = 0.001f * ++maps;
     }
-    if (mistake_ == Mistake::misses_win)  // a voxel with a point is passed as well
+    if (mistake_ == MapMistake::misses_win)  // a voxel with a point is passed as well
       for (const Eigen::Vector3f& p : points)
         voxels_[grid().key(p.cast<double>())].log_odds += settings().miss;
-    if (mistake_ == Mistake::scans_add_up) PlainMap::insert(points.subspan(1, 1), origin);
+    if (mistake_ == MapMistake::scans_add_up) PlainMap::insert(points.subspan(1, 1), origin);
     for (auto& [key, voxel] : voxels_) {
       const auto found = before.find(key);
       const float old = found == before.end() ? 0 : found->second.log_odds;
-      if (mistake_ == Mistake::not_clamped && voxel.log_odds == settings().clamp_min)
+      if (mistake_ == MapMistake::not_clamped && voxel.log_odds == settings().clamp_min)
         voxel.log_odds = old + settings().miss;
-      if (mistake_ == Mistake::forgets_observations) voxel.observations = 0;
+      if (mistake_ == MapMistake::forgets_observations) voxel.observations = 0;
     }
-    if (mistake_ == Mistake::range_ignored && std::isfinite(settings().maximum_range))
+    if (mistake_ == MapMistake::range_ignored && std::isfinite(settings().maximum_range))
       voxels_[grid().key(points.front().cast<double>())].log_odds = 1;
   }
   void assign(std::span<const VoxelLeaf> leaves) override {
     const auto before = voxels_;
     PlainMap::assign(leaves);
-    if (mistake_ == Mistake::import_rounds)
+    if (mistake_ == MapMistake::import_rounds)
       for (const VoxelLeaf& leaf : leaves) {
         float& log_odds = voxels_[leaf.key].log_odds;
         log_odds = std::round(log_odds * 4) / 4;
       }
-    if (mistake_ != Mistake::import_adds) return;
+    if (mistake_ != MapMistake::import_adds) return;
     for (const auto& [key, voxel] : before) voxels_[key].log_odds += 0.25f;
   }
   void cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> hits) const override {
     PlainMap::cast_checked(rays, hits);
-    if (mistake_ == Mistake::one_reader_at_a_time) {
+    if (mistake_ == MapMistake::one_reader_at_a_time) {
       const bool alone = ++readers_ == 1;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));  // so that readers meet
       if (!alone) hits[0].state = VoxelState::free;
@@ -107,9 +108,9 @@ class BrokenMap final : public PlainMap {
       --readers_;
     }
     for (MapRayHit& hit : hits) {
-      if (mistake_ == Mistake::hit_too_far && hit.distance > 3 * grid().resolution())
+      if (mistake_ == MapMistake::hit_too_far && hit.distance > 3 * grid().resolution())
         hit.distance += static_cast<float>(0.01 * grid().resolution());
-      if (mistake_ == Mistake::ends_as_free && hit.state == VoxelState::unknown)
+      if (mistake_ == MapMistake::ends_as_free && hit.state == VoxelState::unknown)
         hit.state = VoxelState::free;
     }
   }
@@ -121,8 +122,8 @@ class BrokenMap final : public PlainMap {
           const VoxelReading voxel =
               read({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                     static_cast<std::uint16_t>(z)});
-          const bool close = mistake_ == Mistake::touching_blocks || box.meets(cell, 0);
-          const bool blocks = mistake_ == Mistake::unknown_is_free
+          const bool close = mistake_ == MapMistake::touching_blocks || box.meets(cell, 0);
+          const bool blocks = mistake_ == MapMistake::unknown_is_free
                                   ? voxel.state == VoxelState::occupied
                                   : voxel.state != VoxelState::free;
           if (close && blocks) return false;
@@ -132,12 +133,12 @@ class BrokenMap final : public PlainMap {
   void means_checked(int level, std::span<const VoxelKey> keys,
                      std::span<MeanReading> means) const override {
     PlainMap::means_checked(level, keys, means);
-    if (mistake_ == Mistake::mean_of_known)
+    if (mistake_ == MapMistake::mean_of_known)
       for (MeanReading& mean : means) mean.occupancy = 2 * mean.occupancy - 0.5f;
   }
 
  private:
-  Mistake mistake_;
+  MapMistake mistake_;
   mutable int visits_ = 0;
   mutable std::atomic<int> readers_ = 0;
 };
@@ -172,7 +173,7 @@ class Greedy final : public Map {
   PlainMap inner_;
 };
 
-std::vector<std::string> failures(const std::vector<CheckResult>& results) {
+std::vector<std::string> names_of_failures(const std::vector<CheckResult>& results) {
   std::vector<std::string> names;
   for (const CheckResult& result : results)
     if (result.outcome == Outcome::failed) names.push_back(result.name);
@@ -180,69 +181,70 @@ std::vector<std::string> failures(const std::vector<CheckResult>& results) {
 }
 
 // The parameters that a mistake needs to show, and no others, so that many can be tried.
-ParameterTable few_parameters(Mistake mistake) {
+ParameterTable few_parameters(MapMistake mistake) {
   ParameterTable table;
-  const bool sound = mistake == Mistake::none;
-  if (sound || mistake == Mistake::range_ignored)
+  const bool sound = mistake == MapMistake::none;
+  if (sound || mistake == MapMistake::range_ignored)
     table.optional_number("maximum_range", "m", "", above(0));
-  if (sound || mistake == Mistake::forgets_observations) table.boolean("observations", false, "");
+  if (sound || mistake == MapMistake::forgets_observations)
+    table.boolean("observations", false, "");
   return table;
 }
 
 // Of the check `only`; of all where it is empty.
-std::vector<std::string> failures_of(Mistake mistake, const std::string& only = "") {
+std::vector<std::string> failures_of_map(MapMistake mistake, const std::string& only = "") {
   CheckOptions options;
   if (!only.empty()) options.only = {only};
-  return failures(check_map({"broken", few_parameters(mistake),
-                             [=](const Value& given) {
-                               if (mistake == Mistake::refuses) throw InputError("no");
-                               return std::make_unique<BrokenMap>(
-                                   map_settings(check(map_parameters(), given)), mistake);
-                             }},
-                            options));
+  return names_of_failures(check_map({"broken", few_parameters(mistake),
+                                      [=](const Value& given) {
+                                        if (mistake == MapMistake::refuses) throw InputError("no");
+                                        return std::make_unique<BrokenMap>(
+                                            map_settings(check(map_parameters(), given)), mistake);
+                                      }},
+                                     options));
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 TEST(BrokenMap, TheSoundOnePasses) {
-  EXPECT_EQ(failures_of(Mistake::none), std::vector<std::string>{});
+  EXPECT_EQ(failures_of_map(MapMistake::none), std::vector<std::string>{});
 }
 
 TEST(BrokenMap, IsCaught) {
-  for (const auto& [mistake, check] : {std::pair{Mistake::misses_win, "integration"},
-                                       {Mistake::scans_add_up, "integration"},
-                                       {Mistake::not_clamped, "integration"},
-                                       {Mistake::forgets_observations, "integration"},
-                                       {Mistake::range_ignored, "integration"},
-                                       {Mistake::hit_too_far, "ray casts"},
-                                       {Mistake::ends_as_free, "ray casts"},
-                                       {Mistake::unknown_is_free, "boxes"},
-                                       {Mistake::touching_blocks, "touching"},
-                                       {Mistake::leaf_twice, "integration"},
-                                       {Mistake::counts_leaves, "integration"},
-                                       {Mistake::wrong_bounds, "integration"},
-                                       {Mistake::import_adds, "import"},
-                                       {Mistake::mean_of_known, "means"},
-                                       {Mistake::knows_at_birth, "empty"},
-                                       {Mistake::threads_lose_points, "threads"},
-                                       {Mistake::one_reader_at_a_time, "threads"},
-                                       {Mistake::never_the_same, "repeatable"},
-                                       {Mistake::import_rounds, "round trip"},
-                                       {Mistake::order_wanders, "refusals"},
-                                       {Mistake::refuses, "creation"}})
-    EXPECT_TRUE(contains(failures_of(mistake, check), check))
+  for (const auto& [mistake, check] : {std::pair{MapMistake::misses_win, "integration"},
+                                       {MapMistake::scans_add_up, "integration"},
+                                       {MapMistake::not_clamped, "integration"},
+                                       {MapMistake::forgets_observations, "integration"},
+                                       {MapMistake::range_ignored, "integration"},
+                                       {MapMistake::hit_too_far, "ray casts"},
+                                       {MapMistake::ends_as_free, "ray casts"},
+                                       {MapMistake::unknown_is_free, "boxes"},
+                                       {MapMistake::touching_blocks, "touching"},
+                                       {MapMistake::leaf_twice, "integration"},
+                                       {MapMistake::counts_leaves, "integration"},
+                                       {MapMistake::wrong_bounds, "integration"},
+                                       {MapMistake::import_adds, "import"},
+                                       {MapMistake::mean_of_known, "means"},
+                                       {MapMistake::knows_at_birth, "empty"},
+                                       {MapMistake::threads_lose_points, "threads"},
+                                       {MapMistake::one_reader_at_a_time, "threads"},
+                                       {MapMistake::never_the_same, "repeatable"},
+                                       {MapMistake::import_rounds, "round trip"},
+                                       {MapMistake::order_wanders, "refusals"},
+                                       {MapMistake::refuses, "creation"}})
+    EXPECT_TRUE(is_among(failures_of_map(mistake, check), check))
         << check << " " << static_cast<int>(mistake);
 }
 
 TEST(BrokenMap, IsCaughtWithoutObstacles) {
-  const auto names = failures(
-      check_map({"greedy", few_parameters(Mistake::none), [](const Value& given) {
+  const auto names = names_of_failures(
+      check_map({"greedy", few_parameters(MapMistake::none), [](const Value& given) {
                    return std::make_unique<Greedy>(map_settings(check(map_parameters(), given)));
                  }}));
-  EXPECT_TRUE(contains(names, "boxes"));
-  EXPECT_TRUE(contains(names, "memory"));
+  EXPECT_TRUE(is_among(names, "boxes"));
+  EXPECT_TRUE(is_among(names, "memory"));
 }
 
 }  // namespace
