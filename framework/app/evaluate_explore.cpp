@@ -9,6 +9,7 @@
 #include "framework/config/overrides.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/core/number_text.h"
 #include "framework/core/parallel.h"
 #include "framework/export/report.h"
 
@@ -120,9 +121,7 @@ std::vector<double> curve_of(const Trial& trial, const fs::path& folder, int ste
 
 std::string number(double value) {
   if (!std::isfinite(value)) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return plain_number(value);
 }
 
 struct Summary {

@@ -1,7 +1,8 @@
 #include "framework/conformance/differences.h"
 
-#include <cstdio>
 #include <limits>
+
+#include "framework/core/number_text.h"
 
 namespace lapwing {
 namespace {
@@ -96,9 +97,7 @@ bool agrees_along(const VectorFunction& function, const std::vector<double>& x,
 }
 
 std::string text_of(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", number);
-  return text;
+  return plain_number(number, 7);
 }
 
 }  // namespace lapwing

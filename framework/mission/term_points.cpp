@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
+#include "framework/core/number_text.h"
 #include "framework/mission/term_recording.h"
 
 namespace lapwing {
@@ -15,12 +15,6 @@ namespace {
 constexpr int kPoints = 32;          // seeded
 constexpr int kWholePoints = 8;      // of these, with whole numbers
 constexpr double kAgreement = 1e-9;  // relative
-
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -74,7 +68,7 @@ std::string TermRecording::values_here() const {
     text += (text.empty() ? "" : ", ") + layout_.block(key.second).name +
             (key.first ? "[" + std::to_string(key.first) + "]" : "") + " = ";
     for (std::size_t i = 0; i < values.size(); ++i)
-      text += (i ? " " : values.size() > 1 ? "{" : "") + short_number(values[i]);
+      text += (i ? " " : values.size() > 1 ? "{" : "") + plain_number(values[i]);
     if (values.size() > 1) text += "}";
   }
   return text;
@@ -173,8 +167,8 @@ void TermRecording::check_point(const Origin& place, const TapeFunction& result,
     if (!std::isfinite(plain) || !std::isfinite(values[r])) continue;
     finite[r] = true;
     if (!(std::abs(plain - values[r]) <= kAgreement * (1 + std::abs(plain))))
-      decides("on plain numbers result " + std::to_string(r + 1) + " is " + short_number(plain) +
-              ", as recorded " + short_number(values[r]));
+      decides("on plain numbers result " + std::to_string(r + 1) + " is " + plain_number(plain) +
+              ", as recorded " + plain_number(values[r]));
   }
 }
 

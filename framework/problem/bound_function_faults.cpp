@@ -1,17 +1,11 @@
 // Numbers of functions that are none: whose fault, where, and what to write instead.
 #include <cmath>
-#include <cstdio>
 
+#include "framework/core/number_text.h"
 #include "framework/problem/bound_function.h"
 
 namespace lapwing {
 namespace {
-
-std::string brief_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 // "position = {0, 0, 2}, yaw[1] = 0.3": what an instance reads.
 std::string inputs_text(const StageLayout& layout, const FunctionShape& shape,
@@ -23,7 +17,7 @@ std::string inputs_text(const StageLayout& layout, const FunctionShape& shape,
       text += (text.empty() ? "" : ", ") + block.name;
       if (w > 0) text += "[" + std::to_string(w) + "]";
       text += block.size > 1 ? " = {" : " = ";
-      for (int i = 0; i < block.size; ++i) text += (i ? ", " : "") + brief_number(*inputs++);
+      for (int i = 0; i < block.size; ++i) text += (i ? ", " : "") + plain_number(*inputs++);
       if (block.size > 1) text += "}";
     }
   return text;
@@ -34,7 +28,7 @@ std::string inputs_text(const StageLayout& layout, const FunctionShape& shape,
 std::string BoundFunction::fault_of(const StageLayout& layout, int instance, int row,
                                     const char* what, const double* inputs) const {
   return written_at_ + ": " + what + " of result " + std::to_string(row + 1) + " is " +
-         "no finite number at " + brief_number(nominal_[instance]) + " s, where " +
+         "no finite number at " + plain_number(nominal_[instance]) + " s, where " +
          inputs_text(layout, shape_, inputs) +
          ": keep roots, powers, logarithms and quotients off 0; write lapwing.sqrt(lapwing.max(x, "
          "0) + 1e-6) for lapwing.sqrt(x), and lapwing.max(x, 0) + 1e-6 likewise in x ^ p, "
