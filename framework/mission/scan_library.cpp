@@ -47,6 +47,8 @@ ParameterTable candidates_table() {
   table.integer("most", standard.most, "views", between(1, 100000))
       .integer("least", standard.least, "where growing finds fewer, free places are drawn as well",
                between(0, 100000))
+      .integer("directions", standard.directions, "of a place, where there are many",
+               between(1, 1000))
       .number("step", standard.step, "m", "between neighbours at the region", above(0))
       .number("step_growth", standard.step_growth, "", "m more for every metre away from it",
               at_least(0))
@@ -60,7 +62,11 @@ ParameterTable candidates_table() {
 ParameterTable motions_table() {
   const MotionSettings standard;
   ParameterTable table;
-  table.integer("neighbours", standard.neighbours, "that each view is tried with", between(1, 1000))
+  table
+      .integer("neighbours", standard.neighbours, "that each view is joined with",
+               between(1, 1000))
+      .integer("among", standard.among, "nearest views, of those whose images match",
+               between(1, 100000))
       .number("alpha", standard.alpha, "", "of (4.8): share of what two matchable views both see",
               between(0, 1))
       .number("longest_detour", standard.longest_detour, "", "straight lines long", at_least(1))
@@ -115,10 +121,12 @@ ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run)
   s.candidates.pitch_max = radians(candidates.number("pitch_max_deg"));
   s.candidates.most = static_cast<int>(candidates.integer("most"));
   s.candidates.least = static_cast<int>(candidates.integer("least"));
+  s.candidates.directions = static_cast<int>(candidates.integer("directions"));
   const Parameters& motions = given.table("motions");
   s.motions.allowed = s.candidates.allowed;
   s.motions.half = s.candidates.half;
   s.motions.neighbours = static_cast<int>(motions.integer("neighbours"));
+  s.motions.among = static_cast<int>(motions.integer("among"));
   s.motions.alpha = motions.number("alpha");
   s.motions.longest_detour = motions.number("longest_detour");
   s.coarse_across = static_cast<int>(motions.integer("coarse"));

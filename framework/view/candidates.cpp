@@ -1,8 +1,10 @@
 #include "framework/view/candidates.h"
 
 #include <cmath>
+#include <numeric>
 #include <numbers>
 #include <unordered_map>
+#include <utility>
 
 #include "framework/core/error.h"
 #include "framework/core/random.h"
@@ -13,6 +15,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPitchDraws = 1000;
+constexpr int kDirectionDraws = 20;
+constexpr std::size_t kMostPlaces = 300000;  // that growing may hold
+constexpr double kWiderStep = 1.5;           // times, where they are more
+constexpr int kThinningRounds = 12;
+constexpr double kOneStep = 1 - 1e-9;  // times a step: neighbours of a lattice stay
 
 void check(const CandidateSettings& s) {
   const auto refuse = [](const std::string& why) { throw InputError("candidates: " + why); };
@@ -23,24 +30,28 @@ void check(const CandidateSettings& s) {
   if (!(s.distance_apart > 0) || !(s.angle_apart >= 0))
     refuse("candidates must be apart by more than 0 m");
   if (!(s.pitch_min < s.pitch_max)) refuse("the camera's pitch has no range");
+  if (s.directions < 1) refuse("a place must have at least 1 direction");
   if (s.most < 1 || s.least < 0 || s.least > s.most)
     refuse("their number must be at least 1, and the least no more than the most");
 }
 
-// Candidates by place, so that near ones are found without looking at all.
+// Points by place, so that near ones are found without looking at all.
 class Grid {
  public:
   explicit Grid(double edge) : edge_(edge) {}
 
   void add(const Vector3d& p, int index) { cells_[cell(p, 0, 0, 0)].push_back(index); }
 
-  template <class Visit>
-  void near(const Vector3d& p, Visit visit) const {
+  // Whether `holds` is true of any that may be within an edge's length.
+  template <class Holds>
+  bool any_near(const Vector3d& p, Holds holds) const {
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
         for (int z = -1; z <= 1; ++z)
           if (const auto found = cells_.find(cell(p, x, y, z)); found != cells_.end())
-            for (const int index : found->second) visit(index);
+            for (const int index : found->second)
+              if (holds(index)) return true;
+    return false;
   }
 
  private:
@@ -58,9 +69,22 @@ class Grid {
 
 class Generator {
  public:
-  Generator(const FreeSpace& space, const CandidateSettings& settings, std::uint64_t seed)
-      : space_(space), s_(settings), random_(seed), grid_(settings.distance_apart) {}
+  Generator(const FreeSpace& space, const CandidateSettings& settings, std::uint64_t seed,
+            const CancellationToken* cancellation)
+      : space_(space), s_(settings), random_(seed), cancellation_(cancellation) {}
 
+  Candidates generate(const std::vector<Viewpoint>& given) {
+    give(given);
+    double step = s_.step;
+    while (!grow(step)) step *= kWiderStep;
+    made_.grown = static_cast<std::int64_t>(places_.size());
+    thin(step);
+    look_around();
+    draw_more();
+    return std::move(made_);
+  }
+
+ private:
   void give(const std::vector<Viewpoint>& given) {
     if (given.empty()) throw InputError("candidates: no viewpoint to begin with");
     for (std::size_t k = 0; k < given.size(); ++k) {
@@ -72,70 +96,163 @@ class Generator {
       if (!p.allFinite() || !s_.allowed.contains(p))
         refuse("lies outside the room that is allowed");
       if (!space_.swept_box_free(p, p, s_.half)) refuse("is not in free space");
-      keep(given[k]);
+      made_.viewpoints.push_back(given[k]);
     }
     made_.given = static_cast<int>(given.size());
   }
 
-  void grow(const CancellationToken* cancellation) {
-    int failed = 0;
-    while (static_cast<int>(made_.viewpoints.size()) < s_.most) {
-      if (cancellation && cancellation->cancelled()) throw Cancelled();
-      if (!front_.empty()) {
-        // Any of the front, which then closes over it.
-        const auto pick = static_cast<std::size_t>(
-            random_.integer(0, static_cast<std::int64_t>(front_.size()) - 1));
-        const Vector3d from = made_.viewpoints[static_cast<std::size_t>(front_[pick])].position;
-        front_[pick] = front_.back();
-        front_.pop_back();
-        spread(from);
-        continue;
+  double step_at(const Vector3d& p, double step) const {
+    return step + s_.step_growth * s_.region.exteriorDistance(p);
+  }
+
+  // Places from the given ones; false when they are too many to be held.
+  bool grow(double step) {
+    places_.clear();
+    made_.blocked = made_.crowded = 0;
+    Grid grid(s_.distance_apart);
+    std::vector<int> front;
+    const auto keep = [&](const Vector3d& p) {
+      front.push_back(static_cast<int>(places_.size()));
+      grid.add(p, front.back());
+      places_.push_back(p);
+    };
+    for (const Viewpoint& v : made_.viewpoints) keep(v.position);
+    while (!front.empty()) {
+      throw_if_cancelled();
+      // Any of the front, which then closes over it.
+      const auto pick = static_cast<std::size_t>(
+          random_.integer(0, static_cast<std::int64_t>(front.size()) - 1));
+      const Vector3d from = places_[static_cast<std::size_t>(front[pick])];
+      front[pick] = front.back();
+      front.pop_back();
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const double sign : {-1.0, 1.0}) {
+          const Vector3d p = from + sign * step_at(from, step) * Vector3d::Unit(axis);
+          const bool crowded = grid.any_near(p, [&](int other) {
+            return (places_[static_cast<std::size_t>(other)] - p).norm() < s_.distance_apart;
+          });
+          made_.crowded += crowded;
+          if (crowded || !allowed(p)) continue;
+          if (places_.size() >= kMostPlaces) return false;
+          keep(p);
+        }
       }
-      if (static_cast<int>(made_.viewpoints.size()) >= s_.least) return;
-      const Vector3d low = s_.allowed.min(), high = s_.allowed.max();
-      const Vector3d p(random_.uniform(low.x(), high.x()), random_.uniform(low.y(), high.y()),
-                       random_.uniform(low.z(), high.z()));
-      failed = add(p) ? 0 : failed + 1;
-      if (failed >= s_.most_failed_draws) return;
     }
-  }
-
-  Candidates take() { return std::move(made_); }
-
- private:
-  void spread(const Vector3d& from) {
-    const double step = s_.step + s_.step_growth * s_.region.exteriorDistance(from);
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double sign : {-1.0, 1.0})
-        if (static_cast<int>(made_.viewpoints.size()) < s_.most)
-          add(from + sign * step * Vector3d::Unit(axis));
-  }
-
-  bool add(const Vector3d& p) {
-    if (!s_.allowed.contains(p) || !space_.swept_box_free(p, p, s_.half)) {
-      ++made_.blocked;
-      return false;
-    }
-    const Viewpoint viewpoint = looking_from(p);
-    bool crowded = false;
-    grid_.near(p, [&](int other) {
-      const Viewpoint& v = made_.viewpoints[static_cast<std::size_t>(other)];
-      crowded = crowded || ((v.position - p).norm() < s_.distance_apart &&
-                            angle_between(v, viewpoint) < s_.angle_apart);
-    });
-    if (crowded) {
-      ++made_.crowded;
-      return false;
-    }
-    keep(viewpoint);
     return true;
   }
 
-  void keep(const Viewpoint& viewpoint) {
-    const auto index = static_cast<int>(made_.viewpoints.size());
-    made_.viewpoints.push_back(viewpoint);
-    grid_.add(viewpoint.position, index);
-    front_.push_back(index);
+  bool allowed(const Vector3d& p) {
+    const bool free = s_.allowed.contains(p) && space_.swept_box_free(p, p, s_.half);
+    made_.blocked += !free;
+    return free;
+  }
+
+  // Leaves places at least a step from each other, and farther where each could not have its
+  // directions otherwise.
+  void thin(double step) {
+    const auto wanted =
+        std::max<std::size_t>(static_cast<std::size_t>(s_.most / s_.directions), 1) +
+        static_cast<std::size_t>(made_.given);
+    std::vector<int> order(places_.size());
+    std::iota(order.begin(), order.end(), 0);
+    for (int k = static_cast<int>(order.size()) - 1; k > made_.given; --k)
+      std::swap(order[static_cast<std::size_t>(k)],
+                order[static_cast<std::size_t>(random_.integer(made_.given, k))]);
+    std::vector<Vector3d> left;
+    double narrow = kOneStep, wide = kOneStep;  // times the steps
+    while (!spaced(order, step, wide, wanted, left)) narrow = std::exchange(wide, 2 * wide);
+    for (int round = 0; round < kThinningRounds && narrow < wide; ++round) {
+      const double middle = (narrow + wide) / 2;
+      (spaced(order, step, middle, wanted, left) ? wide : narrow) = middle;
+    }
+    spaced(order, step, wide, wanted, left);
+    places_ = std::move(left);
+  }
+
+  // False where more than `most` are so many steps apart.
+  bool spaced(const std::vector<int>& order, double step, double times, std::size_t most,
+              std::vector<Vector3d>& left) const {
+    throw_if_cancelled();
+    left.clear();
+    double widest = 0;
+    for (const Vector3d& p : places_) widest = std::max(widest, times * step_at(p, step));
+    Grid grid(widest);
+    for (const int k : order) {
+      const Vector3d& p = places_[static_cast<std::size_t>(k)];
+      const double apart = times * step_at(p, step);
+      const bool given = k < made_.given;
+      if (!given && grid.any_near(p, [&](int other) {
+            return (left[static_cast<std::size_t>(other)] - p).norm() < apart;
+          }))
+        continue;
+      if (left.size() >= most) return false;
+      grid.add(p, static_cast<int>(left.size()));
+      left.push_back(p);
+    }
+    return true;
+  }
+
+  // Views of the places, one after the other, until there are as many as allowed or no place has
+  // a direction left.
+  void look_around() {
+    looks_.assign(places_.size(), {});
+    for (int k = 0; k < made_.given; ++k) looks_[static_cast<std::size_t>(k)].push_back(k);
+    std::vector<std::size_t> open(places_.size());
+    std::iota(open.begin(), open.end(), std::size_t{0});
+    for (int round = 0; !open.empty() && !full(); ++round) {
+      std::vector<std::size_t> still;
+      for (const std::size_t place : open) {
+        throw_if_cancelled();
+        if (full()) break;
+        const bool has_one = round == 0 && !looks_[place].empty();
+        if (has_one || look(place)) still.push_back(place);
+      }
+      open = std::move(still);
+    }
+    for (const auto& looks : looks_) made_.places += !looks.empty();
+  }
+
+  bool full() const { return static_cast<int>(made_.viewpoints.size()) >= s_.most; }
+
+  // One more view of a place; false where those that were drawn look like others.
+  bool look(std::size_t place) {
+    for (int draw = 0; draw < kDirectionDraws; ++draw) {
+      const Viewpoint viewpoint = looking_from(places_[place]);
+      bool crowded = false;
+      for (const int other : looks_[place])
+        crowded = crowded || angle_between(made_.viewpoints[static_cast<std::size_t>(other)],
+                                           viewpoint) < s_.angle_apart;
+      made_.crowded += crowded;
+      if (crowded) continue;
+      looks_[place].push_back(static_cast<int>(made_.viewpoints.size()));
+      made_.viewpoints.push_back(viewpoint);
+      return true;
+    }
+    return false;
+  }
+
+  // Where growing found too few: free places anywhere.
+  void draw_more() {
+    const Vector3d low = s_.allowed.min(), high = s_.allowed.max();
+    int failed = 0;
+    while (static_cast<int>(made_.viewpoints.size()) < s_.least && failed < s_.most_failed_draws) {
+      throw_if_cancelled();
+      const Vector3d p(random_.uniform(low.x(), high.x()), random_.uniform(low.y(), high.y()),
+                       random_.uniform(low.z(), high.z()));
+      const Viewpoint viewpoint = looking_from(p);
+      bool taken = !allowed(p);
+      for (std::size_t k = 0; k < made_.viewpoints.size() && !taken; ++k)
+        taken = (made_.viewpoints[k].position - p).norm() < s_.distance_apart &&
+                angle_between(made_.viewpoints[k], viewpoint) < s_.angle_apart;
+      failed = taken ? failed + 1 : 0;
+      if (taken) continue;
+      made_.viewpoints.push_back(viewpoint);
+      ++made_.places;
+    }
+  }
+
+  void throw_if_cancelled() const {
+    if (cancellation_ && cancellation_->cancelled()) throw Cancelled();
   }
 
   // Towards the middle of the region, more or less. From within the region any way is towards it.
@@ -169,8 +286,9 @@ class Generator {
   const FreeSpace& space_;
   const CandidateSettings& s_;
   Random random_;
-  Grid grid_;
-  std::vector<int> front_;
+  const CancellationToken* cancellation_;
+  std::vector<Vector3d> places_;         // the given ones first
+  std::vector<std::vector<int>> looks_;  // of every place, by their index
   Candidates made_;
 };
 
@@ -180,10 +298,7 @@ Candidates generate_candidates(const FreeSpace& space, const std::vector<Viewpoi
                                const CandidateSettings& settings, std::uint64_t seed,
                                const CancellationToken* cancellation) {
   check(settings);
-  Generator generator(space, settings, seed);
-  generator.give(given);
-  generator.grow(cancellation);
-  return generator.take();
+  return Generator(space, settings, seed, cancellation).generate(given);
 }
 
 }  // namespace lapwing

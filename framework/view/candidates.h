@@ -1,5 +1,5 @@
-// Viewpoints worth considering around a region of interest (thesis 4.4.4, algorithm 3; readings
-// 4.5, 4.11).
+// Viewpoints worth considering around a region of interest (thesis 4.4.4, 4.8, algorithm 3;
+// readings 4.5, 4.11).
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,13 @@ struct CandidateSettings {
   Eigen::Vector3d half = {1, 1, 0.5};  // m, half edges of the vehicle's box
   double step = 1.5;                   // m between neighbours at the region
   double step_growth = 0.2;            // m more for every metre away from it
-  // Two candidates are apart by one of these at least.
+  // Two candidates are apart by one of these at least: a place has several that look elsewhere.
   double distance_apart = 1;                       // m
   double angle_apart = 15 * 0.017453292519943295;  // rad
   // The camera's own limits (thesis: a gimbal that does not look up).
   double pitch_min = -1.5707963267948966, pitch_max = 0;  // rad
   int most = 5000;
+  int directions = 3;             // of each place, where there is room for so many within `most`
   int least = 0;                  // where growing finds fewer, free places are drawn as well
   int most_failed_draws = 10000;  // of those, in a row
 };
@@ -31,12 +32,16 @@ struct Candidates {
   std::vector<Viewpoint> viewpoints;  // the given ones first
   int given = 0;
   std::int64_t blocked = 0, crowded = 0;  // places that were refused, and why
+  std::int64_t grown = 0;                 // free places that were found
+  std::int64_t places = 0;                // of them, those that have candidates
 };
 
-// Grows from the given viewpoints along the axes, in random order, until there are as many as
-// allowed or nothing new; each looks towards the middle of the region, turned by a normal error as
-// wide as half the angle that the region's box takes. A pitch beyond the camera's limits is drawn
-// again. The same seed gives the same candidates.
+// Places grow from the given viewpoints along the axes, in random order, until there is nothing
+// new. Where they are more than `most` candidates can have, places are left out evenly, so that the
+// farthest corner that the steps led to keeps its share. Each place then has as many views as
+// `most` allows, which look towards the middle of the region, turned by a normal error as wide as
+// half the angle that the region's box takes. A pitch beyond the camera's limits is drawn again.
+// The same seed gives the same candidates.
 //
 // InputError: no given viewpoint, one whose box is not free or lies outside `allowed` (naming it),
 // an empty region, settings that make no sense. Cancelled when told to stop.

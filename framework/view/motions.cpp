@@ -1,6 +1,7 @@
 #include "framework/view/motions.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "framework/core/error.h"
 #include "framework/core/parallel.h"
@@ -13,24 +14,38 @@ using Pair = std::pair<int, int>;
 
 constexpr std::size_t kReported = 1000;  // pairs at a time
 
-// Every viewpoint with its nearest neighbours, each pair once, ascending.
-std::vector<Pair> neighbour_pairs(const std::vector<Viewpoint>& viewpoints, int neighbours,
-                                  int threads) {
+// Every viewpoint with the nearest that match it, each pair once, ascending.
+template <class Matchable>
+std::vector<Pair> neighbour_pairs(const std::vector<Viewpoint>& viewpoints,
+                                  const MotionSettings& settings, int threads,
+                                  const CancellationToken* cancellation, Matchable match,
+                                  std::int64_t& unmatched) {
   const std::size_t count = viewpoints.size();
+  const auto wanted = static_cast<std::size_t>(settings.neighbours);
+  const auto most = std::min(static_cast<std::size_t>(settings.among), count - 1);
   std::vector<std::vector<Pair>> found(count);
+  std::vector<std::int64_t> refused(count, 0);
   parallel_for(count, threads, [&](std::size_t k) {
+    if (cancellation && cancellation->cancelled()) return;
     std::vector<std::pair<double, int>> by_distance;
     by_distance.reserve(count);
     for (std::size_t j = 0; j < count; ++j)
       if (j != k)
         by_distance.emplace_back((viewpoints[j].position - viewpoints[k].position).squaredNorm(),
                                  static_cast<int>(j));
-    const auto most = std::min<std::size_t>(static_cast<std::size_t>(neighbours), count - 1);
     std::partial_sort(by_distance.begin(), by_distance.begin() + static_cast<std::ptrdiff_t>(most),
                       by_distance.end());
-    for (std::size_t i = 0; i < most; ++i)
-      found[k].push_back(std::minmax(static_cast<int>(k), by_distance[i].second));
+    for (std::size_t i = 0; i < most && found[k].size() < wanted; ++i) {
+      const Pair pair = std::minmax(static_cast<int>(k), by_distance[i].second);
+      if (match(pair)) {
+        found[k].push_back(pair);
+      } else {
+        ++refused[k];
+      }
+    }
   });
+  if (cancellation && cancellation->cancelled()) throw Cancelled();
+  unmatched = std::accumulate(refused.begin(), refused.end(), std::int64_t{0});
   std::vector<Pair> pairs;
   for (const auto& list : found) pairs.insert(pairs.end(), list.begin(), list.end());
   std::sort(pairs.begin(), pairs.end());
@@ -38,7 +53,7 @@ std::vector<Pair> neighbour_pairs(const std::vector<Viewpoint>& viewpoints, int 
   return pairs;
 }
 
-enum class Outcome { unmatched, blocked, straight, planned, cancelled };
+enum class Outcome { blocked, straight, planned, cancelled };
 
 }  // namespace
 
@@ -49,14 +64,21 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
                          const std::function<void(std::size_t, std::size_t)>& report) {
   if (settings.alpha > 0 && seen.size() != viewpoints.size())
     throw Error("find_motions: what is seen belongs to other viewpoints");
-  if (settings.neighbours < 1) throw InputError("motions: at least 1 neighbour must be tried");
+  if (settings.neighbours < 1 || settings.among < settings.neighbours)
+    throw InputError("motions: at least 1 neighbour must be joined, among no fewer");
   if (!(settings.alpha >= 0 && settings.alpha <= 1))
     throw InputError("motions: alpha must lie between 0 and 1");
   if (!(settings.longest_detour >= 1))
     throw InputError("motions: the longest detour must be at least 1");
   MotionGraph graph;
   if (viewpoints.size() < 2) return graph;
-  const std::vector<Pair> pairs = neighbour_pairs(viewpoints, settings.neighbours, threads);
+  const auto match = [&](const Pair& pair) {
+    return settings.alpha == 0 || matchable(seen[static_cast<std::size_t>(pair.first)],
+                                            seen[static_cast<std::size_t>(pair.second)],
+                                            settings.alpha);
+  };
+  const std::vector<Pair> pairs =
+      neighbour_pairs(viewpoints, settings, threads, cancellation, match, graph.unmatched);
   std::vector<Outcome> outcomes(pairs.size(), Outcome::blocked);
   std::vector<ViewMotion> motions(pairs.size());
   const Random seeds(seed);
@@ -69,11 +91,6 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
     const auto at = [&](int i) -> const Viewpoint& {
       return viewpoints[static_cast<std::size_t>(i)];
     };
-    if (settings.alpha > 0 && !matchable(seen[static_cast<std::size_t>(a)],
-                                         seen[static_cast<std::size_t>(b)], settings.alpha)) {
-      outcomes[k] = Outcome::unmatched;
-      return;
-    }
     const Eigen::Vector3d& from = at(a).position;
     const Eigen::Vector3d& to = at(b).position;
     const double straight = (to - from).norm();
@@ -99,10 +116,9 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
     parallel_for(size, threads, [&](std::size_t k) { try_pair(first + k); });
     if (report) report(first + size, pairs.size());
   }
-  graph.tried = static_cast<std::int64_t>(pairs.size());
+  graph.tried = static_cast<std::int64_t>(pairs.size()) + graph.unmatched;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (outcomes[k] == Outcome::cancelled) throw Cancelled();
-    graph.unmatched += outcomes[k] == Outcome::unmatched;
     graph.blocked += outcomes[k] == Outcome::blocked;
     graph.planned += outcomes[k] == Outcome::planned;
     if (outcomes[k] == Outcome::straight || outcomes[k] == Outcome::planned)

@@ -17,7 +17,9 @@ namespace lapwing {
 struct MotionSettings {
   Eigen::AlignedBox3d allowed;
   Eigen::Vector3d half = {1, 1, 0.5};  // m, half edges of the vehicle's box
-  int neighbours = 12;                 // that each viewpoint is tried with (reading 4.11)
+  // Each viewpoint is joined with so many of the nearest `among` whose pictures match its own
+  // (reading 4.11): views of one place look everywhere, and few of the nearest look the same way.
+  int neighbours = 12, among = 120;
   double alpha = 0.4;                  // of (4.8); 0: every pair can be matched
   // Where the straight line is blocked; null: such neighbours stay apart.
   const PathPlanner* planner = nullptr;

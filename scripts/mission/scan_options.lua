@@ -72,13 +72,15 @@ local DECLARATIONS = {
   { name = "candidates", type = "table", summary = "views worth considering", table = {
     integer("most", 2000, 1, 100000, "views"),
     integer("least", 0, 0, 100000, "where growing finds fewer, free places are drawn as well"),
+    integer("directions", 3, 1, 1000, "of each place, where there are many places"),
     number("step", 1.5, "m", "between neighbours at the region", POSITIVE),
     number("step_growth", 0.2, "", "m more for every metre away from it", NOT_NEGATIVE),
     number("distance_apart", 1, "m", "or so far in angle", POSITIVE),
     number("angle_apart_deg", 15, "deg", "or so far in distance",
            { minimum = 0, maximum = 180 }) } },
   { name = "motions", type = "table", summary = "ways between views", table = {
-    integer("neighbours", 12, 1, 1000, "that each view is tried with"),
+    integer("neighbours", 12, 1, 1000, "that each view is joined with"),
+    integer("among", 120, 1, 100000, "nearest views, of those whose images match"),
     number("alpha", 0.4, "", "share that matchable views see in common", { minimum = 0,
            maximum = 1 }),
     integer("coarse", 120, 1, 10000, "pixels across, of compared views") } },

@@ -1,3 +1,6 @@
+#include <array>
+#include <map>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,9 +69,56 @@ TEST(Candidates, AreDenserNearTheRegion) {
   EXPECT_GT(near, 2 * far);
 }
 
+// How many lie in each quarter of the room, seen from above.
+std::array<int, 4> in_quarters(const Candidates& made) {
+  std::array<int, 4> count{};
+  for (const Viewpoint& v : made.viewpoints)
+    ++count[(v.position.x() > 0 ? 1u : 0u) + (v.position.y() > 0 ? 2u : 0u)];
+  return count;
+}
+
+TEST(Candidates, FewOfManyAreAllOverTheRoom) {
+  CandidateSettings s = candidate_settings();
+  s.step_growth = 0;
+  s.directions = 2;
+  const Candidates many = generate(s);
+  s.most = 120;
+  const Candidates few = generate(s);
+  EXPECT_EQ(few.viewpoints.size(), 120u);
+  EXPECT_EQ(few.grown, many.grown);
+  EXPECT_GT(few.grown, 1000);
+  EXPECT_GE(few.places, 45);
+  EXPECT_LE(few.places, 61);  // two directions for each, and the start
+  for (const int count : in_quarters(few)) EXPECT_GE(count, 20);
+  // Places are apart from each other, not only from those that look the same way.
+  for (const Viewpoint& v : few.viewpoints)
+    for (const Viewpoint& w : few.viewpoints) {
+      const double apart = (v.position - w.position).norm();
+      EXPECT_TRUE(apart == 0 || apart > s.step) << apart;
+    }
+}
+
+TEST(Candidates, PlacesHaveAsManyDirectionsAsTheMostAllows) {
+  CandidateSettings s = candidate_settings();
+  s.step = 6;
+  s.step_growth = 0;
+  s.most = 100000;
+  const Candidates all = generate(s);
+  EXPECT_EQ(all.places, all.grown);
+  EXPECT_GT(all.viewpoints.size(), 10 * static_cast<std::size_t>(all.places));
+  s.most = 3 * static_cast<int>(all.places);
+  std::map<double, int> views;
+  for (const Viewpoint& v : generate(s).viewpoints)
+    ++views[v.position.x() + 100 * v.position.y() + 10000 * v.position.z()];
+  EXPECT_EQ(views.size(), static_cast<std::size_t>(all.places));
+  for (const auto& [place, count] : views) EXPECT_EQ(count, 3);
+}
+
 TEST(Candidates, LookMostlyTowardsTheRegion) {
+  CandidateSettings s = candidate_settings();
+  s.most = 400;  // so many that places are not full yet and must look elsewhere
   int towards = 0, all = 0;
-  for (const Viewpoint& v : generate(candidate_settings()).viewpoints) {
+  for (const Viewpoint& v : generate(s).viewpoints) {
     if (v.position.x() > 0) continue;
     ++all;
     towards += v.direction().x() > 0;
@@ -95,7 +145,10 @@ TEST(Candidates, StopAtTheMostAndDrawUpToTheLeast) {
   EXPECT_EQ(generate(s).viewpoints.size(), 50u);
   s.most = 1000;
   s.step = 100;  // nothing to grow to
-  EXPECT_EQ(generate(s).viewpoints.size(), 1u);
+  const Candidates alone = generate(s);
+  EXPECT_EQ(alone.places, 1);
+  EXPECT_LT(alone.viewpoints.size(), 30u);
+  for (const Viewpoint& v : alone.viewpoints) EXPECT_EQ(v.position, kStart[0].position);
   s.least = 30;
   EXPECT_EQ(generate(s).viewpoints.size(), 30u);
 }
@@ -121,18 +174,49 @@ TEST(Candidates, NoFreeStartIsSaid) {
   EXPECT_THAT(refusal(kStart, s), HasSubstr("region of interest is empty"));
 }
 
-TEST(Motions, JoinNeighboursThatAreFreeAndMatch) {
-  const auto map = walled_room();
-  const auto space = free_space_of(std::shared_ptr<const Map>(map));
-  CandidateSettings few = candidate_settings();
-  few.most = 60;
-  const std::vector<Viewpoint> viewpoints = generate(few).viewpoints;
+std::vector<std::vector<VoxelKey>> seen_from(const std::shared_ptr<SmallMap>& map,
+                                             const std::vector<Viewpoint>& viewpoints) {
   SightSettings sight;
   sight.pinhole = {120, 90, 69, 69, 59.5, 44.5};
   sight.region = AlignedBox3d(Vector3d(4, -4, 0), Vector3d(6, 4, 9));
   const VisibleVoxels visible(map, nullptr, sight);
   std::vector<std::vector<VoxelKey>> seen;
   for (const Viewpoint& v : viewpoints) seen.push_back(visible.seen_coarsely_from(v, 24));
+  return seen;
+}
+
+TEST(Motions, JoinTheNearestThatMatchNotTheNearest) {
+  // Four places in a row; at each, one view of the wall between ten that look away from it.
+  const auto map = walled_room();
+  const auto space = free_space_of(std::shared_ptr<const Map>(map));
+  std::vector<Viewpoint> viewpoints;
+  for (int place = 0; place < 4; ++place) {
+    const Vector3d p(-3, 1.5 * place - 2, 5);
+    viewpoints.push_back({p, 0, 0});
+    for (int k = 0; k < 10; ++k) viewpoints.push_back({p, 2.6 + 0.1 * k, 0});
+  }
+  const auto seen = seen_from(map, viewpoints);
+  MotionSettings s;
+  s.allowed = candidate_settings().allowed;
+  s.half = candidate_settings().half;
+  s.neighbours = 2;
+  s.among = 5;
+  EXPECT_TRUE(find_motions(*space, viewpoints, seen, s, 1, 1).motions.empty());
+  s.among = 43;
+  const MotionGraph graph = find_motions(*space, viewpoints, seen, s, 1, 1);
+  std::vector<std::pair<int, int>> joined;
+  for (const ViewMotion& m : graph.motions) joined.emplace_back(m.a, m.b);
+  const std::vector<std::pair<int, int>> expected{{0, 11}, {0, 22}, {11, 22}, {11, 33}, {22, 33}};
+  EXPECT_EQ(joined, expected);
+}
+
+TEST(Motions, JoinNeighboursThatAreFreeAndMatch) {
+  const auto map = walled_room();
+  const auto space = free_space_of(std::shared_ptr<const Map>(map));
+  CandidateSettings few = candidate_settings();
+  few.most = 60;
+  const std::vector<Viewpoint> viewpoints = generate(few).viewpoints;
+  const std::vector<std::vector<VoxelKey>> seen = seen_from(map, viewpoints);
   MotionSettings s;
   s.allowed = candidate_settings().allowed;
   s.half = candidate_settings().half;
