@@ -1,6 +1,7 @@
 #include "framework/geometry/reconstruction.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "framework/core/error.h"
@@ -43,11 +44,15 @@ void check_settings(const ReconstructionSettings& s) {
 
 struct Places {
   double edge, shift;  // m
-  GridKey of(const Eigen::Vector3d& p) const {
+  std::array<std::int64_t, 3> cell_of(const Eigen::Vector3d& p) const {
     const auto at = [&](double x) {
       return static_cast<std::int64_t>(std::floor((x + shift) / edge));
     };
-    return grid_key(at(p.x()), at(p.y()), at(p.z()));
+    return {at(p.x()), at(p.y()), at(p.z())};
+  }
+  GridKey of(const Eigen::Vector3d& p) const {
+    const auto cell = cell_of(p);
+    return grid_key(cell[0], cell[1], cell[2]);
   }
 };
 
@@ -124,30 +129,52 @@ struct SurfaceSample::Index {
     return result;
   }
 
-  bool close(const Sorted& to, const Eigen::Vector3f& p) const {
-    const auto at = [&](float x) {
-      return static_cast<std::int64_t>(
-          std::floor((static_cast<double>(x) + cubes.shift) / cubes.edge));
+  // Where points close to those of one cube can be.
+  struct Near {
+    std::array<std::pair<std::int32_t, std::int32_t>, 27> runs;  // first and number of points
+    int count = 0;
+  };
+
+  Near near(const std::array<std::int64_t, 3>& cube, const Sorted& to) const {
+    Near found;
+    const auto look = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+      const auto* run = to.table.find(grid_key(cube[0] + x, cube[1] + y, cube[2] + z));
+      if (run) found.runs[static_cast<std::size_t>(found.count++)] = *run;
     };
-    const auto x = at(p.x()), y = at(p.y()), z = at(p.z());
-    const double limit = settings.near * settings.near * (1 + 1e-6);
+    look(0, 0, 0);  // the likeliest
     for (int i = 0; i < 27; ++i) {
-      const auto* cube = to.table.find(grid_key(x + i / 9 - 1, y + i / 3 % 3 - 1, z + i % 3 - 1));
-      if (!cube) continue;
-      for (std::int32_t k = 0; k < cube->second; ++k) {
-        const Eigen::Vector3f& q = to.points[static_cast<std::size_t>(cube->first + k)];
+      if (i != 13) look(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+    }
+    return found;
+  }
+
+  bool close(const Near& near, const Sorted& to, const Eigen::Vector3f& p) const {
+    const double limit = settings.near * settings.near * (1 + 1e-6);
+    for (int i = 0; i < near.count; ++i) {
+      const auto [first, count] = near.runs[static_cast<std::size_t>(i)];
+      for (std::int32_t k = first; k < first + count; ++k) {
+        const Eigen::Vector3f& q = to.points[static_cast<std::size_t>(k)];
         if ((q - p).cast<double>().squaredNorm() <= limit) return true;
       }
     }
     return false;
   }
 
-  std::int64_t count_close(const GridPoints& points, const Sorted& to, int threads) const {
+  // Of the points within the region: those of one cube follow each other and share one search.
+  std::int64_t count_close(const Sorted& from, const Sorted& to, int threads) const {
     constexpr std::size_t kPart = 1 << 14;
+    const GridPoints& points = from.points;
     std::vector<std::int64_t> counts((points.size() + kPart - 1) / kPart, 0);
     parallel_for(counts.size(), threads, [&](std::size_t part) {
       const std::size_t end = std::min(points.size(), (part + 1) * kPart);
-      for (std::size_t i = part * kPart; i < end; ++i) counts[part] += close(to, points[i]);
+      std::array<std::int64_t, 3> last{};
+      std::optional<Near> around_last;
+      for (std::size_t i = part * kPart; i < end; ++i) {
+        if (!settings.region.contains(points[i].cast<double>())) continue;
+        const std::array<std::int64_t, 3> cube = cubes.cell_of(points[i].cast<double>());
+        if (!around_last || cube != last) around_last = near(last = cube, to);
+        counts[part] += close(*around_last, to, points[i]);
+      }
     });
     std::int64_t sum = 0;
     for (const std::int64_t count : counts) sum += count;
@@ -259,21 +286,19 @@ const GridPoints& SurfaceSample::points() const {
 }
 
 ReconstructionScore SurfaceSample::score(const GridPoints& reconstructed, int threads) const {
-  GridPoints inside;
-  for (const Eigen::Vector3f& p : reconstructed) {
-    if (index_->settings.region.contains(p.cast<double>())) inside.push_back(p);
-  }
+  // What lies just outside the region is close to some of its surface.
+  const Index::Sorted made = index_->sorted(reconstructed);
   ReconstructionScore score;
-  score.points = static_cast<std::int64_t>(inside.size());
+  score.points = std::ranges::count_if(reconstructed, [&](const Eigen::Vector3f& p) {
+    return index_->settings.region.contains(p.cast<double>());
+  });
   score.surface_points = static_cast<std::int64_t>(index_->inside.size());
-  if (inside.empty()) return score;
+  if (score.points == 0) return score;
   const auto share = [](std::int64_t part, std::int64_t whole) {
     return static_cast<double>(part) / static_cast<double>(whole);
   };
-  score.precision = share(index_->count_close(inside, index_->around, threads), score.points);
-  // What lies just outside the region is close to some of its surface.
-  const Index::Sorted made = index_->sorted(reconstructed);
-  score.recall = share(index_->count_close(index_->inside, made, threads), score.surface_points);
+  score.precision = share(index_->count_close(made, index_->around, threads), score.points);
+  score.recall = share(index_->count_close(index_->around, made, threads), score.surface_points);
   const double sum = score.precision + score.recall;
   score.f = sum > 0 ? 2 * score.precision * score.recall / sum : 0;
   return score;
