@@ -18,6 +18,12 @@ inline GridKey grid_key(std::int64_t x, std::int64_t y, std::int64_t z) {
          static_cast<GridKey>(z + kMiddle);
 }
 
+// Of the place so many places away. Keys ascend along z, then y, then x.
+inline GridKey grid_key_beside(GridKey key, std::int64_t x, std::int64_t y, std::int64_t z) {
+  return key + (static_cast<GridKey>(x) << 42) + (static_cast<GridKey>(y) << 21) +
+         static_cast<GridKey>(z);
+}
+
 // Bits well mixed (splitmix64's last step).
 inline std::uint64_t mixed(GridKey key) {
   key = (key ^ key >> 30) * 0xbf58476d1ce4e5b9ull;

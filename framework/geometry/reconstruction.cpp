@@ -44,15 +44,11 @@ void check_settings(const ReconstructionSettings& s) {
 
 struct Places {
   double edge, shift;  // m
-  std::array<std::int64_t, 3> cell_of(const Eigen::Vector3d& p) const {
+  GridKey of(const Eigen::Vector3d& p) const {
     const auto at = [&](double x) {
       return static_cast<std::int64_t>(std::floor((x + shift) / edge));
     };
-    return {at(p.x()), at(p.y()), at(p.z())};
-  }
-  GridKey of(const Eigen::Vector3d& p) const {
-    const auto cell = cell_of(p);
-    return grid_key(cell[0], cell[1], cell[2]);
+    return grid_key(at(p.x()), at(p.y()), at(p.z()));
   }
 };
 
@@ -106,11 +102,10 @@ GridPoints in_order(std::vector<Placed> placed) {
 struct SurfaceSample::Index {
   explicit Index(const ReconstructionSettings& s) : settings(s), cubes(cubes_of(s)) {}
 
-  using Cubes = GridTable<std::pair<std::int32_t, std::int32_t>>;  // first and number of points
-
   struct Sorted {
     GridPoints points;
-    Cubes table;
+    std::vector<GridKey> cubes;       // that hold any, ascending
+    std::vector<std::int32_t> first;  // point of each, and one past the last point
   };
 
   Sorted sorted(const GridPoints& from) const {
@@ -122,58 +117,78 @@ struct SurfaceSample::Index {
     std::sort(order.begin(), order.end());
     result.points.reserve(from.size());
     for (const auto& [key, i] : order) {
-      auto& [first, count] = result.table[key];
-      if (count++ == 0) first = static_cast<std::int32_t>(result.points.size());
-      result.points.push_back(from[i]);
+      if (result.cubes.empty() || result.cubes.back() != key) {
+        result.cubes.push_back(key);
+        result.first.push_back(static_cast<std::int32_t>(result.points.size()));
+      }
+      result.points.push_back(from[static_cast<std::size_t>(i)]);
     }
+    result.first.push_back(static_cast<std::int32_t>(result.points.size()));
     return result;
   }
 
-  // Where points close to those of one cube can be.
-  struct Near {
-    std::array<std::pair<std::int32_t, std::int32_t>, 27> runs;  // first and number of points
-    int count = 0;
-  };
-
-  Near near(const std::array<std::int64_t, 3>& cube, const Sorted& to) const {
-    Near found;
-    const auto look = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-      const auto* run = to.table.find(grid_key(cube[0] + x, cube[1] + y, cube[2] + z));
-      if (run) found.runs[static_cast<std::size_t>(found.count++)] = *run;
-    };
-    look(0, 0, 0);  // the likeliest
-    for (int i = 0; i < 27; ++i) {
-      if (i != 13) look(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
-    }
-    return found;
-  }
-
-  bool close(const Near& near, const Sorted& to, const Eigen::Vector3f& p) const {
-    const double limit = settings.near * settings.near * (1 + 1e-6);
-    for (int i = 0; i < near.count; ++i) {
-      const auto [first, count] = near.runs[static_cast<std::size_t>(i)];
-      for (std::int32_t k = first; k < first + count; ++k) {
-        const Eigen::Vector3f& q = to.points[static_cast<std::size_t>(k)];
-        if ((q - p).cast<double>().squaredNorm() <= limit) return true;
+  // Where among `to` points can be that are close to those of one cube. Three cubes above each
+  // other follow each other there, so nine columns of three are looked at; asked for ascending
+  // cubes each column goes through `to` once.
+  class Columns {
+   public:
+    Columns(const Sorted& to, GridKey first_cube) : to_(to) {
+      for (std::size_t k = 0; k < kColumns; ++k) {
+        const auto found = std::lower_bound(to.cubes.begin(), to.cubes.end(), lowest(k, first_cube));
+        at_[k] = static_cast<std::size_t>(found - to.cubes.begin());
       }
     }
-    return false;
-  }
 
-  // Of the points within the region: those of one cube follow each other and share one search.
+    void go_to(GridKey cube) {
+      for (std::size_t k = 0; k < kColumns; ++k) {
+        const GridKey low = lowest(k, cube);
+        std::size_t& at = at_[k];
+        while (at < to_.cubes.size() && to_.cubes[at] < low) ++at;
+        std::size_t end = at;
+        while (end < to_.cubes.size() && to_.cubes[end] <= low + 2) ++end;
+        runs_[k] = {to_.first[at], to_.first[end]};
+      }
+    }
+
+    bool any_within(const Eigen::Vector3f& p, double limit_squared) const {
+      for (const auto& [begin, end] : runs_) {
+        for (std::int32_t i = begin; i < end; ++i) {
+          const Eigen::Vector3f& q = to_.points[static_cast<std::size_t>(i)];
+          if ((q - p).cast<double>().squaredNorm() <= limit_squared) return true;
+        }
+      }
+      return false;
+    }
+
+   private:
+    static constexpr std::size_t kColumns = 9;
+    // The lowest cube of a column; the cube's own column comes first.
+    static GridKey lowest(std::size_t column, GridKey cube) {
+      constexpr std::array<std::array<int, 2>, kColumns> kBeside = {
+          {{0, 0}, {-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 1}, {1, -1}, {1, 0}, {1, 1}}};
+      return grid_key_beside(cube, kBeside[column][0], kBeside[column][1], -1);
+    }
+
+    const Sorted& to_;
+    std::array<std::size_t, kColumns> at_;
+    std::array<std::pair<std::int32_t, std::int32_t>, kColumns> runs_{};
+  };
+
+  // Of the points within the region.
   std::int64_t count_close(const Sorted& from, const Sorted& to, int threads) const {
-    constexpr std::size_t kPart = 1 << 14;
-    const GridPoints& points = from.points;
-    std::vector<std::int64_t> counts((points.size() + kPart - 1) / kPart, 0);
+    constexpr std::size_t kPart = 1 << 13;  // cubes
+    const double limit = settings.near * settings.near * (1 + 1e-6);
+    std::vector<std::int64_t> counts((from.cubes.size() + kPart - 1) / kPart, 0);
     parallel_for(counts.size(), threads, [&](std::size_t part) {
-      const std::size_t end = std::min(points.size(), (part + 1) * kPart);
-      std::array<std::int64_t, 3> last{};
-      std::optional<Near> around_last;
-      for (std::size_t i = part * kPart; i < end; ++i) {
-        if (!settings.region.contains(points[i].cast<double>())) continue;
-        const std::array<std::int64_t, 3> cube = cubes.cell_of(points[i].cast<double>());
-        if (!around_last || cube != last) around_last = near(last = cube, to);
-        counts[part] += close(*around_last, to, points[i]);
+      Columns columns(to, from.cubes[part * kPart]);
+      const std::size_t end = std::min(from.cubes.size(), (part + 1) * kPart);
+      for (std::size_t cube = part * kPart; cube < end; ++cube) {
+        columns.go_to(from.cubes[cube]);
+        for (std::int32_t i = from.first[cube]; i < from.first[cube + 1]; ++i) {
+          const Eigen::Vector3f& p = from.points[static_cast<std::size_t>(i)];
+          counts[part] +=
+              settings.region.contains(p.cast<double>()) && columns.any_within(p, limit);
+        }
       }
     });
     std::int64_t sum = 0;
