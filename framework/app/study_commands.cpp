@@ -29,7 +29,8 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
   add_text(*scan, "missions", "MISSION.lua...", "scans to plan by every method",
            [&](const std::string& path) { asked.missions.emplace_back(path); })
       ->required()
-      ->expected(1, 1000);
+      ->expected(-1)
+      ->take_all();
   add_repeated(*scan, "--method", "NAME", asked.methods,
                "a tour solver (milp, milp:nodes=100, cost_benefit+local_search) or a pattern "
                "(circle_50, ellipse_60x40, meander_85x100, hemisphere_60); else all");
