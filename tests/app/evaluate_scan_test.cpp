@@ -127,6 +127,16 @@ TEST_F(EvaluateScan, KilledAtAnyMomentItGoesOnToTheSameBytes) {
   }
 }
 
+TEST_F(EvaluateScan, SeveralMissionsAreOneStudy) {
+  fs::copy_file(base_ / "hut.lua", base_ / "shed.lua");
+  ASSERT_EQ(run("two", {"shed.lua", "--method", "greedy", "--threads", "2"}), 0) << log("two");
+  std::string table = read_file(base_ / "two" / "tables.txt");
+  for (const std::string name : {"hut", "shed"}) {
+    EXPECT_TRUE(fs::exists(base_ / "two" / "rows" / (name + "_seed1_greedy.json"))) << name;
+    EXPECT_NE(table.find(name + ", a budget of "), std::string::npos) << table;
+  }
+}
+
 // A stand-in for COLMAP that finds five of the images: what is asked of it, and what is made of its
 // answer. Without any the error says what is missing.
 TEST_F(EvaluateScan, PhotographsAreRegisteredByColmap) {
