@@ -92,7 +92,8 @@ ParameterTable graph_table() {
   ParameterTable table;
   table.table("region", box_table(), "of interest")
       .table("allowed", box_table(), "where the vehicle's middle may be")
-      .tables("starts", viewpoint_table(), "known to be free; the first one must be", true)
+      .tables("starts", viewpoint_table(), "where candidates grow from, if there is room", true)
+      .integer("needed", 1, "of the starts, the first so many: there must be room", between(1, 2))
       .numbers("body", {1, 1, 0.5}, "m", "half edges of the vehicle's box")
       .number("mesh_room", 1, "m", "more that is kept from the prior mesh", at_least(0))
       .table("candidates", candidates_table(), "views worth considering")
@@ -135,21 +136,21 @@ ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run)
   return s;
 }
 
-// The first start must be free; of the others those count that are.
-std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, const FreeSpace& space,
-                                   const CandidateSettings& settings) {
+// The first `needed` must be free; of the others those count that are.
+std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::size_t needed,
+                                   const FreeSpace& space, const CandidateSettings& settings) {
   std::vector<Viewpoint> starts;
   for (const Parameters& entry : given) {
     const Viewpoint view = viewpoint_of(entry);
     const Eigen::Vector3d& p = view.position;
     const bool free = settings.allowed.contains(p) && space.swept_box_free(p, p, settings.half);
     if (free) starts.push_back(view);
-    if (free || !starts.empty()) continue;
+    if (free || starts.size() >= needed) continue;
     char text[300];
     std::snprintf(text, sizeof text,
-                  "no free start: at (%.4g, %.4g, %.4g) the map does not show that there is room "
+                  "no free %s: at (%.4g, %.4g, %.4g) the map does not show that there is room "
                   "for a box of %.3g x %.3g x %.3g m%s",
-                  p.x(), p.y(), p.z(), 2 * settings.half.x(), 2 * settings.half.y(),
+                  starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(), 2 * settings.half.y(),
                   2 * settings.half.z(),
                   settings.allowed.contains(p) ? "" : ", and it lies where none may be");
     throw InputError(entry.origin(), text);
@@ -266,7 +267,8 @@ int scan_graph_of_run(lua_State* state) {
                      "it, neither from the first flight nor from files");
   const auto space = space_of(*work->prior, given.number("mesh_room"));
   const std::vector<Viewpoint> starts =
-      free_starts(given.tables("starts"), *space, settings.candidates);
+      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
+                  *space, settings.candidates);
   work->graph = make_scan_graph(*space, *work->visible, *work->information, starts, settings,
                                 run.settings.cancellation, run.settings.progress);
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);

@@ -51,7 +51,7 @@ local function room_of(run, starts)
   return { lower = lower, upper = upper }
 end
 
-local function graph_of(run, known, vehicle, starts)
+local function graph_of(run, known, vehicle, starts, finish)
   local o = run.options
   local region = first.region_of(run)
   local gimbal = vehicle.gimbal
@@ -59,7 +59,7 @@ local function graph_of(run, known, vehicle, starts)
   return run:scan_graph {
     prior = known, vehicle = vehicle, region = region,
     allowed = room_of(run, starts),
-    starts = starts, body = o.body, mesh_room = o.mesh_room,
+    starts = starts, needed = finish, body = o.body, mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step, step_growth = c.step_growth,
       distance_apart = c.distance_apart, angle_apart_deg = c.angle_apart_deg,
@@ -79,16 +79,16 @@ local function refuse(run, graph, tour, budget)
 end
 
 -- A tour within `budget` seconds by the solver that is asked for, begun with another one's.
-local function solved(run, graph, budget)
+local function solved(run, graph, finish, budget)
   local o = run.options.tour
   local initial
   if o.begin ~= "none" and o.begin ~= o.solver and o.solver == "local_search" then
     local begun = run:solve_tour { graph = graph, solver = o.begin, budget = budget,
-                                   images = o.images }
+                                   finish = finish, images = o.images }
     if begun.images > 1 then initial = begun end
   end
   local tour = run:solve_tour { graph = graph, solver = solver_of(o), budget = budget,
-                                images = o.images, initial = initial }
+                                finish = finish, images = o.images, initial = initial }
   if tour.images < 2 then
     if run:cancelled() and initial then return initial end
     refuse(run, graph, tour, budget)
@@ -108,12 +108,12 @@ local function notes_of(graph, known, explored)
            views }
 end
 
-local function plan_of(run, graph, known, explored)
+local function plan_of(run, graph, finish, known, explored)
   local o = run.options
   local asked = budget_of(run)
   local budget = asked
   for round = 1, TIGHTER do
-    local tour = solved(run, graph, budget)
+    local tour = solved(run, graph, finish, budget)
     local plan = run:scan_plan {
       tour = tour, margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
@@ -134,11 +134,11 @@ local function planned(run)
   local o = run.options
   local vehicle = run:vehicle(o.vehicle)
   local known, poses, surface, explored = first.knowledge(run)
-  local starts = first.starts(run, poses)
+  local starts, finish = first.starts(run, poses)
   local plan
   for round = 1, o.rounds do
-    local graph = graph_of(run, known, vehicle, starts)
-    plan = plan_of(run, graph, known, explored)
+    local graph = graph_of(run, known, vehicle, starts, finish)
+    plan = plan_of(run, graph, finish, known, explored)
     if round < o.rounds and not run:cancelled() then
       -- The tour is flown, and what it sees is known from then on.
       first.look(run, known, surface, plan.views)

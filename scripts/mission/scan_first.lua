@@ -151,23 +151,30 @@ function M.knowledge(run)
   return known, poses, surface
 end
 
--- Where the tour may begin, the start first; all of it was flown through or is said to be free.
+local function looking_at_the_region(run, position)
+  local region = M.region_of(run)
+  local to = {}
+  for axis = 1, 3 do
+    to[axis] = (region.lower[axis] + region.upper[axis]) / 2 - position[axis]
+  end
+  local across = math.sqrt(to[1] * to[1] + to[2] * to[2])
+  return { position = position, yaw = math.atan(to[2], to[1]),
+           pitch = math.min(0, math.atan(to[3], across)) }
+end
+
+-- Where candidates grow from: where the tour begins, where it ends if that is elsewhere, and what
+-- was flown through. With them, the number of the one in which the tour ends.
 function M.starts(run, poses)
   local o = run.options
   local starts = {}
-  if o.start then
-    local region = M.region_of(run)
-    local dx = (region.lower[1] + region.upper[1]) / 2 - o.start[1]
-    local dy = (region.lower[2] + region.upper[2]) / 2 - o.start[2]
-    local dz = (region.lower[3] + region.upper[3]) / 2 - o.start[3]
-    starts[1] = { position = o.start, yaw = math.atan(dy, dx),
-                  pitch = math.min(0, math.atan(dz, math.sqrt(dx * dx + dy * dy))) }
-  end
+  if o.start then starts[1] = looking_at_the_region(run, o.start) end
   for _, pose in ipairs(poses) do starts[#starts + 1] = pose end
   if #starts == 0 then
     run:fail("start", "with files of an earlier flight alone, say where the tour begins")
   end
-  return starts
+  if not o.finish then return starts, 1 end
+  table.insert(starts, 2, looking_at_the_region(run, o.finish))
+  return starts, 2
 end
 
 return M

@@ -44,7 +44,8 @@ local DECLARATIONS = {
     { name = "mesh", type = "text", summary = "a mesh in the map's frame" } } },
   { name = "region", type = "table", summary = "of interest; absent: the scene's", table = {
     place("lower", "lowest corner, world"), place("upper", "highest corner, world") } },
-  place("start", "where the tour begins and ends; absent: the first flight's first view"),
+  place("start", "where the tour begins; absent: the first flight's first view"),
+  place("finish", "where it ends; absent: where it begins"),
   number("safe_height", nil, "m", "above it the air is free, world; absent: 4 m over the region",
          { minimum = -1e5, maximum = 1e5 }),
   number("ceiling", nil, "m", "highest flight, world; absent: just over the first one",

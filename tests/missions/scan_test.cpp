@@ -79,6 +79,34 @@ return require("mission.scan").of_prior {
   EXPECT_THAT(error(), HasSubstr("voxels of"));
 }
 
+TEST_F(Scanning, ATourEndsWhereItIsToldTo) {
+  ASSERT_EQ(run("--set start=[-8,-7,11] --set finish=[8,7,12]"), 0) << error();
+  EXPECT_EQ(answer().at("status").as_text(), "ok");
+  const Plan made = read_plan(folder_ / "out/plan.json");
+  const auto& views = made.task.scan->views;
+  ASSERT_GT(views.size(), 5u);
+  EXPECT_LT((views.front().position - Eigen::Vector3d(-8, -7, 11)).norm(), 1e-9);
+  EXPECT_LT((views.back().position - Eigen::Vector3d(8, 7, 12)).norm(), 1e-9);
+  EXPECT_THAT(refused("--set finish=[0,0,2]"), HasSubstr("no free finish: at (0, 0, 2)"));
+  EXPECT_THAT(refused("--set finish=[500,0,12]"), HasSubstr("no free finish"));
+}
+
+TEST_F(Scanning, ASecondRoundKnowsWhatTheFirstOneSaw) {
+  ASSERT_EQ(run("--set rounds=2", "hut.lua", "twice"), 0) << error();
+  EXPECT_EQ(answer().at("status").as_text(), "ok");
+  ASSERT_EQ(run("", "hut.lua", "once"), 0) << error();
+  EXPECT_NE(read_file(folder_ / "twice/map.ot"), read_file(folder_ / "once/map.ot"));
+  EXPECT_NE(read_file(folder_ / "twice/prior.ply"), read_file(folder_ / "once/prior.ply"));
+}
+
+TEST_F(Scanning, NoiseOfDepthIsPlannedWith) {
+  ASSERT_EQ(run("--set noise.sigma=0.05 --set noise.dropped=0.2"), 0) << error();
+  EXPECT_EQ(answer().at("status").as_text(), "ok");
+  const std::string noisy = read_file(folder_ / "out/map.ot");
+  ASSERT_EQ(run(""), 0) << error();
+  EXPECT_NE(noisy, read_file(folder_ / "out/map.ot"));
+}
+
 TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set start=[0,0,2]"), HasSubstr("no free start"));
   EXPECT_THAT(refused("--set tour.budget=1"), HasSubstr("no tour of 1 s"));
