@@ -134,8 +134,9 @@ struct SurfaceSample::Index {
    public:
     Columns(const Sorted& to, GridKey first_cube) : to_(to) {
       for (std::size_t k = 0; k < kColumns; ++k) {
-        const auto found = std::lower_bound(to.cubes.begin(), to.cubes.end(), lowest(k, first_cube));
-        at_[k] = static_cast<std::size_t>(found - to.cubes.begin());
+        const auto begin = to.cubes.begin();
+        const auto found = std::lower_bound(begin, to.cubes.end(), lowest(k, first_cube));
+        at_[k] = static_cast<std::size_t>(found - begin);
       }
     }
 

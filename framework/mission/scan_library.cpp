@@ -150,8 +150,8 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
     std::snprintf(text, sizeof text,
                   "no free %s: at (%.4g, %.4g, %.4g) the map does not show that there is room "
                   "for a box of %.3g x %.3g x %.3g m%s",
-                  starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(), 2 * settings.half.y(),
-                  2 * settings.half.z(),
+                  starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(),
+                  2 * settings.half.x(), 2 * settings.half.y(), 2 * settings.half.z(),
                   settings.allowed.contains(p) ? "" : ", and it lies where none may be");
     throw InputError(entry.origin(), text);
   }
