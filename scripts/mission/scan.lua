@@ -61,7 +61,8 @@ local function graph_of(run, known, vehicle, starts, finish)
     allowed = room_of(run, starts),
     starts = starts, needed = finish, body = o.body, mesh_room = o.mesh_room,
     candidates = {
-      most = c.most, least = c.least, directions = c.directions, step = c.step, step_growth = c.step_growth,
+      most = c.most, least = c.least, directions = c.directions, step = c.step,
+      step_growth = c.step_growth,
       distance_apart = c.distance_apart, angle_apart_deg = c.angle_apart_deg,
       pitch_min_deg = gimbal and math.max(-90, math.deg(gimbal.pitch_min)) or -90,
       pitch_max_deg = gimbal and math.min(0, math.deg(gimbal.pitch_max)) or 0 },
