@@ -22,7 +22,8 @@ std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, do
   double along = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i > 0) along += (points[i] - points[i - 1]).norm();
-    stops.push_back({i, yaw_from + (length > 0 ? along / length : 1) * turn});
+    const double share = length > 0 ? along / length : i > 0;
+    stops.push_back({i, yaw_from + share * turn});
   }
   return stops;
 }
@@ -173,13 +174,12 @@ std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
     const double to = views[static_cast<std::size_t>(motion.b)].yaw;
     double most = motion.length / work.flight.speed + work.view_seconds;
     std::vector<Eigen::Vector3d> points = motion.points;
-    if (motion.length > 0)
-      for (const bool back : {false, true}) {
-        if (back) std::reverse(points.begin(), points.end());
-        const auto stops = stops_of(points, back ? to : from, back ? from : to);
-        const Pursuit flown = pursue(points, stops, work.vehicle, work.flight);
-        most = std::max(most, flown.trajectory.duration() - work.flight.pause);
-      }
+    for (const bool back : {false, true}) {
+      if (back) std::reverse(points.begin(), points.end());
+      const auto stops = stops_of(points, back ? to : from, back ? from : to);
+      const Pursuit flown = pursue(points, stops, work.vehicle, work.flight);
+      most = std::max(most, flown.trajectory.duration() - work.flight.pause);
+    }
     seconds[k] = most;
   });
   if (cancellation && cancellation->cancelled()) throw Cancelled();

@@ -27,7 +27,8 @@ void check(const Points& path, std::span<const PursuitView> views, const Vehicle
   if (path.size() < 2) refuse("expected a path of two points or more");
   for (const Vector3d& p : path)
     if (!p.allFinite()) refuse("a point of the path is not finite");
-  if (!(length_of(path) > 0)) refuse("the path has no length");
+  if (!(length_of(path) > 0) && (views.size() < 2 || !s.stop))
+    refuse("the path has no length, and there are no views to turn to");
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (views[i].point >= path.size() || !std::isfinite(views[i].yaw))
       refuse("view " + std::to_string(i + 1) + " is at no point of the path");

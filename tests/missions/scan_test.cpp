@@ -27,6 +27,8 @@ TEST_F(Scanning, AHutIsScannedAndCertified) {
   EXPECT_EQ(static_cast<std::int64_t>(read.task.scan->views.size()),
             tour.at("images").as_integer());
   EXPECT_LE(read.trajectory.duration(), 70);
+  // Legs, one by one, take what the whole flight takes, turns on the spot included.
+  EXPECT_NEAR(read.trajectory.duration(), tour.at("seconds").as_number(), 1);
   EXPECT_EQ(read.environment.maps.at(0).file, "map.ot");
   EXPECT_EQ(read.environment.meshes.at(0).file, "prior.ply");
   const std::string report = read_file(folder_ / "out/report.html");

@@ -66,6 +66,21 @@ TEST(Pursuit, SlowsDownBeforeAViewAndRestsInIt) {
   }
 }
 
+TEST(Pursuit, TurnsOnTheSpotFromViewToView) {
+  const Vehicle vehicle = reference_vehicle();
+  const std::vector<PursuitView> views = {{0, 0.5}, {1, 2.5}};
+  const Pursuit flown = pursue({{1, 2, 3}, {1, 2, 3}}, views, vehicle, {.pause = 0.5});
+  const auto& samples = flown.trajectory.samples;
+  EXPECT_EQ(samples.front().yaw, 0.5);
+  EXPECT_NEAR(samples.back().yaw, 2.5, 0.02);
+  for (const Sample& s : samples) EXPECT_LT((s.position - Vector3d(1, 2, 3)).norm(), 1e-9);
+  // No sooner than at the largest rate, and the pauses come on top.
+  const double turning = flown.views[1].arrival - flown.views[0].departure;
+  EXPECT_GT(turning, 2 / vehicle.yaw_rate_max);
+  EXPECT_LT(turning, 10);
+  EXPECT_NEAR(flown.trajectory.duration(), turning + 1, 0.11);
+}
+
 TEST(Pursuit, FliesByWhereItDoesNotStop) {
   const Pursuit stops = pursue(kPath, kViews, reference_vehicle(), {.stop = true});
   const Pursuit flies = pursue(kPath, kViews, reference_vehicle(), {.stop = false});
@@ -135,6 +150,8 @@ TEST(Pursuit, RefusesWhatMakesNoSense) {
   const Vehicle vehicle = reference_vehicle();
   EXPECT_THROW(pursue({{0, 0, 1}}, {}, vehicle), InputError);
   EXPECT_THROW(pursue({{0, 0, 1}, {0, 0, 1}}, {}, vehicle), InputError);
+  EXPECT_THROW(pursue({{0, 0, 1}, {0, 0, 1}}, std::vector<PursuitView>{{1, 0}}, vehicle),
+               InputError);
   EXPECT_THROW(pursue({{0, 0, 1}, {NAN, 0, 1}}, {}, vehicle), InputError);
   const std::vector<PursuitView> twice = {{1, 0}, {1, 0}}, beyond = {{9, 0}};
   EXPECT_THROW(pursue(kPath, twice, vehicle), InputError);
