@@ -248,6 +248,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   stated.set("lookahead", request.lookahead);
   stated.set("parameters", parameters);
   if (!request.moves.empty()) stated.set("moves", moves);
+  if (!request.up.empty()) stated.set("up", request.up);
   const fs::path settings_file = request.folder / "settings.json";
   if (request.resume && fs::exists(settings_file) &&
       !(from_json(read_file(settings_file), settings_file.string()) == stated))
@@ -264,8 +265,8 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
           trials.push_back(trial);
       }
     if (trials.empty()) continue;
-    const World world = load_world(name, registry, invocation);
-    const GroundTruth truth(world.scene, world.region, setup.map.at("resolution").as_number());
+    const World world = load_world(name, request.up, registry, invocation);
+    const GroundTruth truth = setup.truth_of(world);
     std::atomic<std::size_t> done{0};
     parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
       if (interruption.token().cancelled()) return;

@@ -9,6 +9,7 @@ struct ExploreEvaluation {
   std::vector<std::string> worlds;     // "downtown:101-104", "street", files
   std::vector<std::string> utilities;  // empty: all that are shipped
   std::vector<std::string> moves;      // "clear=2": ExplorationSetup::set_moves
+  std::string up;                      // of mesh files, as `load_world` takes it
   std::int64_t episodes = 10;          // of each world, with the same starts for every utility
   int steps = 200, lookahead = 1;
   double sigma = 0, dropped = 0;  // of the camera's depth (table 5.4); replayed without

@@ -1,11 +1,11 @@
 #include "framework/app/exploration_worlds.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "framework/config/overrides.h"
 #include "framework/config/shipped.h"
-#include "framework/geometry/mesh_file.h"
 #include "framework/mission/scene_script.h"
 
 namespace lapwing {
@@ -17,20 +17,55 @@ std::uint64_t seed_of(const std::string& text, const std::string& given) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
   if (error != std::errc{} || end != text.data() + text.size())
-    throw InputError("world '" + given + "': expected NAME, NAME:SEED, NAME:FIRST-LAST or a file");
+    throw InputError("world '" + given +
+                     "': expected NAME, NAME:SEED, NAME:FIRST-LAST, FILE or FILE@X,Y,Z");
   return seed;
+}
+
+Eigen::Vector3d place_of(const std::string& text, const std::string& given) {
+  Eigen::Vector3d place;
+  const char* at = text.data();
+  const char* const last = text.data() + text.size();
+  bool good = true;
+  for (int i = 0; i < 3 && good; ++i) {
+    const auto [end, error] = std::from_chars(at, last, place[i]);
+    good = error == std::errc{} && std::isfinite(place[i]) &&
+           (i < 2 ? end != last && *end == ',' : end == last);
+    at = end + (i < 2);
+  }
+  if (!good)
+    throw InputError("world '" + given + "': expected FILE@X,Y,Z with a place in metres within it");
+  return place;
 }
 
 }  // namespace
 
+UpAxis up_axis(const std::string& name) {
+  if (name != "x" && name != "y" && name != "z")
+    throw InputError("--up: expected x, y or z, got '" + name + "'");
+  return name == "x" ? UpAxis::x : name == "y" ? UpAxis::y : UpAxis::z;
+}
+
 std::string WorldName::text() const {
   const fs::path path(scene);
-  return path.has_extension() ? path.filename().string() : scene + " " + std::to_string(seed);
+  if (!path.has_extension()) return scene + " " + std::to_string(seed);
+  return path.filename().string() + (inside_text.empty() ? "" : "@" + inside_text);
 }
 
 std::vector<WorldName> world_names(const std::string& given) {
+  const std::size_t mark = given.rfind('@');
+  if (mark != given.npos && !fs::exists(given)) {
+    const std::string text = given.substr(mark + 1);
+    const fs::path file = given.substr(0, mark);
+    WorldName name{file.string(), 1, place_of(text, given), text};
+    // A cell of a table of comma-separated values.
+    std::replace(name.inside_text.begin(), name.inside_text.end(), ',', ' ');
+    if (!file.has_extension() || file.extension() == ".lua")
+      throw InputError("world '" + given + "': @X,Y,Z is for mesh files; a scene has its region");
+    return {name};
+  }
   const std::size_t colon = given.rfind(':');
-  if (colon == given.npos) return {{given, 1}};
+  if (colon == given.npos) return {WorldName{.scene = given}};
   const std::string name = given.substr(0, colon), seeds = given.substr(colon + 1);
   const std::size_t dash = seeds.find('-');
   const std::uint64_t first = seed_of(seeds.substr(0, dash), given);
@@ -38,17 +73,27 @@ std::vector<WorldName> world_names(const std::string& given) {
   if (last < first || last - first > 10'000)
     throw InputError("world '" + given + "': the last seed lies before the first, or far beyond");
   std::vector<WorldName> names;
-  for (std::uint64_t seed = first; seed <= last; ++seed) names.push_back({name, seed});
+  for (std::uint64_t seed = first; seed <= last; ++seed)
+    names.push_back({.scene = name, .seed = seed});
   return names;
 }
 
-World load_world(const WorldName& name, const Registry& registry, const Invocation& invocation) {
+World load_world(const WorldName& name, const std::string& up, const Registry& registry,
+                 const Invocation& invocation) {
   const fs::path file(name.scene);
   if (file.has_extension() && file.extension() != ".lua") {
-    OpenWorld open = with_floor(read_mesh(file).mesh);
+    MeshFileOptions options;
+    if (!up.empty()) options.up = up_axis(up);
+    if (name.inside) {
+      auto scene = std::make_shared<MeshScene>(read_mesh(file, options).mesh, name.text());
+      const Eigen::AlignedBox3d region = scene->mesh().bounds();
+      return {name.text(), std::move(scene), region, name.inside};
+    }
+    OpenWorld open = with_floor(read_mesh(file, options).mesh);
     return {name.text(), std::make_shared<MeshScene>(std::move(open.mesh), name.text()),
-            open.region};
+            open.region, std::nullopt};
   }
+  if (!up.empty()) throw InputError("--up is for mesh files, and '" + name.scene + "' is none");
   fs::path script = file;
   if (!file.has_extension()) {
     script = shipped_folder("scripts") / "scene" / file;
@@ -66,7 +111,12 @@ World load_world(const WorldName& name, const Registry& registry, const Invocati
   Value options = Value::map();
   options.set("seed", static_cast<std::int64_t>(name.seed));
   GeneratedScene made = generate_scene(script, options, settings);
-  return {name.text(), std::make_shared<MeshScene>(std::move(made.mesh), name.text()), made.region};
+  return {name.text(), std::make_shared<MeshScene>(std::move(made.mesh), name.text()), made.region,
+          std::nullopt};
+}
+
+GroundTruth ExplorationSetup::truth_of(const World& world) const {
+  return {world.scene, world.region, map.at("resolution").as_number(), world.inside};
 }
 
 ExplorationSetup::ExplorationSetup() : map(Value::map()) {

@@ -3,25 +3,34 @@
 
 #include "framework/app/command_line.h"
 #include "framework/explore/episode.h"
+#include "framework/geometry/mesh_file.h"
 
 namespace lapwing {
 
+// InputError for another name than "x", "y" and "z".
+UpAxis up_axis(const std::string& name);
+
 struct WorldName {
-  std::string scene;         // of scripts/scene, or a mesh file
-  std::uint64_t seed = 1;    // of a script
-  std::string text() const;  // "downtown 3", "delft_block.obj"
+  std::string scene;                                     // of scripts/scene, or a mesh file
+  std::uint64_t seed = 1;                                // of a script
+  std::optional<Eigen::Vector3d> inside = std::nullopt;  // of a mesh file that gets no floor
+  std::string inside_text = {};                          // with blanks between
+  std::string text() const;  // "downtown 3", "delft_block.obj", "mine.dae@1 2 3"
 };
-// "downtown", "downtown:3", "downtown:3-6", "meshes/block.obj". InputError for a range that is
-// none.
+// "downtown", "downtown:3", "downtown:3-6", "meshes/block.obj"; "meshes/mine.dae@1,2,3" is the
+// space within a mesh that holds a place. InputError for a range or a place that is none.
 std::vector<WorldName> world_names(const std::string& given);
 
 struct World {
   std::string name;
   std::shared_ptr<const MeshScene> scene;
   Eigen::AlignedBox3d region;
+  std::optional<Eigen::Vector3d> inside;  // the space to explore; else the one that holds most
 };
-// A mesh file gets a floor (explore/ground_truth.h, with_floor).
-World load_world(const WorldName& name, const Registry& registry, const Invocation& invocation);
+// A mesh file gets a floor (explore/ground_truth.h, with_floor) unless a place inside is given.
+// `up` is the axis of a mesh file that points up, "x", "y" or "z"; empty: what the file says.
+World load_world(const WorldName& name, const std::string& up, const Registry& registry,
+                 const Invocation& invocation);
 
 // How all of them are explored, if nothing else is said (readings 2.3, 5.2): camera, range, map.
 struct ExplorationSetup {
@@ -34,6 +43,7 @@ struct ExplorationSetup {
   // "clear=2": how the camera moves, by the names of the mission's `moves`; what is given comes
   // back as a map. InputError for others and for what makes no sense.
   Value set_moves(const std::vector<std::string>& given);
+  GroundTruth truth_of(const World& world) const;
   ObservedSurface::NewMap new_map(const Registry& registry) const;
 };
 

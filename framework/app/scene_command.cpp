@@ -1,5 +1,6 @@
 // lapwing scene view: a mesh file, or a scene that a Lua script makes.
 #include "framework/app/command_line.h"
+#include "framework/app/exploration_worlds.h"
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
 #include "framework/export/scene_report.h"
@@ -23,10 +24,7 @@ MeshFileOptions mesh_options(const SceneStatement& stated) {
   if (stated.seed) throw InputError("--seed is of scenes that a script makes, not of a mesh file");
   MeshFileOptions options;
   options.unit = stated.unit;
-  if (stated.up.empty()) return options;
-  if (stated.up != "x" && stated.up != "y" && stated.up != "z")
-    throw InputError("--up: expected x, y or z, got '" + stated.up + "'");
-  options.up = stated.up == "x" ? UpAxis::x : stated.up == "y" ? UpAxis::y : UpAxis::z;
+  if (!stated.up.empty()) options.up = up_axis(stated.up);
   return options;
 }
 

@@ -10,6 +10,9 @@ namespace lapwing {
 
 namespace {
 
+constexpr const char* kWorldHelp =
+    "a scene of scripts/scene with its seeds, a mesh file, which gets a floor, or FILE@X,Y,Z: the "
+    "space within a mesh that holds that place; repeatable";
 constexpr const char* kMovesHelp = "step, turn_deg, body or clear, as a mission's `moves`";
 
 std::uint64_t read_seed(const std::string& text) {
@@ -97,12 +100,14 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
     add_json(made, invocation);
   };
   CLI::App* dataset = add("dataset", "samples from episodes of the oracle", "a folder");
-  add_repeated(*dataset, "--world", "NAME[:FIRST-LAST]", request.worlds,
-               "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
+  add_repeated(*dataset, "--world", "NAME[:FIRST-LAST]", request.worlds, kWorldHelp);
   add_text(*dataset, "--explorer", "NAME", "the utility that explores; else the oracle",
            [&](const std::string& given) { request.explorer = given; });
   add_repeated(*dataset, "--explorer-set", "KEY=VALUE", request.explorer_overrides,
                "set one parameter of the utility that explores, as model=FILE");
+  add_text(*dataset, "--up", "x|y|z",
+           "the axis of mesh files that points up, in place of their own",
+           [&](const std::string& axis) { request.up = axis; });
   add_repeated(*dataset, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
   add_count(*dataset, "--episodes", 1, 100'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
@@ -126,9 +131,10 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
                           Command& command) {
   CLI::App* made =
       evaluate.add_subcommand("explore", "utilities against the oracle, tables 5.1 on");
-  add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds,
-               "a scene of scripts/scene with its seeds, or a mesh file; repeatable");
+  add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds, kWorldHelp);
   add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; else every one");
+  add_text(*made, "--up", "x|y|z", "the axis of mesh files that points up, in place of their own",
+           [&](const std::string& axis) { request.up = axis; });
   add_repeated(*made, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
   add_count(*made, "--episodes", 1, 10'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });

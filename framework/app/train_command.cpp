@@ -90,8 +90,8 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
       if (!request.resume || !fs::exists(request.target / file_name(name.text(), episode)))
         missing.push_back(episode);
     if (missing.empty()) continue;
-    const World world = load_world(name, registry, invocation);
-    const GroundTruth truth(world.scene, world.region, setup.map.at("resolution").as_number());
+    const World world = load_world(name, request.up, registry, invocation);
+    const GroundTruth truth = setup.truth_of(world);
     std::vector<std::size_t> made(missing.size());
     parallel_for(missing.size(), invocation.threads, [&](std::size_t k) {
       if (interruption.token().cancelled()) return;

@@ -28,6 +28,23 @@ f 7 8 12 11
 f 8 5 9 12
 )";
 
+// A closed room of 5 x 8 x 9 m; 8 m high where y is up.
+constexpr const char* kRoom = R"(v 0.1 0.1 0.1
+v 5.1 0.1 0.1
+v 5.1 8.1 0.1
+v 0.1 8.1 0.1
+v 0.1 0.1 9.1
+v 5.1 0.1 9.1
+v 5.1 8.1 9.1
+v 0.1 8.1 9.1
+f 1 2 3 4
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+)";
+
 class Exploring : public Filming {
  protected:
   // The yard, with few images of few pixels.
@@ -185,6 +202,39 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   EXPECT_EQ(evaluate("--resume --moves clear=3", broken), 2);
   EXPECT_EQ(evaluate("--moves clear=0.5", folder_ / "small"), 2);  // the body does not fit
   EXPECT_EQ(evaluate("--moves leap=3", folder_ / "unknown"), 2);
+}
+
+// Inside a closed box without a floor laid under it, and only what is a place or an axis.
+TEST_F(Exploring, AnEvaluationTakesTheSpaceWithinAMesh) {
+  const fs::path room = folder_ / "room.obj";
+  write_file_atomically(room, kRoom);
+  const auto evaluate = [&](const std::string& world, const std::string& more) {
+    const std::string line =
+        std::string(LAPWING_BUILD_DIR) + "/bin/lapwing evaluate explore --world '" + world +
+        "' --utility frontier --episodes 1 --steps 2 --quiet --moves step=0.7 --moves body=0.6 "
+        "--moves clear=2 -o '" +
+        (folder_ / "within").string() + "' 2> /dev/null " + more;
+    return WEXITSTATUS(std::system(line.c_str()));
+  };
+  const auto surface = [&](const std::string& name) {
+    const fs::path path = folder_ / "within/episodes" / (name + "_frontier_1.json");
+    return from_json(read_file(path), "episode").at("surface").as_number();
+  };
+  // Voxels of 0.4 m: six sides from within, none from without, none of a floor beyond them.
+  ASSERT_EQ(evaluate(room.string() + "@2.5,-4,4.5", "--up y"), 0);
+  const double within = surface("room.obj_2.5_-4_4.5");
+  const double sides = 2 * (5 * 9 + 5 * 8 + 9 * 8) / 0.16;
+  EXPECT_GT(within, 0.8 * sides);
+  EXPECT_LT(within, 1.2 * sides);
+  EXPECT_NE(read_file(folder_ / "within/table.csv").find("\nroom.obj@2.5 -4 4.5,frontier,1,"),
+            std::string::npos);
+  ASSERT_EQ(evaluate(room.string(), ""), 0);
+  EXPECT_GT(surface("room.obj"), 2 * within);
+  EXPECT_EQ(evaluate(room.string() + "@1,2", ""), 2);
+  EXPECT_EQ(evaluate(room.string() + "@1,2,x", ""), 2);
+  EXPECT_EQ(evaluate("office@1,2,3", ""), 2);
+  EXPECT_EQ(evaluate(room.string(), "--up w"), 2);
+  EXPECT_EQ(evaluate("office", "--up y"), 2);
 }
 
 }  // namespace

@@ -10,12 +10,24 @@
 namespace lapwing {
 namespace {
 
-// Bits; 1 where nothing is known.
-double entropy_of(const VoxelReading& reading) {
-  if (!reading.known) return 1;
-  const double p = probability_of(reading.log_odds);
-  return -p * std::log2(p) - (1 - p) * std::log2(1 - p);
-}
+// Bits; 1 where nothing is known. Along a ray most voxels say what the one before did: its
+// logarithms are kept.
+class Entropy {
+ public:
+  double of(const VoxelReading& reading) {
+    if (!reading.known) return 1;
+    if (reading.log_odds != log_odds_) {
+      log_odds_ = reading.log_odds;
+      const double p = probability_of(log_odds_);
+      bits_ = -p * std::log2(p) - (1 - p) * std::log2(1 - p);
+    }
+    return bits_;
+  }
+
+ private:
+  decltype(VoxelReading::log_odds) log_odds_ = 0;
+  double bits_ = 1;
+};
 
 class AverageEntropy final : public ViewUtility {
  public:
@@ -42,12 +54,13 @@ class AverageEntropy final : public ViewUtility {
  private:
   double mean(const EpisodeView& known, const Viewpoint& view) const {
     double entropy = 0, met = 0;
+    Entropy bits;
     for (const Eigen::Vector3d& direction : view_rays(view, known.pinhole, step_)) {
       double on_ray = 0, voxels = 0;
       bool ends = false;
       walk_ray(*known.map, view.position, direction, known.range,
                [&](const VoxelReading& reading, double) {
-                 on_ray += entropy_of(reading);
+                 on_ray += bits.of(reading);
                  voxels += 1;
                  ends = reading.state == VoxelState::occupied;
                  return !ends;

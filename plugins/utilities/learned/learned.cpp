@@ -2,9 +2,12 @@
 //
 //   utility: learned
 //   utility: {type: learned, model: my.model}
+#include <cmath>
+
 #include "framework/core/error.h"
 #include "framework/core/library_path.h"
 #include "framework/core/parallel.h"
+#include "framework/explore/view_rays.h"
 #include "framework/plugin/plugin.h"
 #include "plugins/utilities/learned/fit.h"
 #include "plugins/utilities/learned/model_file.h"
@@ -26,6 +29,46 @@ std::filesystem::path shipped_model() {
       "with model: FILE");
 }
 
+// Voxels of surface that rays through the map could still observe, weighted as (5.3) weights them.
+// A ray that ends in a known surface has as much of its voxels left as observations have left; one
+// that ends in the unknown meets a surface `behind` metres further on. Rays graze surfaces as well:
+// a known one counts `grazed` times what they end in.
+double still_to_observe(const EpisodeView& known, const Viewpoint& view, double behind,
+                        double grazed) {
+  constexpr int kPixelStep = 4;
+  std::vector<MapRay> rays;
+  for (const Eigen::Vector3d& direction : view_rays(view, known.pinhole, kPixelStep))
+    rays.push_back({view.position, direction, known.range});
+  std::vector<MapRayHit> hits(rays.size());
+  known.map->cast(rays, hits);
+  const MapSettings& settings = known.map->settings();
+  const double eta = settings.information;
+  const double across = kPixelStep / known.pinhole.focal_x / settings.resolution;  // voxels at 1 m
+  // Rays in a row: through the middles of squares of pixels, as view_rays has them.
+  const auto row =
+      static_cast<std::size_t>((2 * known.pinhole.width - 1 - kPixelStep) / (2 * kPixelStep)) + 1;
+  const auto wall = [&](std::size_t at, bool there) {
+    return there && hits[at].state == VoxelState::occupied ? 1 : 0;
+  };
+  double unknown = 0, seen = 0;
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const MapRayHit& hit = hits[k];
+    const double distance = static_cast<double>(hit.distance);
+    if (hit.state == VoxelState::unknown) {
+      // A ray that slips between the voxels of a wall is no way to look through it.
+      const int walls = wall(k + 1, k % row + 1 < row) + wall(k - 1, k % row > 0) +
+                        wall(k + row, k + row < hits.size()) + wall(k - row, k >= row);
+      if (walls > 1) continue;
+      const double edge = std::min(distance + behind, known.range) * across;
+      unknown += edge * edge;
+    } else if (hit.state == VoxelState::occupied) {
+      const double edge = distance * across;
+      seen += edge * edge * std::exp(-eta * known.map->read(hit.voxel).observations);
+    }
+  }
+  return (1 - std::exp(-eta)) * (unknown + grazed * seen);
+}
+
 class Learned final : public ViewUtility {
  public:
   static constexpr PluginText kText{"learned", "1.0.0",
@@ -34,7 +77,12 @@ class Learned final : public ViewUtility {
   static ParameterTable parameters() {
     return ParameterTable()
         .text("model", "", "file of a trained model; empty: the one that is shipped")
-        .boolean("blank", false, "see nothing of the map: what a model knows without it");
+        .boolean("rays", true, "ask the rays of the view, too, what there is left to observe")
+        .number("behind", 1.5, "m", "from where the unknown begins to a surface, for the rays",
+                between(0, 100))
+        .number("grazed", 3, "", "known surface that rays observe for each voxel that they end in",
+                between(0, 100))
+        .boolean("blank", false, "the network sees nothing of the map: what it knows without");
   }
   static std::span<const Extension> extensions() {
     static const Trainable trainable{&learned::fit_parameters, &learned::fit_shape, &learned::fit,
@@ -46,6 +94,9 @@ class Learned final : public ViewUtility {
       : model_(learned::read_model(
             p.text("model").empty() ? shipped_model() : std::filesystem::path(p.text("model")))),
         network_(learned::NetworkLayout(model_.shape), model_.state),
+        rays_(p.boolean("rays")),
+        behind_(p.number("behind")),
+        grazed_(p.number("grazed")),
         blank_(p.boolean("blank")) {}
 
   void require_fit(const EpisodeView& known) const override {
@@ -67,12 +118,18 @@ class Learned final : public ViewUtility {
       else
         sample_grid(known, views[i], shape, grid);
       values[i] = model_.target_of(static_cast<double>(network_.answer(grid)));
+      // Half of the harmonic mean: close to the smaller of both where they differ much.
+      if (!rays_ || !(values[i] > 0)) return;
+      const double left = still_to_observe(known, views[i], behind_, grazed_);
+      values[i] *= left / (values[i] + left);
     });
   }
 
  private:
   Model model_;
   learned::FoldedNetwork network_;
+  bool rays_;
+  double behind_, grazed_;
   bool blank_;
 };
 

@@ -98,6 +98,50 @@ TEST(ProximityCount, AddsWhatIsLeftOfTheDistance) {
   EXPECT_EQ(Corridor(4, VoxelState::unknown).told("proximity_count", given), 0);
 }
 
+// The one ray ends 3.5 m away, where a pixel of four is 0.035 m wide; at 5 m, 0.05 m.
+TEST(Learned, AsksTheRaysWhatIsLeftToObserve) {
+  Value bare = Value::map();
+  bare.set("rays", false);
+  const auto expect_left = [&](const Corridor& corridor, double voxels) {
+    const double network = corridor.told("learned", bare);
+    ASSERT_GT(network, 0);  // else nothing is asked
+    const double left = (1 - std::exp(-corridor.map.settings().information)) * voxels;
+    EXPECT_NEAR(corridor.told("learned"), network * left / (network + left), 1e-6 * left);
+  };
+  expect_left(Corridor(4, VoxelState::unknown), 0.05 * 0.05);
+  expect_left(Corridor(4, VoxelState::occupied), 3 * 0.035 * 0.035);
+  expect_left(Corridor(12, VoxelState::unknown), 0);  // out of range
+  const Corridor corridor(4, VoxelState::unknown);
+  Value further = Value::map();
+  further.set("behind", 4.5);
+  EXPECT_GT(corridor.told("learned", further), 2 * corridor.told("learned"));
+}
+
+// Three rays, the outer ones 1.118 m long, to voxels of a wall; between them a gap of one ray.
+TEST(Learned, LooksThroughNoGapOfOneRay) {
+  Corridor corridor(2, VoxelState::unknown);
+  corridor.known.pinhole = {12, 4, 8, 8, 5.5, 1.5};
+  Value bare = Value::map();
+  bare.set("rays", false);
+  const auto expect_left = [&](double voxels) {
+    const double network = corridor.told("learned", bare);
+    ASSERT_GT(network, 0);
+    const double left = (1 - std::exp(-corridor.map.settings().information)) * voxels;
+    EXPECT_NEAR(corridor.told("learned"), network * left / (network + left), 1e-6 * left);
+  };
+  // Ends at 1.5 m and, to both sides, 1.118 m, all in the unknown: what is 1.5 m behind counts.
+  const double side = std::sqrt(1.25), edge = 0.5;  // m; m across four pixels at 1 m
+  const double ahead = std::pow(3 * edge, 2), aside = std::pow((side + 1.5) * edge, 2);
+  expect_left(ahead + 2 * aside);
+  std::vector<VoxelLeaf> leaves;
+  leaves.push_back({corridor.map.grid().key({1.5, 1.5, 0.5}), 0, 1, 2});
+  corridor.map.import(leaves);
+  expect_left(ahead + aside + 3 * std::pow(side * edge, 2));  // a wall on one side is an edge
+  leaves[0].key = corridor.map.grid().key({1.5, -0.5, 0.5});
+  corridor.map.import(leaves);
+  expect_left(2 * 3 * std::pow(side * edge, 2));
+}
+
 TEST(Oracle, SaysThatItNeedsTheTruth) {
   const PluginEntry& entry = registry().find("utility", "oracle");
   EXPECT_EQ(entry.extensions, std::vector<std::string>{kNeedsGroundTruth});
