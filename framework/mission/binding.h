@@ -5,7 +5,6 @@
 // type `@` is the class of the binding's own table, which has the table's entries and `objects`.
 #pragma once
 
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -48,7 +47,7 @@ struct BoundType {
   std::vector<BoundTable> tables;
 };
 
-using BindingLists = std::initializer_list<std::span<const Binding>>;
+using BindingLists = std::vector<std::span<const Binding>>;
 
 // Sets the functions in the Lua table on top of the stack, and notes them as part of the type.
 void bind_functions(lua_State* state, const char* type, std::span<const Binding> functions);

@@ -41,6 +41,7 @@ void open_script_libraries(lua_State* state, MissionRun& run) {
   open_stage_values(state);
   open_problem_library(state);
   open_plan_library(state);
+  open_run_library(state);
   open_map_library(state);
   open_scan_library(state);
   open_explore_library(state);

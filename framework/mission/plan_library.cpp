@@ -1,4 +1,4 @@
-// Solving and planning: the methods of `run`, solutions and plans.
+// Solving and planning: methods of `run`, solutions, vehicles and plans.
 #include <algorithm>
 #include <cmath>
 
@@ -400,59 +400,9 @@ int certify(lua_State* state) {
   return 1;
 }
 
-// -- the rest of run
-// -------------------------------------------------------------------------------
+}  // namespace
 
-int cancelled(lua_State* state) {
-  const CancellationToken* token = run_of(state).settings.cancellation;
-  lua_pushboolean(state, token && token->cancelled());
-  return 1;
-}
-
-int progress(lua_State* state) {
-  Progress* progress = run_of(state).settings.progress;
-  const double fraction = luaL_checknumber(state, 2);
-  const std::string what = text_argument(state, 3, "progress");
-  if (progress) progress->report(fraction, what);
-  return 0;
-}
-
-const Value* at_path(const Value& root, std::string_view path) {
-  const Value* at = &root;
-  while (!path.empty() && at) {
-    const std::size_t end = path.find_first_of(".[]");
-    const std::string_view part = path.substr(0, end);
-    const bool number = !part.empty() && part.find_first_not_of("0123456789") == part.npos;
-    if (number && at->is_list()) {
-      const std::size_t place = std::stoul(std::string(part));
-      at = place >= 1 && place <= at->as_list().size() ? &at->as_list()[place - 1] : nullptr;
-    } else if (!part.empty()) {
-      at = at->find(part);
-    }
-    path = end == path.npos ? std::string_view() : path.substr(end + 1);
-  }
-  return at;
-}
-
-// run:fail("keyframes[2].time", "message"): an error where that option was written.
-int fail(lua_State* state) {
-  const std::string path = text_argument(state, 2, "fail");
-  const std::string message = text_argument(state, 3, "fail");
-  const Value& options = run_of(state).configuration;
-  std::string_view known = path;
-  const Value* value = at_path(options, known);
-  while (!value && known.find_last_of(".[") != known.npos) {
-    known = known.substr(0, known.find_last_of(".["));
-    value = at_path(options, known);
-  }
-  Origin origin = value ? value->origin() : options.origin();
-  if (origin.source.empty() || origin.source == "default") {
-    origin = Sandbox::of(state).script_position(state);
-  }
-  throw InputError(origin, path + ": " + message);
-}
-
-std::span<const Binding> solving_methods() {
+std::span<const Binding> solving_methods_of_run() {
   static const Binding methods[] = {
       {"solve", &guarded<solve>,
        "(problem: lapwing.problem, solver: lapwing.trajectory_solver, options?: @): "
@@ -461,51 +411,17 @@ std::span<const Binding> solving_methods() {
       {"plan", &guarded<plan>, "(made: @): lapwing.plan", "what a mission's `plan` returns",
        &plan_table, kPlanObjects},
       {"certify", &guarded<certify>, "(plan: lapwing.plan): table",
-       "the verifier's answer: `feasible`, `failures` (sentences), `checks`"},
-      {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user asked to end"},
-      {"progress", &guarded<progress>, "(fraction: number, words: string)",
-       "how far the work is, 0 to 1, and with what"},
-      {"fail", &guarded<fail>, "(option: string, message: string)",
-       "an error where that option was written"}};
+       "the verifier's answer: `feasible`, `failures` (sentences), `checks`"}};
   return methods;
 }
 
-int run_field(lua_State* state) {
-  const std::string field = text_argument(state, 2, "run");
-  if (field == "options") {
-    push_value(state, run_of(state).configuration);
-    return 1;
-  }
-  std::vector<std::string> known = {"options"};
-  for (const auto list : {solving_methods(), problem_methods_of_run(), flight_methods_of_run(),
-                          map_methods_of_run(), scan_methods_of_run()})
-    for (const Binding& method : list) known.emplace_back(method.name);
-  const std::string nearest = nearest_name(field, known);
-  throw InputError("run has no '" + field + "'" +
-                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-}
-
-struct RunHandle {};
-
-}  // namespace
-
 void open_plan_library(lua_State* state) {
-  static constexpr BoundField kRunFields[] = {{"options", "table", "the effective options"}};
-  define_type<RunHandle>(state, kRunType,
-                         {problem_methods_of_run(), solving_methods(), flight_methods_of_run(),
-                          map_methods_of_run(), scan_methods_of_run()},
-                         &guarded<run_field>);
-  note_fields(state, kRunType, kRunFields);
   define_type<Vehicle>(state, kVehicleType, {}, &guarded<vehicle_field>);
   note_fields(state, kVehicleType, kVehicleFields);
   define_type<SolutionObject>(state, kSolutionType, {}, &guarded<solution_field>);
   note_fields(state, kSolutionType, kSolutionFields);
   define_type<PlanObject>(state, kPlanType, {}, &guarded<plan_field>);
   note_fields(state, kPlanType, kPlanFields);
-}
-
-void push_run(lua_State* state) {
-  new_object(state, kRunType, RunHandle{});
 }
 
 }  // namespace lapwing

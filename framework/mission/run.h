@@ -116,10 +116,12 @@ void open_script_libraries(lua_State* state, MissionRun& run);
 void open_lapwing_library(lua_State* state, MissionRun& run);
 void open_problem_library(lua_State* state);
 void open_plan_library(lua_State* state);
+void open_run_library(lua_State* state);
 // Pushes the object `run` that the plan function receives.
 void push_run(lua_State* state);
 // The methods of `run`, for the type's table.
 std::span<const Binding> problem_methods_of_run();  // vehicle, problem
+std::span<const Binding> solving_methods_of_run();  // solve, plan, certify
 
 // "iqp" or {type = "iqp", ...}, as options that choose a plugin are given.
 struct PluginChoice {
