@@ -43,8 +43,8 @@ struct Pursuit {
   std::vector<ViewPassed> views;
 };
 
-// Between two views at one place the vehicle turns on the spot. InputError: fewer than two points, a
-// path without length where it does not turn from one view to another, numbers that are not
+// Between two views at one place the vehicle turns on the spot. InputError: fewer than two points,
+// a path without length where it does not turn from one view to another, numbers that are not
 // finite, views out of order, settings that are not positive, speeds and accelerations beyond the
 // vehicle's, a lookahead shorter than three steps at full speed.
 Pursuit pursue(const Points& path, std::span<const PursuitView> views, const Vehicle& vehicle,
