@@ -65,7 +65,9 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
   if (settings.alpha > 0 && seen.size() != viewpoints.size())
     throw Error("find_motions: what is seen belongs to other viewpoints");
   if (settings.neighbours < 1 || settings.among < settings.neighbours)
-    throw InputError("motions: at least 1 neighbour must be joined, among no fewer");
+    throw InputError("motions: neighbours must be at least 1 and among no fewer, not " +
+                     std::to_string(settings.neighbours) + " among " +
+                     std::to_string(settings.among));
   if (!(settings.alpha >= 0 && settings.alpha <= 1))
     throw InputError("motions: alpha must lie between 0 and 1");
   if (!(settings.longest_detour >= 1))

@@ -36,8 +36,8 @@ struct ViewMotion {
 
 struct MotionGraph {
   std::vector<ViewMotion> motions;  // by a, then b
-  std::int64_t tried = 0;           // pairs of neighbours
-  std::int64_t unmatched = 0;       // of them: their pictures share too little
+  std::int64_t tried = 0;           // the sum of what follows, and motions
+  std::int64_t unmatched = 0;       // pictures share too little: seen from either view of a pair
   std::int64_t blocked = 0;         // no way was found
   std::int64_t planned = 0;         // motions that are not straight
 };
