@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <map>
 #include <mutex>
 #include <string>
@@ -77,11 +78,37 @@ void handle_crashes() {
     ::sigaction(signal, &action, nullptr);
 }
 
-using Clock = std::chrono::steady_clock;
+// Seconds that the process could have worked in: where the machine gives it little of its time, or
+// stops it, calls take longer through no fault of the plugin's. What the process used of its
+// processors counts, at least a third of what passed (a plugin may wait in vain), and of a time in
+// which even this thread did not run a few pauses.
+class WorkingClock {
+ public:
+  explicit WorkingClock(double longest_step) : longest_step_(longest_step) {}
+  // Since it was made; asked often.
+  double seconds() {
+    const double wall = wall_seconds(), used = used_seconds();
+    const double passed = wall - wall_;
+    counted_ += std::min({passed, std::max(used - used_, passed / 3), longest_step_});
+    wall_ = wall;
+    used_ = used;
+    return counted_;
+  }
 
-double seconds_since(Clock::time_point then) {
-  return std::chrono::duration<double>(Clock::now() - then).count();
-}
+ private:
+  static double wall_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  }
+  static double used_seconds() {
+    timespec used{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+  }
+
+  double longest_step_;  // s
+  double wall_ = wall_seconds(), used_ = used_seconds(), counted_ = 0;
+};
 
 [[noreturn]] void end_for(const RunningCall& call, const char* silent) {
   const std::string text = "lapwing: plugin '" + call.name + "' does not return from " + call.call +
@@ -94,26 +121,28 @@ double seconds_since(Clock::time_point then) {
 // asked by anyone, with more patience: a library's one step may be long.
 [[noreturn]] void watch_calls(double seconds) {
   constexpr double kPatience = 5;
-  const auto pause = std::chrono::duration<double>(std::clamp(seconds / 4, 0.05, 5.0));
-  std::map<std::uint64_t, Clock::time_point> seen;  // by the number of a call, since when
+  const double pause = std::clamp(seconds / 4, 0.05, 5.0);
+  WorkingClock clock(4 * pause);
+  std::map<std::uint64_t, double> seen;  // by the number of a call, since when
   std::uint64_t activity = activity_of_calls();
-  Clock::time_point active = Clock::now();
+  double active = 0;
   for (;;) {
-    std::this_thread::sleep_for(pause);
+    std::this_thread::sleep_for(std::chrono::duration<double>(pause));
+    const double time = clock.seconds();
     const std::uint64_t now = activity_of_calls();
-    if (now != activity) active = Clock::now();
+    if (now != activity) active = time;
     activity = now;
-    std::map<std::uint64_t, Clock::time_point> still;
+    std::map<std::uint64_t, double> still;
     for (const RunningCall& call : running_calls()) {
       if (call.length == CallLength::lengthy) {
-        if (seconds_since(active) >= kPatience * seconds)
+        if (time - active >= kPatience * seconds)
           end_for(call, ": it neither evaluates nor asks whether it was cancelled");
         continue;
       }
       const auto before = seen.find(call.serial);
-      const auto since = before == seen.end() ? Clock::now() : before->second;
+      const double since = before == seen.end() ? time : before->second;
       still[call.serial] = since;
-      if (seconds_since(since) >= seconds) end_for(call, "");
+      if (time - since >= seconds) end_for(call, "");
     }
     seen = std::move(still);
   }

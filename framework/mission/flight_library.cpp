@@ -1,15 +1,16 @@
 #include "framework/mission/flight_library.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <lua.hpp>
 
-#include "framework/core/units.h"
 #include "framework/export/light_painting.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
 #include "framework/vehicle/pursuit.h"
+#include "framework/vehicle/smooth_leg.h"
 
 namespace lapwing {
 
@@ -52,23 +53,8 @@ int fly_plan(lua_State* state) {
   return 1;
 }
 
-// What the vehicle can do, a share of it.
-MotionLimits limits_of(const Vehicle& v, double share) {
-  MotionLimits limits;
-  limits.speed_across = share * v.speed_across_max;
-  limits.climb_speed = share * v.climb_speed_max;
-  limits.descent_speed = share * v.descent_speed_max;
-  limits.acceleration_across = share * v.acceleration_across_max;
-  // Half of the thrust above hovering is left for what goes across (input_limits).
-  const double up = (v.thrust_max() / v.mass - kGravity) / 2;
-  const double down = (kGravity - v.thrust_min() / v.mass) / 2;
-  limits.acceleration_up = share * std::min(up, v.acceleration_up_max.value_or(up));
-  limits.acceleration_down = share * std::min(down, v.acceleration_down_max.value_or(down));
-  return limits;
-}
-
 constexpr BoundField kPathVehicle[] = {
-    {"vehicle?", "lapwing.vehicle", "whose limits hold, in place of speed and acceleration"}};
+    {"vehicle?", "lapwing.vehicle", "whose limits hold, beside speed and acceleration"}};
 
 ParameterTable time_path_table() {
   ParameterTable table;
@@ -81,9 +67,9 @@ ParameterTable time_path_table() {
   return table;
 }
 
-// run:time_path{points = {x, y, z, ...}, spacing =, rounding =, speed =, acceleration =}, or with
-// vehicle = and share = in place of the last two: {points = {x, y, z, ...}, times = {...}}, as fast
-// as the limits allow, from rest to rest.
+// run:time_path{points = {x, y, z, ...}, spacing =, rounding =, vehicle =, share =, speed =,
+// acceleration =}: {points = {x, y, z, ...}, times = {...}}, as fast as all limits that are given
+// allow, from rest to rest.
 int time_path(lua_State* state) {
   const Parameters given = table_argument(state, 2, time_path_table(), "time_path", kPathVehicle);
   lua_getfield(state, 2, "vehicle");
@@ -97,10 +83,13 @@ int time_path(lua_State* state) {
   if (length / spacing > kMostPathPoints)
     throw InputError(given.origin("spacing"), "time_path: more than a million points");
   const Points smooth = rounded(resampled(path, spacing), given.number("rounding"));
+  const double infinite = std::numeric_limits<double>::infinity();
+  const PathLimits asked{given.has("speed") ? given.number("speed") : infinite,
+                         given.has("acceleration") ? given.number("acceleration") : infinite};
   const std::vector<double> times =
       vehicle
-          ? fastest_times(smooth, limits_of(*vehicle, given.number("share")))
-          : fastest_times(smooth, PathLimits{given.number("speed"), given.number("acceleration")});
+          ? fastest_times(smooth, within(motion_limits(*vehicle, given.number("share")), asked))
+          : fastest_times(smooth, asked);
   Value points = Value::list(), result = Value::map();
   for (const Eigen::Vector3d& p : smooth)
     for (int axis = 0; axis < 3; ++axis) points.push_back(p(axis));

@@ -10,6 +10,7 @@
 #include "framework/map/map_file.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
+#include "framework/mission/run.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scan_record.h"
 
@@ -59,6 +60,20 @@ Walk walk_of(const TourObject& tour) {
       add_stop(walk, points[k], stops[k].yaw, at(a).pitch + share * (at(b).pitch - at(a).pitch),
                view);
     }
+  }
+  return walk;
+}
+
+// The same without the corners between views.
+Walk views_of(const TourObject& tour) {
+  const auto& viewpoints = tour.work->graph.candidates.viewpoints;
+  std::vector<char> taken(viewpoints.size(), 0);
+  Walk walk;
+  for (const int v : tour.walk) {
+    const Viewpoint& view = viewpoints[static_cast<std::size_t>(v)];
+    char& done = taken[static_cast<std::size_t>(v)];
+    add_stop(walk, view.position, view.yaw, view.pitch, done ? -1 : v);
+    done = 1;
   }
   return walk;
 }
@@ -163,7 +178,23 @@ std::vector<std::string> texts_of(const Value& list) {
   return texts;
 }
 
+// The solutions listed under `legs`; empty where there are none.
+std::vector<const SolutionObject*> legs_argument(lua_State* state, int table) {
+  std::vector<const SolutionObject*> legs;
+  if (lua_getfield(state, table, "legs") == LUA_TNIL) return legs;
+  if (!lua_istable(state, -1)) throw InputError("scan_plan: legs: expected a list of solutions");
+  const int list = lua_gettop(state);
+  for (lua_Integer i = 1; lua_rawgeti(state, list, i) != LUA_TNIL; ++i) {
+    legs.push_back(&object_argument<SolutionObject>(state, -1, kSolutionType));
+    lua_pop(state, 1);
+  }
+  lua_pop(state, 1);
+  return legs;
+}
+
 constexpr BoundField kScanPlanObjects[] = {{"tour", "lapwing.tour", "that is flown"},
+                                           {"legs?", "lapwing.solution[]",
+                                            "how, from view to view; absent: by pure pursuit"},
                                            {"notes?", "string[]", "sentences for the user"},
                                            {"figures?", "table", "of the tour, for --json"}};
 ParameterTable scan_plan_table() {
@@ -177,7 +208,7 @@ ParameterTable scan_plan_table() {
 }
 
 // run:scan_plan{tour =, margin =, budget =, closed_loop_required =, seen_share =, notes =,
-//               figures =}
+//               figures =, legs =}
 int scan_plan_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -192,6 +223,7 @@ int scan_plan_of_run(lua_State* state) {
   const ScanWork& work = *tour.work;
   PlanObject made;
   made.block = value_from_lua(state, lua_gettop(state), origin, "scan_plan.figures");
+  const std::vector<const SolutionObject*> legs = legs_argument(state, 2);
   made.block_name = "tour";
   made.notes = texts_of(notes);
   made.report = report_of(tour.report);
@@ -199,8 +231,9 @@ int scan_plan_of_run(lua_State* state) {
   Plan& plan = made.plan;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    const Walk walk = walk_of(tour);
-    Pursuit flown = pursue(walk.points, walk.stops, work.vehicle, work.flight);
+    const Walk walk = legs.empty() ? walk_of(tour) : views_of(tour);
+    Pursuit flown = legs.empty() ? pursue(walk.points, walk.stops, work.vehicle, work.flight)
+                                 : joined_flight(tour, legs);
     plan.mission = run.name;
     plan.kind = run.kind;
     plan.vehicle = to_value(work.vehicle);

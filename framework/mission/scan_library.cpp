@@ -85,7 +85,9 @@ ParameterTable flight_table() {
       .number("lookahead", standard.lookahead, "m", "of the pursued point", above(0))
       .number("acceleration", standard.acceleration, "m/s^2", "largest", above(0))
       .number("pause", 0.5, "s", "at rest in a view, for the image", between(0, 60))
-      .number("view_seconds", 3, "s", "that a view costs at least, beside the way", at_least(0));
+      .number("view_seconds", 3, "s", "that a view costs at least, beside the way", at_least(0))
+      .boolean("smooth", false, "legs will be solutions of problems, not pursuit")
+      .number("stray", SmoothLegSettings{}.stray, "m", "of smooth legs, at corners", above(0));
   return table;
 }
 
@@ -173,6 +175,10 @@ std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
     const double from = views[static_cast<std::size_t>(motion.a)].yaw;
     const double to = views[static_cast<std::size_t>(motion.b)].yaw;
     double most = motion.length / work.flight.speed + work.view_seconds;
+    if (work.smooth) {
+      seconds[k] = std::max(most, smooth_seconds(work, motion) + work.flight.pause);
+      return;
+    }
     std::vector<Eigen::Vector3d> points = motion.points;
     for (const bool back : {false, true}) {
       if (back) std::reverse(points.begin(), points.end());
@@ -251,6 +257,8 @@ int scan_graph_of_run(lua_State* state) {
                   .stop = true,
                   .pause = flight.number("pause")};
   work->view_seconds = flight.number("view_seconds");
+  if (flight.boolean("smooth"))
+    work->smooth = {work->flight.speed, work->flight.acceleration, flight.number("stray")};
   const Sandbox::ClockPause pause(Sandbox::of(state));
   SightSettings sight;
   sight.pinhole = pinhole_of(given.table("camera"));
@@ -341,7 +349,9 @@ constexpr BoundField kTourFields[] = {
     {"reachable", "integer", "views that some tour within the budget has"},
     {"reachable_score", "number", "what they show together"},
     {"evaluations", "integer", "of the score"},
-    {"iterations", "integer", "of the solver"}};
+    {"iterations", "integer", "of the solver"},
+    {"legs", "table[]",
+     "from view to view: {points, yaw_from, yaw_to, seconds}, m, rad, s without the pause"}};
 
 int tour_field(lua_State* state) {
   const TourObject& tour = object_argument<TourObject>(state, 1, kTourType);
@@ -352,6 +362,7 @@ int tour_field(lua_State* state) {
              std::isfinite(tour.report.upper_bound) ? Value(tour.report.upper_bound) : Value());
   fields.set("gap", tour.report.gap);
   const std::string field = text_argument(state, 2, "tour");
+  fields.set("legs", field == "legs" ? legs_of(tour) : Value());
   return push_field(state, "a tour", field, fields, kTourFields);
 }
 

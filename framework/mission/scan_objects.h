@@ -11,6 +11,7 @@
 #include "framework/geometry/render.h"
 #include "framework/mission/map_objects.h"
 #include "framework/vehicle/pursuit.h"
+#include "framework/vehicle/smooth_leg.h"
 #include "framework/view/scan_graph.h"
 #include "framework/view/tour_solver.h"
 
@@ -37,6 +38,7 @@ struct ScanWork {
   std::shared_ptr<Prior> prior;
   Vehicle vehicle;
   PursuitSettings flight;
+  std::optional<SmoothLegSettings> smooth;  // legs are flown by solutions, not by pursuit
   double view_seconds = 0;
   std::shared_ptr<const VisibleVoxels> visible;
   std::shared_ptr<const ViewInformation> information;
@@ -48,6 +50,9 @@ struct ScanWork {
   std::size_t motion_between(int a, int b) const;
   double leg_seconds(int a, int b) const { return seconds[motion_between(a, b)]; }
 };
+
+// What a motion takes when it is flown smoothly, both ways: from rest to rest, without a pause.
+double smooth_seconds(const ScanWork& work, const ViewMotion& motion);
 
 struct GraphObject {
   std::shared_ptr<const ScanWork> work;
@@ -82,6 +87,16 @@ ParameterTable box_table();
 Eigen::AlignedBox3d box_of(const Parameters& given, const std::string& what);
 ParameterTable pinhole_table();
 Pinhole pinhole_of(const Parameters& given);
+
+// The legs of a tour, from view to view: {points = {x, y, z, ...}, yaw_from, yaw_to, seconds}, the
+// seconds without a pause.
+Value legs_of(const TourObject& tour);
+
+// The flight that the solutions of a tour's legs make, with a rest in every view; one stop per view
+// of its walk. InputError where a solution is not from view to view.
+struct SolutionObject;
+Pursuit joined_flight(const TourObject& tour,
+                      const std::vector<const SolutionObject*>& solutions);
 
 // The stops of a way from view to view: its corners, each with a heading on the way from the first
 // one's to the last one's.

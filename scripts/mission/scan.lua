@@ -9,6 +9,7 @@
 -- map, ways between those whose images match are searched, and a tour through them is found within
 -- the budget and flown from view to view.
 local first = require "mission.scan_first"
+local smooth = require "mission.scan_smooth"
 local DECLARATIONS = require "mission.scan_options"
 
 local M = {}
@@ -109,16 +110,28 @@ local function notes_of(graph, known, explored)
            views }
 end
 
-local function plan_of(run, graph, finish, known, explored)
+-- By pure pursuit, or by the solver, leg by leg; what of it is to be said.
+local function flown(run, vehicle, tour, notes)
+  if not run.options.flight.smooth then return nil end
+  local legs, stray = smooth.legs(run, vehicle, tour)
+  notes[#notes + 1] = legs
+    and string.format("smooth legs by %s, at most %.2g m from their ways", legs[1].solver, stray)
+    or "cancelled before all legs were smooth: flown by pure pursuit"
+  return legs
+end
+
+local function plan_of(run, graph, vehicle, finish, known, explored)
   local o = run.options
   local asked = budget_of(run)
-  local budget = asked
+  -- Smooth legs take what was counted; the rest in the first view comes on top.
+  local budget = asked - (o.flight.smooth and o.flight.pause or 0)
   for round = 1, TIGHTER do
     local tour = solved(run, graph, finish, budget)
+    local notes = notes_of(graph, known, explored)
     local plan = run:scan_plan {
-      tour = tour, margin = o.margin, budget = asked,
+      tour = tour, legs = flown(run, vehicle, tour, notes), margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
-      notes = notes_of(graph, known, explored),
+      notes = notes,
       figures = { score = tour.score, upper_bound = tour.upper_bound, gap = tour.gap,
                   seconds = tour.seconds, budget = asked, images = tour.images,
                   candidates = graph.candidates, motions = graph.motions,
@@ -139,7 +152,7 @@ local function planned(run)
   local plan
   for round = 1, o.rounds do
     local graph = graph_of(run, known, vehicle, starts, finish)
-    plan = plan_of(run, graph, finish, known, explored)
+    plan = plan_of(run, graph, vehicle, finish, known, explored)
     if round < o.rounds and not run:cancelled() then
       -- The tour is flown, and what it sees is known from then on.
       first.look(run, known, surface, plan.views)

@@ -1,0 +1,96 @@
+-- Legs of a tour by a trajectory solver, in place of pure pursuit: from rest to rest, with little
+-- jerk, past the corners of ways round obstacles instead of stopping at them. Each leg is a problem
+-- of its own.
+local M = {}
+
+local STEP = 0.1           -- s, between stages
+local FEWEST = 16          -- intervals
+local SPACING = 0.05       -- m, of the way that is timed
+local PLACES = 0.2         -- s, between the places that draw the flight to the way
+local PULL = 100           -- weight of all those places together, per m^2
+local JERK = 1e-3          -- weight of the jerk, per (m/s^3)^2 s
+local HARDER, SLOWER = 10, 1.1
+local HARDEST, SLOWEST = 1e5, 3
+
+-- Places along the way and the times at which they are passed, spread over `duration`.
+local function places_of(run, vehicle, leg, duration)
+  local flight, count = run.options.flight, #leg.points
+  local length = 0
+  for i = 4, count do length = length + math.abs(leg.points[i] - leg.points[i - 3]) end
+  if length == 0 then
+    local there = { leg.points[1], leg.points[2], leg.points[3] }
+    return { { time = 0, value = there }, { time = duration, value = there } }
+  end
+  local timed = run:time_path { points = leg.points, spacing = SPACING, rounding = flight.stray,
+                                vehicle = vehicle, share = 0.9, speed = flight.speed,
+                                acceleration = flight.acceleration }
+  local slower = duration / timed.times[#timed.times]
+  local places = {}
+  for i, t in ipairs(timed.times) do
+    local time, last = slower * t, places[#places]
+    if not last or time >= last.time + PLACES then
+      places[#places + 1] = { time = time, value = { timed.points[3 * i - 2],
+                              timed.points[3 * i - 1], timed.points[3 * i] } }
+    end
+  end
+  return places
+end
+
+local function solved(run, vehicle, leg, duration, pull)
+  local steps = math.max(FEWEST, math.ceil(duration / STEP))
+  local p = run:problem { vehicle = vehicle, duration = duration, step = duration / steps,
+                          environment = {} }
+  local places, n = places_of(run, vehicle, leg, duration), #leg.points
+  local first = { leg.points[1], leg.points[2], leg.points[3] }
+  local last = { leg.points[n - 2], leg.points[n - 1], leg.points[n] }
+  p:add_model { type = "quadrotor" }
+  p:add_cost { type = "keyframe", name = "way", weight = pull / #places, keyframes = places }
+  p:add_cost { type = "derivative", name = "jerk", block = "force", order = 1,
+               weight = JERK / vehicle.mass ^ 2 }
+  p:add_cost { type = "yaw_derivative", name = "yaw", weight = 0.02 }
+  p:add_constraint { type = "input_limits", across = "extent" }
+  p:add_constraint { type = "state_limits" }
+  p:add_constraint { type = "boundary_state", start_position = first, finish_position = last,
+                     start_yaw = leg.yaw_from, finish_yaw = leg.yaw_to }
+  local times, positions, yaws = {}, {}, {}
+  local function guess(time, place)
+    times[#times + 1], positions[#positions + 1] = time, place
+    yaws[#yaws + 1] = leg.yaw_from + time / duration * (leg.yaw_to - leg.yaw_from)
+  end
+  for _, place in ipairs(places) do
+    if place.time < duration - 1e-3 then guess(place.time, place.value) end
+  end
+  guess(duration, last)
+  p:guess_path { times = times, positions = positions, yaws = yaws }
+  p:finish()
+  return run:solve(p, run.options.solver)
+end
+
+-- A solution for each leg of the tour; nil where the user asked to end. A leg that leaves its way
+-- by more than `flight.stray` is drawn to it harder, then flown slower.
+function M.legs(run, vehicle, tour)
+  local legs, solutions, strayed = tour.legs, {}, 0
+  for i, leg in ipairs(legs) do
+    run:progress((i - 1) / #legs, "smooth legs")
+    local duration, pull, stray, solution = leg.seconds, PULL, nil, nil
+    while true do
+      if run:cancelled() then return nil end
+      solution = solved(run, vehicle, leg, duration, pull)
+      local found = solution.status == "optimal" or solution.status == "feasible"
+      stray = found and run:path_distance { points = solution.path, path = leg.points }
+      if found and stray <= run.options.flight.stray then break end
+      if found and pull < HARDEST then pull = pull * HARDER else duration = duration * SLOWER end
+      if duration > SLOWEST * leg.seconds then
+        run:fail("flight.smooth", string.format(
+          "no smooth flight of leg %d of %d (%.3g s): %s", i, #legs, leg.seconds,
+          found and string.format("it strays %.3g m from its way, and %.3g m are allowed "
+                                  .. "(flight.stray)", stray, run.options.flight.stray)
+          or solution.solver .. " ended " .. solution.status .. ": " .. solution.message))
+      end
+    end
+    solutions[i], strayed = solution, math.max(strayed, stray)
+  end
+  return solutions, strayed
+end
+
+return M
