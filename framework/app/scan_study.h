@@ -13,29 +13,14 @@
 #include <string>
 #include <vector>
 
+#include "framework/app/scan_row.h"
 #include "framework/core/progress.h"
 #include "framework/core/value.h"
-#include "framework/geometry/reconstruction.h"
 #include "framework/plugin/registry.h"
 #include "framework/view/pattern_tour.h"
 #include "framework/view/tour_solver.h"
 
 namespace lapwing {
-
-// A pattern, or tour solvers of which each begins with the tour of the one before.
-struct ScanMethod {
-  struct Solver {
-    std::string name;
-    Value parameters = Value::map();
-  };
-  std::string name;  // as it was asked for
-  std::vector<Solver> solvers = {};
-  bool pattern = false;
-};
-
-// "greedy", "cost_benefit+local_search", "milp:candidates=500,nodes=100", "hemisphere_60".
-// InputError for what is neither a pattern nor a known solver with right parameters.
-ScanMethod scan_method(const std::string& text, const Registry& registry);
 
 // All that methods may know, and the truth for judging them.
 struct ScanCase {
@@ -63,24 +48,6 @@ struct ScanStudy {
   // Makes a case: mission and seed, by their places. Called once for each that lacks a row.
   std::function<ScanCase(std::size_t mission, std::size_t seed)> prepare;
 };
-
-struct ScanRow {
-  std::string mission, method;
-  std::uint64_t seed = 0;
-  double budget = 0;  // s
-  std::string status = "", message = "";
-  bool found = false;                 // a tour
-  bool reproducible = true;           // false: the wall clock ended it
-  bool counts = true;                 // of milp: see counts_as_rival
-  double score = 0, score_share = 0;  // of what all candidates show together
-  std::optional<double> upper_bound = std::nullopt;
-  double seconds = 0;  // of flight
-  int images = 0, first_images = 0, candidates = 0;
-  std::int64_t evaluations = 0;
-  ReconstructionScore with_first = {}, alone = {};  // with and without the first flight's images
-};
-Value to_value(const ScanRow& row);
-ScanRow scan_row_from(const Value& value);
 
 // One row; `work_seconds` is set to what planning took, `cameras` to the tour's images.
 ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceSample& surface,

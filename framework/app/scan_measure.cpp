@@ -1,0 +1,162 @@
+// One row of a study: a tour by one method, and what its images make of the true surface.
+#include <cmath>
+#include <mutex>
+#include <set>
+
+#include "framework/app/progress_line.h"
+#include "framework/app/scan_study.h"
+#include "framework/core/error.h"
+#include "framework/view/fixed_rewards.h"
+
+namespace lapwing {
+namespace {
+
+// A solver of fixed rewards is no rival where it does not even reach what another one reaches of
+// them.
+constexpr const char* kOfRewards = "milp";
+constexpr const char* kLeastRival = "greedy";
+
+// A row in the making.
+class Measuring {
+ public:
+  Measuring(const ScanCase& scan, const TourProblem& problem, const ScanMethod& method,
+            const ScanStudy& study, std::uint64_t seed, const Registry& registry,
+            const CancellationToken* cancellation)
+      : scan_(scan),
+        problem_(problem),
+        method_(method),
+        study_(study),
+        seed_(seed),
+        registry_(registry),
+        cancellation_(cancellation) {
+    row_.method = method.name;
+    row_.seed = seed;
+    row_.budget = problem.budget();
+    row_.candidates = problem.views();
+    row_.first_images = static_cast<int>(scan.first_flight.size());
+  }
+
+  void plan() {
+    if (method_.pattern) {
+      lay_pattern();
+    } else {
+      ask_solvers();
+    }
+    if (cancellation_ && cancellation_->cancelled()) throw Cancelled();
+    row_.found = !walk_.empty();
+    if (!row_.found) return;
+    row_.score = problem_.score_of(walk_);
+    row_.score_share = row_.score / problem_.score().total();
+    row_.seconds = problem_.seconds_of(walk_);
+    row_.images = TourProblem::images_of(walk_);
+  }
+
+  void judge(const SurfaceSample& surface) {
+    if (!row_.found) return;
+    ReconstructionSettings settings = study_.reconstruction;
+    settings.region = scan_.region;
+    Reconstruction made(settings);
+    made.add(*scan_.surface, cameras(), scan_.camera, study_.noise, seed_, 1, cancellation_);
+    row_.alone = surface.score(made.points(1), 1);
+    row_.with_first = row_.alone;
+    if (one_shot()) return;
+    made.add(*scan_.surface, scan_.first_flight, scan_.camera, study_.noise, seed_, 1,
+             cancellation_);
+    row_.with_first = surface.score(made.points(1), 1);
+  }
+
+  ScanRow row() && { return std::move(row_); }
+
+  // Each view of the walk takes one image, when it is first there.
+  std::vector<Pose> cameras() const {
+    std::vector<Pose> poses;
+    std::set<int> taken;
+    for (const int view : walk_) {
+      if (taken.insert(view).second) poses.push_back(scan_.viewpoints[view].camera());
+    }
+    return poses;
+  }
+
+ private:
+  // A pattern at a safe height needs no first flight, and has no images of one (tables 4.2 to 4.7).
+  bool one_shot() const { return method_.pattern && !method_.name.starts_with("hemisphere"); }
+
+  void lay_pattern() {
+    const Pattern pattern = pattern_named(method_.name, scan_.pattern_height);
+    PatternTour tour =
+        fly_pattern(problem_, scan_.viewpoints, pattern_viewpoints(pattern, scan_.region));
+    walk_ = std::move(tour.walk);
+    row_.status = walk_.empty() ? "infeasible" : "feasible";
+    row_.message = tour.message;
+  }
+
+  void ask_solvers() {
+    // CBC's promise to be used by several threads at once is none; and its clock is to run for it
+    // alone. Whoever waits here has not begun.
+    static std::mutex one_at_a_time;
+    const bool of_rewards = method_.solvers.back().name == kOfRewards;
+    std::unique_lock lock(one_at_a_time, std::defer_lock);
+    if (of_rewards) lock.lock();
+    for (const ScanMethod::Solver& solver : method_.solvers) {
+      TourRequest request;
+      request.seed = seed_;
+      request.wall_clock_guard = study_.guard;
+      request.cancellation = cancellation_;
+      if (!walk_.empty()) request.initial = walk_;
+      TourResult result =
+          registry_.create<TourSolver>(solver.name, solver.parameters)->solve(problem_, request);
+      walk_ = std::move(result.walk);
+      row_.status = to_string(result.report.status);
+      row_.message = result.report.message;
+      row_.evaluations += result.report.evaluations;
+      row_.upper_bound.reset();
+      if (std::isfinite(result.report.upper_bound)) row_.upper_bound = result.report.upper_bound;
+      if (result.report.status == TourStatus::time_limit) row_.reproducible = false;
+    }
+    if (of_rewards) row_.counts = counts_as_rival();
+  }
+
+  bool counts_as_rival() const {
+    if (walk_.empty()) return false;
+    const TourRequest request;
+    TourWork work(request);
+    const FixedRewards rewards = fix_rewards(problem_, work);
+    const auto sum = [&](const std::vector<int>& walk) {
+      double total = 0;
+      for (const int view : std::set<int>(walk.begin(), walk.end())) {
+        total += rewards.of_view[view];
+      }
+      return total;
+    };
+    const TourResult least =
+        registry_.create<TourSolver>(kLeastRival, Value::map())->solve(problem_, request);
+    return sum(walk_) >= sum(least.walk);
+  }
+
+  const ScanCase& scan_;
+  const TourProblem& problem_;
+  const ScanMethod& method_;
+  const ScanStudy& study_;
+  std::uint64_t seed_;
+  const Registry& registry_;
+  const CancellationToken* cancellation_;
+  ScanRow row_;
+  std::vector<int> walk_;
+};
+
+}  // namespace
+
+ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceSample& surface,
+                const ScanMethod& method, const ScanStudy& study, std::uint64_t seed,
+                const Registry& registry, const CancellationToken* cancellation,
+                double& work_seconds, std::vector<Pose>& cameras) {
+  Measuring measuring(scan, problem, method, study, seed, registry, cancellation);
+  const double begin = steady_seconds();
+  measuring.plan();
+  work_seconds = steady_seconds() - begin;
+  measuring.judge(surface);
+  cameras = measuring.cameras();
+  return std::move(measuring).row();
+}
+
+}  // namespace lapwing
