@@ -4,7 +4,7 @@ local scan = require "mission.scan"
 return scan.of_scene {
   name  = "street",
   scene = "street",
-  tour  = { budget_metres = 2700 },  -- m at 3 m/s
+  tour  = { budget = 900 },  -- s of flight: 2,700 m at 3 m/s
   flights = { { pattern = "meander", views = 30, reach = 10 } },
   candidates = { most = 5000 },
 }

@@ -21,7 +21,9 @@ class Measured {
   std::optional<Vector3d> point(int x, int y) const {
     const double depth = static_cast<double>(image_.at(x, y));
     if (!(depth > 0) || depth > options_.range) return std::nullopt;
-    return depth * pixel_ray(image_.pinhole, x, y);
+    const Vector3d p = depth * pixel_ray(image_.pinhole, x, y);
+    if (p.norm() > options_.reach) return std::nullopt;
+    return p;
   }
 
   // Towards the camera; nothing at edges and where the surface is seen too flat.
@@ -54,7 +56,7 @@ void check(const FusionOptions& o) {
     if (!holds) throw InputError(std::string("fusion of points: ") + why);
   };
   require(o.voxel > 0 && std::isfinite(o.voxel), "the voxel must be above 0 m");
-  require(o.range > 0, "the range must be above 0 m");
+  require(o.range > 0 && o.reach > 0, "the range must be above 0 m");
   require(o.incidence > 0 && o.incidence <= 1.5708,
           "the incidence must be above 0, at most 90 deg");
   require(o.discontinuity > 0, "the discontinuity must be above 0");

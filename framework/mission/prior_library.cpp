@@ -224,11 +224,15 @@ int load_prior(lua_State* state) {
   MeshFile read = read_mesh(run.files.find(mesh, "meshes"));
   const auto known = prior.mapping.map->bounds();
   if (!known) throw InputError(given.origin("map"), "'" + name + "' knows no voxel");
-  // A mesh that belongs to the map has most of its corners at voxels that are not free.
+  // A mesh that belongs to the map has most of its corners at voxels that are not free; at the rim
+  // of what is known it may reach beyond by a voxel.
   std::size_t blocked = 0, within = 0;
   const VoxelGrid& grid = prior.mapping.map->grid();
+  Eigen::AlignedBox3d rim(grid.center(known->lower), grid.center(known->upper));
+  rim.min().array() -= 1.5 * resolution;
+  rim.max().array() += 1.5 * resolution;
   for (const Eigen::Vector3d& p : read.mesh.vertices) {
-    if (!grid.contains(p) || !known->contains(grid.key(p))) continue;
+    if (!rim.contains(p)) continue;
     ++within;
     // Near a surface: the voxel itself or one beside it.
     bool near = false;
@@ -328,6 +332,7 @@ int prior_of_run(lua_State* state) {
   prior.mapping.map = run.settings.registry->create<Map>(chosen.type, chosen.parameters, "map");
   prior.fusion_options = {.voxel = given.number("spacing"),
                           .range = given.number("range"),
+                          .reach = given.number("range"),
                           .incidence = radians(given.number("incidence_deg")),
                           .stride = static_cast<int>(given.integer("stride"))};
   prior.fusion.emplace(prior.fusion_options);

@@ -28,8 +28,9 @@ struct Walk {
   std::vector<int> views;       // per stop, -1 where there is none or it was taken before
 };
 
-void add_stop(Walk& walk, const Eigen::Vector3d& point, double yaw, double pitch, int view) {
-  walk.stops.push_back({walk.points.size(), yaw});
+void add_stop(Walk& walk, const Eigen::Vector3d& point, double yaw, double pitch, int view,
+              double least = 0) {
+  walk.stops.push_back({walk.points.size(), yaw, least});
   walk.points.push_back(point);
   walk.pitches.push_back(pitch);
   walk.views.push_back(view);
@@ -50,7 +51,7 @@ Walk walk_of(const TourObject& tour) {
     const ViewMotion& motion = work.graph.motions.motions[work.motion_between(a, b)];
     std::vector<Eigen::Vector3d> points = motion.points;
     if (motion.a != a) std::reverse(points.begin(), points.end());
-    const std::vector<PursuitView> stops = stops_of(points, at(a).yaw, at(b).yaw);
+    const std::vector<PursuitView> stops = stops_of(points, at(a), at(b), work.vehicle);
     for (std::size_t k = 1; k < points.size(); ++k) {
       const bool there = k + 1 == points.size();
       char& done = taken[static_cast<std::size_t>(b)];
@@ -58,7 +59,7 @@ Walk walk_of(const TourObject& tour) {
       if (there) done = 1;
       const double share = static_cast<double>(k) / static_cast<double>(points.size() - 1);
       add_stop(walk, points[k], stops[k].yaw, at(a).pitch + share * (at(b).pitch - at(a).pitch),
-               view);
+               view, stops[k].least);
     }
   }
   return walk;

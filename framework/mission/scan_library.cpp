@@ -14,16 +14,22 @@
 
 namespace lapwing {
 
-std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, double yaw_from,
-                                  double yaw_to) {
-  const double turn = std::remainder(yaw_to - yaw_from, 2 * EIGEN_PI);
+std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, const Viewpoint& from,
+                                  const Viewpoint& to, const Vehicle& vehicle) {
+  constexpr double kTiltShare = 0.9;  // of the gimbal's rate
+  const double turn = std::remainder(to.yaw - from.yaw, 2 * EIGEN_PI);
+  const double tilt_seconds =
+      vehicle.gimbal
+          ? std::abs(to.pitch - from.pitch) / (kTiltShare * vehicle.gimbal->pitch_rate_max)
+          : 0;
   const double length = path_length(points);
   std::vector<PursuitView> stops;
-  double along = 0;
+  double along = 0, before = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i > 0) along += (points[i] - points[i - 1]).norm();
     const double share = length > 0 ? along / length : i > 0;
-    stops.push_back({i, yaw_from + share * turn});
+    stops.push_back({i, from.yaw + share * turn, (share - before) * tilt_seconds});
+    before = share;
   }
   return stops;
 }
@@ -172,8 +178,8 @@ std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
   parallel_for(motions.size(), threads, [&](std::size_t k) {
     if (cancellation && cancellation->cancelled()) return;
     const ViewMotion& motion = motions[k];
-    const double from = views[static_cast<std::size_t>(motion.a)].yaw;
-    const double to = views[static_cast<std::size_t>(motion.b)].yaw;
+    const Viewpoint& from = views[static_cast<std::size_t>(motion.a)];
+    const Viewpoint& to = views[static_cast<std::size_t>(motion.b)];
     double most = motion.length / work.flight.speed + work.view_seconds;
     if (work.smooth) {
       seconds[k] = std::max(most, smooth_seconds(work, motion) + work.flight.pause);
@@ -182,7 +188,7 @@ std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
     std::vector<Eigen::Vector3d> points = motion.points;
     for (const bool back : {false, true}) {
       if (back) std::reverse(points.begin(), points.end());
-      const auto stops = stops_of(points, back ? to : from, back ? from : to);
+      const auto stops = stops_of(points, back ? to : from, back ? from : to, work.vehicle);
       const Pursuit flown = pursue(points, stops, work.vehicle, work.flight);
       most = std::max(most, flown.trajectory.duration() - work.flight.pause);
     }
@@ -376,7 +382,8 @@ ParameterTable tour_table() {
       .integer("finish", 1, "candidate in which it ends, from 1, the start", at_least(1))
       .integer("images", 0, "most different images; 0 for any number", at_least(0))
       .integer("iterations", 0, "of the solver; 0 for its own", at_least(0))
-      .integer("evaluations", 0, "of the score, in all; 0 for any number", at_least(0));
+      .integer("evaluations", 0, "of the score, in all; 0 for any number", at_least(0))
+      .optional_number("guard", "s", "of computing, by the wall's clock", above(0));
   return table;
 }
 
@@ -410,6 +417,7 @@ int solve_tour_of_run(lua_State* state) {
   request.seed = run.settings.seed;
   if (given.integer("iterations") > 0) request.iteration_limit = given.integer("iterations");
   if (given.integer("evaluations") > 0) request.evaluation_limit = given.integer("evaluations");
+  if (given.has("guard")) request.wall_clock_guard = given.number("guard");
   request.cancellation = run.settings.cancellation;
   request.progress = run.settings.progress;
   if (lua_getfield(state, 2, "initial") != LUA_TNIL)

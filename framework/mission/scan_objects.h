@@ -99,8 +99,8 @@ Pursuit joined_flight(const TourObject& tour,
                       const std::vector<const SolutionObject*>& solutions);
 
 // The stops of a way from view to view: its corners, each with a heading on the way from the first
-// one's to the last one's.
-std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, double yaw_from,
-                                  double yaw_to);
+// one's to the last one's, and with the time that the gimbal needs for its share of the tilt.
+std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, const Viewpoint& from,
+                                  const Viewpoint& to, const Vehicle& vehicle);
 
 }  // namespace lapwing

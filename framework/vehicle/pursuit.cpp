@@ -30,6 +30,8 @@ void check(const Points& path, std::span<const PursuitView> views, const Vehicle
   if (!(length_of(path) > 0) && (views.size() < 2 || !s.stop))
     refuse("the path has no length, and there are no views to turn to");
   for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!(views[i].least >= 0 && views[i].least <= 3600))
+      refuse("view " + std::to_string(i + 1) + " must be reached after 0 to 3600 s");
     if (views[i].point >= path.size() || !std::isfinite(views[i].yaw))
       refuse("view " + std::to_string(i + 1) + " is at no point of the path");
     if (i > 0 && views[i].point <= views[i - 1].point)
@@ -215,6 +217,8 @@ class Chase {
         !stops() || views_.empty() ||
         (std::abs(wanted_yaw() - now_.yaw) < kTurned && std::abs(now_.yaw_rate) < kTurned);
     if (!there || !turned) return;
+    // Where it stops it waits for the camera; `until_` is when it left the view before.
+    if (!at_goal() && settings_.stop && now_.time < until_ + views_[next_].least - 1e-9) return;
     if (at_goal()) {
       done_ = true;
       return;

@@ -31,6 +31,7 @@ struct PursuitSettings {
 struct PursuitView {
   std::size_t point = 0;  // which; rising from view to view
   double yaw = 0;         // rad, 0 along +x
+  double least = 0;       // s, that the way from the view before takes at least: a camera turns
 };
 
 struct ViewPassed {

@@ -15,8 +15,10 @@ local DECLARATIONS = require "mission.scan_options"
 local M = {}
 
 local OWN_OF_TOUR = { solver = true, budget = true, budget_metres = true, images = true,
-                      begin = true }
+                      begin = true, guard = true }
+local BUDGET = 300         -- s, where none is given
 local METRES_A_SECOND = 3  -- of a budget in metres (reading 4.6)
+local BEGIN = "cost_benefit"
 local TIGHTER = 4          -- times that a tour which flies too long is planned on less
 
 local function solver_of(tour)
@@ -29,7 +31,31 @@ end
 
 local function budget_of(run)
   local tour = run.options.tour
-  return tour.budget_metres and tour.budget_metres / METRES_A_SECOND or tour.budget
+  return tour.budget_metres and tour.budget_metres / METRES_A_SECOND or tour.budget or BUDGET
+end
+
+-- What options say together, before anything is flown.
+local function check(run)
+  local o = run.options
+  local tour = o.tour
+  if tour.budget and tour.budget_metres then
+    run:fail("tour", string.format(
+      "budget is %.6g s and budget_metres %.6g m, which is %.6g s: give one of them",
+      tour.budget, tour.budget_metres, tour.budget_metres / METRES_A_SECOND))
+  end
+  if tour.images == 1 then run:fail("tour", "images: a tour has two at least; 0 is any number") end
+  if tour.begin and tour.begin ~= "none" and tour.solver ~= "local_search" then
+    run:fail("tour", string.format("begin: '%s' does not begin with another solver's tour, only "
+                                   .. "local_search does", tour.solver))
+  end
+  if o.rounds > 1 and not (o.scene or o.input) then
+    run:fail("rounds", "a round after the first sees what the one before flew over in simulation: "
+                       .. "name a scene or an input, or plan each round on the files of the last")
+  end
+  for axis = 1, 3 do
+    if not (o.body[axis] > 0) then run:fail("body", "half edges must be above 0 m") end
+  end
+  first.check(run)
 end
 
 -- Round the region, and where the first flight was.
@@ -84,13 +110,15 @@ end
 local function solved(run, graph, finish, budget)
   local o = run.options.tour
   local initial
-  if o.begin ~= "none" and o.begin ~= o.solver and o.solver == "local_search" then
-    local begun = run:solve_tour { graph = graph, solver = o.begin, budget = budget,
-                                   finish = finish, images = o.images }
+  local begin = o.begin or BEGIN
+  if begin ~= "none" and o.solver == "local_search" then
+    local begun = run:solve_tour { graph = graph, solver = begin, budget = budget,
+                                   finish = finish, images = o.images, guard = o.guard }
     if begun.images > 1 then initial = begun end
   end
   local tour = run:solve_tour { graph = graph, solver = solver_of(o), budget = budget,
-                                finish = finish, images = o.images, initial = initial }
+                                finish = finish, images = o.images, guard = o.guard,
+                                initial = initial }
   if tour.images < 2 then
     if run:cancelled() and initial then return initial end
     refuse(run, graph, tour, budget)
@@ -146,6 +174,7 @@ end
 
 local function planned(run)
   local o = run.options
+  check(run)
   local vehicle = run:vehicle(o.vehicle)
   local known, poses, surface, explored = first.knowledge(run)
   local starts, finish = first.starts(run, poses)

@@ -90,6 +90,45 @@ function M.ceiling_of(run)
   return ceiling
 end
 
+-- What is wrong before anything is flown.
+function M.check(run)
+  local o = run.options
+  if o.scene and o.input then
+    run:fail("input", string.format("a mesh file in place of the scene '%s': give one of them",
+                                    o.scene))
+  end
+  if o.ground and not o.input then run:fail("ground", "is put under a mesh file: name an input") end
+  local region = o.region
+  if region.lower and region.upper then
+    for axis = 1, 3 do
+      if not (region.lower[axis] < region.upper[axis]) then
+        run:fail("region", string.format("lower must be below upper: %.6g and %.6g along %s",
+                                         region.lower[axis], region.upper[axis],
+                                         ("xyz"):sub(axis, axis)))
+      end
+    end
+  end
+end
+
+-- Some first flight sees the region's floor, at the steepest of its images, or that is said.
+local function require_range(run)
+  local o, floor = run.options, M.region_of(run).lower[3]
+  local half = math.atan(o.camera.height / 2, o.camera.focal)
+  local least, height = math.huge, nil
+  for _, flight in ipairs(flights_of(run)) do
+    local steepest = math.min(math.pi / 2, half - math.rad(flight.pitch_deg))
+    local over = height_of(run, flight) - floor
+    local ray = steepest > 0 and over / math.sin(steepest) or math.huge
+    if ray < least then least, height = ray, over end
+  end
+  if least > o.range then
+    run:fail("range", string.format(
+      "no first flight would see the region's floor: the lowest ray of the best one is %.4g m long "
+      .. "(%.4g m over the floor), and depth is measured to %g m. Give a longer range, steeper "
+      .. "images (flights, pitch_deg), or a lower safe_height", least, height or 0, o.range))
+  end
+end
+
 -- Depth images from the poses, into the map and the surface.
 function M.look(run, known, surface, poses)
   local o = run.options
@@ -139,6 +178,7 @@ function M.knowledge(run)
   local known, poses = new_prior(run), {}
   if files then known:load { map = files.map, mesh = files.mesh } end
   if surface and not (files and #o.flights == 0) then
+    if not files then require_range(run) end
     for _, flight in ipairs(flights_of(run)) do
       local made = patterns.over(M.region_of(run), flight.pattern, height_of(run, flight),
                                  flight.views, math.rad(flight.pitch_deg), flight.reach)

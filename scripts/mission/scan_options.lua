@@ -109,11 +109,13 @@ local DECLARATIONS = {
     summary = "where the straight way between two views is blocked" },
   { name = "tour", type = "plugin", kind = "tour_solver", under = "solver",
     default = "local_search", summary = "how the tour is found", table = {
-      number("budget", 300, "s", "of flight", POSITIVE),
+      number("budget", nil, "s", "of flight; absent: 300", POSITIVE),
       number("budget_metres", nil, "m", "in place of seconds, at 3 m/s", POSITIVE),
       integer("images", 0, 0, 100000, "most images; 0 for any number"),
-      { name = "begin", type = "text", default = "cost_benefit",
-        summary = "the solver whose tour it improves, where it can; none" } } },
+      number("guard", 300, "s", "of computing, of one solver; ended so, a tour may differ "
+             .. "from run to run", POSITIVE),
+      { name = "begin", type = "text", summary =
+        "the solver whose tour local_search improves; absent: cost_benefit; or none" } } },
 }
 
 return DECLARATIONS
