@@ -249,6 +249,35 @@ TEST(Episode, AUtilityGetsTheTruthOnlyWhenShown) {
   EXPECT_EQ(world.run(Curious()).steps.front().value, 2);
 }
 
+// However many views are asked for, a call has a few, so that none looks as if it hung.
+TEST(Utility, ViewsAreValuedAFewAtATime) {
+  class Counting final : public ViewUtility {
+   public:
+    mutable std::size_t most = 0, calls = 0;
+
+   private:
+    void values_of(const EpisodeView&, std::span<const Viewpoint> views,
+                   std::span<double> values) const override {
+      most = std::max(most, views.size());
+      ++calls;
+      for (std::size_t k = 0; k < views.size(); ++k) values[k] = views[k].position.x();
+    }
+  };
+  const auto map = YardWorld::new_map();
+  const MapMeans means(*map);
+  EpisodeView known;
+  known.map = map.get();
+  known.means = &means;
+  std::vector<Viewpoint> views(1001);
+  for (std::size_t k = 0; k < views.size(); ++k) views[k].position.x() = static_cast<double>(k);
+  std::vector<double> values(views.size());
+  const Counting utility;
+  utility.score(known, views, values);
+  EXPECT_LE(utility.most, 64u);
+  EXPECT_GE(utility.calls, views.size() / 64);
+  for (std::size_t k = 0; k < views.size(); ++k) ASSERT_EQ(values[k], views[k].position.x());
+}
+
 TEST(Episode, NoiseIsReplayedWithoutIt) {
   YardWorld world(4);
   world.settings.sensor.noise = DepthNoise{0.4, 0.5};
