@@ -7,6 +7,7 @@
 #include "framework/app/plugin_guard.h"
 #include "framework/app/sweep_command.h"
 #include "framework/app/train_command.h"
+#include "framework/app/version.h"
 
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -18,9 +19,6 @@
 #include "framework/core/units.h"
 #include "framework/vehicle/closed_loop.h"
 
-#ifndef LAPWING_VERSION
-#define LAPWING_VERSION "0.1.0"
-#endif
 
 namespace lapwing {
 

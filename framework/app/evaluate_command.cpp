@@ -9,9 +9,12 @@
 #include "framework/app/scan_photos.h"
 #include "framework/app/scan_study.h"
 #include "framework/app/scan_tables.h"
+#include "framework/app/version.h"
+#include "framework/config/shipped.h"
 #include "framework/core/checksum.h"
 #include "framework/core/files.h"
 #include "framework/core/parallel.h"
+#include "framework/mission/data_files.h"
 #include "framework/mission/scan_objects.h"
 
 namespace lapwing {
@@ -75,6 +78,9 @@ ScanCase case_of(const fs::path& script, std::uint64_t seed, const Invocation& g
     scan.camera = work.visible->settings().pinhole;
     scan.region = work.visible->settings().region;
     scan.pattern_height = height_of_patterns(scan);
+    scan.leg_seconds = [flight = LegFlight(work)](const Viewpoint& from, const Viewpoint& to) {
+      return flight.seconds({from.position, to.position}, from, to);
+    };
     throw TourStated();
   };
   const auto mission =
@@ -98,15 +104,41 @@ ScanCase case_of(const fs::path& script, std::uint64_t seed, const Invocation& g
   return std::move(*found);
 }
 
-// What rows depend on beside the study's own lists.
-Value statement_of(const std::vector<fs::path>& scripts, const Invocation& invocation) {
+// Of all files of a folder, names included.
+std::string sha256_of_folder(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& item : fs::recursive_directory_iterator(folder))
+    if (item.is_regular_file()) files.push_back(item.path());
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const fs::path& file : files)
+    all += file.lexically_relative(folder).string() + " " + sha256(read_file(file)) + "\n";
+  return sha256(all);
+}
+
+// What rows depend on beside the study's own lists: scripts, those that they call, the options that
+// come of them and of configurations, mesh files, the program's version.
+Value statement_of(const std::vector<fs::path>& scripts, const Invocation& invocation,
+                   const Registry& registry) {
   Value value = Value::map();
-  Value& list = value.set("scripts", Value::list());
-  for (const fs::path& script : scripts) list.push_back(sha256(read_file(script)));
-  Value& configs = value.set("configs", Value::list());
-  for (const std::string& name : invocation.configs) configs.push_back(name);
-  Value& overrides = value.set("set", Value::list());
-  for (const std::string& text : invocation.overrides) overrides.push_back(text);
+  value.set("version", LAPWING_VERSION);
+  value.set("shipped", sha256_of_folder(shipped_folder("scripts")));
+  Value& list = value.set("missions", Value::list());
+  for (const fs::path& script : scripts) {
+    Value entry = Value::map();
+    entry.set("script", sha256(read_file(script)));
+    const auto mission = load_mission(script, invocation, registry);
+    entry.set("options", mission->configuration());
+    const Value* input = mission->configuration().find("input");
+    if (input && input->is_text()) {
+      std::vector<fs::path> folders{script.parent_path()};
+      folders.insert(folders.end(), invocation.data.begin(), invocation.data.end());
+      DataFiles files(folders);
+      if (fs::exists(input->as_text())) files.allow(input->as_text());
+      entry.set("input", sha256(read_file(files.find(input->as_text(), "meshes"))));
+    }
+    list.push_back(std::move(entry));
+  }
   return value;
 }
 
@@ -134,7 +166,7 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
   study.guard = asked.guard;
   study.photos = asked.photos;
   if (asked.photos) require_colmap();
-  study.statement = statement_of(asked.missions, invocation);
+  study.statement = statement_of(asked.missions, invocation, registry);
   study.threads = invocation.threads > 0 ? invocation.threads : available_threads();
   study.prepare = [&](std::size_t mission, std::size_t seed) {
     return case_of(asked.missions[mission], study.seeds[seed], invocation, registry,

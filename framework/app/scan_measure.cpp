@@ -1,5 +1,6 @@
 // One row of a study: a tour by one method, and what its images make of the true surface.
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <set>
 
@@ -15,6 +16,19 @@ namespace {
 // them.
 constexpr const char* kOfRewards = "milp";
 constexpr const char* kLeastRival = "greedy";
+
+// Adds its own lifetime in s.
+class Timed {
+ public:
+  explicit Timed(double& sum) : sum_(sum) {}
+  ~Timed() { sum_ += steady_seconds() - began_; }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  double& sum_;
+  double began_ = steady_seconds();
+};
 
 // A row in the making.
 class Measuring {
@@ -37,18 +51,19 @@ class Measuring {
   }
 
   void plan() {
-    if (method_.pattern) {
-      lay_pattern();
+    if (freely()) {
+      fly_over();
     } else {
-      ask_solvers();
+      if (method_.pattern) {
+        lay_pattern();
+      } else {
+        ask_solvers();
+      }
+      describe_walk();
     }
     if (cancellation_ && cancellation_->cancelled()) throw Cancelled();
-    row_.found = !walk_.empty();
-    if (!row_.found) return;
-    row_.score = problem_.score_of(walk_);
-    row_.score_share = row_.score / problem_.score().total();
-    row_.seconds = problem_.seconds_of(walk_);
-    row_.images = TourProblem::images_of(walk_);
+    row_.found = !views_.empty();
+    row_.images = static_cast<int>(views_.size());
   }
 
   void judge(const SurfaceSample& surface) {
@@ -59,7 +74,7 @@ class Measuring {
     made.add(*scan_.surface, cameras(), scan_.camera, study_.noise, seed_, 1, cancellation_);
     row_.alone = surface.score(made.points(1), 1);
     row_.with_first = row_.alone;
-    if (one_shot()) return;
+    if (freely()) return;
     made.add(*scan_.surface, scan_.first_flight, scan_.camera, study_.noise, seed_, 1,
              cancellation_);
     row_.with_first = surface.score(made.points(1), 1);
@@ -67,24 +82,46 @@ class Measuring {
 
   ScanRow row() && { return std::move(row_); }
 
-  // Each view of the walk takes one image, when it is first there.
   std::vector<Pose> cameras() const {
     std::vector<Pose> poses;
-    std::set<int> taken;
-    for (const int view : walk_) {
-      if (taken.insert(view).second) poses.push_back(scan_.viewpoints[view].camera());
-    }
+    for (const Viewpoint& view : views_) poses.push_back(view.camera());
     return poses;
   }
+  double work_seconds() const { return work_seconds_; }
 
  private:
-  // A pattern at a safe height needs no first flight, and has no images of one (tables 4.2 to 4.7).
-  bool one_shot() const { return method_.pattern && !method_.name.starts_with("hemisphere"); }
+  // A pattern at a safe height needs no first flight, and has no images of one (tables 4.2 to 4.7);
+  // its views are no candidates.
+  bool freely() const { return method_.pattern && flown_freely(pattern().kind); }
+  Pattern pattern() const { return pattern_named(method_.name, scan_.pattern_height); }
+
+  void fly_over() {
+    const Timed timed(work_seconds_);
+    FreePattern flown = fly_freely(pattern_viewpoints(pattern(), scan_.region), problem_.budget(),
+                                   scan_.leg_seconds);
+    views_ = std::move(flown.views);
+    row_.status = views_.empty() ? "infeasible" : "feasible";
+    row_.message = flown.message;
+    if (views_.empty()) return;
+    row_.seconds = flown.seconds;
+    row_.score = row_.score_share = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  // Each view of the walk takes one image, when it is first there.
+  void describe_walk() {
+    if (walk_.empty()) return;
+    row_.score = problem_.score_of(walk_);
+    row_.score_share = row_.score / problem_.score().total();
+    row_.seconds = problem_.seconds_of(walk_);
+    std::set<int> taken;
+    for (const int view : walk_)
+      if (taken.insert(view).second) views_.push_back(scan_.viewpoints[view]);
+  }
 
   void lay_pattern() {
-    const Pattern pattern = pattern_named(method_.name, scan_.pattern_height);
+    const Timed timed(work_seconds_);
     PatternTour tour =
-        fly_pattern(problem_, scan_.viewpoints, pattern_viewpoints(pattern, scan_.region));
+        fly_pattern(problem_, scan_.viewpoints, pattern_viewpoints(pattern(), scan_.region));
     walk_ = std::move(tour.walk);
     row_.status = walk_.empty() ? "infeasible" : "feasible";
     row_.message = tour.message;
@@ -98,6 +135,7 @@ class Measuring {
     std::unique_lock lock(one_at_a_time, std::defer_lock);
     if (of_rewards) lock.lock();
     for (const ScanMethod::Solver& solver : method_.solvers) {
+      const Timed timed(work_seconds_);
       TourRequest request;
       request.seed = seed_;
       request.wall_clock_guard = study_.guard;
@@ -141,7 +179,9 @@ class Measuring {
   const Registry& registry_;
   const CancellationToken* cancellation_;
   ScanRow row_;
-  std::vector<int> walk_;
+  std::vector<int> walk_;         // in the problem
+  std::vector<Viewpoint> views_;  // that take images, in order
+  double work_seconds_ = 0;
 };
 
 }  // namespace
@@ -151,9 +191,8 @@ ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceS
                 const Registry& registry, const CancellationToken* cancellation,
                 double& work_seconds, std::vector<Pose>& cameras) {
   Measuring measuring(scan, problem, method, study, seed, registry, cancellation);
-  const double begin = steady_seconds();
   measuring.plan();
-  work_seconds = steady_seconds() - begin;
+  work_seconds = measuring.work_seconds();
   measuring.judge(surface);
   cameras = measuring.cameras();
   return std::move(measuring).row();

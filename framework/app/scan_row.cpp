@@ -1,5 +1,8 @@
 #include "framework/app/scan_row.h"
 
+#include <cmath>
+#include <limits>
+
 #include "framework/config/overrides.h"
 #include "framework/core/error.h"
 #include "framework/view/pattern_tour.h"
@@ -82,8 +85,10 @@ Value to_value(const ScanRow& row) {
   value.set("found", row.found);
   value.set("reproducible", row.reproducible);
   value.set("counts", row.counts);
-  value.set("score", row.score);
-  value.set("score_share", row.score_share);
+  if (std::isfinite(row.score)) {
+    value.set("score", row.score);
+    value.set("score_share", row.score_share);
+  }
   if (row.upper_bound) value.set("upper_bound", *row.upper_bound);
   value.set("seconds", row.seconds);
   value.set("images", row.images);
@@ -106,8 +111,10 @@ ScanRow scan_row_from(const Value& value) {
   row.found = value.at("found").as_boolean();
   row.reproducible = value.at("reproducible").as_boolean();
   row.counts = value.at("counts").as_boolean();
-  row.score = value.at("score").as_number();
-  row.score_share = value.at("score_share").as_number();
+  const Value* score = value.find("score");
+  constexpr double kNoScore = std::numeric_limits<double>::quiet_NaN();
+  row.score = score ? score->as_number() : kNoScore;
+  row.score_share = score ? value.at("score_share").as_number() : kNoScore;
   if (const Value* bound = value.find("upper_bound")) row.upper_bound = bound->as_number();
   row.seconds = value.at("seconds").as_number();
   row.images = static_cast<int>(value.at("images").as_integer());

@@ -36,7 +36,8 @@ struct ScanRow {
   bool found = false;                 // a tour
   bool reproducible = true;           // false: the wall clock ended it
   bool counts = true;                 // of milp: see counts_as_rival
-  double score = 0, score_share = 0;  // of what all candidates show together
+  // Of what all candidates show together; not a number for views that are none of them.
+  double score = 0, score_share = 0;
   std::optional<double> upper_bound = std::nullopt;
   double seconds = 0;  // of flight
   int images = 0, first_images = 0, candidates = 0;

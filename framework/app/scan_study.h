@@ -31,6 +31,7 @@ struct ScanCase {
   Pinhole camera;
   Eigen::AlignedBox3d region;
   double pattern_height = 30;                // m above the region's floor
+  LegSeconds leg_seconds;                    // of patterns flown freely: as of every other tour
   std::shared_ptr<const MeshScene> surface;  // the true one
 };
 

@@ -76,7 +76,7 @@ std::string text_of(const char* format, double number) {
 
 std::string with_error(const MeanOf& mean, int rows) {
   std::string text = text_of("%.2f", mean.mean);
-  if (rows > 1) text += " +- " + text_of("%.2f", mean.error);
+  if (rows > 1 && std::isfinite(mean.mean)) text += " +- " + text_of("%.2f", mean.error);
   return text;
 }
 
@@ -311,10 +311,12 @@ Report study_report(const std::vector<ScanSummary>& summaries, const std::vector
   }
   TextBlock words;
   words.text =
-      "Every method has the same candidates, motions, budget and one thread. Precision, recall and "
+      "Every method has the same budget and one thread; all but the patterns at a safe height have "
+      "the same candidates and motions. Precision, recall and "
       "F: points that at least three images agree on, within 0.1 m of the true surface, with the "
       "images of the first flight and alone; patterns at a safe height (circle, ellipse, meander) "
-      "need no first flight and are judged alone. Score: of what all candidates together show. "
+      "need no first flight: they are flown freely, straight from view to view, and judged alone. "
+      "Score: of what all candidates together show. "
       "Gap: to what no tour can exceed. A row of milp counts where its tour is at least as good as "
       "greedy's for the sum of rewards that it maximises.";
   report.sections.push_back({"What is measured", {words}});

@@ -47,15 +47,21 @@ Sample at_rest(const Vehicle& vehicle, Sample s) {
 
 }  // namespace
 
-double smooth_seconds(const ScanWork& work, const ViewMotion& motion) {
-  const auto& views = work.graph.candidates.viewpoints;
-  const Viewpoint& a = views[static_cast<std::size_t>(motion.a)];
-  const Viewpoint& b = views[static_cast<std::size_t>(motion.b)];
-  double most = 0;
-  Points way = motion.points;
-  for (int side = 0; side < 2; ++side, std::reverse(way.begin(), way.end()))
-    most = std::max(most, smooth_leg_seconds(way, turn_between(a.yaw, b.yaw), b.pitch - a.pitch,
-                                             work.vehicle, *work.smooth));
+double LegFlight::seconds(const Points& way, const Viewpoint& from, const Viewpoint& to) const {
+  double most = path_length(way) / flight.speed + view_seconds;
+  Points points = way;
+  for (const bool back : {false, true}) {
+    const Viewpoint &a = back ? to : from, &b = back ? from : to;
+    if (back) std::reverse(points.begin(), points.end());
+    const double flown =
+        smooth ? smooth_leg_seconds(points, turn_between(a.yaw, b.yaw), b.pitch - a.pitch, vehicle,
+                                    *smooth) +
+                     flight.pause
+               : pursue(points, stops_of(points, a, b, vehicle), vehicle, flight)
+                         .trajectory.duration() -
+                     flight.pause;
+    most = std::max(most, flown);
+  }
   return most;
 }
 

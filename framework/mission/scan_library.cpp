@@ -168,8 +168,7 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
   return starts;
 }
 
-// What motion k takes, its view at the end included: at least the way at full speed and what a view
-// costs (reading 4.6), and as long as the vehicle needs either way.
+// What each motion takes.
 std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
                                        const CancellationToken* cancellation) {
   const auto& motions = work.graph.motions.motions;
@@ -178,21 +177,8 @@ std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
   parallel_for(motions.size(), threads, [&](std::size_t k) {
     if (cancellation && cancellation->cancelled()) return;
     const ViewMotion& motion = motions[k];
-    const Viewpoint& from = views[static_cast<std::size_t>(motion.a)];
-    const Viewpoint& to = views[static_cast<std::size_t>(motion.b)];
-    double most = motion.length / work.flight.speed + work.view_seconds;
-    if (work.smooth) {
-      seconds[k] = std::max(most, smooth_seconds(work, motion) + work.flight.pause);
-      return;
-    }
-    std::vector<Eigen::Vector3d> points = motion.points;
-    for (const bool back : {false, true}) {
-      if (back) std::reverse(points.begin(), points.end());
-      const auto stops = stops_of(points, back ? to : from, back ? from : to, work.vehicle);
-      const Pursuit flown = pursue(points, stops, work.vehicle, work.flight);
-      most = std::max(most, flown.trajectory.duration() - work.flight.pause);
-    }
-    seconds[k] = most;
+    seconds[k] = work.LegFlight::seconds(motion.points, views[static_cast<std::size_t>(motion.a)],
+                                         views[static_cast<std::size_t>(motion.b)]);
   });
   if (cancellation && cancellation->cancelled()) throw Cancelled();
   return seconds;

@@ -33,13 +33,21 @@ struct PriorObject {
   std::shared_ptr<Prior> prior;
 };
 
-// A graph, and what its tours take in seconds.
-struct ScanWork {
-  std::shared_ptr<Prior> prior;
+// How legs are flown, and so what they take.
+struct LegFlight {
   Vehicle vehicle;
   PursuitSettings flight;
   std::optional<SmoothLegSettings> smooth;  // legs are flown by solutions, not by pursuit
-  double view_seconds = 0;
+  double view_seconds = 0;                  // s, of the view at a leg's end at least
+
+  // Of a way, its view at the end included: at least the way at full speed and what a view costs
+  // (reading 4.6), and as long as the vehicle and its camera need, either way.
+  double seconds(const Points& way, const Viewpoint& from, const Viewpoint& to) const;
+};
+
+// A graph, and what its tours take in seconds.
+struct ScanWork : LegFlight {
+  std::shared_ptr<Prior> prior;
   std::shared_ptr<const VisibleVoxels> visible;
   std::shared_ptr<const ViewInformation> information;
   ScanGraph graph;
@@ -50,9 +58,6 @@ struct ScanWork {
   std::size_t motion_between(int a, int b) const;
   double leg_seconds(int a, int b) const { return seconds[motion_between(a, b)]; }
 };
-
-// What a motion takes when it is flown smoothly, both ways: from rest to rest, without a pause.
-double smooth_seconds(const ScanWork& work, const ViewMotion& motion);
 
 struct GraphObject {
   std::shared_ptr<const ScanWork> work;

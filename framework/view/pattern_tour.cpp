@@ -173,12 +173,16 @@ class Laying {
         weight_(metres_per_radian),
         reachable_(problem.reachable()) {}
 
-  // The views that a pattern takes, each once in a row.
-  std::vector<int> lay(const std::vector<Viewpoint>& pattern) const {
+  // The views that a pattern takes, each once in a row; `moved` is how far off they are on average.
+  std::vector<int> lay(const std::vector<Viewpoint>& pattern, double& moved) const {
     std::vector<int> views;
+    moved = 0;
     for (const Viewpoint& wanted : pattern) {
       const int view = nearest(wanted);
-      if (view >= 0 && (views.empty() || views.back() != view)) views.push_back(view);
+      if (view < 0) continue;
+      moved += (viewpoints_[view].position - wanted.position).norm() /
+               static_cast<double>(pattern.size());
+      if (views.empty() || views.back() != view) views.push_back(view);
     }
     return views;
   }
@@ -229,6 +233,50 @@ int different(std::vector<int> views) {
 
 }  // namespace
 
+bool flown_freely(PatternKind kind) { return kind != PatternKind::hemisphere; }
+
+FreePattern fly_freely(const std::vector<Viewpoint>& pattern, double budget,
+                       const LegSeconds& leg_seconds) {
+  if (pattern.empty()) throw InputError("pattern: it has no viewpoint");
+  const auto evenly = [&](std::size_t count) {
+    FreePattern flown;
+    for (std::size_t i = 0; i < count; ++i)
+      flown.views.push_back(pattern[i * pattern.size() / count]);
+    for (std::size_t i = 1; i < count; ++i)
+      flown.seconds += leg_seconds(flown.views[i - 1], flown.views[i]);
+    return flown;
+  };
+  FreePattern best = evenly(pattern.size());
+  const double whole = best.seconds;
+  if (whole > budget) {
+    best = {};
+    std::size_t low = 1, high = pattern.size();  // fits, does not
+    while (high - low > 1) {
+      const std::size_t middle = (low + high) / 2;
+      FreePattern tried = evenly(middle);
+      if (tried.seconds > budget) {
+        high = middle;
+      } else {
+        low = middle;
+        best = std::move(tried);
+      }
+    }
+  }
+  char text[160];
+  if (best.views.empty())
+    std::snprintf(text, sizeof text,
+                  "not two of the pattern's %zu viewpoints fit into the budget of %.6g s",
+                  pattern.size(), budget);
+  else if (best.views.size() == pattern.size())
+    std::snprintf(text, sizeof text, "the whole pattern, %zu viewpoints", pattern.size());
+  else
+    std::snprintf(text, sizeof text,
+                  "%zu of the pattern's %zu viewpoints: all would take %.6g s of %.6g s",
+                  best.views.size(), pattern.size(), whole, budget);
+  best.message = text;
+  return best;
+}
+
 PatternTour fly_pattern(const TourProblem& problem, const std::vector<Viewpoint>& viewpoints,
                         const std::vector<Viewpoint>& pattern, double metres_per_radian) {
   if (static_cast<int>(viewpoints.size()) != problem.views()) {
@@ -241,7 +289,8 @@ PatternTour fly_pattern(const TourProblem& problem, const std::vector<Viewpoint>
     return tour;
   }
   const Laying laying(problem, viewpoints, metres_per_radian);
-  std::vector<int> stops = laying.lay(pattern);
+  std::vector<int> stops = laying.lay(pattern, tour.moved);
+  tour.asked = static_cast<int>(pattern.size());
   if (stops.empty()) {
     tour.message = "the pattern has no viewpoint";
     return tour;
@@ -268,17 +317,17 @@ PatternTour fly_pattern(const TourProblem& problem, const std::vector<Viewpoint>
     tour.flown = different(fewer);
     break;
   }
-  char text[160];
+  char laid[120], text[240];
+  std::snprintf(laid, sizeof laid, "%d viewpoints take %d different candidates, %.3g m off",
+                tour.asked, tour.wanted, tour.moved);
   if (tour.walk.empty()) {
-    std::snprintf(text, sizeof text,
-                  "not one of the pattern's %d viewpoints fits into the budget of %.6g s",
-                  tour.wanted, problem.budget());
+    std::snprintf(text, sizeof text, "%s, of which not one fits into the budget of %.6g s", laid,
+                  problem.budget());
   } else if (tour.flown == tour.wanted) {
-    std::snprintf(text, sizeof text, "the whole pattern, %d viewpoints", tour.wanted);
+    std::snprintf(text, sizeof text, "the whole pattern: %s", laid);
   } else {
-    std::snprintf(text, sizeof text,
-                  "%d of the pattern's %d viewpoints: all would take %.6g s of %.6g s", tour.flown,
-                  tour.wanted, tour.whole_seconds, problem.budget());
+    std::snprintf(text, sizeof text, "%s; %d of them: all would take %.6g s of %.6g s", laid,
+                  tour.flown, tour.whole_seconds, problem.budget());
   }
   tour.message = text;
   return tour;

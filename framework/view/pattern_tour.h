@@ -1,11 +1,14 @@
 // The regular patterns that planned tours are measured against (thesis 4.5.4, 4.8; reading 4.10):
-// circle, ellipse, meander and hemisphere, laid on the views of a tour problem.
+// circle, ellipse, meander and hemisphere.
 //
-// A pattern is a list of wanted viewpoints. Each takes the candidate nearest to it, in place and in
-// direction; those are joined by shortest ways, whose views cost and count like all others. Where
-// that is more than the budget fewer of the pattern's viewpoints are taken, evenly.
+// A pattern is a list of wanted viewpoints. Circle, ellipse and meander are flown freely at a safe
+// height, where nothing need be known. A hemisphere comes down between what stands there: it is
+// laid on the views of a tour problem. Each of its viewpoints takes the candidate nearest to it, in
+// place and in direction; those are joined by shortest ways, whose views cost and count like all
+// others. Where that is more than the budget fewer of the viewpoints are taken, evenly.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -41,10 +44,29 @@ Pattern pattern_named(const std::string& name, double height);
 std::vector<Viewpoint> pattern_viewpoints(const Pattern& pattern,
                                           const Eigen::AlignedBox3d& region);
 
+// Whether it stays at its height, where the air is free.
+bool flown_freely(PatternKind kind);
+
+// Of a way straight from view to view, the view at its end included, s.
+using LegSeconds = std::function<double(const Viewpoint& from, const Viewpoint& to)>;
+
+struct FreePattern {
+  std::vector<Viewpoint> views;  // in the order in which images are taken; empty: none fits
+  double seconds = 0;            // from the first view to the last one
+  std::string message;           // one sentence: whether the budget sufficed
+};
+
+// The pattern's viewpoints straight one after the other, as many of them, evenly, as the budget in
+// s allows; it may begin and end anywhere. InputError for a pattern without viewpoints.
+FreePattern fly_freely(const std::vector<Viewpoint>& pattern, double budget,
+                       const LegSeconds& leg_seconds);
+
 struct PatternTour {
   // A tour of the problem; empty where not even one viewpoint of the pattern fits.
   std::vector<int> walk;
-  int wanted = 0;  // different candidates that the whole pattern takes
+  int asked = 0;   // viewpoints of the pattern
+  int wanted = 0;  // different candidates that these take
+  double moved = 0;  // m, by which candidates are off their viewpoints, on average
   int flown = 0;   // of those
   // s: what the whole pattern takes.
   double whole_seconds = std::numeric_limits<double>::infinity();

@@ -137,6 +137,22 @@ TEST_F(EvaluateScan, SeveralMissionsAreOneStudy) {
   }
 }
 
+// Rows of other options are not taken for one's own, though the configuration has the same name.
+TEST_F(EvaluateScan, ResumingNeedsTheSameOptions) {
+  write_file_atomically(base_ / "mine.yaml", "candidates: {most: 40}\n");
+  const std::vector<std::string> few{"--method", "greedy", "--config", "mine.yaml"};
+  ASSERT_EQ(run("same", few), 0) << log("same");
+  std::vector<std::string> again = few;
+  again.push_back("--resume");
+  EXPECT_EQ(run("same", again), 0) << log("same");
+  write_file_atomically(base_ / "mine.yaml", "candidates: {most: 30}\n");
+  EXPECT_EQ(run("same", again), 2);
+  EXPECT_NE(log("same").find("states another study"), std::string::npos) << log("same");
+  write_file_atomically(base_ / "mine.yaml", "candidates: {most: 40}\n");
+  write_file_atomically(base_ / "hut.obj", read_file(base_ / "hut.obj") + "# another\n");
+  EXPECT_EQ(run("same", again), 2) << "another mesh";
+}
+
 // A stand-in for COLMAP that finds five of the images: what is asked of it, and what is made of its
 // answer. Without any the error says what is missing.
 TEST_F(EvaluateScan, PhotographsAreRegisteredByColmap) {

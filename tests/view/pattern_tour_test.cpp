@@ -1,3 +1,4 @@
+#include "framework/core/error.h"
 #include "framework/view/pattern_tour.h"
 
 #include <cmath>
@@ -97,6 +98,30 @@ struct Grid {
     definition.budget = budget;
   }
 };
+
+// Along a line, a metre and a second from view to view.
+TEST(FreePatterns, TakeAsManyViewpointsAsTheBudgetAllowsEvenly) {
+  std::vector<Viewpoint> line(11);
+  for (std::size_t i = 0; i < line.size(); ++i) line[i].position.x() = static_cast<double>(i);
+  const LegSeconds leg = [](const Viewpoint& a, const Viewpoint& b) {
+    return 1 + (b.position - a.position).norm();
+  };
+  const FreePattern whole = fly_freely(line, 20, leg);
+  EXPECT_EQ(whole.views.size(), 11u);
+  EXPECT_DOUBLE_EQ(whole.seconds, 20);
+  EXPECT_NE(whole.message.find("the whole pattern, 11"), std::string::npos) << whole.message;
+  const FreePattern fewer = fly_freely(line, 12.5, leg);
+  EXPECT_LE(fewer.seconds, 12.5);
+  ASSERT_EQ(fewer.views.size(), 5u);  // 0, 2, 4, 6, 8: 4 legs of 3 s; six views: 9 m and 5 s
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_EQ(fewer.views[i].position.x(), 2.0 * static_cast<double>(i)) << i;
+  EXPECT_NE(fewer.message.find("5 of the pattern's 11"), std::string::npos) << fewer.message;
+  EXPECT_NE(fewer.message.find("20 s of 12.5 s"), std::string::npos) << fewer.message;
+  const FreePattern none = fly_freely(line, 1, leg);
+  EXPECT_TRUE(none.views.empty());
+  EXPECT_NE(none.message.find("not two"), std::string::npos) << none.message;
+  EXPECT_THROW(fly_freely({}, 10, leg), InputError);
+}
 
 TEST(PatternTours, TakeTheNearestCandidates) {
   const Grid grid(1000);
