@@ -247,6 +247,9 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
     print_json(json_of(outcome, invocation));
   } else if (!invocation.quiet) {
     print_summary(outcome);
+  } else if (outcome.status != "ok") {
+    std::cerr << "lapwing: " << outcome.result.plan.mission << ": " << in_words(outcome)
+              << std::endl;
   }
   return exit_status_of(outcome.status);
 }

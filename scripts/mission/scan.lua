@@ -100,10 +100,12 @@ end
 
 -- What the mission was asked for, and what could have been had.
 local function refuse(run, graph, tour, budget)
+  local found = tour.status == "optimal" or tour.status == "feasible"
+  local why = found and "no further view brings anything that could be seen in that time"
+    or tour.message ~= "" and tour.message or tour.status
   run:fail("tour", string.format(
     "no tour of %.4g s: %s. From the start (the first of %d candidates) %s; %d views lie within "
-    .. "the budget", budget, tour.message ~= "" and tour.message or tour.status, graph.candidates,
-    graph.reach, tour.reachable))
+    .. "the budget", budget, why, graph.candidates, graph.reach, tour.reachable))
 end
 
 -- A tour within `budget` seconds by the solver that is asked for, begun with another one's.
@@ -127,10 +129,11 @@ local function solved(run, graph, finish, budget)
 end
 
 -- What is said of what came before the tour.
-local function notes_of(graph, known, explored)
+local function notes_of(run, graph, known, explored)
   local views = string.format("%d candidates, %d motions", graph.candidates, graph.motions)
   if not explored then
-    return { string.format("%d depth images of the first flight, %s", known.images, views) }
+    return { string.format("%d depth images %s, %s", known.images,
+                           run.options.rounds > 1 and "so far" or "of the first flight", views) }
   end
   return { string.format("explored first: %d depth images on %.0f m, %.0f %% of the surface; %s",
                          explored.images, explored.length,
@@ -155,7 +158,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
   local budget = asked - (o.flight.smooth and o.flight.pause or 0)
   for round = 1, TIGHTER do
     local tour = solved(run, graph, finish, budget)
-    local notes = notes_of(graph, known, explored)
+    local notes = notes_of(run, graph, known, explored)
     local plan = run:scan_plan {
       tour = tour, legs = flown(run, vehicle, tour, notes), margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
@@ -183,8 +186,10 @@ local function planned(run)
     local graph = graph_of(run, known, vehicle, starts, finish)
     plan = plan_of(run, graph, vehicle, finish, known, explored)
     if round < o.rounds and not run:cancelled() then
-      -- The tour is flown, and what it sees is known from then on.
+      -- The tour is flown, and what it sees is known from then on; candidates grow from where it
+      -- was as well (thesis 4.4.4).
       first.look(run, known, surface, plan.views)
+      for _, view in ipairs(plan.views) do starts[#starts + 1] = view end
       known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
     end
   end

@@ -74,7 +74,12 @@ end
 
 -- The highest that anything flies.
 function M.ceiling_of(run)
-  if run.options.ceiling then return run.options.ceiling end
+  local given = run.options.ceiling
+  if given and not prior_files(run) and given < safe_height(run) then
+    run:fail("ceiling", string.format("%.4g m is below safe_height, %.4g m, over which the first "
+                                      .. "flight goes", given, safe_height(run)))
+  end
+  if given then return given end
   local ceiling = safe_height(run) + OVERHEAD
   if explored[run] then
     for _, pose in ipairs(explored[run]) do

@@ -121,6 +121,17 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
   EXPECT_THAT(refused("--set prior.map=a.ot"), HasSubstr("both a map and a mesh"));
+  // What contradicts is said before anything is flown.
+  EXPECT_THAT(refused("--set tour.budget_metres=300"), HasSubstr("give one of them"));
+  EXPECT_THAT(refused("--set tour.images=1"), HasSubstr("two at least"));
+  EXPECT_THAT(refused("--set 'tour={solver: greedy, begin: cost_benefit}'"), HasSubstr("begin"));
+  EXPECT_THAT(refused("--set input=hut.obj"), HasSubstr("in place of the scene 'hut'"));
+  EXPECT_THAT(refused("--set ground=true"), HasSubstr("name an input"));
+  EXPECT_THAT(refused("--set region.lower=[6,-5,0] --set region.upper=[-6,5,7]"),
+              HasSubstr("lower must be below upper: 6 and -6 along x"));
+  EXPECT_THAT(refused("--set ceiling=3"), HasSubstr("3 m is below safe_height, 9 m"));
+  EXPECT_THAT(refused("--set range=8"), HasSubstr("no first flight would see the region's floor"));
+  EXPECT_THAT(refused("--set body=[1,0,1]"), HasSubstr("half edges must be above 0"));
   write_file_atomically(folder_ / "none.lua",
                         "return require('mission.scan').of_mesh { name = 'none' }\n");
   EXPECT_EQ(run("", "none.lua"), 2);

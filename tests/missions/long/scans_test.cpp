@@ -1,4 +1,6 @@
 // The shipped scans at their full size, and meshes of others.
+#include <sys/resource.h>
+
 #include "tests/missions/scan_hut.h"
 
 namespace lapwing {
@@ -27,6 +29,7 @@ TEST_F(Scanning, SolversAreSwappedByConfigurationAlone) {
        {std::string("--config '") + (folder_ / "greedy.yaml").string() + "'",
         std::string("--set tour.solver=cost_benefit"),
         std::string("--set tour.solver=recursive_greedy"), std::string("--set tour=greedy"),
+        std::string("--set tour.solver=milp --set tour.guard=20"),
         std::string("--set tour.images=4 --set tour.iterations=30")}) {
     ASSERT_EQ(run(more, "own.lua"), 0) << more << ": " << error();
     EXPECT_LE(answer().at("tour").at("score").as_number(), 1.05 * best) << more;
@@ -39,9 +42,21 @@ TEST_F(Scanning, SolversAreSwappedByConfigurationAlone) {
   EXPECT_THAT(error(), HasSubstr("tour.lazyness"));
 }
 
+// In less than 4 GB each, and five minutes of two cores.
 TEST_F(Filming, ShippedScansAreCertified) {
-  for (const char* name : {"church", "street", "courtyard"})
+  for (const char* name : {"church", "street", "courtyard"}) {
+    rusage before{}, after{};
+    ::getrusage(RUSAGE_CHILDREN, &before);
     expect_scan(fly("../scan/" + std::string(name) + ".lua"), name);
+    ::getrusage(RUSAGE_CHILDREN, &after);
+    const auto seconds = [](const rusage& used) {
+      return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
+    };
+    std::printf("%s: %.0f s of one core, %.2f GB at most so far\n", name,
+                seconds(after) - seconds(before), 1e-6 * static_cast<double>(after.ru_maxrss));
+    EXPECT_LT(seconds(after) - seconds(before), 600) << name;
+    EXPECT_LT(after.ru_maxrss, 4'000'000) << name;  // kB
+  }
 }
 
 TEST_F(Filming, MeshesOfOthersAreScanned) {
