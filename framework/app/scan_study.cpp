@@ -1,6 +1,7 @@
 #include "framework/app/scan_study.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <set>
 
@@ -166,9 +167,11 @@ class StudyRun {
       write_file_atomically(file_of(at, "times"), to_json(time) + "\n");
       if (study_.photos && row.found) take_photos(at, scan, cameras, row);
       write_file_atomically(file_of(at, "rows"), to_json(to_value(row)) + "\n");
-      char text[120];
-      std::snprintf(text, sizeof text, ": F %.2f %%, score %.1f %%, %d images, %.0f s",
-                    100 * row.with_first.f, 100 * row.score_share, row.images, row.seconds);
+      char score[40] = "", text[120];
+      if (std::isfinite(row.score_share))
+        std::snprintf(score, sizeof score, ", score %.1f %%", 100 * row.score_share);
+      std::snprintf(text, sizeof text, ": F %.2f %%%s, %d images, %.0f s", 100 * row.with_first.f,
+                    score, row.images, row.seconds);
       say_(name + ", " + row.method + (row.found ? text : ": no tour (" + row.message + ")"));
     });
   }

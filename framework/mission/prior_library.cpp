@@ -61,6 +61,7 @@ Pinhole pinhole_of(const Parameters& given) {
 namespace {
 
 constexpr int kPictureWidth = 720, kPictureHeight = 450;  // pixels, of the scene
+constexpr double kMostAir = 1e9;  // voxels that are said to be free
 
 Prior& prior_argument(lua_State* state) {
   return *object_argument<PriorObject>(state, 1, kPriorType).prior;
@@ -175,6 +176,15 @@ int open_air(lua_State* state) {
   const VoxelGrid& grid = prior.mapping.map->grid();
   if (!grid.contains(box.min()) || !grid.contains(box.max()))
     throw InputError(given.origin(), "open_air: the box lies beyond the largest map");
+  const double voxels = (box.sizes() / grid.resolution()).prod();
+  if (voxels > kMostAir) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "the free air would be %.3g voxels of %.4g m, and %.3g are the most: choose a "
+                  "coarser resolution, or a smaller region, reach or height",
+                  voxels, grid.resolution(), kMostAir);
+    throw InputError(given.origin(), text);
+  }
   std::array<int, 3> low, high;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);

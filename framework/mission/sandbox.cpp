@@ -1,5 +1,6 @@
 #include "framework/mission/sandbox.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -325,6 +326,26 @@ void Sandbox::run_script(lua_State* state, const std::filesystem::path& script) 
   arm(state);
 }
 
+namespace {
+
+// Of the modules in the same folder of any root.
+std::string nearest_module(const std::vector<std::filesystem::path>& roots,
+                           const std::string& module) {
+  std::string folder = module.substr(0, module.rfind('.') == module.npos ? 0 : module.rfind('.'));
+  const std::string before = folder.empty() ? "" : folder + ".";
+  std::replace(folder.begin(), folder.end(), '.', '/');
+  std::vector<std::string> known;
+  for (const std::filesystem::path& root : roots) {
+    std::error_code error;
+    for (const auto& item : std::filesystem::directory_iterator(root / folder, error))
+      if (item.path().extension() == ".lua") known.push_back(before + item.path().stem().string());
+  }
+  std::sort(known.begin(), known.end());
+  return nearest_name(module, known);
+}
+
+}  // namespace
+
 void Sandbox::require(lua_State* state, const std::string& module) {
   const bool well_formed =
       !module.empty() && module.front() != '.' && module.back() != '.' &&
@@ -375,7 +396,10 @@ void Sandbox::require(lua_State* state, const std::string& module) {
     lua_remove(state, -2);
     return;
   }
-  throw InputError("module '" + module + "' not found; looked for " + looked);
+  const std::string nearest = nearest_module(module_folders_, module);
+  throw InputError("module '" + module + "' not found" +
+                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") + "; looked for " +
+                   looked);
 }
 
 void push_input_error(lua_State* state, const InputError& error) {

@@ -108,24 +108,26 @@ local function refuse(run, graph, tour, budget)
     .. "the budget", budget, why, graph.candidates, graph.reach, tour.reachable))
 end
 
--- A tour within `budget` seconds by the solver that is asked for, begun with another one's.
+-- A tour within `budget` seconds by the solver that is asked for, begun with another one's, and the
+-- evaluations of both.
 local function solved(run, graph, finish, budget)
   local o = run.options.tour
-  local initial
+  local initial, spent = nil, 0
   local begin = o.begin or BEGIN
   if begin ~= "none" and o.solver == "local_search" then
     local begun = run:solve_tour { graph = graph, solver = begin, budget = budget,
                                    finish = finish, images = o.images, guard = o.guard }
     if begun.images > 1 then initial = begun end
+    spent = begun.evaluations
   end
   local tour = run:solve_tour { graph = graph, solver = solver_of(o), budget = budget,
                                 finish = finish, images = o.images, guard = o.guard,
                                 initial = initial }
   if tour.images < 2 then
-    if run:cancelled() and initial then return initial end
+    if run:cancelled() and initial then return initial, spent end
     refuse(run, graph, tour, budget)
   end
-  return tour
+  return tour, spent + tour.evaluations
 end
 
 -- What is said of what came before the tour.
@@ -157,7 +159,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
   -- Smooth legs take what was counted; the rest in the first view comes on top.
   local budget = asked - (o.flight.smooth and o.flight.pause or 0)
   for round = 1, TIGHTER do
-    local tour = solved(run, graph, finish, budget)
+    local tour, evaluations = solved(run, graph, finish, budget)
     local notes = notes_of(run, graph, known, explored)
     local plan = run:scan_plan {
       tour = tour, legs = flown(run, vehicle, tour, notes), margin = o.margin, budget = asked,
@@ -166,7 +168,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
       figures = { score = tour.score, upper_bound = tour.upper_bound, gap = tour.gap,
                   seconds = tour.seconds, budget = asked, images = tour.images,
                   candidates = graph.candidates, motions = graph.motions,
-                  reachable_score = tour.reachable_score, evaluations = tour.evaluations },
+                  reachable_score = tour.reachable_score, evaluations = evaluations },
     }
     -- Corners and rests may take a little more than the legs one by one.
     local over = plan.duration - asked

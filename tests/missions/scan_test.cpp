@@ -120,6 +120,7 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set motions.alpha=1"), HasSubstr("joined to the start"));
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
+  EXPECT_THAT(refused("--set scene=churhc"), HasSubstr("did you mean 'scene.church'?"));
   EXPECT_THAT(refused("--set prior.map=a.ot"), HasSubstr("both a map and a mesh"));
   // What contradicts is said before anything is flown.
   EXPECT_THAT(refused("--set tour.budget_metres=300"), HasSubstr("give one of them"));
@@ -131,6 +132,7 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
               HasSubstr("lower must be below upper: 6 and -6 along x"));
   EXPECT_THAT(refused("--set ceiling=3"), HasSubstr("3 m is below safe_height, 9 m"));
   EXPECT_THAT(refused("--set range=8"), HasSubstr("no first flight would see the region's floor"));
+  EXPECT_THAT(refused("--set resolution=0.01"), HasSubstr("choose a coarser resolution"));
   EXPECT_THAT(refused("--set body=[1,0,1]"), HasSubstr("half edges must be above 0"));
   write_file_atomically(folder_ / "none.lua",
                         "return require('mission.scan').of_mesh { name = 'none' }\n");
