@@ -134,8 +134,9 @@ end
 local function notes_of(run, graph, known, explored)
   local views = string.format("%d candidates, %d motions", graph.candidates, graph.motions)
   if not explored then
-    return { string.format("%d depth images %s, %s", known.images,
-                           run.options.rounds > 1 and "so far" or "of the first flight", views) }
+    local before = string.format("%d depth images %s", known.images,
+                                 run.options.rounds > 1 and "so far" or "of the first flight")
+    return { (known.images > 0 and before or "files of an earlier flight") .. ", " .. views }
   end
   return { string.format("explored first: %d depth images on %.0f m, %.0f %% of the surface; %s",
                          explored.images, explored.length,
