@@ -95,6 +95,7 @@ class Explorer {
         map_(map),
         observer_(observer),
         means_(map),
+        hidden_(map),
         graph_(map, Eigen::Vector3d::Constant(settings.body / 2),
                {settings.speed, settings.turn_rate}) {
     known_ = {&map,
@@ -103,7 +104,8 @@ class Explorer {
               settings.sensor.range,
               0,
               settings.show_truth ? &observed : nullptr,
-              settings.threads};
+              settings.threads,
+              &hidden_};
   }
 
   EpisodeResult run(const Viewpoint& start);
@@ -129,6 +131,7 @@ class Explorer {
   Map& map_;
   const EpisodeObserver& observer_;
   MapMeans means_;
+  HiddenVoxels hidden_;
   ViewpointGraph graph_;
   EpisodeView known_;
   Candidates candidates_;
@@ -256,6 +259,7 @@ void Explorer::look(EpisodeStep& taken, int place) {
   const double after = wall_seconds();
   began_ += after - before;  // the camera's time is not the explorer's
   map_.integrate(image);
+  hidden_.saw(image);
   means_.touch(
       reach_box(map_.grid(), taken.view, settings_.sensor.pinhole, settings_.sensor.range));
   // Where the body is there is nothing else, whatever a noisy image says.
