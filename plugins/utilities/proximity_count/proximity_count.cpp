@@ -15,7 +15,7 @@ namespace {
 class ProximityCount final : public ViewUtility {
  public:
   static constexpr PluginText kText{"proximity_count", "1.0.0",
-                                    "counts visible unmeasured voxels behind seen surfaces, near ones more",
+                                    "counts unmeasured voxels behind seen surfaces, near ones more",
                                     "Isler et al. 2016; Delmerico et al. 2018, proximity count"};
   static ParameterTable parameters() {
     return ParameterTable()
