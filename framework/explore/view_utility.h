@@ -52,8 +52,8 @@ class ViewUtility : public PluginObject {
   static constexpr const char* kKind = "utility";
   virtual ~ViewUtility() = default;
 
-  // Before an exploration's first image: InputError where the utility does not fit it, as a model that was
-  // trained with other voxels does not.
+  // Before an exploration's first image: InputError where the utility does not fit it, as a model
+  // that was trained with other voxels does not.
   virtual void require_fit(const EpisodeView&) const {}
 
   // `values` has as many places as there are views; higher is better, and 0 or less says that there
