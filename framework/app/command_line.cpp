@@ -22,6 +22,11 @@
 
 namespace lapwing {
 
+const char* program_version() {
+  return LAPWING_VERSION;
+}
+
+
 namespace {
 
 void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& script,
@@ -225,7 +230,7 @@ Registry Invocation::registry() const {
 
 int run_command_line(int argc, const char* const* argv) {
   CLI::App app("Planning for camera-carrying micro aerial vehicles.", "lapwing");
-  app.set_version_flag("--version", "lapwing " LAPWING_VERSION);
+  app.set_version_flag("--version", std::string("lapwing ") + program_version());
   app.require_subcommand(1);
   Invocation invocation;
   std::filesystem::path script, plan, target;

@@ -43,6 +43,9 @@ struct Invocation {
 int run_command_line(int argc, const char* const* argv);
 
 // The commands. Each throws InputError for bad input and writes its result to standard output.
+// "0.1.0"
+const char* program_version();
+
 ExitStatus run_mission(const std::filesystem::path& script, const Invocation& invocation);
 ExitStatus show_configuration(const std::filesystem::path& script, const Invocation& invocation);
 ExitStatus verify_plan(const std::filesystem::path& plan, const Invocation& invocation);

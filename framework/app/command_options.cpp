@@ -4,6 +4,8 @@
 #include <charconv>
 #include <sstream>
 
+#include "framework/core/number_text.h"
+
 namespace lapwing {
 
 namespace {
@@ -100,6 +102,14 @@ double read_number(const std::string& option, const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{} || end != text.data() + text.size())
     throw CLI::ValidationError(option, "expected a number, not '" + text + "'");
+  return number;
+}
+
+double read_within(const std::string& option, const std::string& text, double most) {
+  const double number = read_number(option, text);
+  if (!(number >= 0 && number <= most))
+    throw CLI::ValidationError(
+        option, "expected a number from 0 to " + plain_number(most) + ", not '" + text + "'");
   return number;
 }
 

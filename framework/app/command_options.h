@@ -50,6 +50,8 @@ void add_plan(CLI::App& command, std::filesystem::path& plan);
 
 // A number and nothing else; CLI::ValidationError names the option.
 double read_number(const std::string& option, const std::string& text);
+// From 0 to `most`.
+double read_within(const std::string& option, const std::string& text, double most);
 // "1,2,5": each entry is read by `take`.
 void read_list(const std::string& text, const std::function<void(const std::string&)>& take);
 

@@ -1,12 +1,15 @@
 #include "framework/app/evaluate_explore.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <map>
 
 #include "framework/app/exploration_worlds.h"
 #include "framework/app/interruption.h"
 #include "framework/config/overrides.h"
+#include "framework/core/checksum.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/number_text.h"
@@ -23,10 +26,7 @@ struct Trial {
   std::int64_t episode = 0;
 
   std::string name() const {
-    std::string text = world + "_" + utility + "_" + std::to_string(episode);
-    for (char& c : text)
-      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
-    return text;
+    return file_text(world + "_" + utility + "_" + std::to_string(episode));
   }
 };
 
@@ -108,15 +108,56 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   write_file_atomically(folder / "episodes" / (trial.name() + ".json"), to_json(object) + "\n");
 }
 
-// Observed after each image; it stays as it is after an early end.
-std::vector<double> curve_of(const Trial& trial, const fs::path& folder, int steps) {
+// An episode as its files have it.
+struct Flown {
+  std::vector<double> curve;  // observed after each image; it stays as it is after an early end
+  std::string end;            // empty: after all images
+  double length = 0;          // m
+  double seconds = std::nan("");  // wall clock of a step; there or not
+
+  double efficiency() const {
+    double sum = 0;
+    for (const double v : curve) sum += v;
+    return sum;
+  }
+};
+
+Flown flown(const Trial& trial, const fs::path& folder, int steps) {
   const fs::path path = folder / "episodes" / (trial.name() + ".json");
-  const Value object = from_json(read_file(path), path.string());
-  std::vector<double> curve;
-  for (const Value& value : object.at("observed").as_list()) curve.push_back(value.as_number());
-  if (curve.empty()) curve.push_back(0);
-  curve.resize(static_cast<std::size_t>(steps), curve.back());
-  return curve;
+  Flown result;
+  try {
+    const Value object = from_json(read_file(path), path.string());
+    for (const Value& value : object.at("observed").as_list())
+      result.curve.push_back(value.as_number());
+    result.length = object.at("length").as_number();
+    result.end = object.at("end").as_text();
+  } catch (const InputError& error) {
+    throw InputError("'" + path.string() + "' is no whole episode: delete it, and --resume flies " +
+                     "it again (" + error.what() + ")");
+  }
+  if (result.curve.size() >= static_cast<std::size_t>(steps)) result.end.clear();
+  if (result.curve.empty()) result.curve.push_back(0);
+  result.curve.resize(static_cast<std::size_t>(steps), result.curve.back());
+  const fs::path time = folder / "seconds" / (trial.name() + ".json");
+  if (fs::exists(time))
+    result.seconds =
+        from_json(read_file(time), time.string()).at("seconds_per_step").as_number();
+  return result;
+}
+
+// "3: nothing_to_gain 2, no_way 1", or "0".
+std::string early_ends(const std::vector<Flown>& episodes) {
+  std::map<std::string, int> ends;
+  int count = 0;
+  for (const Flown& episode : episodes)
+    if (!episode.end.empty()) ++ends[episode.end], ++count;
+  std::string text = std::to_string(count);
+  const char* before = ": ";
+  for (const auto& [end, times] : ends) {
+    text += before + end + " " + std::to_string(times);
+    before = ", ";
+  }
+  return text;
 }
 
 std::string number(double value) {
@@ -127,10 +168,13 @@ std::string number(double value) {
 struct Summary {
   std::string table =
       "world,utility,episodes,efficiency,efficiency_deviation,relative,"
-      "relative_deviation,relative_interval,below_learned,below_learned_interval\n";
+      "relative_deviation,relative_interval,below_learned,below_learned_interval,length,"
+      "ended_early,ends\n";
+  std::string seconds = "world,utility,episodes,seconds_per_step\n";  // table 5.3
   std::string curves = "world,utility,images,observed,observed_deviation\n";
   Report report;
   Table shown;
+  std::vector<double> step_seconds;  // by row
 };
 
 void summarise_world(Summary& summary, const std::string& world,
@@ -140,29 +184,26 @@ void summarise_world(Summary& summary, const std::string& world,
   chart.x = {"images", "", false, true};
   chart.y = {"observed surface", "voxels"};
   const auto curves = [&](const std::string& utility) {
-    std::vector<std::vector<double>> all;
+    std::vector<Flown> all;
     for (std::int64_t e = 1; e <= request.episodes; ++e)
-      all.push_back(curve_of({world, utility, e}, request.folder, request.steps));
+      all.push_back(flown({world, utility, e}, request.folder, request.steps));
     return all;
-  };
-  const auto efficiency = [](const std::vector<double>& curve) {
-    double sum = 0;
-    for (const double v : curve) sum += v;
-    return sum;
   };
   const auto efficiencies_of = [&](const char* utility) {
     std::vector<double> found;
     if (std::find(utilities.begin(), utilities.end(), utility) != utilities.end())
-      for (const auto& curve : curves(utility)) found.push_back(efficiency(curve));
+      for (const Flown& episode : curves(utility)) found.push_back(episode.efficiency());
     return found;
   };
   const std::vector<double> oracle = efficiencies_of("oracle"),
                             learned = efficiencies_of("learned");
   for (const std::string& utility : utilities) {
-    const auto all = curves(utility);
-    std::vector<double> raw, relative, below;
+    const std::vector<Flown> all = curves(utility);
+    std::vector<double> raw, relative, below, lengths, seconds;
     for (std::size_t e = 0; e < all.size(); ++e) {
-      raw.push_back(efficiency(all[e]));
+      raw.push_back(all[e].efficiency());
+      lengths.push_back(all[e].length);
+      if (std::isfinite(all[e].seconds)) seconds.push_back(all[e].seconds);
       if (e >= oracle.size() || !(oracle[e] > 0)) continue;
       relative.push_back(raw.back() / oracle[e]);
       if (!learned.empty()) below.push_back((learned[e] - raw.back()) / oracle[e]);
@@ -172,14 +213,22 @@ void summarise_world(Summary& summary, const std::string& world,
                      number(efficiencies.mean) + "," + number(efficiencies.deviation) + "," +
                      number(shares.mean) + "," + number(shares.deviation) + "," +
                      number(shares.interval()) + "," + number(lacks.mean) + "," +
-                     number(lacks.interval()) + "\n";
+                     number(lacks.interval()) + "," + number(mean_of(lengths).mean);
+    const std::string ends = early_ends(all);
+    const std::size_t colon = ends.find(": ");
+    std::string kinds = colon == ends.npos ? "" : ends.substr(colon + 2);
+    std::replace(kinds.begin(), kinds.end(), ',', ';');
+    summary.table += "," + ends.substr(0, colon) + "," + kinds + "\n";
+    summary.step_seconds.push_back(mean_of(seconds).mean);
+    summary.seconds += world + "," + utility + "," + std::to_string(seconds.size()) + "," +
+                       number(summary.step_seconds.back()) + "\n";
     summary.shown.rows.push_back(
         {{world, utility, efficiencies.mean, efficiencies.deviation, shares.mean, shares.deviation,
-          shares.interval(), lacks.mean, lacks.interval()}});
+          shares.interval(), lacks.mean, lacks.interval(), mean_of(lengths).mean, ends}});
     Series series{utility, {0}, {0}};
     for (int t = 0; t < request.steps; ++t) {
       std::vector<double> at;
-      for (const auto& curve : all) at.push_back(curve[static_cast<std::size_t>(t)]);
+      for (const Flown& episode : all) at.push_back(episode.curve[static_cast<std::size_t>(t)]);
       const Mean mean = mean_of(at);
       summary.curves += world + "," + utility + "," + std::to_string(t + 1) + "," +
                         number(mean.mean) + "," + number(mean.deviation) + "\n";
@@ -191,19 +240,88 @@ void summarise_world(Summary& summary, const std::string& world,
   summary.report.sections.push_back({world, {chart}});
 }
 
-void print_table(const Table& table) {
-  std::printf("%-22s %-18s %12s %10s %9s %9s %9s %9s %9s\n", "world", "utility", "efficiency",
-              "deviation", "relative", "deviation", "95 % +-", "below", "95 % +-");
-  for (const TableRow& row : table.rows) {
-    std::printf("%-22s %-18s", std::get<std::string>(row.cells[0]).c_str(),
-                std::get<std::string>(row.cells[1]).c_str());
-    for (std::size_t k = 2; k < row.cells.size(); ++k)
-      std::printf(k == 2   ? " %12.0f"
-                  : k == 3 ? " %10.0f"
-                           : " %9.3f",
-                  std::get<double>(row.cells[k]));
-    std::printf("\n");
+void print_table(const Summary& summary) {
+  std::printf("%-22s %-18s %10s %9s %8s %9s %8s %8s %8s %7s %7s  %s\n", "world", "utility",
+              "efficiency", "deviation", "relative", "deviation", "95 % +-", "below", "95 % +-",
+              "m flown", "s/step", "ended early");
+  for (std::size_t r = 0; r < summary.shown.rows.size(); ++r) {
+    const std::vector<TableCell>& cells = summary.shown.rows[r].cells;
+    const auto text = [&](std::size_t k) { return std::get<std::string>(cells[k]).c_str(); };
+    const auto at = [&](std::size_t k) { return std::get<double>(cells[k]); };
+    std::printf("%-22s %-18s %10.0f %9.0f %8.3f %9.3f %8.3f %8.3f %8.3f %7.0f %7.3f  %s\n", text(0),
+                text(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8), at(9),
+                summary.step_seconds[r], text(10));
   }
+}
+
+// Checksums of the files that figures depend on: by world, and by utility its model (a parameter
+// that names a file, else NAME.model beside its library).
+Value files_of(const std::vector<WorldName>& worlds, const std::vector<std::string>& utilities,
+               const Value& parameters, const Registry& registry) {
+  constexpr std::size_t kMost = std::size_t{4} << 30;
+  Value files = Value::map();
+  const auto keep = [&](const std::string& name, const fs::path& path) {
+    if (fs::is_regular_file(path)) files.set(name, sha256(read_file(path, kMost)));
+  };
+  for (const WorldName& world : worlds) keep(world.text(), world.file());
+  for (const std::string& utility : utilities) {
+    keep(utility, fs::path(registry.find("utility", utility).library).replace_extension("model"));
+    const Value* given = parameters.find(utility);
+    if (!given || !given->is_map()) continue;
+    for (const auto& [key, value] : given->as_map())
+      if (value.is_text()) keep(utility + "." + key, value.as_text());
+  }
+  return files;
+}
+
+// The first setting that differs, in words; empty where all agree. Of files only those that both
+// name: other worlds and utilities may join an evaluation.
+std::string settings_difference(const Value& there, const Value& here) {
+  for (const Value* one : {&here, &there})
+    for (const auto& [key, ignored] : one->as_map()) {
+      if (key == "files") continue;
+      const Value *a = there.find(key), *b = here.find(key);
+      if (!a || !b || !(*a == *b))
+        return key + " is " + (a ? to_json(*a, -1) : "not said") + " there, " +
+               (b ? to_json(*b, -1) : "not said") + " here";
+    }
+  const Value* files = there.find("files");
+  for (const auto& [name, sum] : here.at("files").as_map())
+    if (const Value* before = files ? files->find(name) : nullptr; before && !(*before == sum))
+      return "the file of " + name + " is another one";
+  return "";
+}
+
+// Makes the folder ready: settings.json says what the episodes in it are. Nothing is taken away
+// from a folder that is not an evaluation's.
+void claim_folder(const ExploreEvaluation& request, Value stated) {
+  const fs::path settings = request.folder / "settings.json";
+  const fs::path episodes = request.folder / "episodes";
+  if (fs::exists(episodes) && !fs::is_empty(episodes)) {
+    if (!fs::exists(settings))
+      throw InputError("'" + episodes.string() + "' is there, but no settings.json that says " +
+                       "what it holds: choose another folder with -o");
+    const Value there = from_json(read_file(settings), settings.string());
+    if (!there.is_map() || !there.find("steps") || !there.find("lookahead"))
+      throw InputError("'" + settings.string() +
+                       "' is not of an evaluation of explorations: choose another folder with -o");
+    if (!request.resume) {
+      for (const fs::path& folder : {episodes, request.folder / "seconds"})
+        if (fs::is_directory(folder))
+          for (const auto& entry : std::vector<fs::directory_entry>(
+                   fs::directory_iterator(folder), fs::directory_iterator()))
+            if (entry.is_regular_file() && entry.path().extension() == ".json")
+              fs::remove(entry.path());
+    } else if (const std::string difference = settings_difference(there, stated);
+               !difference.empty()) {
+      throw InputError("'" + settings.string() +
+                       "': the evaluation there has other settings: " + difference);
+    } else if (const Value* files = there.find("files")) {
+      for (const auto& [name, sum] : files->as_map())
+        if (!stated.at("files").find(name)) stated.find("files")->set(name, sum);
+    }
+  }
+  write_file_atomically(settings, to_json(stated) + "\n");
 }
 
 }  // namespace
@@ -216,10 +334,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     for (const PluginEntry& entry : registry.entries())
       if (entry.kind == ViewUtility::kKind) utilities.push_back(entry.name);
   for (const std::string& utility : utilities) registry.find("utility", utility);
-  std::vector<WorldName> names;
-  for (const std::string& given : request.worlds)
-    for (WorldName& name : world_names(given)) names.push_back(std::move(name));
-  if (names.empty()) throw InputError("evaluate explore: name a world with --world");
+  const std::vector<WorldName> names = distinct_worlds(request.worlds, "evaluate explore");
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   setup.episode.lookahead = request.lookahead;
@@ -240,6 +355,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   }
   // What another run of other settings left would be taken for this one's.
   Value stated = Value::map();
+  stated.set("program", std::string("lapwing ") + program_version());
   stated.set("steps", request.steps);
   stated.set("seed", static_cast<std::int64_t>(invocation.seed));
   stated.set("sigma", request.sigma);
@@ -249,12 +365,8 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   stated.set("parameters", parameters);
   if (!request.moves.empty()) stated.set("moves", moves);
   if (!request.up.empty()) stated.set("up", request.up);
-  const fs::path settings_file = request.folder / "settings.json";
-  if (request.resume && fs::exists(settings_file) &&
-      !(from_json(read_file(settings_file), settings_file.string()) == stated))
-    throw InputError("'" + settings_file.string() + "': the evaluation there has other settings");
-  if (!request.resume) fs::remove_all(request.folder / "episodes");
-  write_file_atomically(settings_file, to_json(stated) + "\n");
+  stated.set("files", files_of(names, utilities, parameters, registry));
+  claim_folder(request, std::move(stated));
 
   for (const WorldName& name : names) {
     std::vector<Trial> trials;
@@ -292,13 +404,16 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
                            {"deviation", ""},
                            {"95 % interval, half", ""},
                            {"below learned", ""},
-                           {"95 % interval, half", ""}};
+                           {"95 % interval, half", ""},
+                           {"length", "m"},
+                           {"ended early", ""}};
   for (const WorldName& name : names) summarise_world(summary, name.text(), utilities, request);
   summary.report.sections.insert(summary.report.sections.begin(), {"Table", {summary.shown}});
   write_file_atomically(request.folder / "table.csv", summary.table);
+  write_file_atomically(request.folder / "seconds.csv", summary.seconds);
   write_file_atomically(request.folder / "curves.csv", summary.curves);
   write_file_atomically(request.folder / "report.html", render_html(summary.report));
-  if (!invocation.quiet) print_table(summary.shown);
+  if (!invocation.quiet) print_table(summary);
   return ExitStatus::done;
 }
 

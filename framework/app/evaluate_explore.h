@@ -22,8 +22,10 @@ struct ExploreEvaluation {
 //
 // Every episode is a file in FOLDER/episodes, whole or not there; from these come table.csv
 // (efficiency, and relative to the oracle's of the same start, with standard deviations and 95 %
-// intervals by Student's t; how far each stays below `learned`, start by start), curves.csv,
-// report.html. Wall-clock figures stand apart, in FOLDER/seconds.
+// intervals by Student's t; how far each stays below `learned`, start by start; metres flown; how
+// many ended before all images, and by what), curves.csv, report.html. Wall-clock figures stand
+// apart, in FOLDER/seconds and seconds.csv. FOLDER/settings.json says what all of it was made of;
+// InputError for a folder with episodes but without it.
 ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& invocation);
 
 }  // namespace lapwing

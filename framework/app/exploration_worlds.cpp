@@ -1,8 +1,10 @@
 #include "framework/app/exploration_worlds.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <map>
 
 #include "framework/config/overrides.h"
 #include "framework/config/shipped.h"
@@ -49,7 +51,40 @@ UpAxis up_axis(const std::string& name) {
 std::string WorldName::text() const {
   const fs::path path(scene);
   if (!path.has_extension()) return scene + " " + std::to_string(seed);
+  if (path.extension() == ".lua") return path.filename().string() + " " + std::to_string(seed);
   return path.filename().string() + (inside_text.empty() ? "" : "@" + inside_text);
+}
+
+fs::path WorldName::file() const {
+  const fs::path path(scene);
+  if (path.has_extension()) return path;
+  fs::path script = shipped_folder("scripts") / "scene" / path;
+  script += ".lua";
+  return script;
+}
+
+std::string file_text(std::string name) {
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+  return name;
+}
+
+std::vector<WorldName> distinct_worlds(const std::vector<std::string>& given,
+                                       const std::string& command) {
+  std::vector<WorldName> names;
+  std::map<std::string, std::string> taken;
+  for (const std::string& one : given)
+    for (WorldName& name : world_names(one)) {
+      const auto [found, fresh] = taken.emplace(file_text(name.text()), one);
+      if (!fresh)
+        throw InputError(command + ": the worlds '" + found->second + "' and '" + one +
+                         "' would both be called '" + name.text() +
+                         "': name each once, and files of one name one after the other, into "
+                         "folders of their own");
+      names.push_back(std::move(name));
+    }
+  if (names.empty()) throw InputError(command + ": name a world with --world NAME[:FIRST-LAST]");
+  return names;
 }
 
 std::vector<WorldName> world_names(const std::string& given) {
@@ -94,11 +129,7 @@ World load_world(const WorldName& name, const std::string& up, const Registry& r
             open.region, std::nullopt};
   }
   if (!up.empty()) throw InputError("--up is for mesh files, and '" + name.scene + "' is none");
-  fs::path script = file;
-  if (!file.has_extension()) {
-    script = shipped_folder("scripts") / "scene" / file;
-    script += ".lua";
-  }
+  const fs::path script = name.file();
   if (!fs::exists(script))
     throw InputError("'" + name.scene + "' is no scene of scripts/scene and no file");
   MissionSettings settings;

@@ -15,11 +15,20 @@ struct WorldName {
   std::uint64_t seed = 1;                                // of a script
   std::optional<Eigen::Vector3d> inside = std::nullopt;  // of a mesh file that gets no floor
   std::string inside_text = {};                          // with blanks between
-  std::string text() const;  // "downtown 3", "delft_block.obj", "mine.dae@1 2 3"
+  std::string text() const;  // "downtown 3", "my.lua 1", "delft_block.obj", "mine.dae@1 2 3"
+  // The file that it is made of or by; of a shipped script that script.
+  std::filesystem::path file() const;
 };
 // "downtown", "downtown:3", "downtown:3-6", "meshes/block.obj"; "meshes/mine.dae@1,2,3" is the
 // space within a mesh that holds a place. InputError for a range or a place that is none.
 std::vector<WorldName> world_names(const std::string& given);
+
+// Of all that are given. InputError for none, and for two that files could not tell apart by their
+// names: "a/block.obj" and "b/block.obj".
+std::vector<WorldName> distinct_worlds(const std::vector<std::string>& given,
+                                       const std::string& command);
+// A name as part of a file's.
+std::string file_text(std::string name);
 
 struct World {
   std::string name;

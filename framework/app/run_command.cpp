@@ -36,7 +36,10 @@ struct RunOutcome {
 
 std::string status_of(const MissionResult& result, const Certificate& certificate, bool cancelled) {
   if (cancelled || result.report.status == SolveStatus::cancelled) return "cancelled";
-  if (certificate.feasible()) return "ok";
+  // Who stays where it is breaks no rule, but has done nothing of what was asked.
+  const bool idle = result.report.status == SolveStatus::infeasible &&
+                    !(result.plan.trajectory.duration() > 0);
+  if (certificate.feasible() && !idle) return "ok";
   switch (result.report.status) {
     case SolveStatus::infeasible:
       return "infeasible";

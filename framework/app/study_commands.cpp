@@ -143,11 +143,11 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
   add_count(*made, "--lookahead", 1, 4, "views of the ways that are valued; else 1",
             [&](std::uint64_t count) { request.lookahead = static_cast<int>(count); });
   add_text(*made, "--sigma", "M", "noise of the depth; the views are replayed without",
-           [&](const std::string& text) { request.sigma = read_number("--sigma", text); });
+           [&](const std::string& text) { request.sigma = read_within("--sigma", text, 100); });
   add_text(*made, "--dropped", "SHARE", "of the pixels without a measurement",
-           [&](const std::string& text) { request.dropped = read_number("--dropped", text); });
+           [&](const std::string& text) { request.dropped = read_within("--dropped", text, 1); });
   add_text(*made, "--stereo", "M", "depth by a pair of cameras so far apart, likewise",
-           [&](const std::string& text) { request.stereo = read_number("--stereo", text); });
+           [&](const std::string& text) { request.stereo = read_within("--stereo", text, 100); });
   add_repeated(*made, "--set", "UTILITY.KEY=VALUE", invocation.overrides,
                "set one parameter of a utility");
   add_text(*made, "-o,--output", "DIR", "folder of the results; else out/evaluate_explore",

@@ -30,10 +30,7 @@ Parameters training_parameters(const Trainable& trainable, const Invocation& inv
 }
 
 std::string file_name(const std::string& world, std::int64_t episode) {
-  std::string name;
-  for (const char c : world)
-    name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
-  return name + "_" + std::to_string(episode) + ".samples";
+  return file_text(world) + "_" + std::to_string(episode) + ".samples";
 }
 
 // A utility explores; what every neighbour looked like, and its value to the oracle, is kept.
@@ -71,10 +68,7 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   const Interruption interruption;
   const Trainable& trainable = trainable_of(registry, request.utility);
   const GridShape shape = trainable.shape(training_parameters(trainable, invocation));
-  std::vector<WorldName> names;
-  for (const std::string& given : request.worlds)
-    for (WorldName& name : world_names(given)) names.push_back(std::move(name));
-  if (names.empty()) throw InputError("train dataset: name a world with --world NAME:FIRST-LAST");
+  const std::vector<WorldName> names = distinct_worlds(request.worlds, "train dataset");
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   setup.set_moves(request.moves);

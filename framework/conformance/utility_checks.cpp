@@ -11,6 +11,7 @@ namespace lapwing {
 namespace {
 
 constexpr int kAnywhere = 10;
+constexpr double kBehind = 20;  // m behind surfaces that utilities may ask for
 
 // What an exploration knows of a room after some looks, or before the first; and views to ask
 // about: in what is known, at its border, beyond it, the other way round, and anywhere.
@@ -30,6 +31,7 @@ struct UtilityWorld {
   int looks = 0;
   std::unique_ptr<PlainMap> map;
   std::unique_ptr<MapMeans> means;
+  std::unique_ptr<HiddenVoxels> hidden;
   Told told;
   EpisodeView known;
   std::vector<Viewpoint> views;
@@ -47,6 +49,8 @@ struct UtilityWorld {
     settings.maximum_range = 20;
     settings.observations = true;
     map = std::make_unique<PlainMap>(settings);
+    hidden = std::make_unique<HiddenVoxels>(*map);
+    hidden->follow(kBehind);
     // From the middle, then from aside and from outside of the opening.
     const Eigen::Vector3d places[] = {
         {-0.3, 0.2, 1.5}, {0.7, 0.2, 1.6}, {-4, -2.5, 0.5}, {4.5, 2.9, 2.5}, {9, 0, 1}};
@@ -54,7 +58,8 @@ struct UtilityWorld {
     means = std::make_unique<MapMeans>(*map);
     if (const auto bounds = map->bounds()) means->touch(*bounds);
     const double pitch = -10 * EIGEN_PI / 180;
-    known = {map.get(), means.get(), {160, 120, 80, 80, 79.5, 59.5}, 20, pitch, &told, 1};
+    known = {map.get(), means.get(), {160, 120, 80, 80, 79.5, 59.5}, 20, pitch, &told, 1,
+             hidden.get()};
     views = {{{0.1, 0.1, 1.6}, 0.2, pitch},
              {{2.6, 1.5, 1.6}, 2.9, pitch},
              {{5.9, 0, 1.5}, 3.1, pitch},
@@ -80,6 +85,7 @@ struct UtilityWorld {
       for (double y = -3.9; y < 4; y += 0.4)
         points.emplace_back(static_cast<float>(x), static_cast<float>(y), -1.1f);
     map->integrate(points, from.cast<float>());
+    hidden->saw(points, from);
   }
 };
 

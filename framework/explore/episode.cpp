@@ -95,6 +95,7 @@ class Explorer {
         map_(map),
         observer_(observer),
         means_(map),
+        hidden_(map),
         graph_(map, Eigen::Vector3d::Constant(settings.body / 2),
                {settings.speed, settings.turn_rate}) {
     known_ = {&map,
@@ -103,7 +104,8 @@ class Explorer {
               settings.sensor.range,
               0,
               settings.show_truth ? &observed : nullptr,
-              settings.threads};
+              settings.threads,
+              &hidden_};
   }
 
   EpisodeResult run(const Viewpoint& start);
@@ -115,6 +117,9 @@ class Explorer {
   void look(EpisodeStep& taken, int place);
   void add_neighbours(int place, std::vector<Viewpoint>& reachable);
   void score(std::span<const int> places);
+  // All candidates whose values are of older maps; false where there are none.
+  bool rescore_all();
+  void list_what_is_left();
   // The neighbours that a way could go on to.
   std::vector<Viewpoint> worth_looking_from(const Viewpoint& view) const;
   bool stopped();
@@ -129,6 +134,7 @@ class Explorer {
   Map& map_;
   const EpisodeObserver& observer_;
   MapMeans means_;
+  HiddenVoxels hidden_;
   ViewpointGraph graph_;
   EpisodeView known_;
   Candidates candidates_;
@@ -190,6 +196,22 @@ std::vector<Viewpoint> Explorer::worth_looking_from(const Viewpoint& view) const
   return views;
 }
 
+bool Explorer::rescore_all() {
+  std::vector<Candidates::Entry> fresh;
+  std::vector<int> stale;
+  while (!candidates_.empty()) {
+    const Candidates::Entry entry = candidates_.pop();
+    if (visits_[static_cast<std::size_t>(entry.place)] >= settings_.visits) continue;
+    if (entry.scored == step_)
+      fresh.push_back(entry);
+    else
+      stale.push_back(entry.place);
+  }
+  for (const Candidates::Entry& entry : fresh) candidates_.push(entry);
+  score(stale);
+  return !stale.empty();
+}
+
 bool Explorer::choose(EpisodeStep& taken, int& place) {
   std::vector<Candidates::Entry> unreachable;
   const auto keep = [&] {
@@ -211,6 +233,8 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
     if (visits_[static_cast<std::size_t>(best.place)] >= settings_.visits) continue;
     if (!(best.value > 0) && step_ > 0) {
       candidates_.push(best);
+      // Values that are no upper bounds may have risen with the map.
+      if (rescore_all()) continue;
       keep();
       result_.end = EpisodeEnd::nothing_to_gain;
       return false;
@@ -256,6 +280,7 @@ void Explorer::look(EpisodeStep& taken, int place) {
   const double after = wall_seconds();
   began_ += after - before;  // the camera's time is not the explorer's
   map_.integrate(image);
+  hidden_.saw(image);
   means_.touch(
       reach_box(map_.grid(), taken.view, settings_.sensor.pinhole, settings_.sensor.range));
   // Where the body is there is nothing else, whatever a noisy image says.
@@ -335,19 +360,23 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
       began_ += wall_seconds() - before;
     }
   }
-  // What is left, all for the last map, in the order in which it became known.
-  std::vector<int> left;
-  for (int place = 0; place < graph_.size(); ++place)
-    if (visits_[static_cast<std::size_t>(place)] < settings_.visits) left.push_back(place);
-  std::vector<Viewpoint> views;
-  for (const int place : left) views.push_back(graph_[place]);
-  std::vector<double> values(views.size());
-  if (result_.end != EpisodeEnd::cancelled && result_.end != EpisodeEnd::time) {
-    utility_.score(known_, views, values);
-    for (std::size_t k = 0; k < views.size(); ++k)
-      result_.candidates.push_back({views[k], values[k]});
-  }
+  if (result_.end != EpisodeEnd::cancelled && result_.end != EpisodeEnd::time) list_what_is_left();
   return std::move(result_);
+}
+
+// What could be gone to, all for the last map, in the order in which it became known.
+void Explorer::list_what_is_left() {
+  const std::vector<bool> reached = graph_.reached_from(at_);
+  std::vector<Viewpoint> views;
+  for (int place = 0; place < graph_.size(); ++place) {
+    const auto at = static_cast<std::size_t>(place);
+    if (visits_[at] < settings_.visits && reached[at] && graph_.free(graph_[place], graph_[place]))
+      views.push_back(graph_[place]);
+  }
+  std::vector<double> values(views.size());
+  utility_.score(known_, views, values);
+  for (std::size_t k = 0; k < views.size(); ++k)
+    result_.candidates.push_back({views[k], values[k]});
 }
 
 }  // namespace

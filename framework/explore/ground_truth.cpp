@@ -90,6 +90,18 @@ void GroundTruth::lay_out() {
 
 void GroundTruth::find_space(std::span<const VoxelKey> all,
                              const std::optional<Eigen::Vector3d>& inside) {
+  // A place beyond these voxels is taken for the nearest one within, but not from anywhere.
+  const auto text = [](const Eigen::Vector3d& p) {
+    return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ", " +
+           std::to_string(p.z()) + ")";
+  };
+  Eigen::AlignedBox3d near = scene_->mesh().bounds();
+  near.min().array() -= kFarthest;
+  near.max().array() += kFarthest;
+  if (inside && !near.contains(*inside))
+    throw InputError("the place " + text(*inside) +
+                     " lies far outside the scene: expected within " + text(near.min()) + " to " +
+                     text(near.max()) + " m");
   SpaceFill fill(size_);
   for (const VoxelKey& key : all)
     fill.at(key.x - low_[0], key.y - low_[1], key.z - low_[2]) = kSurface;

@@ -26,10 +26,12 @@ class GroundTruth {
  public:
   // Metres above and beside the scene that belong to the space around it.
   static constexpr double kAbove = 8, kBeside = 2;
+  static constexpr double kFarthest = 20;
 
   // InputError: a scene with no surface in reach, more than 2^29 voxels, a resolution that is not
   // above 0.
-  // With `inside` it is the space that holds that place.
+  // With `inside` it is the space that holds that place; InputError where it lies more than
+  // kFarthest from the box of the scene.
   GroundTruth(std::shared_ptr<const MeshScene> scene, const Eigen::AlignedBox3d& region,
               double resolution, const std::optional<Eigen::Vector3d>& inside = std::nullopt);
 

@@ -1,5 +1,6 @@
 #include "framework/explore/view_grid.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "framework/core/error.h"
@@ -10,6 +11,9 @@ namespace lapwing {
 namespace {
 
 constexpr double kAlike = 1e-6;  // of two numbers of a mapping
+constexpr const char* kMappingKeys[] = {
+    "resolution", "mode",  "hit",   "miss",   "clamp_min", "clamp_max", "pixel_step",
+    "information", "range", "width", "height", "focal_x",   "focal_y",   "pitch"};
 
 // One level: the cubes around the camera are copied, then interpolated.
 void sample_level(const EpisodeView& known, const Viewpoint& view, const GridShape& shape,
@@ -128,6 +132,21 @@ Value mapping_of(const EpisodeView& known) {
   value.set("focal_y", known.pinhole.focal_y);
   value.set("pitch", known.pitch);
   return value;
+}
+
+std::string mapping_fault(const Value& value) {
+  if (!value.is_map()) return "it is no map";
+  for (const char* key : kMappingKeys) {
+    const Value* found = value.find(key);
+    if (!found) return std::string("it has no ") + key;
+    const bool text = std::string_view(key) == "mode";
+    if (text ? !found->is_text() : !found->is_number())
+      return std::string("its ") + key + " is " + found->describe_type();
+  }
+  for (const auto& [key, given] : value.as_map())
+    if (std::find(std::begin(kMappingKeys), std::end(kMappingKeys), key) == std::end(kMappingKeys))
+      return "it has a " + key + ", which nothing asks for";
+  return "";
 }
 
 std::string mapping_difference(const Value& given, const Value& expected) {

@@ -37,6 +37,8 @@ void sample_grid(const EpisodeView& known, const Viewpoint& view, const GridShap
 // All that a grid depends on besides the map's voxels: edge and update rule of the map, the
 // camera. A model is good for one of these alone (reading 5.2).
 Value mapping_of(const EpisodeView& known);
+// What keeps a value from being such a mapping: "it has no pitch"; empty where nothing does.
+std::string mapping_fault(const Value& value);
 // The first difference, as "resolution is 0.2, the model's 0.4"; empty where there is none.
 std::string mapping_difference(const Value& given, const Value& expected);
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/core/plugin_object.h"
+#include "framework/explore/hidden_voxels.h"
 #include "framework/explore/map_means.h"
 #include "framework/map/map.h"
 #include "framework/view/viewpoint.h"
@@ -42,6 +43,7 @@ struct EpisodeView {
   double pitch = 0;                 // rad, of the camera; the same for every view
   const TrueGain* truth = nullptr;  // null but for a utility that needs it
   int threads = 1;                  // results are the same for any number
+  const HiddenVoxels* hidden = nullptr;  // of the images in the map; null where there are none
 };
 
 class ViewUtility : public PluginObject {
@@ -50,8 +52,8 @@ class ViewUtility : public PluginObject {
   static constexpr const char* kKind = "utility";
   virtual ~ViewUtility() = default;
 
-  // Before an exploration: InputError where the utility does not fit it, as a model that was
-  // trained with other voxels does not.
+  // Before an exploration's first image: InputError where the utility does not fit it, as a model
+  // that was trained with other voxels does not.
   virtual void require_fit(const EpisodeView&) const {}
 
   // `values` has as many places as there are views; higher is better, and 0 or less says that there

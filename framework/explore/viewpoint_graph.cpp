@@ -78,6 +78,23 @@ std::vector<int> ViewpointGraph::believed_way(int from, int to) const {
   return way;
 }
 
+std::vector<bool> ViewpointGraph::reached_from(int from) const {
+  std::vector<bool> reached(static_cast<std::size_t>(size()));
+  std::vector<int> open{from};
+  reached[static_cast<std::size_t>(from)] = true;
+  while (!open.empty()) {
+    const int at = open.back();
+    open.pop_back();
+    for (const Edge& edge : edges_[static_cast<std::size_t>(at)]) {
+      const auto to = static_cast<std::size_t>(edge.to);
+      if (reached[to] || !free(index_[at], index_[edge.to])) continue;
+      reached[to] = true;
+      open.push_back(edge.to);
+    }
+  }
+  return reached;
+}
+
 std::vector<int> ViewpointGraph::way(int from, int to) {
   if (from == to) return {};
   for (;;) {

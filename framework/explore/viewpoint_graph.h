@@ -38,6 +38,8 @@ class ViewpointGraph {
 
   // The quickest way, `from` left out; empty where there is none or where `from` is `to`.
   std::vector<int> way(int from, int to);
+  // By place, whether there is a way; `from` is reached.
+  std::vector<bool> reached_from(int from) const;
 
  private:
   struct Edge {

@@ -188,9 +188,11 @@ int plan_exploration(lua_State* state) {
   made.solver = e.record.utility;
   made.report.status = e.result.end == EpisodeEnd::cancelled ? SolveStatus::cancelled
                        : e.result.end == EpisodeEnd::time    ? SolveStatus::time_limit
+                       : e.result.steps.empty()              ? SolveStatus::infeasible
                                                              : SolveStatus::feasible;
   made.report.iterations = static_cast<int>(e.result.steps.size());
-  made.report.message = explain(e.result.end);
+  made.report.message = (e.result.steps.empty() ? "no image was taken: " : "") +
+                        explain(e.result.end);
   made.notes.push_back(std::to_string(e.result.steps.size()) + " images: " + explain(e.result.end));
   made.block_name = "exploration";
   made.block = Value::map();

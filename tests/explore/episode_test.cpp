@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/explore/viewpoint_graph.h"
 #include "tests/explore/explore_fixture.h"
 
 namespace lapwing {
@@ -54,6 +55,9 @@ TEST(GroundTruth, HoldsTheSurfaceThatTheSpaceAroundTouches) {
 
 TEST(GroundTruth, RefusesARegionWithoutSpaceAndAWorldTooLarge) {
   EXPECT_NE(refusal([] { GroundTruth(yard(), {}, 0.01); }).find("2^29"), std::string::npos);
+  const Eigen::Vector3d far(0, 0, 30);
+  EXPECT_NE(refusal([&] { GroundTruth(yard(), {}, 0.4, far); }).find("far outside"),
+            std::string::npos);
 }
 
 // The oracle's gain is what an image really adds to what was observed.
@@ -196,6 +200,48 @@ TEST(Episode, EndsAndSaysWhy) {
   world.settings.cancellation = nullptr;
   world.settings.wall_clock_guard = 0;
   EXPECT_EQ(world.run(Constant(1)).end, EpisodeEnd::time);
+}
+
+// Worth nothing but straight ahead, then nothing at all, then much: as nobody's upper bounds are.
+TEST(Episode, AsksAllThatAreLeftBeforeItEnds) {
+  YardWorld world(4);
+  int images = 0;
+  class Rising final : public ViewUtility {
+   public:
+    explicit Rising(const int& images) : images_(images) {}
+
+   private:
+    void values_of(const EpisodeView&, std::span<const Viewpoint> views,
+                   std::span<double> values) const override {
+      for (std::size_t k = 0; k < views.size(); ++k)
+        values[k] = images_ > 1 ? 5 : images_ == 1 ? 0 : views[k].position.x() > 2 ? 2 : -1;
+    }
+    const int& images_;
+  };
+  const EpisodeResult result =
+      world.run(Rising(images), [&](const EpisodeMoment& moment) { images = moment.step + 1; });
+  EXPECT_EQ(result.end, EpisodeEnd::steps);
+  ASSERT_EQ(result.steps.size(), 4u);
+  EXPECT_EQ(result.steps[1].value, 2);
+  EXPECT_EQ(result.steps[2].value, 5);
+}
+
+// A corridor of three places; then the way to the last one is closed.
+TEST(ViewpointGraph, KnowsWhatCanBeReached) {
+  const auto map = YardWorld::new_map();
+  const auto set = [&](double x, float log_odds) {
+    const std::vector<VoxelLeaf> leaves{{map->grid().key({x, 0.2, 0.2}), 0, 1, log_odds}};
+    map->import(leaves);
+  };
+  for (double x = 0.2; x < 6; x += 0.4) set(x, -2);
+  ViewpointGraph graph(*map, Eigen::Vector3d::Constant(0.1), {1, 1});
+  for (const double x : {0.6, 2.6, 4.6}) graph.add({{x, 0.2, 0.2}, 0, 0});
+  graph.join(0, 1);
+  graph.join(1, 2);
+  EXPECT_EQ(graph.reached_from(0), (std::vector<bool>{true, true, true}));
+  set(3.8, 2);
+  EXPECT_EQ(graph.reached_from(0), (std::vector<bool>{true, true, false}));
+  EXPECT_EQ(graph.reached_from(2), (std::vector<bool>{false, false, true}));
 }
 
 // In a box that nothing leaves there are no more than so many viewpoints.

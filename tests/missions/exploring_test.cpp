@@ -98,6 +98,7 @@ TEST_F(Exploring, UtilitiesAreSwappedByConfiguration) {
 TEST_F(Exploring, BadInputIsNamed) {
   const std::pair<const char*, const char*> cases[] = {
       {"--set start=[10,-3,3]", "obstacle"},
+      {"--set start=[500,500,50]", "far outside the scene: expected within (-50.0"},
       {"--set moves.step=4", "no neighbour"},
       {"--set utility=learned --set camera.width=160 --set camera.height=120 --set resolution=0.2",
        "resolution is 0.2, the model's 0.4"},
@@ -125,6 +126,9 @@ TEST_F(Exploring, DamagedModelsAndEmptyScenesAreNamed) {
   damaged[damaged.size() / 2] ^= 0x10;
   EXPECT_NE(with_model(damaged).find("broken.model' is no model"), std::string::npos)
       << with_model(damaged);
+  damaged = shipped;  // another header
+  damaged.replace(damaged.find("\"mean\":140"), 10, "\"mean\":240");
+  EXPECT_NE(with_model(damaged).find("checksum"), std::string::npos) << with_model(damaged);
   EXPECT_NE(with_model(shipped.substr(0, 5000)).find("broken.model' is no model"),
             std::string::npos);
   fs::remove(model);
@@ -135,6 +139,19 @@ TEST_F(Exploring, DamagedModelsAndEmptyScenesAreNamed) {
   const std::string of_empty =
       refusal("--config explore/small --set input='" + empty.string() + "'");
   EXPECT_NE(of_empty.find("empty.obj"), std::string::npos) << of_empty;
+}
+
+// A budget that is too short for the first image: no plan, and it says why.
+TEST_F(Exploring, WithoutAnImageThereIsNoPlan) {
+  const std::string said = (folder_ / "said.txt").string();
+  const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing run '" +
+                           (kExamples / "../explore/own_mesh.lua").string() + "' --out '" +
+                           (folder_ / "short").string() + "' " + few("--set budget=0.1") + " > '" +
+                           said + "' 2>&1";
+  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
+  EXPECT_NE(read_file(said).find("no image was taken: the next view lies beyond the flight's"),
+            std::string::npos)
+      << read_file(said);
 }
 
 // What was there is kept, what is missing is made again, and the tables are the same.
@@ -158,6 +175,17 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
     if (++removed % 2 == 0) fs::remove(entry.path());
   EXPECT_EQ(removed, 6);
   fs::remove(broken / "table.csv");
+  const std::string errors = (folder_ / "errors.txt").string();
+  const auto refused = [&](const std::string& more, const fs::path& out, const char* expected) {
+    EXPECT_EQ(evaluate(more + " 2> '" + errors + "'", out), 2) << more;
+    EXPECT_NE(read_file(errors).find(expected), std::string::npos) << more << read_file(errors);
+  };
+  // Half a file is found, and said how to be rid of.
+  const fs::path half = fs::directory_iterator(broken / "episodes")->path();
+  const std::string episode_text = read_file(half);
+  write_file_atomically(half, episode_text.substr(0, episode_text.size() / 2));
+  refused("--resume", broken, "delete it");
+  write_file_atomically(half, episode_text);
   ASSERT_EQ(evaluate("--resume", broken), 0);
   for (const char* file : {"table.csv", "curves.csv", "report.html"})
     EXPECT_EQ(read_file(whole / file), read_file(broken / file)) << file;
@@ -181,7 +209,7 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   for (std::string line, cell; std::getline(table, line);) {
     std::vector<std::string> cells;
     for (std::istringstream row(line); std::getline(row, cell, ',');) cells.push_back(cell);
-    ASSERT_EQ(cells.size(), 10u) << line;
+    ASSERT_EQ(cells.size(), cells[11] == "0" ? 12u : 13u) << line;
     if (cells[0] != "yard.obj") continue;
     ++rows;
     const auto [first, second] = efficiency.at(cells[1]);
@@ -198,8 +226,26 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
                 1e-4);
   }
   EXPECT_EQ(rows, 3);
-  EXPECT_EQ(evaluate("--resume --seed 5", broken), 2);  // other settings
-  EXPECT_EQ(evaluate("--resume --moves clear=3", broken), 2);
+  EXPECT_NE(read_file(whole / "seconds.csv").find("yard.obj,oracle,2,0."), std::string::npos);
+  refused("--resume --seed 5", broken, "seed is 1 there, 5 here");
+  refused("--resume --moves clear=3", broken, "moves is not said there");
+  // Another mesh of the name, and a folder that is none of ours.
+  const std::string mesh = read_file(folder_ / "yard.obj");
+  write_file_atomically(folder_ / "yard.obj", mesh + "# moved\n");
+  refused("--resume", broken, "the file of yard.obj is another one");
+  write_file_atomically(folder_ / "yard.obj", mesh);
+  fs::create_directories(folder_ / "elsewhere");
+  write_file_atomically(folder_ / "elsewhere" / "yard.obj", mesh);
+  refused("--world '" + (folder_ / "elsewhere/yard.obj").string() + "'", folder_ / "twice",
+          "would both be called 'yard.obj'");
+  fs::remove(broken / "settings.json");
+  for (const char* more : {"", "--resume"}) refused(more, broken, "choose another folder");
+  write_file_atomically(broken / "settings.json", "{\"colour\": 3}");
+  refused("", broken, "choose another folder");
+  EXPECT_TRUE(fs::exists(half));
+  for (const char* noise : {"--sigma nan", "--sigma -1", "--sigma inf", "--dropped -3",
+                            "--dropped 1.5", "--dropped nan", "--stereo nan", "--stereo -1"})
+    refused(noise, folder_ / "noise", "expected a number from 0 to");
   EXPECT_EQ(evaluate("--moves clear=0.5", folder_ / "small"), 2);  // the body does not fit
   EXPECT_EQ(evaluate("--moves leap=3", folder_ / "unknown"), 2);
 }

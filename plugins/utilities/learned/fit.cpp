@@ -4,9 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numeric>
 
+#include "framework/core/checksum.h"
 #include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/core/json.h"
 #include "framework/core/parallel.h"
 #include "plugins/utilities/learned/model_file.h"
 
@@ -32,6 +36,9 @@ Samples read_all(const std::vector<std::filesystem::path>& files, const GridShap
     SampleSet set = read_samples(file);
     if (!(set.shape == shape))
       throw InputError("'" + file.string() + "' holds grids of another shape than the network's");
+    if (const std::string fault = mapping_fault(set.mapping); !fault.empty())
+      throw InputError("'" + file.string() + "' was made with a mapping that is not whole: " +
+                       fault);
     if (mapping.is_null()) mapping = set.mapping;
     const std::string difference = mapping_difference(set.mapping, mapping);
     if (!difference.empty())
@@ -65,6 +72,32 @@ std::vector<float> answers(const Samples& samples, const Model& model, int threa
   return values;
 }
 
+// Says which samples these are without holding them.
+std::string digest_of(const SampleSet& set) {
+  std::string text = set.world + "\n" + std::to_string(set.episode) + "\n";
+  text.append(reinterpret_cast<const char*>(set.targets.data()),
+              set.targets.size() * sizeof(float));
+  return sha256(text);
+}
+
+std::string digest_of(const Samples& samples) {
+  std::string all;
+  for (const SampleSet& set : samples.sets) all += digest_of(set);
+  return sha256(all);
+}
+
+// Who is judged by what it was trained with is told nothing.
+void require_apart(const FitRequest& request, const Samples& training, const Samples& validation) {
+  std::map<std::string, std::size_t> trained;
+  for (std::size_t k = 0; k < training.sets.size(); ++k)
+    trained.emplace(digest_of(training.sets[k]), k);
+  for (std::size_t k = 0; k < validation.sets.size(); ++k)
+    if (const auto found = trained.find(digest_of(validation.sets[k])); found != trained.end())
+      throw InputError("'" + request.validation[k].string() + "' holds the same samples as '" +
+                       request.training[found->second].string() +
+                       "': training and validation must be apart");
+}
+
 struct Judged {
   double loss = 0, rho = 0;
 };
@@ -91,6 +124,7 @@ class Training {
  private:
   void begin();
   void resume();
+  void require_same(const Value& checkpoints) const;
   double epoch(std::int64_t number);
   void note(std::int64_t number, double training, const Judged& judged, double seconds);
 
@@ -103,6 +137,7 @@ class Training {
   std::string from_;  // a model to begin with
   Samples training_, validation_;
   Model model_;
+  Value asked_ = Value::map();  // all that the result depends on
   Judged best_;
   std::int64_t best_epoch_ = 0, first_ = 1;
   double seconds_ = 0;
@@ -125,6 +160,11 @@ Training::Training(const Parameters& p, const FitRequest& request)
   Value mapping;
   training_ = read_all(request.training, shape_.grid, mapping);
   validation_ = read_all(request.validation, shape_.grid, mapping);
+  require_apart(request, training_, validation_);
+  asked_.set("seed", static_cast<std::int64_t>(request.seed));
+  for (const auto& [key, value] : p.value().as_map()) asked_.set(key, value);
+  asked_.set("training samples", digest_of(training_));
+  asked_.set("validation samples", digest_of(validation_));
   // Evenly over all of them.
   const auto most = static_cast<std::size_t>(p.integer("validation_samples"));
   if (validation_.size() > most) {
@@ -139,6 +179,7 @@ Training::Training(const Parameters& p, const FitRequest& request)
   batch_ = static_cast<int>(std::min(static_cast<std::size_t>(batch_), training_.size()));
   model_.shape = shape_;
   model_.mapping = mapping;
+  model_.provenance = Value::map();
 }
 
 void Training::begin() {
@@ -164,9 +205,23 @@ void Training::begin() {
     if (!difference.empty())
       throw InputError("begin: '" + from_ + "' has another mapping: " + difference);
     model_.state = std::move(other.state);
+    Value& begun = model_.provenance.set("begin", other.provenance);
+    begun.set("sha256", sha256(read_file(from_)));
   }
   model_.adam.emplace(layout_.parameters);
   best_.loss = HUGE_VAL;
+}
+
+// A training that never learns more slowly towards its last epoch may be given more of them.
+void Training::require_same(const Value& checkpoints) const {
+  for (const auto& [key, value] : asked_.as_map()) {
+    if (key == "epochs" && !cosine_) continue;
+    const Value* other = checkpoints.find(key);
+    if (other && *other == value) continue;
+    throw InputError("--resume: '" + request_.checkpoint.string() + "' was made with another " +
+                     key + ": " + (other ? to_json(*other, -1) : "none") + ", not " +
+                     to_json(value, -1));
+  }
 }
 
 void Training::resume() {
@@ -176,8 +231,7 @@ void Training::resume() {
     throw InputError("the checkpoint has another architecture than asked for");
   const std::string difference = mapping_difference(model_.mapping, saved.mapping);
   if (!difference.empty()) throw InputError("the checkpoint has another mapping: " + difference);
-  if (saved.root != root_)
-    throw InputError("the checkpoint was trained for other targets (plain or root)");
+  require_same(saved.progress.at("asked"));
   model_ = std::move(saved);
   first_ = model_.progress.at("epoch").as_integer() + 1;
   best_epoch_ = model_.progress.at("best_epoch").as_integer();
@@ -259,6 +313,7 @@ Value Training::run() {
       Model kept = model_;
       kept.adam.reset();
       Value& from = kept.provenance = Value::map();
+      if (const Value* begun = model_.provenance.find("begin")) from.set("begin", *begun);
       from.set("samples", static_cast<std::int64_t>(training_.size()));
       from.set("validation_samples", static_cast<std::int64_t>(validation_.size()));
       from.set("epoch", number);
@@ -279,6 +334,7 @@ Value Training::run() {
     progress.set("best_loss", best_.loss);
     progress.set("best_rho", std::isfinite(best_.rho) ? best_.rho : 0.0);
     progress.set("seconds", seconds_);
+    progress.set("asked", asked_);
     write_model(model_, request_.checkpoint);
   }
   Value figures = Value::map();

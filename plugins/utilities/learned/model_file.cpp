@@ -12,7 +12,8 @@
 namespace lapwing::learned {
 namespace {
 
-constexpr std::string_view kMagic = "lapwing model 1\n";
+constexpr std::string_view kMagic = "lapwing model 2\n";
+constexpr std::size_t kChecksum = 64;  // hexadecimal digits, on the second line
 constexpr std::size_t kMostBytes = std::size_t{1} << 28;
 
 void append(std::string& bytes, const std::vector<float>& numbers) {
@@ -51,8 +52,8 @@ void write_model(const Model& model, const std::filesystem::path& path) {
     header.set("adam_steps", model.adam->steps);
     header.set("progress", model.progress);
   }
-  header.set("sha256", sha256(numbers));
-  write_file_atomically(path, std::string(kMagic) + to_json(header, -1) + "\n" + numbers);
+  const std::string body = to_json(header, -1) + "\n" + numbers;
+  write_file_atomically(path, std::string(kMagic) + sha256(body) + "\n" + body);
 }
 
 Model read_model(const std::filesystem::path& path) {
@@ -62,9 +63,13 @@ Model read_model(const std::filesystem::path& path) {
   };
   const std::string_view all(bytes);
   if (!all.starts_with(kMagic)) throw refuse("another first line");
-  const std::size_t line = bytes.find('\n', kMagic.size());
-  if (line == bytes.npos) throw refuse("it ends in its first lines");
-  const Value header = from_json(all.substr(kMagic.size(), line - kMagic.size()), path.string());
+  const std::size_t begin = kMagic.size() + kChecksum + 1;
+  const std::size_t line = bytes.find('\n', begin);
+  if (bytes.size() < begin || line == bytes.npos) throw refuse("it ends in its first lines");
+  // Before anything is made of it: the header says what a network's answers mean.
+  if (all.substr(kMagic.size(), kChecksum) != sha256(all.substr(begin)) || all[begin - 1] != '\n')
+    throw refuse("it is damaged: its checksum does not hold");
+  const Value header = from_json(all.substr(begin, line - begin), path.string());
   Diagnostics errors;
   Fields fields(header, "", errors);
   Model model;
@@ -79,10 +84,10 @@ Model read_model(const std::filesystem::path& path) {
   const bool checkpoint = fields.has("adam_steps");
   const std::int64_t steps = checkpoint ? fields.integer("adam_steps") : 0;
   if (checkpoint) model.progress = fields.opaque("progress");
-  const std::string checksum = fields.text("sha256");
   fields.finish();
   errors.throw_if_any();
-  if (!model.mapping.is_map()) throw refuse("it has no mapping");
+  if (const std::string fault = mapping_fault(model.mapping); !fault.empty())
+    throw refuse("its mapping is not whole: " + fault);
   if (!(model.target_deviation > 0)) throw refuse("its deviation of targets is not above 0");
   model.shape = network_shape_from(shape);
   const NetworkLayout layout(model.shape);
@@ -92,7 +97,6 @@ Model read_model(const std::filesystem::path& path) {
   if (numbers.size() != expected)
     throw refuse("its network has " + std::to_string(expected) + " bytes of numbers, the file " +
                  std::to_string(numbers.size()));
-  if (sha256(numbers) != checksum) throw refuse("it is damaged: its checksum does not hold");
   std::size_t at = 0;
   const auto take = [&](std::size_t count) {
     std::vector<float> values(count);

@@ -1,7 +1,8 @@
 // A trained model as a file: architecture, weights, normalisation, mapping and provenance.
 //
-// A line "lapwing model 1", a line of JSON, then 32-bit floats, little endian: parameters, running
-// statistics and, in a checkpoint, the moments of Adam. The JSON holds their checksum.
+// A line "lapwing model 2", a line with the checksum of all that follows, a line of JSON, then
+// 32-bit floats, little endian: parameters, running statistics and, in a checkpoint, the moments of
+// Adam.
 #pragma once
 
 #include <filesystem>
@@ -29,7 +30,7 @@ struct Model {
 
 void write_model(const Model& model, const std::filesystem::path& path);
 // InputError naming the file: none there, another format, truncated, a checksum that does not hold,
-// sizes that contradict the architecture.
+// sizes that contradict the architecture, a mapping that is not whole.
 Model read_model(const std::filesystem::path& path);
 
 }  // namespace lapwing::learned

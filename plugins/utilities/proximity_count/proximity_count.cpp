@@ -1,6 +1,10 @@
-// Counts unmeasured voxels behind surfaces that a view would see, near ones more.
+// Counts the unmeasured voxels that images saw a surface before, near ones more: what a view from
+// another side would see of the far sides of what is known.
 //
 //   utility: {type: proximity_count, maximum_distance: 4}
+#include <algorithm>
+
+#include "framework/core/error.h"
 #include "framework/core/parallel.h"
 #include "framework/explore/view_rays.h"
 #include "framework/plugin/plugin.h"
@@ -17,7 +21,7 @@ class ProximityCount final : public ViewUtility {
     return ParameterTable()
         .integer("pixel_step", 2, "a ray through every so many pixels and rows", between(1, 64))
         .number("maximum_distance", 4, "m", "behind the surface, where voxels no longer count",
-                between(0.1, 100));
+                between(0.1, 20));
   }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kMonotone, nullptr}};
@@ -26,28 +30,36 @@ class ProximityCount final : public ViewUtility {
   explicit ProximityCount(const Parameters& p)
       : step_(static_cast<int>(p.integer("pixel_step"))), farthest_(p.number("maximum_distance")) {}
 
+  void require_fit(const EpisodeView& known) const override { behind(known).follow(farthest_); }
+
  protected:
   void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
                  std::span<double> values) const override {
+    behind(known).require_followed(farthest_);
     parallel_for(views.size(), known.threads,
                  [&](std::size_t i) { values[i] = sum(known, views[i]); });
   }
 
  private:
+  static const HiddenVoxels& behind(const EpisodeView& known) {
+    if (!known.hidden)
+      throw InputError("utility 'proximity_count' asks what lies behind the surfaces that images "
+                       "saw, and there are no images");
+    return *known.hidden;
+  }
+
   double sum(const EpisodeView& known, const Viewpoint& view) const {
     double total = 0;
+    HiddenVoxels::Reader hidden(*known.hidden);
+    if (!known.map->grid().contains(view.position)) return 0;
     for (const Eigen::Vector3d& direction : view_rays(view, known.pinhole, step_)) {
-      double surface = -1;  // m, where the ray enters the surface that it meets first
-      walk_ray(*known.map, view.position, direction, known.range + farthest_,
-               [&](const VoxelReading& reading, double distance) {
-                 if (surface < 0) {
-                   if (reading.state == VoxelState::occupied) surface = distance;
-                   return distance < known.range;
-                 }
-                 if (distance - surface >= farthest_) return false;
-                 if (!reading.known) total += farthest_ - (distance - surface);
-                 return true;
-               });
+      RayWalk walk(known.map->grid(), view.position, direction);
+      for (; walk.inside() && walk.entered < known.range; walk.advance()) {
+        const VoxelReading reading = known.map->read(walk.key());
+        if (reading.state == VoxelState::occupied) break;
+        if (!reading.known)
+          total += std::max(0.0, farthest_ - static_cast<double>(hidden.distance(walk.key())));
+      }
     }
     return total;
   }

@@ -2,8 +2,10 @@
 // derivative against differences of it.
 #include <gtest/gtest.h>
 
+#include "framework/core/checksum.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/map/plain_map.h"
 #include "plugins/utilities/learned/fit.h"
 #include "plugins/utilities/learned/kernels.h"
 #include "plugins/utilities/learned/model_file.h"
@@ -341,7 +343,10 @@ void write_easy_samples(const std::filesystem::path& folder, int files, std::uin
     SampleSet set;
     set.world = "made " + std::to_string(file);
     set.shape = small_shape().grid;
-    set.mapping = Value::map();
+    const PlainMap map{MapSettings{}};
+    EpisodeView known;
+    known.map = &map;
+    set.mapping = mapping_of(known);
     set.mapping.set("resolution", 0.4);
     for (int k = 0; k < 64; ++k) {
       const double level = random.uniform();
@@ -423,8 +428,12 @@ TEST(LearnedFit, BeginsWithAModel) {
   std::filesystem::rename(fixture.request.model, fixture.folder / "first.model");
   fixture.given.set("epochs", 1);
   const double fresh = fixture.run().at("validation_loss").as_number();
-  fixture.given.set("begin", (fixture.folder / "first.model").string());
+  const auto first = fixture.folder / "first.model";
+  fixture.given.set("begin", first.string());
   const double begun = fixture.run().at("validation_loss").as_number();
+  const Value told = read_model(fixture.request.model).provenance.at("begin");
+  EXPECT_EQ(told.at("sha256").as_text(), sha256(read_file(first)));
+  EXPECT_EQ(told.at("samples").as_integer(), 128);
   EXPECT_LT(begun, 0.5 * fresh);
   EXPECT_LT(begun, 4 * whole);
   fixture.given.set("hidden1", 24);
@@ -449,6 +458,53 @@ TEST(LearnedFit, ResumedItIsAsIfNeverStopped) {
   EXPECT_EQ(read_file(fixture.request.model), whole);
 }
 
+TEST(LearnedFit, GoesOnWithTheSameAlone) {
+  FitFixture fixture;
+  fixture.given.set("epochs", 1);
+  fixture.run();
+  fixture.request.resume = true;
+  const auto refusal = [&] {
+    try {
+      fixture.run();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(), "");
+  fixture.request.seed = 2;
+  EXPECT_NE(refusal().find("another seed: 1, not 2"), std::string::npos) << refusal();
+  fixture.request.seed = 1;
+  fixture.given.set("rate", 0.02);
+  EXPECT_NE(refusal().find("another rate"), std::string::npos) << refusal();
+  fixture.given.set("rate", 0.01);
+  write_easy_samples(fixture.folder / "validation", 1, 3);
+  fixture.request.validation = sample_files(fixture.folder / "validation");
+  EXPECT_NE(refusal().find("another validation samples"), std::string::npos) << refusal();
+  fixture.request.resume = false;
+  fixture.request.validation = fixture.request.training;
+  EXPECT_NE(refusal().find("must be apart"), std::string::npos) << refusal();
+}
+
+// What the shipped model is, header and weights; its figures in the readme are of this one.
+TEST(LearnedModel, TheShippedOneIsWhatItWas) {
+  const auto path = std::filesystem::path(LAPWING_SOURCE_DIR) /
+                    "plugins/utilities/learned/learned.model";
+  const Model model = read_model(path);
+  const std::string bytes = read_file(path);
+  const std::size_t numbers =
+      sizeof(float) * (model.state.parameters.size() + model.state.statistics.size());
+  EXPECT_EQ(sha256(bytes.substr(bytes.size() - numbers)),
+            "176dfdb697b6db13584b29252bc31969278e0a233481c4eb5f16884e8920567f");
+  EXPECT_EQ(model.target_mean, 140.06549994927536);
+  EXPECT_EQ(model.target_deviation, 151.24743494552564);
+  EXPECT_FALSE(model.root);
+  EXPECT_EQ(model.mapping.at("pitch").as_number(), -0.17453292519943295);
+  const Value& begun = model.provenance.at("begin");
+  EXPECT_EQ(begun.at("samples").as_integer(), 89770);
+  EXPECT_EQ(begun.at("begin").at("model").as_text(), "second.model");
+}
+
 TEST(LearnedModel, DamageIsFound) {
   FitFixture fixture;
   fixture.given.set("epochs", 1);
@@ -468,7 +524,16 @@ TEST(LearnedModel, DamageIsFound) {
   std::string damaged = bytes;
   damaged[damaged.size() - 9] ^= 0x40;
   EXPECT_NE(refusal(damaged).find("damaged"), std::string::npos);
-  EXPECT_NE(refusal(bytes.substr(0, bytes.size() - 100)).find("bytes"), std::string::npos);
+  EXPECT_NE(refusal(bytes.substr(0, bytes.size() - 100)).find("damaged"), std::string::npos);
+  // The header as well: what the network's answers mean.
+  damaged = bytes;
+  damaged.replace(damaged.find("\"mean\":"), 9, "\"mean\":9");
+  EXPECT_NE(refusal(damaged).find("damaged"), std::string::npos);
+  write_file_atomically(path, bytes);
+  Model whole = read_model(path);
+  whole.mapping = Value::map();
+  write_model(whole, path);
+  EXPECT_NE(refusal(read_file(path)).find("it has no resolution"), std::string::npos);
   EXPECT_NE(refusal("lapwing").find("first line"), std::string::npos);
   EXPECT_NE(refusal(""), "");
   SampleSet other = read_samples(fixture.request.validation.front());

@@ -40,7 +40,8 @@ struct Corridor {
   void refresh() {
     means = std::make_unique<MapMeans>(map);
     means->touch(*map.bounds());
-    known = {&map, means.get(), {4, 4, 400, 400, 1.5, 1.5}, 10, 0, nullptr, 1};
+    const HiddenVoxels* hidden = known.hidden;
+    known = {&map, means.get(), {4, 4, 400, 400, 1.5, 1.5}, 10, 0, nullptr, 1, hidden};
   }
   double told(const std::string& name, const Value& given = Value::map()) const {
     double value = -1;
@@ -85,17 +86,41 @@ TEST(AverageEntropy, DividesByTheVoxelsMet) {
   EXPECT_EQ(Corridor(4, VoxelState::unknown).told("average_entropy", one_ray_each()), 0);
 }
 
-// Behind a wall that is entered 3.5 m away: voxels at 1 m and 2 m behind it, of at most 3 m.
-TEST(ProximityCount, AddsWhatIsLeftOfTheDistance) {
+// Seen from the front, a wall of one voxel 3.5 m away hides two voxels behind it: 0.5 m and 1.5 m
+// from what was measured in its middle. From the front the wall is in the way; from the other end
+// of the corridor both are seen, and after being measured neither counts.
+TEST(ProximityCount, AddsWhatIsLeftOfTheDistanceBehindSeenSurfaces) {
+  Corridor wall(4, VoxelState::occupied);
   Value given = one_ray_each();
   given.set("maximum_distance", 2.5);
-  const Corridor wall(4, VoxelState::occupied);
-  // Nearly straight rays: 1 m and 2 m behind, 16 of them.
-  EXPECT_NEAR(wall.told("proximity_count", given), 16 * (1.5 + 0.5), 0.01);
-  Corridor measured(4, VoxelState::occupied);
-  measured.add(5, 2);
-  EXPECT_NEAR(measured.told("proximity_count", given), 16 * 0.5, 0.01);
-  EXPECT_EQ(Corridor(4, VoxelState::unknown).told("proximity_count", given), 0);
+  EXPECT_THROW(wall.told("proximity_count", given), InputError);  // without images
+  HiddenVoxels hidden(wall.map);
+  wall.known.hidden = &hidden;
+  EXPECT_THROW(wall.told("proximity_count", given), InputError);  // nobody followed them
+  const auto utility = registry().create<ViewUtility>("proximity_count", given);
+  utility->require_fit(wall.known);
+  const Eigen::Vector3f middle(4.5f, 0.5f, 0.5f);
+  hidden.saw({&middle, 1}, {0.5, 0.5, 0.5});
+  const auto told = [&](double x, double yaw) {
+    const Viewpoint view{{x, 0.5, 0.5}, yaw, 0};
+    double value = -1;
+    utility->score(wall.known, {&view, 1}, {&value, 1});
+    return value;
+  };
+  EXPECT_EQ(told(0.5, 0), 0);                                  // the wall is in the way
+  EXPECT_NEAR(told(9.5, EIGEN_PI), 16 * (2 + 1), 1e-5);        // from behind: both
+  EXPECT_NEAR(told(5.5, EIGEN_PI), 16 * 2, 1e-5);              // from between: one
+  EXPECT_EQ(told(9.5, 0), 0);                                  // the other way round
+  const Eigen::Vector3f nearer(6.0f, 0.5f, 0.5f);              // the smallest distance counts
+  hidden.saw({&nearer, 1}, {9.5, 0.5, 0.5});
+  EXPECT_NEAR(told(9.5, EIGEN_PI), 16 * (2.5 + 1), 1e-5);
+  wall.add(6, -2);  // measured: free
+  EXPECT_NEAR(told(9.5, EIGEN_PI), 16 * 2.5, 1e-5);
+  wall.add(6, 2);  // measured: a wall
+  EXPECT_EQ(told(9.5, EIGEN_PI), 0);
+  given.set("maximum_distance", 3);
+  EXPECT_THROW(registry().create<ViewUtility>("proximity_count", given)->require_fit(wall.known),
+               InputError);  // too late
 }
 
 // The one ray ends 3.5 m away, where a pixel of four is 0.035 m wide; at 5 m, 0.05 m.
