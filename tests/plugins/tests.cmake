@@ -1,3 +1,46 @@
+# Tests of plugins create them through the registry.
+get_property(all_plugins GLOBAL PROPERTY LAPWING_PLUGINS)
+add_dependencies(test_cost_terms ${all_plugins})
+add_dependencies(test_constraints ${all_plugins})
+add_dependencies(test_vehicle_models ${all_plugins})
+
+# A cost term copied into a new folder is picked up with one CMake line and no kernel edit.
+add_executable(check_plugin_folder ${CMAKE_CURRENT_LIST_DIR}/copied_term/check_plugin_folder.cpp)
+target_link_libraries(check_plugin_folder PRIVATE lapwing)
+target_precompile_headers(check_plugin_folder REUSE_FROM lapwing_precompiled)
+add_test(NAME copied_term COMMAND ${CMAKE_COMMAND}
+  -DLAPWING_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DLAPWING_BUILD_DIR=${CMAKE_BINARY_DIR}
+  -DBUILD_TYPE=${CMAKE_BUILD_TYPE} -DSANITIZE=${LAPWING_SANITIZE} -DGENERATOR=${CMAKE_GENERATOR}
+  -DCOMPILER=${CMAKE_CXX_COMPILER} -DCHECK=$<TARGET_FILE:check_plugin_folder>
+  -P ${CMAKE_CURRENT_LIST_DIR}/copied_term/copied_term.cmake)
+set_tests_properties(copied_term PROPERTIES TIMEOUT 240)
+
+# The example plugin, built and run against an install tree; and a new plugin of every kind.
+foreach(name installed_plugin new_plugins)
+  add_test(NAME ${name} COMMAND ${CMAKE_COMMAND}
+    -DLAPWING_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DLAPWING_BUILD_DIR=${CMAKE_BINARY_DIR}
+    -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
+    -P ${CMAKE_CURRENT_LIST_DIR}/installed/${name}.cmake)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+endforeach()
+set_tests_properties(new_plugins PROPERTIES LABELS long)
+
+find_package(octomap REQUIRED)
+target_link_libraries(test_maps PRIVATE octomap octomath)
+add_dependencies(test_maps lapwing_map_octomap lapwing_map_brick)
+add_dependencies(test_path_planners lapwing_path_planner_ompl)
+foreach(solver greedy cost_benefit recursive_greedy local_search milp)
+  add_dependencies(test_tour_solvers lapwing_tour_solver_${solver})
+endforeach()
+add_dependencies(test_path lapwing_map_brick)
+add_dependencies(test_explore lapwing_map_brick)
+get_filename_component(learned ${PROJECT_SOURCE_DIR}/plugins/utilities/learned ABSOLUTE)
+target_sources(test_utilities PRIVATE ${learned}/network.cpp ${learned}/kernels.cpp
+  ${learned}/backpropagation.cpp ${learned}/model_file.cpp ${learned}/fit.cpp)
+foreach(utility frontier average_entropy proximity_count oracle learned)
+  add_dependencies(test_utilities lapwing_utility_${utility})
+endforeach()
+
 # The published orienteering instances with as much work as the README speaks of.
 add_test(NAME orienteering_long
          COMMAND test_tour_solvers --gtest_filter=Orienteering.RoutesOfPublished*)
