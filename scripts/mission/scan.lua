@@ -162,6 +162,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
   for round = 1, TIGHTER do
     local tour, evaluations = solved(run, graph, finish, budget)
     local notes = notes_of(run, graph, known, explored)
+    notes[#notes + 1] = first.warning(run)
     local plan = run:scan_plan {
       tour = tour, legs = flown(run, vehicle, tour, notes), margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",

@@ -11,6 +11,7 @@ local OVERHEAD = 2        -- m of free air above the highest first flight
 
 local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
 local explored = setmetatable({}, { __mode = "k" })  -- likewise, the views of an exploration
+local warnings = setmetatable({}, { __mode = "k" })  -- likewise, what the user should know
 
 -- What the first flight is flown in, or nothing with files of an earlier one.
 local function surface_of(run)
@@ -115,24 +116,38 @@ function M.check(run)
   end
 end
 
--- Some first flight sees the region's floor, at the steepest of its images, or that is said.
-local function require_range(run)
-  local o, floor = run.options, M.region_of(run).lower[3]
+-- How far the ground may be seen: some first flight must see the region's upper side at the steepest
+-- of its images; where none sees the floor that is said, for nothing down there will be known.
+local function check_range(run)
+  local o, region = run.options, M.region_of(run)
   local half = math.atan(o.camera.height / 2, o.camera.focal)
-  local least, height = math.huge, nil
-  for _, flight in ipairs(flights_of(run)) do
-    local steepest = math.min(math.pi / 2, half - math.rad(flight.pitch_deg))
-    local over = height_of(run, flight) - floor
-    local ray = steepest > 0 and over / math.sin(steepest) or math.huge
-    if ray < least then least, height = ray, over end
+  local function nearest(z)
+    local least = math.huge
+    for _, flight in ipairs(flights_of(run)) do
+      local steepest = math.min(math.pi / 2, half - math.rad(flight.pitch_deg))
+      if steepest > 0 then
+        least = math.min(least, (height_of(run, flight) - z) / math.sin(steepest))
+      end
+    end
+    return least
   end
-  if least > o.range then
+  local cure = "a longer range, steeper images (flights, pitch_deg) or a lower safe_height"
+  local floor, upper = nearest(region.lower[3]), nearest(region.upper[3])
+  if upper > o.range then
     run:fail("range", string.format(
-      "no first flight would see the region's floor: the lowest ray of the best one is %.4g m long "
-      .. "(%.4g m over the floor), and depth is measured to %g m. Give a longer range, steeper "
-      .. "images (flights, pitch_deg), or a lower safe_height", least, height or 0, o.range))
+      "no first flight would see anything of the region: to its upper side the shortest ray is "
+      .. "%.4g m long, and depth is measured to %g m; %s would help", upper, o.range, cure))
   end
+  if floor <= o.range then return nil end
+  local warning = string.format(
+    "no first flight sees the region's floor: the shortest ray is %.4g m long, and depth is "
+    .. "measured to %g m; %s would show it", floor, o.range, cure)
+  print("warning: " .. warning)
+  return warning
 end
+
+-- What the user should know of the first flight, or nothing.
+function M.warning(run) return warnings[run] end
 
 -- Depth images from the poses, into the map and the surface.
 function M.look(run, known, surface, poses)
@@ -183,7 +198,7 @@ function M.knowledge(run)
   local known, poses = new_prior(run), {}
   if files then known:load { map = files.map, mesh = files.mesh } end
   if surface and not (files and #o.flights == 0) then
-    if not files then require_range(run) end
+    if not files then warnings[run] = check_range(run) end
     for _, flight in ipairs(flights_of(run)) do
       local made = patterns.over(M.region_of(run), flight.pattern, height_of(run, flight),
                                  flight.views, math.rad(flight.pitch_deg), flight.reach)

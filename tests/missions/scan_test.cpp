@@ -29,6 +29,7 @@ TEST_F(Scanning, AHutIsScannedAndCertified) {
   EXPECT_LE(read.trajectory.duration(), 70);
   // Legs, one by one, take what the whole flight takes, turns on the spot included.
   EXPECT_NEAR(read.trajectory.duration(), tour.at("seconds").as_number(), 1);
+  EXPECT_EQ(plan().find("sees the region's floor"), std::string::npos);
   EXPECT_EQ(read.environment.maps.at(0).file, "map.ot");
   EXPECT_EQ(read.environment.meshes.at(0).file, "prior.ply");
   const std::string report = read_file(folder_ / "out/report.html");
@@ -118,6 +119,9 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
                       "--set safe_height=9"),
               HasSubstr("would have to fly over 32 m"));
   EXPECT_THAT(refused("--set motions.alpha=1"), HasSubstr("joined to the start"));
+  // The roof is seen and the ground is not: the plan says so.
+  ASSERT_EQ(run("--set range=13", "hut.lua", "short"), 0) << error();
+  EXPECT_THAT(plan("short"), HasSubstr("no first flight sees the region's floor"));
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
   EXPECT_THAT(refused("--set scene=churhc"), HasSubstr("did you mean 'scene.church'?"));
@@ -131,7 +135,7 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set region.lower=[6,-5,0] --set region.upper=[-6,5,7]"),
               HasSubstr("lower must be below upper: 6 and -6 along x"));
   EXPECT_THAT(refused("--set ceiling=3"), HasSubstr("3 m is below safe_height, 9 m"));
-  EXPECT_THAT(refused("--set range=8"), HasSubstr("no first flight would see the region's floor"));
+  EXPECT_THAT(refused("--set range=3"), HasSubstr("no first flight would see anything"));
   EXPECT_THAT(refused("--set resolution=0.01"), HasSubstr("choose a coarser resolution"));
   EXPECT_THAT(refused("--set body=[1,0,1]"), HasSubstr("half edges must be above 0"));
   write_file_atomically(folder_ / "none.lua",
