@@ -116,8 +116,9 @@ function M.check(run)
   end
 end
 
--- How far the ground may be seen: some first flight must see the region's upper side at the steepest
--- of its images; where none sees the floor that is said, for nothing down there will be known.
+-- How far the ground may be seen: some first flight must see the region's upper side at the
+-- steepest of its images; where none sees the floor that is said, for nothing down there will be
+-- known.
 local function check_range(run)
   local o, region = run.options, M.region_of(run)
   local half = math.atan(o.camera.height / 2, o.camera.focal)
