@@ -6,5 +6,4 @@ local scan = require "mission.scan"
 return scan.of_mesh {
   name = "own mesh",
   tour = { budget = 300 },  -- s of flight
-  range = 100,  -- m, of the depth camera
 }
