@@ -24,6 +24,8 @@ namespace lapwing {
 
 namespace {
 
+constexpr std::size_t kLargestObstacle = std::size_t{1} << 30;  // bytes, as the verifier reads
+
 struct RunOutcome {
   MissionResult result;
   Certificate certificate;
@@ -175,7 +177,7 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
   files.log = capture.text();
   files.long_exposure = outcome.long_exposure;
   for (const std::string& name : outcome.result.obstacle_files) {
-    std::string bytes = read_file(outcome.result.obstacle_folder / name);
+    std::string bytes = read_file(outcome.result.obstacle_folder / name, kLargestObstacle);
     if (name == "map.ot")
       files.map = std::move(bytes);
     else

@@ -15,6 +15,7 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view kTwoStates = "# Octomap OcTree binary file";
 constexpr std::string_view kLogOdds = "# Octomap OcTree file";
+constexpr std::size_t kLargestMap = std::size_t{1} << 30;  // bytes
 constexpr std::size_t kMostLeaves = std::size_t{1} << 27;
 
 class Reader {
@@ -173,7 +174,7 @@ MapFile parse_map(std::string_view bytes, const std::string& name) {
 }
 
 MapFile read_map_file(const std::filesystem::path& path) {
-  return parse_map(read_file(path), path.string());
+  return parse_map(read_file(path, kLargestMap), path.string());
 }
 
 }  // namespace lapwing
