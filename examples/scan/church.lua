@@ -5,7 +5,6 @@ return scan.of_scene {
   name  = "church",
   scene = "church",
   tour  = { budget = 300 },  -- s of flight
-  -- Just over the tower, so that depth reaches the ground.
-  flights = { { pattern = "ellipse", height = 52, views = 20, reach = 12, pitch_deg = -40 },
-              { pattern = "meander", height = 52, views = 20, reach = 5 } },
+  flights = { { pattern = "ellipse", views = 20, reach = 12, pitch_deg = -40 },
+              { pattern = "meander", views = 20, reach = 5 } },
 }
