@@ -6,10 +6,9 @@
 #include <iostream>
 #include <map>
 
-#include "framework/app/exploration_worlds.h"
+#include "framework/app/exploration_settings.h"
 #include "framework/app/interruption.h"
 #include "framework/config/overrides.h"
-#include "framework/core/checksum.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/number_text.h"
@@ -254,44 +253,6 @@ void print_table(const Summary& summary) {
   }
 }
 
-// Checksums of the files that figures depend on: by world, and by utility its model (a parameter
-// that names a file, else NAME.model beside its library).
-Value files_of(const std::vector<WorldName>& worlds, const std::vector<std::string>& utilities,
-               const Value& parameters, const Registry& registry) {
-  constexpr std::size_t kMost = std::size_t{4} << 30;
-  Value files = Value::map();
-  const auto keep = [&](const std::string& name, const fs::path& path) {
-    if (fs::is_regular_file(path)) files.set(name, sha256(read_file(path, kMost)));
-  };
-  for (const WorldName& world : worlds) keep(world.text(), world.file());
-  for (const std::string& utility : utilities) {
-    keep(utility, fs::path(registry.find("utility", utility).library).replace_extension("model"));
-    const Value* given = parameters.find(utility);
-    if (!given || !given->is_map()) continue;
-    for (const auto& [key, value] : given->as_map())
-      if (value.is_text()) keep(utility + "." + key, value.as_text());
-  }
-  return files;
-}
-
-// The first setting that differs, in words; empty where all agree. Of files only those that both
-// name: other worlds and utilities may join an evaluation.
-std::string settings_difference(const Value& there, const Value& here) {
-  for (const Value* one : {&here, &there})
-    for (const auto& [key, ignored] : one->as_map()) {
-      if (key == "files") continue;
-      const Value *a = there.find(key), *b = here.find(key);
-      if (!a || !b || !(*a == *b))
-        return key + " is " + (a ? to_json(*a, -1) : "not said") + " there, " +
-               (b ? to_json(*b, -1) : "not said") + " here";
-    }
-  const Value* files = there.find("files");
-  for (const auto& [name, sum] : here.at("files").as_map())
-    if (const Value* before = files ? files->find(name) : nullptr; before && !(*before == sum))
-      return "the file of " + name + " is another one";
-  return "";
-}
-
 // Makes the folder ready: settings.json says what the episodes in it are. Nothing is taken away
 // from a folder that is not an evaluation's.
 void claim_folder(const ExploreEvaluation& request, Value stated) {
@@ -365,7 +326,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   stated.set("parameters", parameters);
   if (!request.moves.empty()) stated.set("moves", moves);
   if (!request.up.empty()) stated.set("up", request.up);
-  stated.set("files", files_of(names, utilities, parameters, registry));
+  stated.set("files", checksums_of(names, utilities, parameters, registry));
   claim_folder(request, std::move(stated));
 
   for (const WorldName& name : names) {

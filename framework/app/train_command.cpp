@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "framework/app/exploration_worlds.h"
+#include "framework/app/exploration_settings.h"
 #include "framework/app/interruption.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/train_command.h"
@@ -37,10 +37,11 @@ std::string file_name(const std::string& world, std::int64_t episode) {
 SampleSet sampled_episode(const World& world, const GroundTruth& truth,
                           const ExplorationSetup& setup, const Registry& registry,
                           const std::string& explorer, const Value& parameters,
-                          const GridShape& shape, std::int64_t episode, std::uint64_t seed) {
+                          const Value& made_by, const GridShape& shape, std::int64_t episode, std::uint64_t seed) {
   SampleSet samples;
   samples.world = world.name;
   samples.episode = episode;
+  samples.made_by = made_by;
   samples.shape = shape;
   const auto utility = registry.create<ViewUtility>(explorer, parameters, explorer);
   const auto new_map = setup.new_map(registry);
@@ -61,6 +62,29 @@ SampleSet sampled_episode(const World& world, const GroundTruth& truth,
   return samples;
 }
 
+// The episodes of a world that are to be flown; what is there is neither written over nor, where
+// it was made otherwise, taken for these.
+std::vector<std::int64_t> missing_episodes(const TrainRequest& request, const std::string& world,
+                                           const Value& made_by) {
+  std::vector<std::int64_t> missing;
+  for (std::int64_t episode = 1; episode <= request.episodes; ++episode) {
+    const fs::path file = request.target / file_name(world, episode);
+    if (!fs::exists(file)) {
+      missing.push_back(episode);
+    } else if (!request.resume) {
+      throw InputError("'" + file.string() +
+                       "' is there: --resume keeps it and makes those that are missing, another " +
+                       "folder keeps both");
+    } else if (const std::string difference =
+                   settings_difference(read_samples(file).made_by, made_by);
+               !difference.empty()) {
+      throw InputError("'" + file.string() + "' was made otherwise: " + difference +
+                       "; another folder keeps both");
+    }
+  }
+  return missing;
+}
+
 }  // namespace
 
 ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocation) {
@@ -71,34 +95,49 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   const std::vector<WorldName> names = distinct_worlds(request.worlds, "train dataset");
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
-  setup.set_moves(request.moves);
+  const Value moves = setup.set_moves(request.moves);
   setup.episode.show_truth = request.explorer == "oracle";
   setup.episode.cancellation = &interruption.token();
   Value explorer = Value::map();
   for (const std::string& text : request.explorer_overrides) apply_override(explorer, text);
   registry.create<ViewUtility>(request.explorer, explorer, request.explorer);  // may refuse it
-  std::size_t samples = 0;
+  Value parameters = Value::map();
+  parameters.set(request.explorer, explorer);
+  std::vector<Value> made_by;
+  std::vector<std::vector<std::int64_t>> missing;
   for (const WorldName& name : names) {
-    std::vector<std::int64_t> missing;
-    for (std::int64_t episode = 1; episode <= request.episodes; ++episode)
-      if (!request.resume || !fs::exists(request.target / file_name(name.text(), episode)))
-        missing.push_back(episode);
-    if (missing.empty()) continue;
-    const World world = load_world(name, request.up, registry, invocation);
+    Value made = Value::map();
+    made.set("program", std::string("lapwing ") + program_version());
+    made.set("explorer", request.explorer);
+    made.set("parameters", explorer);
+    made.set("seed", static_cast<std::int64_t>(invocation.seed));
+    made.set("steps", request.steps);
+    made.set("moves", moves);
+    made.set("up", request.up);
+    made.set("grid", to_value(shape));
+    made.set("files", checksums_of({name}, {request.explorer}, parameters, registry));
+    missing.push_back(missing_episodes(request, name.text(), made));
+    made_by.push_back(std::move(made));
+  }
+  std::size_t samples = 0;
+  for (std::size_t w = 0; w < names.size(); ++w) {
+    if (missing[w].empty()) continue;
+    const World world = load_world(names[w], request.up, registry, invocation);
     const GroundTruth truth = setup.truth_of(world);
-    std::vector<std::size_t> made(missing.size());
-    parallel_for(missing.size(), invocation.threads, [&](std::size_t k) {
+    std::vector<std::size_t> made(missing[w].size());
+    parallel_for(missing[w].size(), invocation.threads, [&](std::size_t k) {
       if (interruption.token().cancelled()) return;
-      const SampleSet set = sampled_episode(world, truth, setup, registry, request.explorer,
-                                            explorer, shape, missing[k], invocation.seed);
+      const SampleSet set =
+          sampled_episode(world, truth, setup, registry, request.explorer, explorer, made_by[w],
+                          shape, missing[w][k], invocation.seed);
       if (interruption.token().cancelled()) return;
-      write_samples(set, request.target / file_name(name.text(), missing[k]));
+      write_samples(set, request.target / file_name(names[w].text(), missing[w][k]));
       made[k] = set.size();
     });
     if (interruption.token().cancelled()) throw Cancelled();
     for (const std::size_t count : made) samples += count;
     if (!invocation.quiet)
-      std::cerr << name.text() << ": " << missing.size() << " episodes, " << samples
+      std::cerr << names[w].text() << ": " << missing[w].size() << " episodes, " << samples
                 << " samples so far\n";
   }
   return ExitStatus::done;

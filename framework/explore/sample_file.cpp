@@ -12,7 +12,7 @@
 namespace lapwing {
 namespace {
 
-constexpr std::string_view kMagic = "lapwing samples 1\n";
+constexpr std::string_view kMagic = "lapwing samples 2\n";
 constexpr std::size_t kMostBytes = std::size_t{4} << 30;
 
 }  // namespace
@@ -30,6 +30,7 @@ void write_samples(const SampleSet& samples, const std::filesystem::path& path) 
   Value header = Value::map();
   header.set("world", samples.world);
   header.set("episode", samples.episode);
+  header.set("made_by", samples.made_by);
   header.set("samples", static_cast<std::int64_t>(samples.size()));
   header.set("grid", to_value(samples.shape));
   header.set("mapping", samples.mapping);
@@ -58,6 +59,7 @@ SampleSet read_samples(const std::filesystem::path& path) {
   SampleSet samples;
   samples.world = fields.text("world");
   samples.episode = fields.integer("episode");
+  samples.made_by = fields.opaque("made_by");
   const std::int64_t count = fields.integer("samples");
   const Value grid = fields.opaque("grid");
   samples.mapping = fields.opaque("mapping");

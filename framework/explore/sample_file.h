@@ -1,7 +1,7 @@
 // Training samples of one episode: what the map looked like around viewpoints, and what the oracle
 // said of them (thesis 5.4.5).
 //
-// A file is a line "lapwing samples 1", a line of JSON, then the targets (32-bit floats, little
+// A file is a line "lapwing samples 2", a line of JSON, then the targets (32-bit floats, little
 // endian) and the grids (a byte each, 255 times the value). Files are whole or not there.
 #pragma once
 
@@ -15,6 +15,7 @@ namespace lapwing {
 struct SampleSet {
   std::string world;  // "downtown 3": what must not be split between training and validation
   std::int64_t episode = 0;
+  Value made_by;  // what explored and how, for whoever goes on; null where nobody said
   GridShape shape;
   Value mapping;                    // as mapping_of gives it
   std::vector<float> targets;       // (5.3)

@@ -20,6 +20,7 @@ local BUDGET = 300         -- s, where none is given
 local METRES_A_SECOND = 3  -- of a budget in metres (reading 4.6)
 local BEGIN = "cost_benefit"
 local TIGHTER = 4          -- times that a tour which flies too long is planned on less
+local LITTLE = 0.5         -- share of the budget; whatever leaves more than the rest is told so
 
 local function solver_of(tour)
   local chosen = { type = tour.solver }
@@ -154,6 +155,22 @@ local function flown(run, vehicle, tour, notes)
   return legs
 end
 
+-- Whether most of the battery is left over although images were not what ran out, and why.
+local function little_used(run, graph, tour, budget)
+  local most = run.options.tour.images
+  if run:cancelled() or tour.seconds >= LITTLE * budget or (most > 0 and tour.images >= most) then
+    return nil
+  end
+  local warning = string.format("the tour takes %.3g of %.6g s, for no further view that can be "
+                                .. "reached brings anything: %s", tour.seconds, budget, graph.reach)
+  if tour.reachable < LITTLE * graph.candidates then
+    warning = warning .. ". Another start, first flights nearer to the region or a lower "
+      .. "motions.alpha would join more"
+  end
+  print("warning: " .. warning)
+  return warning
+end
+
 local function plan_of(run, graph, vehicle, finish, known, explored)
   local o = run.options
   local asked = budget_of(run)
@@ -163,6 +180,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
     local tour, evaluations = solved(run, graph, finish, budget)
     local notes = notes_of(run, graph, known, explored)
     notes[#notes + 1] = first.warning(run)
+    notes[#notes + 1] = little_used(run, graph, tour, budget)
     local plan = run:scan_plan {
       tour = tour, legs = flown(run, vehicle, tour, notes), margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",

@@ -148,6 +148,8 @@ TEST(Samples, ComeBackFromTheirFile) {
   set.shape = {2, 2, 2, 1};
   set.mapping = Value::map();
   set.mapping.set("resolution", 0.4);
+  set.made_by = Value::map();
+  set.made_by.set("explorer", "oracle");
   set.add(std::vector<float>(16, 0.5f), 12.5);
   set.add(std::vector<float>(16, 1.0f), 0);
   const auto path = std::filesystem::path(testing::TempDir()) / "explore_samples.samples";
@@ -157,6 +159,7 @@ TEST(Samples, ComeBackFromTheirFile) {
   EXPECT_EQ(read.targets, set.targets);
   EXPECT_EQ(read.grids, set.grids);
   EXPECT_TRUE(read.mapping == set.mapping);
+  EXPECT_TRUE(read.made_by == set.made_by);
   const std::string bytes = read_file(path);
   for (const std::size_t cut : {5u, 30u, 80u}) {
     write_file_atomically(path, std::string_view(bytes).substr(0, bytes.size() - cut));

@@ -283,5 +283,35 @@ TEST_F(Exploring, AnEvaluationTakesTheSpaceWithinAMesh) {
   EXPECT_EQ(evaluate("office", "--up y"), 2);
 }
 
+// Samples are neither written over nor taken for others.
+TEST_F(Exploring, SamplesAreKept) {
+  few("");  // writes the yard
+  const fs::path folder = folder_ / "samples", file = folder / "yard.obj_1.samples";
+  const std::string errors = (folder_ / "errors.txt").string();
+  const auto made = [&](const std::string& more) {
+    const std::string line = std::string(LAPWING_BUILD_DIR) +
+                             "/bin/lapwing train dataset --world '" +
+                             (folder_ / "yard.obj").string() + "' --steps 2 --quiet -o '" +
+                             folder.string() + "' " + more + " 2> '" + errors + "'";
+    return WEXITSTATUS(std::system(line.c_str()));
+  };
+  ASSERT_EQ(made("--episodes 1"), 0) << read_file(errors);
+  const std::string first = read_file(file);
+  EXPECT_EQ(made("--episodes 1"), 2);
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("--resume keeps it"));
+  for (const auto& [more, expected] : std::vector<std::pair<const char*, const char*>>{
+           {"--seed 2", "seed is 1 there, 2 here"},
+           {"--explorer frontier", "explorer is \"oracle\" there"},
+           {"--moves clear=5", "moves is"},
+           {"--set grid.levels=2", "grid is"}}) {
+    EXPECT_EQ(made(std::string("--resume --episodes 2 ") + more), 2) << more;
+    EXPECT_THAT(read_file(errors), testing::HasSubstr(expected)) << more;
+  }
+  EXPECT_FALSE(fs::exists(folder / "yard.obj_2.samples"));
+  ASSERT_EQ(made("--resume --episodes 2"), 0) << read_file(errors);
+  EXPECT_TRUE(fs::exists(folder / "yard.obj_2.samples"));
+  EXPECT_EQ(read_file(file), first);
+}
+
 }  // namespace
 }  // namespace lapwing

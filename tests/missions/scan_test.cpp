@@ -122,6 +122,10 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   // The roof is seen and the ground is not: the plan says so.
   ASSERT_EQ(run("--set range=13", "hut.lua", "short"), 0) << error();
   EXPECT_THAT(plan("short"), HasSubstr("no first flight sees the region's floor"));
+  // Most of the battery is left over.
+  ASSERT_EQ(run("--set candidates.most=12 --set tour.budget=900", "hut.lua", "little"), 0);
+  EXPECT_THAT(plan("little"), testing::ContainsRegex("the tour takes 1[0-9]+ of 900 s"));
+  EXPECT_EQ(plan("short").find("the tour takes"), std::string::npos);
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
   EXPECT_THAT(refused("--set scene=churhc"), HasSubstr("did you mean 'scene.church'?"));
