@@ -42,12 +42,6 @@ Eigen::Vector3d place_of(const std::string& text, const std::string& given) {
 
 }  // namespace
 
-UpAxis up_axis(const std::string& name) {
-  if (name != "x" && name != "y" && name != "z")
-    throw InputError("--up: expected x, y or z, got '" + name + "'");
-  return name == "x" ? UpAxis::x : name == "y" ? UpAxis::y : UpAxis::z;
-}
-
 std::string WorldName::text() const {
   const fs::path path(scene);
   if (!path.has_extension()) return scene + " " + std::to_string(seed);

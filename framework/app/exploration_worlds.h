@@ -7,9 +7,6 @@
 
 namespace lapwing {
 
-// InputError for another name than "x", "y" and "z".
-UpAxis up_axis(const std::string& name);
-
 struct WorldName {
   std::string scene;                                     // of scripts/scene, or a mesh file
   std::uint64_t seed = 1;                                // of a script

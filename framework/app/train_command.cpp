@@ -37,7 +37,8 @@ std::string file_name(const std::string& world, std::int64_t episode) {
 SampleSet sampled_episode(const World& world, const GroundTruth& truth,
                           const ExplorationSetup& setup, const Registry& registry,
                           const std::string& explorer, const Value& parameters,
-                          const Value& made_by, const GridShape& shape, std::int64_t episode, std::uint64_t seed) {
+                          const Value& made_by, const GridShape& shape, std::int64_t episode,
+                          std::uint64_t seed) {
   SampleSet samples;
   samples.world = world.name;
   samples.episode = episode;

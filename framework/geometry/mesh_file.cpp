@@ -160,6 +160,12 @@ const char* words(StatedBy by) {
 
 }  // namespace
 
+UpAxis up_axis(const std::string& name) {
+  if (name != "x" && name != "y" && name != "z")
+    throw InputError("up: expected x, y or z, got '" + name + "'");
+  return name == "x" ? UpAxis::x : name == "y" ? UpAxis::y : UpAxis::z;
+}
+
 std::string MeshFile::description() const {
   char unit_text[32];
   std::snprintf(unit_text, sizeof unit_text, "%.6g", unit);

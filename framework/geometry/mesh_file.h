@@ -17,6 +17,8 @@
 namespace lapwing {
 
 enum class UpAxis { x, y, z };
+// InputError for another name than "x", "y" and "z".
+UpAxis up_axis(const std::string& name);
 
 struct MeshFileOptions {
   // Metres that one unit of the file is; absent: as above.

@@ -246,6 +246,7 @@ constexpr BoundField kExplorationFields[] = {
     {"observed_surface", "number", "voxels of the surface, at the end"},
     {"surface", "number", "voxels of it that can be seen at all"},
     {"length", "number", "of the path, m"},
+    {"flight", "number", "s that it took to fly, images included"},
     {"seconds", "number", "of computing"},
     {"relative", "number?", "efficiency over the oracle's from the same start, with `compare`"},
     {"views", "table[]", "{position, yaw, pitch} of every image, m and rad"},
@@ -263,6 +264,8 @@ int exploration_field(lua_State* state) {
   fields.set("observed_surface", e.result.observed());
   fields.set("surface", e.result.surface);
   fields.set("length", e.result.length());
+  fields.set("flight", e.result.steps.empty() ? 0.0
+                                              : e.result.steps.back().time + e.settings.pause);
   fields.set("seconds", e.seconds);
   fields.set("relative", e.record.oracle_efficiency > 0
                              ? Value(e.record.efficiency / e.record.oracle_efficiency)

@@ -49,10 +49,22 @@ int surface(lua_State* state) {
   return push_surface(state, made.name, std::move(made.mesh), made.region);
 }
 
-// run:read_surface(name): from a mesh file.
+ParameterTable mesh_file_table() {
+  return ParameterTable()
+      .required_text("file", "a mesh, .obj, .ply, .dae, ...")
+      .optional_number("unit", "m", "that one unit of the file is; absent: what it says", above(0))
+      .choice("up", "file", {"file", "x", "y", "z"},
+              "the axis that points up; file: the one that it says");
+}
+
+// run:read_surface{file =, unit =, up =}: from a mesh file.
 int read_surface(lua_State* state) {
-  const std::string name = text_argument(state, 2, "read_surface");
-  MeshFile file = read_mesh(run_of(state).files.find(name, "meshes"));
+  const Parameters given = table_argument(state, 2, mesh_file_table(), "read_surface");
+  const std::string& name = given.text("file");
+  MeshFileOptions options;
+  if (given.has("unit")) options.unit = given.number("unit");
+  if (given.text("up") != "file") options.up = up_axis(given.text("up"));
+  MeshFile file = read_mesh(run_of(state).files.find(name, "meshes"), options);
   run_of(state).settings.print(name + ": " + file.description());
   const Eigen::AlignedBox3d bounds = file.mesh.bounds();
   return push_surface(state, name, std::move(file.mesh), bounds);
@@ -280,8 +292,8 @@ std::span<const Binding> map_methods_of_run() {
   static const Binding methods[] = {
       {"surface", &guarded<surface>, "(scene: lapwing.scene): lapwing.surface",
        "a surface to look at, from a scene"},
-      {"read_surface", &guarded<read_surface>, "(name: string): lapwing.surface",
-       "the same from a mesh file"},
+      {"read_surface", &guarded<read_surface>, "(mesh: @): lapwing.surface",
+       "the same from a mesh file", &mesh_file_table},
       {"map", &guarded<map>, "(choice: lapwing.map_choice): lapwing.map",
        "an empty map; a mission's `plan` may return it in place of a plan"},
       {"map_resolution", &guarded<map_resolution>, "(name: string): number",

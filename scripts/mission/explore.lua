@@ -163,13 +163,18 @@ end
 function M.of_mesh(given)
   return mission(given, {
       { name = "input", type = "text", summary = "a mesh of the user's own" },
+      { name = "unit", type = "number", unit = "m", above = 0,
+        summary = "that one unit of the mesh is; absent: what its file says" },
+      { name = "up", type = "choice", default = "file", choices = { "file", "x", "y", "z" },
+        summary = "the axis of the mesh that points up; file: the one that it says" },
       { name = "ground", type = "boolean", default = true,
         summary = "lay a floor under it and explore above; false: a mesh that is gone into" },
     }, function(run)
       if not run.options.input then
         lapwing.fail("a mesh: say which with --set input=PATH (.obj, .dae, .ply, ...)")
       end
-      return run:read_surface(run.options.input)
+      local o = run.options
+      return run:read_surface { file = o.input, unit = o.unit, up = o.up }
     end)
 end
 

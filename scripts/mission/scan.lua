@@ -8,6 +8,7 @@
 -- else is known to what follows (reading 4.9). Views that lie in free space are tried out on the
 -- map, ways between those whose images match are searched, and a tour through them is found within
 -- the budget and flown from view to view.
+local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
 local smooth = require "mission.scan_smooth"
 local DECLARATIONS = require "mission.scan_options"
@@ -139,8 +140,8 @@ local function notes_of(run, graph, known, explored)
                                  run.options.rounds > 1 and "so far" or "of the first flight")
     return { (known.images > 0 and before or "files of an earlier flight") .. ", " .. views }
   end
-  return { string.format("explored first: %d depth images on %.0f m, %.0f %% of the surface; %s",
-                         explored.images, explored.length,
+  return { string.format("explored first: %d depth images on %.0f m in %.0f s, %.0f %% of the "
+                         .. "surface; %s", explored.images, explored.length, explored.flight,
                          100 * explored.observed_surface / explored.surface, explored.reason),
            views }
 end
@@ -188,7 +189,8 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
       figures = { score = tour.score, upper_bound = tour.upper_bound, gap = tour.gap,
                   seconds = tour.seconds, budget = asked, images = tour.images,
                   candidates = graph.candidates, motions = graph.motions,
-                  reachable_score = tour.reachable_score, evaluations = evaluations },
+                  reachable_score = tour.reachable_score, evaluations = evaluations,
+                  explored_seconds = explored and explored.flight },
     }
     -- Corners and rests may take a little more than the legs one by one.
     local over = plan.duration - asked
@@ -201,7 +203,11 @@ local function planned(run)
   local o = run.options
   check(run)
   local vehicle = run:vehicle(o.vehicle)
+  if exploration.wanted(run) then exploration.check_battery(run, vehicle, budget_of(run)) end
   local known, poses, surface, explored = first.knowledge(run)
+  if explored then
+    exploration.check_battery(run, vehicle, budget_of(run), explored.flight)
+  end
   local starts, finish = first.starts(run, poses)
   local plan
   for round = 1, o.rounds do

@@ -28,6 +28,16 @@ function M.wanted(run)
   return run.options.exploration.images > 0
 end
 
+-- One visit, one battery: `flown` seconds (absent: as many as it may take), then the tour.
+function M.check_battery(run, vehicle, tour, flown)
+  local exploration = flown or run.options.exploration.budget or 0
+  if exploration + tour <= vehicle.flight_time then return end
+  run:fail("exploration", string.format(
+    "%.6g s of it%s and a tour of %.6g s are more than one battery, %.6g s: fewer images, a "
+    .. "smaller exploration.budget or tour.budget", math.ceil(exploration),
+    flown and " were flown" or "", tour, vehicle.flight_time))
+end
+
 local function map_of(o, range)
   local map = {}
   for key, value in pairs(type(o.map) == "table" and o.map or { type = o.map }) do

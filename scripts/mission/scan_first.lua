@@ -19,7 +19,7 @@ local function surface_of(run)
   local o = run.options
   local surface
   if o.input then
-    surface = run:read_surface(o.input)
+    surface = run:read_surface { file = o.input, unit = o.unit, up = o.up }
     if o.ground then surface:add_ground() end
   elseif o.scene then
     local make = require("scene." .. o.scene)
@@ -103,7 +103,9 @@ function M.check(run)
     run:fail("input", string.format("a mesh file in place of the scene '%s': give one of them",
                                     o.scene))
   end
-  if o.ground and not o.input then run:fail("ground", "is put under a mesh file: name an input") end
+  for option, given in pairs { ground = o.ground, unit = o.unit, up = o.up ~= "file" } do
+    if given and not o.input then run:fail(option, "is of a mesh file: name an input") end
+  end
   local region = o.region
   if region.lower and region.upper then
     for axis = 1, 3 do

@@ -39,6 +39,9 @@ local DECLARATIONS = {
   { name = "input", type = "text", summary = "a mesh file in place of a scene" },
   { name = "ground", type = "boolean", default = false,
     summary = "put a plane under the mesh file" },
+  number("unit", nil, "m", "that one unit of the mesh file is; absent: what it says", POSITIVE),
+  { name = "up", type = "choice", default = "file", choices = { "file", "x", "y", "z" },
+    summary = "the axis of the mesh file that points up; file: the one that it says" },
   { name = "prior", type = "table", summary = "files of an earlier flight", table = {
     { name = "map", type = "text", summary = "a map, .ot or .bt" },
     { name = "mesh", type = "text", summary = "a mesh in the map's frame" } } },

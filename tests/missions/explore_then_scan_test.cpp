@@ -29,6 +29,9 @@ TEST_F(ExploringThenScanning, TheTourIsPlannedOnWhatWasExplored) {
   EXPECT_GT(result.at("tour").at("score").as_number(), 0);
   const Value& notes = result.at("notes");
   EXPECT_THAT(notes.as_list().front().as_text(), HasSubstr("explored first: 10 depth images"));
+  const double explored = result.at("tour").at("explored_seconds").as_number();
+  EXPECT_GT(explored, 10);  // nine ways of 2.5 m or a turn, ten rests
+  EXPECT_LT(explored, 200);
   const Plan read = read_plan(folder_ / "out/plan.json");
   EXPECT_EQ(read.environment.maps.at(0).file, "map.ot");
   EXPECT_EQ(read.environment.meshes.at(0).file, "prior.ply");
@@ -43,6 +46,12 @@ TEST_F(ExploringThenScanning, WhatCannotBeIsSaid) {
   write_both(" prior = { map = 'a.ot', mesh = 'a.ply' },");
   EXPECT_NE(run("", "both.lua"), 0);
   EXPECT_THAT(error(), HasSubstr("leave them out"));
+  // One battery: known before anything is flown where the exploration has a budget, after it else.
+  write_both("");
+  EXPECT_EQ(run("--set exploration.budget=1150", "both.lua"), 2);
+  EXPECT_THAT(error(), HasSubstr("1150 s of it and a tour of 60 s are more than one battery"));
+  EXPECT_EQ(run("--set tour.budget=1190 --set exploration.images=4", "both.lua"), 2);
+  EXPECT_THAT(error(), HasSubstr("were flown and a tour of 1190 s are more than one battery"));
 }
 
 }  // namespace

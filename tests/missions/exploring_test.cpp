@@ -283,6 +283,33 @@ TEST_F(Exploring, AnEvaluationTakesTheSpaceWithinAMesh) {
   EXPECT_EQ(evaluate("office", "--up y"), 2);
 }
 
+// A mesh in centimetres, y up, is the same yard once that is said.
+TEST_F(Exploring, AMeshMaySayLessThanItsUser) {
+  const fs::path mesh = folder_ / "lying.obj";
+  std::istringstream lines(kYard);
+  std::string lying;
+  for (std::string line; std::getline(lines, line);) {
+    double x = 0, y = 0, z = 0;
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3)
+      line = "v " + std::to_string(100 * x) + " " + std::to_string(100 * z) + " " +
+             std::to_string(-100 * y);
+    lying += line + "\n";
+  }
+  write_file_atomically(mesh, lying);
+  const auto figures = [](const Flown& flown) { return flown.result.at("exploration"); };
+  const Flown upright = explore("", "upright"),
+              said = explore("--set up=y --set unit=0.01 --set input='" + mesh.string() + "'",
+                             "said");
+  ASSERT_EQ(upright.status, 0);
+  ASSERT_EQ(said.status, 0);
+  for (const char* figure : {"surface", "observed_surface", "efficiency"})
+    EXPECT_NEAR(figures(said).at(figure).as_number(), figures(upright).at(figure).as_number(),
+                0.02 * figures(upright).at(figure).as_number())
+        << figure;
+  EXPECT_NE(refusal(few("--set up=w")).find("expected one of file, x, y, z"), std::string::npos);
+  EXPECT_NE(refusal(few("--set unit=0")).find("unit"), std::string::npos);
+}
+
 // Samples are neither written over nor taken for others.
 TEST_F(Exploring, SamplesAreKept) {
   few("");  // writes the yard
