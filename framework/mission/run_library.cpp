@@ -60,13 +60,27 @@ int fail(lua_State* state) {
   throw InputError(origin, path + ": " + message);
 }
 
+// run:expect_plugin("tour.begin", "tour_solver"): an error where that option is given and names no
+// plugin of the kind.
+int expect_plugin(lua_State* state) {
+  const std::string path = text_argument(state, 2, "expect_plugin");
+  const std::string kind = text_argument(state, 3, "expect_plugin");
+  const Value* value = at_path(run_of(state).configuration, path);
+  if (!value || value->is_null()) return 0;
+  if (!value->is_text()) throw InputError(value->origin(), path + ": expected a plugin's name");
+  run_of(state).settings.registry->find(kind, value->as_text(), value->origin());
+  return 0;
+}
+
 std::span<const Binding> told_methods() {
   static const Binding methods[] = {
       {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user asked to end"},
       {"progress", &guarded<progress>, "(fraction: number, words: string)",
        "how far the work is, 0 to 1, and with what"},
       {"fail", &guarded<fail>, "(option: string, message: string)",
-       "an error where that option was written"}};
+       "an error where that option was written"},
+      {"expect_plugin", &guarded<expect_plugin>, "(option: string, kind: string)",
+       "an error where that option is given and names no plugin of the kind"}};
   return methods;
 }
 

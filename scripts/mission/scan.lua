@@ -46,6 +46,7 @@ local function check(run)
       tour.budget, tour.budget_metres, tour.budget_metres / METRES_A_SECOND))
   end
   if tour.images == 1 then run:fail("tour", "images: a tour has two at least; 0 is any number") end
+  if tour.begin ~= "none" then run:expect_plugin("tour.begin", "tour_solver") end
   if tour.begin and tour.begin ~= "none" and tour.solver ~= "local_search" then
     run:fail("tour", string.format("begin: '%s' does not begin with another solver's tour, only "
                                    .. "local_search does", tour.solver))

@@ -127,6 +127,7 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(plan("little"), testing::ContainsRegex("the tour takes 1[0-9]+ of 900 s"));
   EXPECT_EQ(plan("short").find("the tour takes"), std::string::npos);
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
+  EXPECT_THAT(refused("--set tour.begin=gredy"), HasSubstr("did you mean 'greedy'?"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
   EXPECT_THAT(refused("--set scene=churhc"), HasSubstr("did you mean 'scene.church'?"));
   EXPECT_THAT(refused("--set prior.map=a.ot"), HasSubstr("both a map and a mesh"));
