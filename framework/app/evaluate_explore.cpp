@@ -296,6 +296,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
       if (entry.kind == ViewUtility::kKind) utilities.push_back(entry.name);
   for (const std::string& utility : utilities) registry.find("utility", utility);
   const std::vector<WorldName> names = distinct_worlds(request.worlds, "evaluate explore");
+  for (const WorldName& name : names) require_world(name, request.up);
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   setup.episode.lookahead = request.lookahead;

@@ -107,10 +107,29 @@ std::vector<WorldName> world_names(const std::string& given) {
   return names;
 }
 
+namespace {
+
+bool is_mesh(const WorldName& name) {
+  const fs::path file(name.scene);
+  return file.has_extension() && file.extension() != ".lua";
+}
+
+}  // namespace
+
+void require_world(const WorldName& name, const std::string& up) {
+  if (!up.empty()) up_axis(up);
+  if (!up.empty() && !is_mesh(name))
+    throw InputError("--up is for mesh files, and '" + name.scene + "' is none");
+  if (fs::exists(name.file())) return;
+  if (is_mesh(name)) throw InputError("'" + name.file().string() + "' not found");
+  throw InputError("'" + name.scene + "' is no scene of scripts/scene and no file");
+}
+
 World load_world(const WorldName& name, const std::string& up, const Registry& registry,
                  const Invocation& invocation) {
-  const fs::path file(name.scene);
-  if (file.has_extension() && file.extension() != ".lua") {
+  require_world(name, up);
+  if (is_mesh(name)) {
+    const fs::path file(name.scene);
     MeshFileOptions options;
     if (!up.empty()) options.up = up_axis(up);
     if (name.inside) {
@@ -122,10 +141,7 @@ World load_world(const WorldName& name, const std::string& up, const Registry& r
     return {name.text(), std::make_shared<MeshScene>(std::move(open.mesh), name.text()),
             open.region, std::nullopt};
   }
-  if (!up.empty()) throw InputError("--up is for mesh files, and '" + name.scene + "' is none");
   const fs::path script = name.file();
-  if (!fs::exists(script))
-    throw InputError("'" + name.scene + "' is no scene of scripts/scene and no file");
   MissionSettings settings;
   settings.scripts = shipped_folder("scripts");
   settings.configs = shipped_folder("configs");
@@ -173,7 +189,7 @@ Value ExplorationSetup::set_moves(const std::vector<std::string>& given) {
   episode.turn = p.number("turn_deg") * EIGEN_PI / 180;
   episode.body = p.number("body");
   episode.clear = p.number("clear");
-  return moves;
+  return p.value();
 }
 
 ObservedSurface::NewMap ExplorationSetup::new_map(const Registry& registry) const {

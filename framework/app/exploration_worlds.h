@@ -33,6 +33,8 @@ struct World {
   Eigen::AlignedBox3d region;
   std::optional<Eigen::Vector3d> inside;  // the space to explore; else the one that holds most
 };
+// InputError where there is no such file or scene, or `up` does not fit it. Cheap.
+void require_world(const WorldName& name, const std::string& up);
 // A mesh file gets a floor (explore/ground_truth.h, with_floor) unless a place inside is given.
 // `up` is the axis of a mesh file that points up, "x", "y" or "z"; empty: what the file says.
 World load_world(const WorldName& name, const std::string& up, const Registry& registry,
@@ -46,7 +48,7 @@ struct ExplorationSetup {
   Value map;  // parameters of the backend
 
   ExplorationSetup();
-  // "clear=2": how the camera moves, by the names of the mission's `moves`; what is given comes
+  // "clear=2": how the camera moves, by the names of the mission's `moves`; all of them come
   // back as a map. InputError for others and for what makes no sense.
   Value set_moves(const std::vector<std::string>& given);
   GroundTruth truth_of(const World& world) const;

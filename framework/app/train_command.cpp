@@ -76,11 +76,15 @@ std::vector<std::int64_t> missing_episodes(const TrainRequest& request, const st
       throw InputError("'" + file.string() +
                        "' is there: --resume keeps it and makes those that are missing, another " +
                        "folder keeps both");
-    } else if (const std::string difference =
-                   settings_difference(read_samples(file).made_by, made_by);
-               !difference.empty()) {
-      throw InputError("'" + file.string() + "' was made otherwise: " + difference +
-                       "; another folder keeps both");
+    } else {
+      const SampleSet there = read_samples(file);
+      const std::string difference =
+          there.world != world      ? "its world is " + there.world
+          : there.episode != episode ? "it is episode " + std::to_string(there.episode)
+                                     : settings_difference(there.made_by, made_by);
+      if (!difference.empty())
+        throw InputError("'" + file.string() + "' was made otherwise: " + difference +
+                         "; another folder keeps both");
     }
   }
   return missing;
@@ -94,6 +98,9 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   const Trainable& trainable = trainable_of(registry, request.utility);
   const GridShape shape = trainable.shape(training_parameters(trainable, invocation));
   const std::vector<WorldName> names = distinct_worlds(request.worlds, "train dataset");
+  for (const WorldName& name : names) require_world(name, request.up);
+  if (fs::exists(request.target) && !fs::is_directory(request.target))
+    throw InputError("'" + request.target.string() + "' is a file: samples go into a folder");
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   const Value moves = setup.set_moves(request.moves);
@@ -155,6 +162,12 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
   fit.checkpoint = request.target;
   fit.checkpoint += ".checkpoint";
   fit.resume = request.resume;
+  if (fs::is_directory(fit.model))
+    throw InputError("'" + fit.model.string() + "' is a folder: a model is a file");
+  for (const fs::path& file : {fit.model, fit.checkpoint})
+    if (!request.resume && fs::exists(file))
+      throw InputError("'" + file.string() +
+                       "' is there: --resume goes on with it, another name keeps both");
   fit.seed = invocation.seed;
   fit.threads = invocation.threads;
   fit.cancellation = &interruption.token();

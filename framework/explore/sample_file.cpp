@@ -47,8 +47,12 @@ void write_samples(const SampleSet& samples, const std::filesystem::path& path) 
 SampleSet read_samples(const std::filesystem::path& path) {
   const std::string bytes = read_file(path, kMostBytes);
   const auto refuse = [&](const std::string& why) {
-    return InputError("'" + path.string() + "' is no file of samples: " + why);
+    return InputError("'" + path.string() + "' is no file of samples: " + why +
+                      "; delete it or leave it out");
   };
+  if (bytes.starts_with("lapwing samples ") && !bytes.starts_with(kMagic))
+    throw InputError("'" + path.string() + "' is of another format than 2, which this program " +
+                     "reads: make its samples again, in another folder");
   if (!std::string_view(bytes).starts_with(kMagic)) throw refuse("another first line");
   const std::size_t line = bytes.find('\n', kMagic.size());
   if (line == bytes.npos) throw refuse("it ends in its first lines");

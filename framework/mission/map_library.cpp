@@ -65,8 +65,11 @@ int read_surface(lua_State* state) {
   if (given.has("unit")) options.unit = given.number("unit");
   if (given.text("up") != "file") options.up = up_axis(given.text("up"));
   MeshFile file = read_mesh(run_of(state).files.find(name, "meshes"), options);
-  run_of(state).settings.print(name + ": " + file.description());
   const Eigen::AlignedBox3d bounds = file.mesh.bounds();
+  char extent[96];
+  std::snprintf(extent, sizeof extent, ", %.4g x %.4g x %.4g m", bounds.sizes().x(),
+                bounds.sizes().y(), bounds.sizes().z());
+  run_of(state).settings.print(name + ": " + file.description() + extent);
   return push_surface(state, name, std::move(file.mesh), bounds);
 }
 

@@ -78,7 +78,8 @@ local OPTIONS = {
     summary = "let the oracle explore from the same start, for the report" },
   { name = "start", type = "numbers", size = 3, unit = "m",
     summary = "where it begins; absent: drawn by the run's seed" },
-  { name = "start_yaw_deg", type = "number", unit = "deg", default = 0, summary = "heading there" },
+  { name = "start_yaw_deg", type = "number", unit = "deg",
+    summary = "heading there; absent: 0" },
   { name = "lower", type = "numbers", size = 3, unit = "m",
     summary = "corner of a box that it stays in; with upper" },
   { name = "upper", type = "numbers", size = 3, unit = "m", summary = "the other corner" },
@@ -108,7 +109,14 @@ function M.explore(run, surface)
   if (o.lower == nil) ~= (o.upper == nil) then
     run:fail(o.lower and "lower" or "upper", "lower and upper belong together")
   end
+  if o.start_yaw_deg and not o.start then
+    run:fail("start_yaw_deg", "is the heading at the start: give both")
+  end
   local vehicle = run:vehicle(o.vehicle)
+  if o.budget and o.budget > vehicle.flight_time then
+    run:fail("budget", string.format("%.6g s are more than one battery, %.6g s", o.budget,
+                                     vehicle.flight_time))
+  end
   local c, m = o.camera, o.moves
   local done = run:explore {
     surface = surface, map = map_of(o), utility = o.utility,
@@ -122,7 +130,7 @@ function M.explore(run, surface)
     wall_clock_guard = o.wall_clock_guard,
     compare = o.compare, ground = o.ground or false,
     bounds = o.lower and { { lower = o.lower, upper = o.upper } } or {},
-    start = o.start and { { position = o.start, yaw = math.rad(o.start_yaw_deg) } } or {},
+    start = o.start and { { position = o.start, yaw = math.rad(o.start_yaw_deg or 0) } } or {},
   }
   return done:plan { vehicle = vehicle, margin = o.margin }
 end
@@ -163,7 +171,7 @@ end
 function M.of_mesh(given)
   return mission(given, {
       { name = "input", type = "text", summary = "a mesh of the user's own" },
-      { name = "unit", type = "number", unit = "m", above = 0,
+      { name = "unit", type = "number", unit = "m", above = 0, maximum = 1e6,
         summary = "that one unit of the mesh is; absent: what its file says" },
       { name = "up", type = "choice", default = "file", choices = { "file", "x", "y", "z" },
         summary = "the axis of the mesh that points up; file: the one that it says" },
@@ -174,7 +182,17 @@ function M.of_mesh(given)
         lapwing.fail("a mesh: say which with --set input=PATH (.obj, .dae, .ply, ...)")
       end
       local o = run.options
-      return run:read_surface { file = o.input, unit = o.unit, up = o.up }
+      local surface = run:read_surface { file = o.input, unit = o.unit, up = o.up }
+      local extent = 0
+      for axis = 1, 3 do
+        extent = math.max(extent, surface.upper[axis] - surface.lower[axis])
+      end
+      if extent < 5 * o.resolution then
+        run:fail(o.unit and "unit" or "input", string.format(
+          "the mesh is %.3g m across, less than five voxels of %.3g m: is its unit right?", extent,
+          o.resolution))
+      end
+      return surface
     end)
 end
 

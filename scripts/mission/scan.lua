@@ -157,20 +157,18 @@ local function flown(run, vehicle, tour, notes)
   return legs
 end
 
--- Whether most of the battery is left over although images were not what ran out, and why.
+-- What is said of a tour that leaves most of the battery although it may have more images.
 local function little_used(run, graph, tour, budget)
   local most = run.options.tour.images
   if run:cancelled() or tour.seconds >= LITTLE * budget or (most > 0 and tour.images >= most) then
     return nil
   end
-  local warning = string.format("the tour takes %.3g of %.6g s, for no further view that can be "
-                                .. "reached brings anything: %s", tour.seconds, budget, graph.reach)
-  if tour.reachable < LITTLE * graph.candidates then
-    warning = warning .. ". Another start, first flights nearer to the region or a lower "
-      .. "motions.alpha would join more"
-  end
-  print("warning: " .. warning)
-  return warning
+  local warning = string.format("the tour takes %.3g of %.6g s (%s: %s); %s", tour.seconds, budget,
+                                tour.name, tour.message ~= "" and tour.message or tour.status,
+                                graph.reach)
+  if tour.reachable >= LITTLE * graph.candidates then return warning end
+  return warning .. ". Another start, first flights nearer to the region or a lower motions.alpha "
+    .. "would join more"
 end
 
 local function plan_of(run, graph, vehicle, finish, known, explored)
@@ -182,7 +180,8 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
     local tour, evaluations = solved(run, graph, finish, budget)
     local notes = notes_of(run, graph, known, explored)
     notes[#notes + 1] = first.warning(run)
-    notes[#notes + 1] = little_used(run, graph, tour, budget)
+    local little = little_used(run, graph, tour, budget)
+    notes[#notes + 1] = little
     local plan = run:scan_plan {
       tour = tour, legs = flown(run, vehicle, tour, notes), margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
@@ -195,7 +194,10 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
     }
     -- Corners and rests may take a little more than the legs one by one.
     local over = plan.duration - asked
-    if over <= 0 or round == TIGHTER then return plan, tour end
+    if over <= 0 or round == TIGHTER then
+      if little then print("warning: " .. little) end
+      return plan, tour
+    end
     budget = budget - 1.5 * over
   end
 end
@@ -204,7 +206,8 @@ local function planned(run)
   local o = run.options
   check(run)
   local vehicle = run:vehicle(o.vehicle)
-  if exploration.wanted(run) then exploration.check_battery(run, vehicle, budget_of(run)) end
+  exploration.check(run)
+  exploration.check_battery(run, vehicle, budget_of(run))
   local known, poses, surface, explored = first.knowledge(run)
   if explored then
     exploration.check_battery(run, vehicle, budget_of(run), explored.flight)

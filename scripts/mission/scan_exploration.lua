@@ -20,21 +20,45 @@ M.DECLARATION = { name = "exploration", type = "table",
       summary = "edge of the box that is taken to be free where it begins" },
     { name = "start", type = "numbers", size = 3, unit = "m",
       summary = "where it begins; absent: drawn by the run's seed" },
-    { name = "start_yaw_deg", type = "number", unit = "deg", default = 0,
-      summary = "heading there" },
+    { name = "start_yaw_deg", type = "number", unit = "deg",
+      summary = "heading there; absent: 0" },
   } }
 
 function M.wanted(run)
   return run.options.exploration.images > 0
 end
 
+-- What its options say, before anything is flown.
+function M.check(run)
+  local o, e = run.options, run.options.exploration
+  run:expect_plugin("exploration.utility", "utility")
+  if e.start_yaw_deg and not e.start then
+    run:fail("exploration.start_yaw_deg", "is the heading at exploration.start: give both")
+  end
+  if e.images == 0 and (e.budget or e.start) then
+    run:fail("exploration", "without images it is none: set exploration.images")
+  end
+  if e.images == 1 then run:fail("exploration.images", "2 at least, or 0 for no exploration") end
+  if e.images == 0 then return end
+  for option, given in pairs { ["prior.map"] = o.prior.map, flights = o.flights[1] } do
+    if given then
+      run:fail(option, "an exploration takes the place of flights and of files of an earlier "
+                       .. "flight: leave them out")
+    end
+  end
+end
+
 -- One visit, one battery: `flown` seconds (absent: as many as it may take), then the tour.
 function M.check_battery(run, vehicle, tour, flown)
-  local exploration = flown or run.options.exploration.budget or 0
-  if exploration + tour <= vehicle.flight_time then return end
+  local before = flown or M.wanted(run) and run.options.exploration.budget or 0
+  if before + tour <= vehicle.flight_time then return end
+  if before == 0 then
+    run:fail("tour", string.format("a budget of %.6g s is more than one battery, %.6g s", tour,
+                                   vehicle.flight_time))
+  end
   run:fail("exploration", string.format(
     "%.6g s of it%s and a tour of %.6g s are more than one battery, %.6g s: fewer images, a "
-    .. "smaller exploration.budget or tour.budget", math.ceil(exploration),
+    .. "smaller exploration.budget or tour.budget", math.ceil(before),
     flown and " were flown" or "", tour, vehicle.flight_time))
 end
 
@@ -55,10 +79,6 @@ function M.knowledge(run, surface)
   if not surface then
     run:fail("exploration", "there is nothing to explore: name a scene or a mesh")
   end
-  if o.prior.map or #o.flights > 0 then
-    run:fail("exploration", "it takes the place of flights and of files of an earlier flight: "
-                            .. "leave them out")
-  end
   local own = map_of(o, e.range)
   own.observations = true
   local body = 2 * math.max(table.unpack(o.body))
@@ -66,7 +86,7 @@ function M.knowledge(run, surface)
     surface = surface, map = own, utility = e.utility, steps = e.images, budget = e.budget,
     camera = { width = WIDTH, height = HEIGHT, view_deg = VIEW_DEG, pitch_deg = PITCH_DEG },
     range = e.range, noise = o.noise, body = body, clear = e.clear, speed = e.speed,
-    start = e.start and { { position = e.start, yaw = math.rad(e.start_yaw_deg) } } or {},
+    start = e.start and { { position = e.start, yaw = math.rad(e.start_yaw_deg or 0) } } or {},
   }
   if done.images < 2 then run:fail("exploration", "it ended after one image: " .. done.reason) end
   local known = run:prior { map = map_of(o, e.range), spacing = o.surface.spacing,

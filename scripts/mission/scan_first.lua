@@ -103,8 +103,10 @@ function M.check(run)
     run:fail("input", string.format("a mesh file in place of the scene '%s': give one of them",
                                     o.scene))
   end
-  for option, given in pairs { ground = o.ground, unit = o.unit, up = o.up ~= "file" } do
-    if given and not o.input then run:fail(option, "is of a mesh file: name an input") end
+  if not o.input and (o.ground or o.unit or o.up ~= "file") then
+    run:fail(o.ground and "ground" or o.unit and "unit" or "up",
+             "is of an input, a mesh file to be flown over, and there is none (a prior's mesh is "
+             .. "in its map's frame)")
   end
   local region = o.region
   if region.lower and region.upper then

@@ -46,12 +46,20 @@ TEST_F(ExploringThenScanning, WhatCannotBeIsSaid) {
   write_both(" prior = { map = 'a.ot', mesh = 'a.ply' },");
   EXPECT_NE(run("", "both.lua"), 0);
   EXPECT_THAT(error(), HasSubstr("leave them out"));
+  write_both("");
+  for (const auto& [more, expected] : std::vector<std::pair<const char*, const char*>>{
+           {"exploration.images=0 --set exploration.utility=frontir", "did you mean 'frontier'?"},
+           {"exploration.images=0", "set exploration.images"},
+           {"exploration.images=1", "2 at least"}}) {
+    EXPECT_EQ(run(std::string("--set ") + more, "both.lua"), 2) << more;
+    EXPECT_THAT(error(), HasSubstr(expected)) << more;
+  }
   // One battery: known before anything is flown where the exploration has a budget, after it else.
   write_both("");
   EXPECT_EQ(run("--set exploration.budget=1150", "both.lua"), 2);
   EXPECT_THAT(error(), HasSubstr("1150 s of it and a tour of 60 s are more than one battery"));
-  EXPECT_EQ(run("--set tour.budget=1190 --set exploration.images=4", "both.lua"), 2);
-  EXPECT_THAT(error(), HasSubstr("were flown and a tour of 1190 s are more than one battery"));
+  EXPECT_EQ(run("--set tour.budget=1199 --set exploration.images=4", "both.lua"), 2);
+  EXPECT_THAT(error(), HasSubstr("were flown and a tour of 1199 s are more than one battery"));
 }
 
 }  // namespace

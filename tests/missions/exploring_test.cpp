@@ -308,6 +308,8 @@ TEST_F(Exploring, AMeshMaySayLessThanItsUser) {
         << figure;
   EXPECT_NE(refusal(few("--set up=w")).find("expected one of file, x, y, z"), std::string::npos);
   EXPECT_NE(refusal(few("--set unit=0")).find("unit"), std::string::npos);
+  EXPECT_NE(refusal(few("--set unit=0.001")).find("0.04 m across"), std::string::npos);
+  EXPECT_NE(refusal(few("--set budget=1300")).find("one battery"), std::string::npos);
 }
 
 // Samples are neither written over nor taken for others.
@@ -338,6 +340,13 @@ TEST_F(Exploring, SamplesAreKept) {
   ASSERT_EQ(made("--resume --episodes 2"), 0) << read_file(errors);
   EXPECT_TRUE(fs::exists(folder / "yard.obj_2.samples"));
   EXPECT_EQ(read_file(file), first);
+  // Another episode's file in the place of one, and what is wrong is known before any is flown.
+  fs::copy_file(file, folder / "yard.obj_3.samples");
+  EXPECT_EQ(made("--resume --episodes 3"), 2);
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("it is episode 1"));
+  fs::remove(folder / "yard.obj_3.samples");
+  EXPECT_EQ(made("--resume --episodes 3 --world nowhere"), 2);
+  EXPECT_FALSE(fs::exists(folder / "yard.obj_3.samples"));
 }
 
 }  // namespace

@@ -127,6 +127,8 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(plan("little"), testing::ContainsRegex("the tour takes 1[0-9]+ of 900 s"));
   EXPECT_EQ(plan("short").find("the tour takes"), std::string::npos);
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
+  EXPECT_THAT(refused("--set tour.budget=1300"), HasSubstr("more than one battery, 1200 s"));
+  EXPECT_THAT(refused("--set up=y"), HasSubstr("up: is of an input"));
   EXPECT_THAT(refused("--set tour.begin=gredy"), HasSubstr("did you mean 'greedy'?"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
   EXPECT_THAT(refused("--set scene=churhc"), HasSubstr("did you mean 'scene.church'?"));
@@ -136,7 +138,7 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set tour.images=1"), HasSubstr("two at least"));
   EXPECT_THAT(refused("--set 'tour={solver: greedy, begin: cost_benefit}'"), HasSubstr("begin"));
   EXPECT_THAT(refused("--set input=hut.obj"), HasSubstr("in place of the scene 'hut'"));
-  EXPECT_THAT(refused("--set ground=true"), HasSubstr("name an input"));
+  EXPECT_THAT(refused("--set ground=true"), HasSubstr("ground: is of an input"));
   EXPECT_THAT(refused("--set region.lower=[6,-5,0] --set region.upper=[-6,5,7]"),
               HasSubstr("lower must be below upper: 6 and -6 along x"));
   EXPECT_THAT(refused("--set ceiling=3"), HasSubstr("3 m is below safe_height, 9 m"));
