@@ -9,6 +9,7 @@ lapwing_packages=(
 lapwing_test_packages=(libgtest-dev chromium binutils)
 lapwing_bench_packages=(libbenchmark-dev)
 lapwing_fuzz_packages=(clang)
+lapwing_learn_packages=(libtorch-dev)
 
 # Prints the packages among "$@" that are not installed.
 lapwing_missing() {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and benchmarking need.
-#   scripts/setup.sh [--yes] [--for build|test|bench]...
+#   scripts/setup.sh [--yes] [--for build|test|bench|learn]...
 # Prints what it would install; asks first on a terminal unless --yes. Default: build and test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -12,11 +12,11 @@ while [ $# -gt 0 ]; do
   case "$1" in
     --yes) yes=true ;;
     --for)
-      [ $# -ge 2 ] || { echo "setup.sh: --for needs build, test or bench" >&2; exit 2; }
+      [ $# -ge 2 ] || { echo "setup.sh: --for needs build, test, bench or learn" >&2; exit 2; }
       wanted+=("$2")
       shift
       ;;
-    *) echo "setup.sh: unknown option '$1'; it knows --yes and --for build|test|bench" >&2; exit 2 ;;
+    *) echo "setup.sh: unknown option '$1'; it knows --yes and --for build|test|bench|learn" >&2; exit 2 ;;
   esac
   shift
 done
@@ -28,7 +28,8 @@ for what in "${wanted[@]}"; do
     build) packages+=("${lapwing_packages[@]}") ;;
     test) packages+=("${lapwing_test_packages[@]}") ;;
     bench) packages+=("${lapwing_bench_packages[@]}") ;;
-    *) echo "setup.sh: --for knows build, test and bench, not '$what'" >&2; exit 2 ;;
+    learn) packages+=("${lapwing_learn_packages[@]}") ;;
+    *) echo "setup.sh: --for knows build, test, bench and learn, not '$what'" >&2; exit 2 ;;
   esac
 done
 

@@ -46,3 +46,20 @@ add_test(NAME orienteering_long
          COMMAND test_tour_solvers --gtest_filter=Orienteering.RoutesOfPublished*)
 set_tests_properties(orienteering_long PROPERTIES LABELS long TIMEOUT 600
                                                   ENVIRONMENT "LAPWING_LONG=1")
+
+# The learned utility's network against libtorch: one source, which takes longer than all others.
+if(LAPWING_LEARN)
+  find_library(torch_library torch REQUIRED)
+  find_library(torch_cpu_library torch_cpu REQUIRED)
+  find_library(c10_library c10 REQUIRED)
+  find_path(torch_headers torch/torch.h PATH_SUFFIXES torch/csrc/api/include REQUIRED)
+  add_executable(test_learned_torch ${CMAKE_CURRENT_LIST_DIR}/learned_torch/learned_torch_test.cpp
+    ${learned}/network.cpp ${learned}/kernels.cpp ${learned}/backpropagation.cpp
+    ${learned}/model_file.cpp)
+  target_include_directories(test_learned_torch SYSTEM PRIVATE ${torch_headers})
+  target_compile_definitions(test_learned_torch PRIVATE ${test_definitions})
+  target_link_libraries(test_learned_torch PRIVATE lapwing GTest::gtest GTest::gtest_main
+    ${torch_library} ${torch_cpu_library} ${c10_library})
+  add_test(NAME learned_torch COMMAND test_learned_torch)
+  set_tests_properties(learned_torch PROPERTIES TIMEOUT 240)
+endif()
