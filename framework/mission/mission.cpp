@@ -138,13 +138,15 @@ void Mission::configure(std::span<const Value> layers, std::span<const std::stri
     for (const auto& [key, value] : layer.as_map()) {
       if (key != kSandboxKey) own.set(key, value);
     }
-    own_layers.push_back(std::move(own));
+    own_layers.push_back(impl_->options.declarations.spelled_out(std::move(own)));
   }
   std::vector<std::string> own_overrides;
   for (const std::string& text : overrides) {
-    if (!concerns_sandbox(text)) own_overrides.push_back(text);
+    if (!concerns_sandbox(text))
+      own_overrides.push_back(impl_->options.declarations.spelled_out(text));
   }
-  const Value given = layered(impl_->options.given, own_layers, own_overrides);
+  const Value given = layered(impl_->options.declarations.spelled_out(impl_->options.given),
+                              own_layers, own_overrides);
   impl_->run.configuration =
       impl_->options.declarations.check(given, *impl_->run.settings.registry);
   const Value* input = impl_->run.configuration.find("input");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/config/overrides.h"
 #include "framework/vehicle/vehicle.h"
 
 namespace lapwing {
@@ -204,6 +205,30 @@ Value OptionDeclarations::plain_entry(const Option& option, const Value* value) 
   }
   if (fallback && is_word(*fallback)) return without(option.declaration, {"default"});
   return option.declaration;
+}
+
+Value OptionDeclarations::spelled_out(Value layer) const {
+  for (const Option& option : options_) {
+    if (!option.own.is_list()) continue;
+    const Value* given = layer.find(option.name);
+    if (!given || !given->is_text()) continue;
+    Value chosen = Value::map();
+    chosen.with_origin(given->origin());
+    chosen.set(option.under, *given);
+    layer.set(option.name, std::move(chosen));
+  }
+  return layer;
+}
+
+std::string OptionDeclarations::spelled_out(const std::string& override_text) const {
+  for (const Option& option : options_) {
+    if (!option.own.is_list() || !override_text.starts_with(option.name + "=")) continue;
+    Value given = Value::map();
+    apply_override(given, override_text);
+    if (given.at(option.name).is_text())
+      return option.name + "." + option.under + override_text.substr(option.name.size());
+  }
+  return override_text;
 }
 
 // The table depends on the values: on the plugins chosen, and on the forms used.

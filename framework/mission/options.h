@@ -56,6 +56,11 @@ class OptionDeclarations {
   // plugins chosen included; no code is loaded. InputError with all errors.
   Value check(const Value& given, const Registry& registry) const;
 
+  // A plugin's name alone, where the mission has entries of its own beside the plugin's, becomes a
+  // table with that name, so that it takes nothing else away: "tour=greedy" is "tour.solver=greedy".
+  Value spelled_out(Value layer) const;
+  std::string spelled_out(const std::string& override_text) const;
+
  private:
   struct Option {
     std::string name;

@@ -127,6 +127,8 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(plan("little"), testing::ContainsRegex("the tour takes 1[0-9]+ of 900 s"));
   EXPECT_EQ(plan("short").find("the tour takes"), std::string::npos);
   EXPECT_THAT(refused("--set safe_height=5"), HasSubstr("up to 6 m"));
+  // A name alone swaps the solver and keeps the budget, and what is another solver's is said.
+  EXPECT_THAT(refused("--set tour=greedy"), HasSubstr("tour.iterations: unknown key"));
   EXPECT_THAT(refused("--set tour.budget=1300"), HasSubstr("more than one battery, 1200 s"));
   EXPECT_THAT(refused("--set up=y"), HasSubstr("up: is of an input"));
   EXPECT_THAT(refused("--set tour.begin=gredy"), HasSubstr("did you mean 'greedy'?"));
