@@ -62,8 +62,9 @@ TEST_F(Filming, ShippedScansAreCertified) {
 TEST_F(Filming, MeshesOfOthersAreScanned) {
   if (data_folder().empty()) GTEST_SKIP() << "LAPWING_DATA names no folder with meshes";
   for (const char* name : {"delft_block.obj", "gz_powerplant.dae"})
-    expect_scan(fly("../scan/own_mesh.lua", "--config scan/small --data '" + data_folder() +
-                                                "' --set ground=true --set input=" + name),
+    expect_scan(fly("../scan/own_mesh.lua",
+                    "--config scan/small --set candidates.most=400 --set ground=true --data '" +
+                        data_folder() + "' --set input=" + name),
                 name);
 }
 
