@@ -57,7 +57,8 @@ class OptionDeclarations {
   Value check(const Value& given, const Registry& registry) const;
 
   // A plugin's name alone, where the mission has entries of its own beside the plugin's, becomes a
-  // table with that name, so that it takes nothing else away: "tour=greedy" is "tour.solver=greedy".
+  // table with that name, so that it takes nothing else away: "tour=greedy" is
+  // "tour.solver=greedy".
   Value spelled_out(Value layer) const;
   std::string spelled_out(const std::string& override_text) const;
 
