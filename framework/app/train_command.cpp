@@ -79,7 +79,7 @@ std::vector<std::int64_t> missing_episodes(const TrainRequest& request, const st
     } else {
       const SampleSet there = read_samples(file);
       const std::string difference =
-          there.world != world      ? "its world is " + there.world
+          there.world != world       ? "its world is " + there.world
           : there.episode != episode ? "it is episode " + std::to_string(there.episode)
                                      : settings_difference(there.made_by, made_by);
       if (!difference.empty())
