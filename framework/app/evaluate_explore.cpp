@@ -144,19 +144,25 @@ Flown flown(const Trial& trial, const fs::path& folder, int steps) {
   return result;
 }
 
-// "3: nothing_to_gain 2, no_way 1", or "0".
-std::string early_ends(const std::vector<Flown>& episodes) {
-  std::map<std::string, int> ends;
+// Episodes that ended before all images: how many, and by what ("nothing_to_gain 2", "no_way 1").
+struct EarlyEnds {
   int count = 0;
-  for (const Flown& episode : episodes)
-    if (!episode.end.empty()) ++ends[episode.end], ++count;
-  std::string text = std::to_string(count);
-  const char* before = ": ";
-  for (const auto& [end, times] : ends) {
-    text += before + end + " " + std::to_string(times);
-    before = ", ";
+  std::vector<std::string> kinds;
+
+  std::string kinds_with(const char* between) const {
+    std::string text;
+    for (const std::string& kind : kinds) text += (text.empty() ? "" : between) + kind;
+    return text;
   }
-  return text;
+};
+
+EarlyEnds early_ends(const std::vector<Flown>& episodes) {
+  std::map<std::string, int> ends;
+  EarlyEnds found;
+  for (const Flown& episode : episodes)
+    if (!episode.end.empty()) ++ends[episode.end], ++found.count;
+  for (const auto& [end, times] : ends) found.kinds.push_back(end + " " + std::to_string(times));
+  return found;
 }
 
 std::string number(double value) {
@@ -213,17 +219,16 @@ void summarise_world(Summary& summary, const std::string& world,
                      number(shares.mean) + "," + number(shares.deviation) + "," +
                      number(shares.interval()) + "," + number(lacks.mean) + "," +
                      number(lacks.interval()) + "," + number(mean_of(lengths).mean);
-    const std::string ends = early_ends(all);
-    const std::size_t colon = ends.find(": ");
-    std::string kinds = colon == ends.npos ? "" : ends.substr(colon + 2);
-    std::replace(kinds.begin(), kinds.end(), ',', ';');
-    summary.table += "," + ends.substr(0, colon) + "," + kinds + "\n";
+    const EarlyEnds ends = early_ends(all);
+    const std::string count = std::to_string(ends.count);
+    summary.table += "," + count + "," + ends.kinds_with("; ") + "\n";
     summary.step_seconds.push_back(mean_of(seconds).mean);
     summary.seconds += world + "," + utility + "," + std::to_string(seconds.size()) + "," +
                        number(summary.step_seconds.back()) + "\n";
     summary.shown.rows.push_back(
         {{world, utility, efficiencies.mean, efficiencies.deviation, shares.mean, shares.deviation,
-          shares.interval(), lacks.mean, lacks.interval(), mean_of(lengths).mean, ends}});
+          shares.interval(), lacks.mean, lacks.interval(), mean_of(lengths).mean,
+          ends.count > 0 ? count + ": " + ends.kinds_with(", ") : count}});
     Series series{utility, {0}, {0}};
     for (int t = 0; t < request.steps; ++t) {
       std::vector<double> at;

@@ -6,6 +6,7 @@
 
 #include "plugins/utilities/learned/backpropagation.h"
 #include "plugins/utilities/learned/model_file.h"
+#include "tests/plugins/learned_state.h"
 
 namespace lapwing::learned {
 namespace {
@@ -128,14 +129,7 @@ void expect_the_same_answers(const NetworkLayout& layout, const NetworkState& st
 NetworkState state_with_statistics(const NetworkLayout& layout) {
   NetworkState state = initial_state(layout, Random(3));
   Random random(4);
-  for (const UnitPlace& unit : layout.units)
-    for (int c = 0; c < unit.out; ++c) {
-      const auto k = static_cast<std::size_t>(c);
-      state.parameters[unit.scale + k] = static_cast<float>(random.uniform(0.5, 1.5));
-      state.parameters[unit.shift + k] = static_cast<float>(random.uniform(-0.3, 0.3));
-      state.statistics[unit.mean + k] = static_cast<float>(random.uniform(-0.5, 0.5));
-      state.statistics[unit.variance + k] = static_cast<float>(random.uniform(0.5, 2));
-    }
+  scatter_normalisations(layout, state, random);
   return state;
 }
 

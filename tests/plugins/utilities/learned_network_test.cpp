@@ -9,6 +9,7 @@
 #include "plugins/utilities/learned/fit.h"
 #include "plugins/utilities/learned/kernels.h"
 #include "plugins/utilities/learned/model_file.h"
+#include "tests/plugins/learned_state.h"
 
 namespace lapwing {
 namespace {
@@ -154,15 +155,7 @@ struct Batch {
       }
       targets.push_back(static_cast<float>(random.normal()));
     }
-    // Scales and shifts, biases and statistics that are not what they begin with.
-    for (const UnitPlace& unit : layout.units)
-      for (int c = 0; c < unit.out; ++c) {
-        const auto k = static_cast<std::size_t>(c);
-        state.parameters[unit.scale + k] = static_cast<float>(random.uniform(0.5, 1.5));
-        state.parameters[unit.shift + k] = static_cast<float>(random.uniform(-0.3, 0.3));
-        state.statistics[unit.mean + k] = static_cast<float>(random.uniform(-0.5, 0.5));
-        state.statistics[unit.variance + k] = static_cast<float>(random.uniform(0.5, 2));
-      }
+    scatter_normalisations(layout, state, random);
   }
   double loss(std::vector<float>& gradient, const BatchOptions& options, int threads = 1) {
     Backpropagation network(layout, size, threads);
