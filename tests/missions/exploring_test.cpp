@@ -1,6 +1,9 @@
 // Explorations end to end.
+#include <gmock/gmock.h>
+
 #include <array>
 #include <map>
+#include <sstream>
 
 #include "tests/missions/flown_film.h"
 
