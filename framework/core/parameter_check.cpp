@@ -1,6 +1,7 @@
 // Checking a map against a parameter table, and reading the checked values.
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -401,7 +402,11 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
     for (std::size_t i = 1; i <= name.size(); ++i) {
       next[0] = i;
       for (std::size_t j = 1; j <= candidate.size(); ++j) {
-        const std::size_t cost = name[i - 1] == candidate[j - 1] ? 0 : 1;
+        const auto same = [](char a, char b) {  // a capital is no slip
+          return std::tolower(static_cast<unsigned char>(a)) ==
+                 std::tolower(static_cast<unsigned char>(b));
+        };
+        const std::size_t cost = same(name[i - 1], candidate[j - 1]) ? 0 : 1;
         next[j] = std::min({row[j] + 1, next[j - 1] + 1, row[j - 1] + cost});
         if (i > 1 && j > 1 && name[i - 1] == candidate[j - 2] && name[i - 2] == candidate[j - 1]) {
           next[j] = std::min(next[j], before[j - 2] + 1);

@@ -158,6 +158,7 @@ TEST(NearestName, FindsSlipsAndNothingElse) {
   EXPECT_EQ(nearest_name("keyfarme", names), "keyframe");
   EXPECT_EQ(nearest_name("input_limit", names), "input_limits");
   EXPECT_EQ(nearest_name("derivativ", names), "derivative");
+  EXPECT_EQ(nearest_name("KEYFRAME", names), "keyframe");
   EXPECT_EQ(nearest_name("camera", names), "");
   EXPECT_EQ(nearest_name("x", names), "");
   EXPECT_EQ(nearest_name("", names), "");
