@@ -14,6 +14,7 @@
 #include "framework/core/number_text.h"
 #include "framework/core/parallel.h"
 #include "framework/export/report.h"
+#include "framework/mission/explore_library.h"
 
 namespace lapwing {
 namespace {
@@ -59,11 +60,6 @@ Mean mean_of(const std::vector<double>& values) {
   return result;
 }
 
-bool asks_truth(const Registry& registry, const std::string& utility) {
-  const auto& extensions = registry.find("utility", utility).extensions;
-  return std::find(extensions.begin(), extensions.end(), kNeedsGroundTruth) != extensions.end();
-}
-
 void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
                const ExplorationSetup& setup, const Registry& registry, const Value& parameters,
                std::uint64_t seed, const fs::path& folder) {
@@ -71,7 +67,7 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   const Viewpoint start =
       random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2, setup.pitch, random);
   EpisodeSettings settings = setup.episode;
-  settings.show_truth = asks_truth(registry, trial.utility);
+  settings.show_truth = needs_truth(registry, trial.utility);
   settings.seed = seed + static_cast<std::uint64_t>(trial.episode) * 1'000'003;
   const auto new_map = setup.new_map(registry);
   const Value* given = parameters.find(trial.utility);
@@ -174,7 +170,7 @@ struct Summary {
   std::string table =
       "world,utility,episodes,efficiency,efficiency_deviation,relative,"
       "relative_deviation,relative_interval,below_learned,below_learned_interval,length,"
-      "ended_early,ends\n";
+      "ended_early,ends,compared\n";
   std::string seconds = "world,utility,episodes,seconds_per_step\n";  // table 5.3
   std::string curves = "world,utility,images,observed,observed_deviation\n";
   Report report;
@@ -221,14 +217,19 @@ void summarise_world(Summary& summary, const std::string& world,
                      number(lacks.interval()) + "," + number(mean_of(lengths).mean);
     const EarlyEnds ends = early_ends(all);
     const std::string count = std::to_string(ends.count);
-    summary.table += "," + count + "," + ends.kinds_with("; ") + "\n";
+    std::string early = ends.count > 0 ? count + ": " + ends.kinds_with(", ") : count;
+    // Where the oracle saw nothing there is no ratio.
+    if (!oracle.empty() && relative.size() < raw.size())
+      early += "; relative: " + std::to_string(relative.size()) + " episodes";
+    summary.table += "," + count + "," + ends.kinds_with("; ") + "," +
+                     std::to_string(relative.size()) + "\n";
     summary.step_seconds.push_back(mean_of(seconds).mean);
     summary.seconds += world + "," + utility + "," + std::to_string(seconds.size()) + "," +
                        number(summary.step_seconds.back()) + "\n";
     summary.shown.rows.push_back(
         {{world, utility, efficiencies.mean, efficiencies.deviation, shares.mean, shares.deviation,
           shares.interval(), lacks.mean, lacks.interval(), mean_of(lengths).mean,
-          ends.count > 0 ? count + ": " + ends.kinds_with(", ") : count}});
+          early}});
     Series series{utility, {0}, {0}};
     for (int t = 0; t < request.steps; ++t) {
       std::vector<double> at;
@@ -271,15 +272,10 @@ void claim_folder(const ExploreEvaluation& request, Value stated) {
     if (!there.is_map() || !there.find("steps") || !there.find("lookahead"))
       throw InputError("'" + settings.string() +
                        "' is not of an evaluation of explorations: choose another folder with -o");
-    if (!request.resume) {
-      for (const fs::path& folder : {episodes, request.folder / "seconds"})
-        if (fs::is_directory(folder))
-          for (const auto& entry : std::vector<fs::directory_entry>(
-                   fs::directory_iterator(folder), fs::directory_iterator()))
-            if (entry.is_regular_file() && entry.path().extension() == ".json")
-              fs::remove(entry.path());
-    } else if (const std::string difference = settings_difference(there, stated);
-               !difference.empty()) {
+    if (!request.resume)
+      throw InputError("'" + request.folder.string() + "' holds an evaluation: go on with " +
+                       "--resume, or choose another folder with -o");
+    if (const std::string difference = settings_difference(there, stated); !difference.empty()) {
       throw InputError("'" + settings.string() +
                        "': the evaluation there has other settings: " + difference);
     } else if (const Value* files = there.find("files")) {
@@ -299,7 +295,12 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   if (utilities.empty())
     for (const PluginEntry& entry : registry.entries())
       if (entry.kind == ViewUtility::kKind) utilities.push_back(entry.name);
-  for (const std::string& utility : utilities) registry.find("utility", utility);
+  for (std::size_t k = 0; k < utilities.size(); ++k) {
+    registry.find("utility", utilities[k]);
+    if (std::find(utilities.begin(), utilities.begin() + static_cast<std::ptrdiff_t>(k),
+                  utilities[k]) != utilities.begin() + static_cast<std::ptrdiff_t>(k))
+      throw InputError("--utility " + utilities[k] + ": is named twice");
+  }
   const std::vector<WorldName> names = distinct_worlds(request.worlds, "evaluate explore");
   for (const WorldName& name : names) require_world(name, request.up);
   ExplorationSetup setup;
@@ -330,8 +331,8 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   stated.set("stereo", request.stereo);
   stated.set("lookahead", request.lookahead);
   stated.set("parameters", parameters);
-  if (!request.moves.empty()) stated.set("moves", moves);
-  if (!request.up.empty()) stated.set("up", request.up);
+  stated.set("moves", moves);
+  stated.set("up", request.up);
   stated.set("files", checksums_of(names, utilities, parameters, registry));
   claim_folder(request, std::move(stated));
 

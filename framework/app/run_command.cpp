@@ -253,7 +253,9 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   } else if (!invocation.quiet) {
     print_summary(outcome);
   } else if (outcome.status != "ok") {
+    const std::string& message = outcome.result.report.message;
     std::cerr << "lapwing: " << outcome.result.plan.mission << ": " << in_words(outcome)
+              << (outcome.status == "cancelled" || message.empty() ? "" : "\n  " + message)
               << std::endl;
   }
   return exit_status_of(outcome.status);

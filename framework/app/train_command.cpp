@@ -10,6 +10,7 @@
 #include "framework/config/overrides.h"
 #include "framework/core/parallel.h"
 #include "framework/explore/trainable.h"
+#include "framework/mission/explore_library.h"
 
 namespace lapwing {
 namespace {
@@ -104,7 +105,7 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   const Value moves = setup.set_moves(request.moves);
-  setup.episode.show_truth = request.explorer == "oracle";
+  setup.episode.show_truth = needs_truth(registry, request.explorer);
   setup.episode.cancellation = &interruption.token();
   Value explorer = Value::map();
   for (const std::string& text : request.explorer_overrides) apply_override(explorer, text);

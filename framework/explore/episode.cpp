@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "framework/core/error.h"
+#include "framework/core/number_text.h"
 #include "framework/explore/lookahead.h"
 
 namespace lapwing {
@@ -22,7 +23,7 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
   check_camera(s.sensor.pinhole, s.sensor.range);
   const auto above = [](double value, const char* what) {
     if (!(value > 0 && std::isfinite(value)))
-      throw InputError(std::string(what) + " must be above 0, not " + std::to_string(value));
+      throw InputError(std::string(what) + " must be above 0, not " + plain_number(value));
   };
   above(s.step, "the step to a neighbour");
   above(s.turn, "the turn to a neighbour");
@@ -117,6 +118,8 @@ class Explorer {
   void look(EpisodeStep& taken, int place);
   void add_neighbours(int place, std::vector<Viewpoint>& reachable);
   void score(std::span<const int> places);
+  // As the explorer chooses by them; how many views the utility was asked for.
+  int value_of(std::span<const Viewpoint> views, std::span<double> values) const;
   // All candidates whose values are of older maps; false where there are none.
   bool rescore_all();
   void list_what_is_left();
@@ -151,20 +154,22 @@ void Explorer::begin(const Viewpoint& start) {
   in_plugin(utility_, "require_fit", [&] { utility_.require_fit(known_); });
   if (!map_.grid().contains(start.position))
     throw InputError("the start lies outside the largest map");
+  if (!within_bounds(start))
+    throw InputError("the start lies outside the bounds that the explorer stays in");
   const Eigen::AlignedBox3d cleared = cleared_box(map_.grid(), start.position, settings_.clear);
   if (truth_.box_blocked(cleared))
-    throw InputError("the start at (" + std::to_string(start.position.x()) + ", " +
-                     std::to_string(start.position.y()) + ", " +
-                     std::to_string(start.position.z()) + ") lies in an obstacle: a box of " +
-                     std::to_string(settings_.clear) + " m about it must be free");
+    throw InputError("the start at (" + plain_number(start.position.x()) + ", " +
+                     plain_number(start.position.y()) + ", " +
+                     plain_number(start.position.z()) + ") lies in an obstacle: a box of " +
+                     plain_number(settings_.clear) + " m about it must be free");
   means_.touch(clear_box(map_, cleared));
   int ways = 0;
   for (const Viewpoint& next : neighbours_of(start, settings_.step, settings_.turn))
     ways += next.position != start.position && within_bounds(next) && graph_.free(start, next);
   if (ways == 0)
     throw InputError("no neighbour of the start could be reached: a step of " +
-                     std::to_string(settings_.step) + " m leaves the box of " +
-                     std::to_string(settings_.clear) +
+                     plain_number(settings_.step) + " m leaves the box of " +
+                     plain_number(settings_.clear) +
                      " m that is known to be free, or the bounds");
   at_ = graph_.add(start);
   visits_.push_back(0);
@@ -175,15 +180,17 @@ void Explorer::score(std::span<const int> places) {
   std::vector<Viewpoint> views;
   for (const int place : places) views.push_back(graph_[place]);
   std::vector<double> values(views.size());
-  if (settings_.lookahead == 1) {
-    utility_.score(known_, views, values);
-    scored_ += static_cast<int>(places.size());
-  } else {
-    scored_ += score_ahead(
+  scored_ += value_of(views, values);
+  for (std::size_t k = 0; k < places.size(); ++k) candidates_.push({values[k], places[k], step_});
+}
+
+int Explorer::value_of(std::span<const Viewpoint> views, std::span<double> values) const {
+  if (settings_.lookahead > 1)
+    return score_ahead(
         utility_, known_, views, settings_.lookahead,
         [&](const Viewpoint& view) { return worth_looking_from(view); }, values);
-  }
-  for (std::size_t k = 0; k < places.size(); ++k) candidates_.push({values[k], places[k], step_});
+  utility_.score(known_, views, values);
+  return static_cast<int>(views.size());
 }
 
 std::vector<Viewpoint> Explorer::worth_looking_from(const Viewpoint& view) const {
@@ -374,7 +381,7 @@ void Explorer::list_what_is_left() {
       views.push_back(graph_[place]);
   }
   std::vector<double> values(views.size());
-  utility_.score(known_, views, values);
+  value_of(views, values);
   for (std::size_t k = 0; k < views.size(); ++k)
     result_.candidates.push_back({views[k], values[k]});
 }

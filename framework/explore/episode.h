@@ -97,9 +97,9 @@ using EpisodeObserver = std::function<void(const EpisodeMoment&)>;
 // `map` is empty and counts observations. `truth` is the simulated world; `observed` belongs to it
 // and is asked by a utility that needs it. All outlive the call.
 //
-// InputError: a start whose box is not free in the world, or without a neighbour that could be
-// reached; a map that does not count observations or has another maximum range than the camera;
-// whatever the utility's require_fit throws; settings without sense.
+// InputError: a start whose box is not free in the world, outside the bounds, or without a
+// neighbour that could be reached; a map that does not count observations or has another maximum
+// range than the camera; whatever the utility's require_fit throws; settings without sense.
 EpisodeResult explore(const EpisodeSettings& settings, const Viewpoint& start,
                       const GroundTruth& truth, ObservedSurface& observed,
                       const ViewUtility& utility, Map& map, const EpisodeObserver& observer = {});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/core/number_text.h"
 #include "framework/map/surface_voxels.h"
 
 namespace lapwing {
@@ -83,7 +84,7 @@ void GroundTruth::lay_out() {
     voxels *= static_cast<std::size_t>(size_[i]);
     if (voxels > kMostVoxels)
       throw InputError("the scene takes more than 2^29 voxels of " +
-                       std::to_string(grid_.resolution()) + " m: take larger ones");
+                       plain_number(grid_.resolution()) + " m: take larger ones");
   }
   space_.resize(voxels);
 }
@@ -92,8 +93,8 @@ void GroundTruth::find_space(std::span<const VoxelKey> all,
                              const std::optional<Eigen::Vector3d>& inside) {
   // A place beyond these voxels is taken for the nearest one within, but not from anywhere.
   const auto text = [](const Eigen::Vector3d& p) {
-    return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ", " +
-           std::to_string(p.z()) + ")";
+    return "(" + plain_number(p.x()) + ", " + plain_number(p.y()) + ", " +
+           plain_number(p.z()) + ")";
   };
   Eigen::AlignedBox3d near = scene_->mesh().bounds();
   near.min().array() -= kFarthest;
@@ -298,10 +299,14 @@ bool GroundTruth::box_blocked(const Eigen::AlignedBox3d& box) const {
 }
 
 Viewpoint random_start(const GroundTruth& truth, double clear, double reach, double pitch,
-                       Random& random) {
+                       Random& random, const std::optional<Eigen::AlignedBox3d>& bounds) {
   constexpr int kDraws = 100'000;
   int outside = 0, blocked = 0, far = 0;
-  const Eigen::Vector3d low = truth.region().min(), high = truth.region().max();
+  const Eigen::AlignedBox3d box =
+      bounds ? truth.region().intersection(*bounds) : truth.region();
+  if (box.isEmpty())
+    throw InputError("found no place to start from: the bounds have nothing of the region");
+  const Eigen::Vector3d low = box.min(), high = box.max();
   for (int draw = 0; draw < kDraws; ++draw) {
     Eigen::Vector3d p;
     for (int i = 0; i < 3; ++i) p[i] = low[i] + random.uniform() * (high[i] - low[i]);
@@ -316,11 +321,11 @@ Viewpoint random_start(const GroundTruth& truth, double clear, double reach, dou
       return {p, yaw, pitch};
     }
   }
-  const auto share = [&](int count) { return std::to_string(100.0 * count / kDraws) + " %"; };
+  const auto share = [&](int count) { return plain_number(100.0 * count / kDraws) + " %"; };
   throw InputError("found no place to start from: of 100,000 drawn in the region " +
                    share(outside) + " lie in no free space, " + share(blocked) +
                    " have something within the box that is cleared, " + share(far) +
-                   " have no surface within " + std::to_string(reach) + " m");
+                   " have no surface within " + plain_number(reach) + " m");
 }
 
 }  // namespace lapwing

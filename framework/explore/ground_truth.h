@@ -139,10 +139,11 @@ class ObservedSurface final : public TrueGain {
   mutable std::vector<std::shared_ptr<const Sight>> sights_;  // by place in the index
 };
 
-// A viewpoint for an exploration to begin at: where the cleared box is truly free, in the space and
-// the region, with a surface within `reach` metres. InputError after 100,000 failed draws, saying
-// what was in the way.
+// A viewpoint for an exploration to begin at: where the cleared box is truly free, in the space,
+// the region and the bounds, with a surface within `reach` metres. InputError for bounds that have
+// nothing of the region, and after 100,000 failed draws, saying what was in the way.
 Viewpoint random_start(const GroundTruth& truth, double clear, double reach, double pitch,
-                       Random& random);
+                       Random& random,
+                       const std::optional<Eigen::AlignedBox3d>& bounds = std::nullopt);
 
 }  // namespace lapwing

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/core/number_text.h"
 #include "framework/map/ray_walk.h"
 #include "framework/map/scan.h"
 
@@ -12,20 +13,20 @@ namespace lapwing {
 void HiddenVoxels::follow(double farthest) const {
   if (!(farthest > 0 && std::isfinite(farthest)))
     throw InputError("a distance behind surfaces must be above 0 and finite, not " +
-                     std::to_string(farthest));
+                     plain_number(farthest));
   const std::lock_guard lock(mutex_);
   if (farthest <= farthest_) return;
   if (seen_)
-    throw InputError("voxels up to " + std::to_string(farthest) +
+    throw InputError("voxels up to " + plain_number(farthest) +
                      " m behind surfaces are wanted after the first image, and only those up to " +
-                     std::to_string(farthest_) + " m were followed");
+                     plain_number(farthest_) + " m were followed");
   farthest_ = farthest;
 }
 
 void HiddenVoxels::require_followed(double farthest) const {
   const std::lock_guard lock(mutex_);
   if (farthest > farthest_)
-    throw InputError("voxels up to " + std::to_string(farthest) +
+    throw InputError("voxels up to " + plain_number(farthest) +
                      " m behind surfaces were not followed; a utility's require_fit says before "
                      "the first image that it wants them");
 }

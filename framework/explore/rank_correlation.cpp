@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "framework/core/error.h"
@@ -28,6 +29,9 @@ std::vector<double> ranks_of(std::span<const float> values) {
 
 double rank_correlation(std::span<const float> a, std::span<const float> b) {
   if (a.size() != b.size()) throw Error("rank_correlation: sizes differ");
+  const auto no_number = [](float value) { return std::isnan(value); };
+  if (std::any_of(a.begin(), a.end(), no_number) || std::any_of(b.begin(), b.end(), no_number))
+    return std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> x = ranks_of(a), y = ranks_of(b);
   const double mean = (static_cast<double>(a.size()) - 1) / 2;
   double xx = 0, yy = 0, xy = 0;

@@ -37,7 +37,7 @@ struct Trainable {
 };
 
 // Spearman's rho: the correlation of ranks, ties sharing their mean rank. NaN for fewer than two
-// values or where all of one side are equal. Error when the sizes differ.
+// values, where all of one side are equal or one is NaN. Error when the sizes differ.
 double rank_correlation(std::span<const float> a, std::span<const float> b);
 
 }  // namespace lapwing

@@ -6,6 +6,7 @@
 #include "framework/core/error.h"
 #include "framework/core/fields.h"
 #include "framework/core/json.h"
+#include "framework/core/number_text.h"
 
 namespace lapwing {
 namespace {
@@ -70,6 +71,16 @@ void sample_level(const EpisodeView& known, const Viewpoint& view, const GridSha
     }
 }
 
+// As a mission's options say it: log odds as a probability, angles in degrees.
+std::string in_words(const std::string& key, const Value& value) {
+  if (!value.is_number()) return to_json(value, -1);
+  const double number = value.as_number();
+  if (key == "hit" || key == "miss" || key.starts_with("clamp_"))
+    return plain_number(1 / (1 + std::exp(-number)));
+  if (key == "pitch") return plain_number(number * 180 / EIGEN_PI) + " deg";
+  return plain_number(number) + (key == "resolution" || key == "range" ? " m" : "");
+}
+
 }  // namespace
 
 void require_sense(const GridShape& shape) {
@@ -96,10 +107,14 @@ GridShape grid_shape_from(const Value& value) {
   Diagnostics errors;
   Fields fields(value, "grid", errors);
   GridShape shape;
-  shape.across = static_cast<int>(fields.integer("across"));
-  shape.ahead = static_cast<int>(fields.integer("ahead"));
-  shape.up = static_cast<int>(fields.integer("up"));
-  shape.levels = static_cast<int>(fields.integer("levels"));
+  // Within int first: what is beyond it is refused below.
+  const auto read = [&](const char* key) {
+    return static_cast<int>(std::clamp<std::int64_t>(fields.integer(key), 0, 1 << 20));
+  };
+  shape.across = read("across");
+  shape.ahead = read("ahead");
+  shape.up = read("up");
+  shape.levels = read("levels");
   fields.finish();
   errors.throw_if_any();
   require_sense(shape);
@@ -157,7 +172,8 @@ std::string mapping_difference(const Value& given, const Value& expected) {
                           ? std::abs(value.as_number() - other->as_number()) <=
                                 kAlike * std::max(1.0, std::abs(value.as_number()))
                           : value == *other;
-    if (!same) return key + " is " + to_json(*other, -1) + ", the model's " + to_json(value, -1);
+    if (!same)
+      return key + " is " + in_words(key, *other) + ", the model's " + in_words(key, value);
   }
   return "";
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/core/number_text.h"
 
 namespace lapwing {
 
@@ -26,10 +27,10 @@ void ViewUtility::score(const EpisodeView& known, std::span<const Viewpoint> vie
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (std::isfinite(values[i])) continue;
     const Viewpoint& view = views[i];
-    const std::string wrong = "the utility of the view from (" + std::to_string(view.position.x()) +
-                              ", " + std::to_string(view.position.y()) + ", " +
-                              std::to_string(view.position.z()) + ") with yaw " +
-                              std::to_string(view.yaw) + " is " + std::to_string(values[i]) +
+    const std::string wrong = "the utility of the view from (" + plain_number(view.position.x()) +
+                              ", " + plain_number(view.position.y()) + ", " +
+                              plain_number(view.position.z()) + ") with yaw " +
+                              plain_number(view.yaw) + " is " + plain_number(values[i]) +
                               ", which is no finite number";
     if (!plugin_name()) throw Error(wrong);
     throw plugin_failure(plugin_name(), "values_of", wrong);

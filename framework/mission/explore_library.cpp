@@ -4,6 +4,7 @@
 
 #include <lua.hpp>
 
+#include "framework/core/number_text.h"
 #include "framework/core/units.h"
 #include "framework/explore/episode.h"
 #include "framework/export/exploration_report.h"
@@ -101,9 +102,11 @@ EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   if (given.has("wall_clock_guard")) s.wall_clock_guard = given.number("wall_clock_guard");
   const auto& bounds = given.tables("bounds");
   if (bounds.size() > 1) throw InputError(given.origin("bounds"), "bounds: at most one box");
-  if (bounds.size() == 1)
-    s.bounds = Eigen::AlignedBox3d(vector_of(bounds[0].numbers("lower")),
-                                   vector_of(bounds[0].numbers("upper")));
+  if (bounds.size() == 1) {
+    s.bounds.emplace(vector_of(bounds[0].numbers("lower")), vector_of(bounds[0].numbers("upper")));
+    if (!((s.bounds->sizes().array() > 0).all()))
+      throw InputError(given.origin("bounds"), "bounds: lower must be below upper");
+  }
   s.seed = run.settings.seed;
   s.threads = run.settings.threads;
   s.cancellation = run.settings.cancellation;
@@ -111,16 +114,40 @@ EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   return s;
 }
 
-bool needs_truth(const Registry& registry, const std::string& utility) {
-  const auto& extensions = registry.find("utility", utility).extensions;
-  return std::find(extensions.begin(), extensions.end(), kNeedsGroundTruth) != extensions.end();
-}
-
-// Whether the map is shown after this many images.
+// Whether the map is shown after this many images of so many that are asked for.
 bool is_moment(int images, int steps) {
   return images == std::max(1, steps / 10) || images == std::max(1, steps / 4) ||
          images == std::max(1, steps / 2);
 }
+
+// How the map grew, in four pictures whenever it ends: after shares of the images that were asked
+// for, or, where it ended before them, after as many as the last powers of two.
+class Moments {
+ public:
+  static constexpr std::size_t kShown = 4;
+
+  explicit Moments(int steps) : steps_(steps) {}
+  void look(int images, const Map& map) {
+    if (is_moment(images, steps_) || std::has_single_bit(static_cast<unsigned>(images)))
+      all_.push_back({images, height_picture(map, kMomentPixels).picture});
+  }
+  std::vector<ExplorationMoment> shown(int images, const Map& map) && {
+    const bool whole = images == steps_;
+    std::erase_if(all_, [&](const ExplorationMoment& moment) {
+      return whole ? !is_moment(moment.images, steps_)
+                   : !std::has_single_bit(static_cast<unsigned>(moment.images));
+    });
+    if (images > 0 && (all_.empty() || all_.back().images < images))
+      all_.push_back({images, height_picture(map, kMomentPixels).picture});
+    if (all_.size() > kShown)
+      all_.erase(all_.begin(), all_.end() - static_cast<std::ptrdiff_t>(kShown));
+    return std::move(all_);
+  }
+
+ private:
+  int steps_;
+  std::vector<ExplorationMoment> all_;
+};
 
 void record_path(Exploration& e) {
   ExplorationRecord& record = e.record;
@@ -181,14 +208,14 @@ int plan_exploration(lua_State* state) {
   // A ball within the box that was kept free.
   if (given.number("margin") > e.settings.body / 2)
     throw InputError(given.origin("margin"), "margin: at most half of the body's edge, " +
-                                                 std::to_string(e.settings.body / 2) + " m");
+                                                 plain_number(e.settings.body / 2) + " m");
   lua_getfield(state, 2, "vehicle");
   const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
   PlanObject made;
   made.solver = e.record.utility;
   made.report.status = e.result.end == EpisodeEnd::cancelled ? SolveStatus::cancelled
-                       : e.result.end == EpisodeEnd::time    ? SolveStatus::time_limit
                        : e.result.steps.empty()              ? SolveStatus::infeasible
+                       : e.result.end == EpisodeEnd::time    ? SolveStatus::time_limit
                                                              : SolveStatus::feasible;
   made.report.iterations = static_cast<int>(e.result.steps.size());
   made.report.message = (e.result.steps.empty() ? "no image was taken: " : "") +
@@ -315,22 +342,20 @@ int explore_surface(lua_State* state) {
   const GroundTruth truth(scene, region, e->map->grid().resolution(), inside);
   if (starts.empty()) {
     Random random(run.settings.seed);
-    e->start = random_start(truth, e->settings.clear, e->settings.sensor.range / 2, pitch, random);
+    e->start = random_start(truth, e->settings.clear, e->settings.sensor.range / 2, pitch, random,
+                            e->settings.bounds);
   } else {
     e->start = {vector_of(starts[0].numbers("position")), starts[0].number("yaw"), pitch};
   }
   ObservedSurface observed(truth, e->settings.sensor, new_map);
   ExplorationRecord& record = e->record;
   record.utility = chosen.type;
+  Moments moments(e->settings.steps);
   e->result = explore(e->settings, e->start, truth, observed, *utility, *e->map,
                       [&](const EpisodeMoment& moment) {
-                        if (is_moment(moment.step + 1, e->settings.steps))
-                          record.moments.push_back(
-                              {moment.step + 1, height_picture(*e->map, kMomentPixels).picture});
+                        moments.look(moment.step + 1, *e->map);
                       });
-  const auto images = static_cast<int>(e->result.steps.size());
-  if (images > 0 && (record.moments.empty() || record.moments.back().images < images))
-    record.moments.push_back({images, height_picture(*e->map, kMomentPixels).picture});
+  record.moments = std::move(moments).shown(static_cast<int>(e->result.steps.size()), *e->map);
   for (const EpisodeStep& step : e->result.steps) {
     record.observed.push_back(step.observed);
     e->seconds += step.seconds;
@@ -345,15 +370,28 @@ int explore_surface(lua_State* state) {
   if (given.boolean("compare") && !stopped) {
     EpisodeSettings settings = e->settings;
     settings.show_truth = true;
+    settings.wall_clock_guard.reset();  // of the mission's own exploration
     const auto oracle = registry.create<ViewUtility>("oracle");
     ObservedSurface anew(truth, settings.sensor, new_map);
     const auto other = new_map();
     const EpisodeResult best = explore(settings, e->start, truth, anew, *oracle, *other);
-    record.oracle_efficiency = best.efficiency(settings.steps);
-    for (const EpisodeStep& step : best.steps) record.oracle.push_back(step.observed);
+    if (best.end != EpisodeEnd::cancelled) {
+      record.oracle_efficiency = best.efficiency(settings.steps);
+      for (const EpisodeStep& step : best.steps) record.oracle.push_back(step.observed);
+    }
   }
   new_object(state, kExplorationType, ExplorationObject{std::move(e)});
   return 1;
+}
+
+std::vector<Section> sections_of_exploration(lua_State* state, int index) {
+  const auto& object = object_argument<ExplorationObject>(state, index, kExplorationType);
+  return exploration_sections(object.exploration->record);
+}
+
+bool needs_truth(const Registry& registry, const std::string& utility) {
+  const auto& extensions = registry.find("utility", utility).extensions;
+  return std::find(extensions.begin(), extensions.end(), kNeedsGroundTruth) != extensions.end();
 }
 
 void open_explore_library(lua_State* state) {

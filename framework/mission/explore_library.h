@@ -1,7 +1,11 @@
 // Explorations: run:explore and what it returns.
 #pragma once
 
+#include <vector>
+
+#include "framework/export/report.h"
 #include "framework/mission/binding.h"
+#include "framework/plugin/registry.h"
 
 namespace lapwing {
 
@@ -15,5 +19,11 @@ inline constexpr BoundField kExploreObjects[] = {
     {"map", "lapwing.map_choice", "that is made of it"},
     {"utility", "lapwing.utility", "how useful a view is"}};
 int explore_surface(lua_State* state);
+
+// What a report shows of the exploration at a place of the stack. InputError where there is none.
+std::vector<Section> sections_of_exploration(lua_State* state, int index);
+
+// Whether a utility declares that it reads the truth. InputError for one that there is not.
+bool needs_truth(const Registry& registry, const std::string& utility);
 
 }  // namespace lapwing

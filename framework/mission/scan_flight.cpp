@@ -8,6 +8,7 @@
 #include "framework/core/parallel.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/map/map_file.h"
+#include "framework/mission/explore_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
@@ -196,6 +197,8 @@ std::vector<const SolutionObject*> legs_argument(lua_State* state, int table) {
 constexpr BoundField kScanPlanObjects[] = {{"tour", "lapwing.tour", "that is flown"},
                                            {"legs?", "lapwing.solution[]",
                                             "how, from view to view; absent: by pure pursuit"},
+                                           {"explored?", "lapwing.exploration",
+                                            "what came before it, for the report"},
                                            {"notes?", "string[]", "sentences for the user"},
                                            {"figures?", "table", "of the tour, for --json"}};
 ParameterTable scan_plan_table() {
@@ -209,7 +212,7 @@ ParameterTable scan_plan_table() {
 }
 
 // run:scan_plan{tour =, margin =, budget =, closed_loop_required =, seen_share =, notes =,
-//               figures =, legs =}
+//               figures =, legs =, explored =}
 int scan_plan_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -226,6 +229,8 @@ int scan_plan_of_run(lua_State* state) {
   made.block = value_from_lua(state, lua_gettop(state), origin, "scan_plan.figures");
   const std::vector<const SolutionObject*> legs = legs_argument(state, 2);
   made.block_name = "tour";
+  if (lua_getfield(state, 2, "explored") != LUA_TNIL)
+    made.sections = sections_of_exploration(state, -1);
   made.notes = texts_of(notes);
   made.report = report_of(tour.report);
   made.solver = tour.solver;

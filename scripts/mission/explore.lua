@@ -8,12 +8,14 @@
 -- `utility` says what a good view is: frontier, average_entropy, proximity_count, learned, or the
 -- oracle, who knows the surface. `map` is the backend alone; what every backend takes is settled
 -- here, since a learned utility is good for one mapping only.
+local named_scene = require "mission.named_scene"
+
 local M = {}
 
 local CAMERA = {
-  { name = "width", type = "integer", default = 160, minimum = 1, maximum = 10000,
+  { name = "width", type = "integer", default = 160, minimum = 1, maximum = 2000,
     summary = "pixels" },
-  { name = "height", type = "integer", default = 120, minimum = 1, maximum = 10000,
+  { name = "height", type = "integer", default = 120, minimum = 1, maximum = 2000,
     summary = "pixels" },
   { name = "view_deg", type = "number", unit = "deg", default = 90, minimum = 1, maximum = 170,
     summary = "angle across the image" },
@@ -71,7 +73,8 @@ local OPTIONS = {
     summary = "views of the ways that are valued: 1 looks at the next view alone" },
   { name = "margin", type = "number", unit = "m", default = 0.4, minimum = 0,
     summary = "kept from what the map holds at the end, as the certificate judges it" },
-  { name = "budget", type = "number", unit = "s", above = 0, summary = "of flight; absent: none" },
+  { name = "budget", type = "number", unit = "s", above = 0,
+    summary = "of flight; absent: one battery" },
   { name = "wall_clock_guard", type = "number", unit = "s", above = 0,
     summary = "of computing; a run that it ends may not repeat" },
   { name = "compare", type = "boolean", default = true,
@@ -126,7 +129,7 @@ function M.explore(run, surface)
     stereo_baseline = c.stereo_baseline,
     step = m.step, turn_deg = m.turn_deg, body = m.body, clear = m.clear, visits = m.visits,
     speed = m.speed, turn_rate_deg = m.turn_rate_deg, pause = m.pause,
-    steps = o.steps, lookahead = o.lookahead, budget = o.budget,
+    steps = o.steps, lookahead = o.lookahead, budget = o.budget or vehicle.flight_time,
     wall_clock_guard = o.wall_clock_guard,
     compare = o.compare, ground = o.ground or false,
     bounds = o.lower and { { lower = o.lower, upper = o.upper } } or {},
@@ -153,16 +156,7 @@ function M.of_scene(given)
     { name = "scene", type = "text", summary = "a scene of scripts/scene: downtown, street, ..." },
     { name = "scene_seed", type = "integer", default = 1, minimum = 0, maximum = 9007199254740991,
       summary = "of the scene" },
-  }, function(run)
-    local o = run.options
-    local make = require("scene." .. o.scene)
-    if type(make) ~= "function" then
-      run:fail("scene", string.format(
-        "'%s' is a part of scenes, no scene: expected street, church, courtyard, suburb, "
-        .. "downtown or office", o.scene))
-    end
-    return run:surface(make { seed = o.scene_seed })
-  end)
+  }, function(run) return run:surface(named_scene(run)) end)
 end
 
 -- A mesh file.

@@ -8,6 +8,7 @@
 -- Missions of kind `map` return a map instead of a plan. What every backend takes is an option of
 -- the mission (`resolution`, `mode`, `pixel_step`, `observations`); `map` is the backend alone, so
 -- that `--set map=octomap` changes nothing but speed and memory.
+local named_scene = require "mission.named_scene"
 local views = require "mission.views"
 
 local M = {}
@@ -103,13 +104,7 @@ function M.of_scene(given)
                             "it is the sensor's: set sensor.range instead")), SHARED, own), given),
     plan = function(run)
       local o = run.options
-      local make = require("scene." .. o.scene)
-      if type(make) ~= "function" then
-        run:fail("scene", string.format(
-          "'%s' is a part of scenes, no scene: expected street, church, courtyard, suburb, "
-          .. "downtown or office", o.scene))
-      end
-      local scene = make { seed = o.scene_seed }
+      local scene = named_scene(run)
       local surface = run:surface(scene)
       local made = new_map(run, { maximum_range = o.sensor.range })
       made:scan {

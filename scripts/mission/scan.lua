@@ -61,26 +61,6 @@ local function check(run)
   first.check(run)
 end
 
--- Round the region, and where the first flight was.
-local function room_of(run, starts)
-  local o, region = run.options, first.region_of(run)
-  local lower, upper = {}, {}
-  for axis = 1, 3 do lower[axis], upper[axis] = region.lower[axis], region.upper[axis] end
-  for axis = 1, 2 do
-    lower[axis], upper[axis] = lower[axis] - o.reach, upper[axis] + o.reach
-    for _, start in ipairs(starts) do
-      lower[axis] = math.min(lower[axis], start.position[axis])
-      upper[axis] = math.max(upper[axis], start.position[axis])
-    end
-  end
-  lower[3], upper[3] = lower[3] + o.floor, first.ceiling_of(run)
-  if lower[3] >= upper[3] then
-    run:fail("region", string.format("the tour would have to fly over %.4g m (region and floor) "
-                                     .. "and below %.4g m (ceiling)", lower[3], upper[3]))
-  end
-  return { lower = lower, upper = upper }
-end
-
 local function graph_of(run, known, vehicle, starts, finish)
   local o = run.options
   local region = first.region_of(run)
@@ -88,7 +68,7 @@ local function graph_of(run, known, vehicle, starts, finish)
   local c = o.candidates
   return run:scan_graph {
     prior = known, vehicle = vehicle, region = region,
-    allowed = room_of(run, starts),
+    allowed = first.room(run, starts),
     starts = starts, needed = finish, body = o.body, mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
@@ -185,7 +165,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
     local plan = run:scan_plan {
       tour = tour, legs = flown(run, vehicle, tour, notes), margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
-      notes = notes,
+      notes = notes, explored = explored,
       figures = { score = tour.score, upper_bound = tour.upper_bound, gap = tour.gap,
                   seconds = tour.seconds, budget = asked, images = tour.images,
                   candidates = graph.candidates, motions = graph.motions,
@@ -207,11 +187,8 @@ local function planned(run)
   check(run)
   local vehicle = run:vehicle(o.vehicle)
   exploration.check(run)
-  exploration.check_battery(run, vehicle, budget_of(run))
-  local known, poses, surface, explored = first.knowledge(run)
-  if explored then
-    exploration.check_battery(run, vehicle, budget_of(run), explored.flight)
-  end
+  local seconds = exploration.seconds(run, vehicle, budget_of(run))
+  local known, poses, surface, explored = first.knowledge(run, seconds)
   local starts, finish = first.starts(run, poses)
   local plan
   for round = 1, o.rounds do

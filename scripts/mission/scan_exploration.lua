@@ -1,5 +1,7 @@
 -- An exploration in place of a scan's first flight (thesis 6.1): a drone that knows nothing maps
 -- the place, then scans with the map and the mesh that it made, in one visit.
+local patterns = require "mission.scan_patterns"
+
 local M = {}
 
 -- What a learned utility was trained with (reading 5.2); the scan's map is made the same way.
@@ -11,7 +13,8 @@ M.DECLARATION = { name = "exploration", type = "table",
     { name = "images", type = "integer", default = 0, minimum = 0, maximum = 100000,
       summary = "depth images at most; 0: no exploration" },
     { name = "utility", type = "text", default = "learned", summary = "how useful a view is" },
-    { name = "budget", type = "number", unit = "s", above = 0, summary = "of its flight" },
+    { name = "budget", type = "number", unit = "s", above = 0,
+      summary = "of its flight; absent: what the tour leaves of one battery" },
     { name = "range", type = "number", unit = "m", default = 20, minimum = 1, maximum = 1000,
       summary = "of its depth camera" },
     { name = "speed", type = "number", unit = "m/s", default = 2, above = 0,
@@ -48,18 +51,24 @@ function M.check(run)
   end
 end
 
--- One visit, one battery: `flown` seconds (absent: as many as it may take), then the tour.
-function M.check_battery(run, vehicle, tour, flown)
-  local before = flown or M.wanted(run) and run.options.exploration.budget or 0
-  if before + tour <= vehicle.flight_time then return end
-  if before == 0 then
+-- One visit, one battery: the seconds that an exploration may take before a tour of so many.
+function M.seconds(run, vehicle, tour)
+  local budget = M.wanted(run) and run.options.exploration.budget
+  local left = vehicle.flight_time - tour
+  if left < 0 then
     run:fail("tour", string.format("a budget of %.6g s is more than one battery, %.6g s", tour,
                                    vehicle.flight_time))
   end
-  run:fail("exploration", string.format(
-    "%.6g s of it%s and a tour of %.6g s are more than one battery, %.6g s: fewer images, a "
-    .. "smaller exploration.budget or tour.budget", math.ceil(before),
-    flown and " were flown" or "", tour, vehicle.flight_time))
+  if budget and budget > left then
+    run:fail("exploration", string.format(
+      "%.6g s of it and a tour of %.6g s are more than one battery, %.6g s: a smaller "
+      .. "exploration.budget or tour.budget", budget, tour, vehicle.flight_time))
+  end
+  if M.wanted(run) and left == 0 then
+    run:fail("exploration", string.format("a tour of %.6g s leaves it nothing of one battery",
+                                          tour))
+  end
+  return budget or left
 end
 
 local function map_of(o, range)
@@ -72,23 +81,25 @@ local function map_of(o, range)
   return map
 end
 
--- What is known afterwards: a prior with its mesh, and the views, the last one first.
-function M.knowledge(run, surface)
+-- What is known of a surface after an exploration of so many seconds at most that stays in the box
+-- `room`: a prior with its mesh, and the views, the last one first. `region` is to be scanned.
+function M.knowledge(run, surface, region, room, seconds)
   local o = run.options
   local e = o.exploration
-  if not surface then
-    run:fail("exploration", "there is nothing to explore: name a scene or a mesh")
-  end
   local own = map_of(o, e.range)
   own.observations = true
   local body = 2 * math.max(table.unpack(o.body))
   local done = run:explore {
-    surface = surface, map = own, utility = e.utility, steps = e.images, budget = e.budget,
+    surface = surface, map = own, utility = e.utility, steps = e.images, budget = seconds,
     camera = { width = WIDTH, height = HEIGHT, view_deg = VIEW_DEG, pitch_deg = PITCH_DEG },
     range = e.range, noise = o.noise, body = body, clear = e.clear, speed = e.speed,
+    bounds = { room },
     start = e.start and { { position = e.start, yaw = math.rad(e.start_yaw_deg or 0) } } or {},
   }
-  if done.images < 2 then run:fail("exploration", "it ended after one image: " .. done.reason) end
+  if done.images < 2 then
+    run:fail("exploration", string.format("it ended after one image (of %.6g s it had): %s",
+                                          seconds, done.reason))
+  end
   local known = run:prior { map = map_of(o, e.range), spacing = o.surface.spacing,
                             range = e.range, stride = o.surface.stride }
   known:open_air { lower = done.cleared.lower, upper = done.cleared.upper, surface = surface }
@@ -99,11 +110,7 @@ function M.knowledge(run, surface)
   local poses = {}
   for k = #done.views, 1, -1 do poses[#poses + 1] = done.views[k] end
   -- The tour begins where the exploration ended, with a look at what is to be scanned.
-  local last, lower, upper = poses[1], surface.region.lower, surface.region.upper
-  local to = {}
-  for axis = 1, 3 do to[axis] = (lower[axis] + upper[axis]) / 2 - last.position[axis] end
-  poses[1] = { position = last.position, yaw = math.atan(to[2], to[1]),
-               pitch = math.min(0, math.atan(to[3], math.sqrt(to[1] ^ 2 + to[2] ^ 2))) }
+  poses[1] = patterns.looking_in(poses[1].position, region, 0)
   return known, poses, done
 end
 

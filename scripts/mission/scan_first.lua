@@ -1,5 +1,6 @@
 -- The first flight of a scan, and what is known after it (thesis 4.3): a map, a mesh, places that
 -- are free. What was flown in is asked by the simulator alone.
+local named_scene = require "mission.named_scene"
 local exploration = require "mission.scan_exploration"
 local patterns = require "mission.scan_patterns"
 
@@ -10,7 +11,6 @@ local FLIGHT_ABOVE = 15   -- m of the safe height, likewise
 local OVERHEAD = 2        -- m of free air above the highest first flight
 
 local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
-local explored = setmetatable({}, { __mode = "k" })  -- likewise, the views of an exploration
 local warnings = setmetatable({}, { __mode = "k" })  -- likewise, what the user should know
 
 -- What the first flight is flown in, or nothing with files of an earlier one.
@@ -22,11 +22,7 @@ local function surface_of(run)
     surface = run:read_surface { file = o.input, unit = o.unit, up = o.up }
     if o.ground then surface:add_ground() end
   elseif o.scene then
-    local make = require("scene." .. o.scene)
-    if type(make) ~= "function" then
-      run:fail("scene", string.format("'%s' is a part of scenes, no scene", o.scene))
-    end
-    surface = run:surface(make { seed = o.scene_seed })
+    surface = run:surface(named_scene(run))
   end
   surfaces[run] = surface
   return surface
@@ -74,26 +70,40 @@ local function height_of(run, flight)
 end
 
 -- The highest that anything flies.
-function M.ceiling_of(run)
+local function ceiling_of(run)
   local given = run.options.ceiling
-  if given and not prior_files(run) and given < safe_height(run) then
+  local flown = not prior_files(run) and not exploration.wanted(run)  -- over the safe height
+  if given and flown and given < safe_height(run) then
     run:fail("ceiling", string.format("%.4g m is below safe_height, %.4g m, over which the first "
                                       .. "flight goes", given, safe_height(run)))
   end
   if given then return given end
   local ceiling = safe_height(run) + OVERHEAD
-  if explored[run] then
-    for _, pose in ipairs(explored[run]) do
-      ceiling = math.max(ceiling, pose.position[3] + OVERHEAD)
-    end
-    return ceiling
-  end
-  if not prior_files(run) then
+  if flown then
     for _, flight in ipairs(flights_of(run)) do
       ceiling = math.max(ceiling, height_of(run, flight) + OVERHEAD)
     end
   end
   return ceiling
+end
+
+-- Where the tour may go: round the region and the poses of the first flight.
+function M.room(run, poses)
+  local o, region = run.options, M.region_of(run)
+  local lower, upper = {}, {}
+  for axis = 1, 2 do
+    lower[axis], upper[axis] = region.lower[axis] - o.reach, region.upper[axis] + o.reach
+    for _, pose in ipairs(poses) do
+      lower[axis] = math.min(lower[axis], pose.position[axis])
+      upper[axis] = math.max(upper[axis], pose.position[axis])
+    end
+  end
+  lower[3], upper[3] = region.lower[3] + o.floor, ceiling_of(run)
+  if lower[3] >= upper[3] then
+    run:fail("region", string.format("the tour would have to fly over %.4g m (region and floor) "
+                                     .. "and below %.4g m (ceiling)", lower[3], upper[3]))
+  end
+  return { lower = lower, upper = upper }
 end
 
 -- What is wrong before anything is flown.
@@ -174,7 +184,7 @@ local function open_air(run, known, surface, poses)
   local o, region = run.options, M.region_of(run)
   local margin = o.body[1] + 1
   local lower = { region.lower[1] - o.reach, region.lower[2] - o.reach, safe_height(run) }
-  local upper = { region.upper[1] + o.reach, region.upper[2] + o.reach, M.ceiling_of(run) }
+  local upper = { region.upper[1] + o.reach, region.upper[2] + o.reach, ceiling_of(run) }
   for _, pose in ipairs(poses) do
     for axis = 1, 2 do
       lower[axis] = math.min(lower[axis], pose.position[axis])
@@ -187,8 +197,8 @@ local function open_air(run, known, surface, poses)
 end
 
 -- What is known (a prior with its mesh), the poses of the first flights, what they were flown in,
--- if anything, and the exploration, if there was one.
-function M.knowledge(run)
+-- if anything, and the exploration, if there was one, which has so many seconds.
+function M.knowledge(run, seconds)
   local o = run.options
   local files, surface = prior_files(run), surface_of(run)
   if not surface and not files then
@@ -196,8 +206,8 @@ function M.knowledge(run)
                  .. "...), or the files of an earlier flight with prior = { map =, mesh = }")
   end
   if exploration.wanted(run) then
-    local known, poses, done = exploration.knowledge(run, surface)
-    explored[run] = poses
+    local known, poses, done = exploration.knowledge(run, surface, M.region_of(run),
+                                                     M.room(run, {}), seconds)
     return known, poses, surface, done
   end
   local known, poses = new_prior(run), {}
@@ -216,29 +226,21 @@ function M.knowledge(run)
   return known, poses, surface
 end
 
-local function looking_at_the_region(run, position)
-  local region = M.region_of(run)
-  local to = {}
-  for axis = 1, 3 do
-    to[axis] = (region.lower[axis] + region.upper[axis]) / 2 - position[axis]
-  end
-  local across = math.sqrt(to[1] * to[1] + to[2] * to[2])
-  return { position = position, yaw = math.atan(to[2], to[1]),
-           pitch = math.min(0, math.atan(to[3], across)) }
-end
-
 -- Where candidates grow from: where the tour begins, where it ends if that is elsewhere, and what
 -- was flown through. With them, the number of the one in which the tour ends.
 function M.starts(run, poses)
   local o = run.options
   local starts = {}
-  if o.start then starts[1] = looking_at_the_region(run, o.start) end
+  local function looking_in(position)
+    return patterns.looking_in(position, M.region_of(run), 0)
+  end
+  if o.start then starts[1] = looking_in(o.start) end
   for _, pose in ipairs(poses) do starts[#starts + 1] = pose end
   if #starts == 0 then
     run:fail("start", "with files of an earlier flight alone, say where the tour begins")
   end
   if not o.finish then return starts, 1 end
-  table.insert(starts, 2, looking_at_the_region(run, o.finish))
+  table.insert(starts, 2, looking_in(o.finish))
   return starts, 2
 end
 

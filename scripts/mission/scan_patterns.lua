@@ -1,29 +1,28 @@
 -- Where a first flight takes its images: patterns at one height over a region (thesis 4.5.4).
 local M = {}
 
-local function point(x, y, z, yaw, pitch)
-  return { position = { x, y, z }, yaw = yaw, pitch = pitch }
-end
-
--- The camera looks at the region's middle, no higher than `pitch`.
-local function looking_in(x, y, z, middle, pitch)
-  local dx, dy, dz = middle[1] - x, middle[2] - y, middle[3] - z
-  local across = math.sqrt(dx * dx + dy * dy)
-  return point(x, y, z, math.atan(dy, dx), math.min(math.atan(dz, across), pitch))
+-- From `position` the camera looks at the middle of the box `region`, no higher than `pitch` (rad).
+function M.looking_in(position, region, pitch)
+  local to = {}
+  for axis = 1, 3 do
+    to[axis] = (region.lower[axis] + region.upper[axis]) / 2 - position[axis]
+  end
+  local across = math.sqrt(to[1] * to[1] + to[2] * to[2])
+  return { position = position, yaw = math.atan(to[2], to[1]),
+           pitch = math.min(math.atan(to[3], across), pitch) }
 end
 
 -- Round the region, on an ellipse `reach` metres wider than it on every side.
 local function ellipse(box, height, views, pitch, reach, round)
-  local middle = { (box.lower[1] + box.upper[1]) / 2, (box.lower[2] + box.upper[2]) / 2,
-                   (box.lower[3] + box.upper[3]) / 2 }
+  local x, y = (box.lower[1] + box.upper[1]) / 2, (box.lower[2] + box.upper[2]) / 2
   local a = (box.upper[1] - box.lower[1]) / 2 + reach
   local b = (box.upper[2] - box.lower[2]) / 2 + reach
   if round then a, b = math.max(a, b), math.max(a, b) end
   local poses = {}
   for k = 0, views - 1 do
     local angle = 2 * math.pi * k / views
-    poses[k + 1] = looking_in(middle[1] + a * math.cos(angle), middle[2] + b * math.sin(angle),
-                              height, middle, pitch)
+    poses[k + 1] = M.looking_in({ x + a * math.cos(angle), y + b * math.sin(angle), height }, box,
+                                pitch)
   end
   return poses
 end
@@ -48,7 +47,8 @@ local function meander(box, height, views, pitch, reach)
       place[long] = box.lower[long] - reach + length * along
       place[short] = box.lower[short] - reach + width * (rows > 1 and row / (rows - 1) or 0.5)
       local yaw = (#poses % 4) * math.pi / 2 + (long == 2 and math.pi / 2 or 0)
-      poses[#poses + 1] = point(place[1], place[2], height, yaw, pitch)
+      place[3] = height
+      poses[#poses + 1] = { position = place, yaw = yaw, pitch = pitch }
     end
   end
   return poses

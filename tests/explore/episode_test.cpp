@@ -252,6 +252,8 @@ TEST(Episode, EndsWhereNoViewIsLeft) {
   world.settings.bounds =
       Eigen::AlignedBox3d(world.start.position.array() - 0.1, world.start.position.array() + 0.1);
   EXPECT_NE(refusal([&] { world.run(Constant(1)); }).find("no neighbour"), std::string::npos);
+  world.settings.bounds->translate(Eigen::Vector3d(1, 0, 0));
+  EXPECT_NE(refusal([&] { world.run(Constant(1)); }).find("outside the bounds"), std::string::npos);
   world.settings.bounds =
       Eigen::AlignedBox3d(world.start.position.array() - 2.6, world.start.position.array() + 2.6);
   world.settings.sensor.pinhole = {8, 6, 4, 4, 3.5, 2.5};
@@ -280,7 +282,7 @@ TEST(Episode, RefusesWhatMakesNoSense) {
 TEST(Episode, NamesTheViewWhoseValueIsNoNumber) {
   const YardWorld world(3);
   const std::string message = refusal([&] { world.run(Constant(std::nan(""))); });
-  EXPECT_NE(message.find("(0.0"), std::string::npos) << message;
+  EXPECT_NE(message.find("(0, 0, 4)"), std::string::npos) << message;
   EXPECT_NE(message.find("nan"), std::string::npos);
 }
 
@@ -368,6 +370,16 @@ TEST(RandomStart, LiesWhereTheBoxIsFree) {
   EXPECT_NE(
       refusal([&] { random_start(world.truth, 60, 10, world.pitch, random); }).find("100,000"),
       std::string::npos);
+  // Where the explorer has to stay anyway.
+  Eigen::AlignedBox3d bounds = world.truth.region();
+  bounds.max().x() = bounds.center().x();
+  for (int k = 0; k < 20; ++k)
+    EXPECT_TRUE(bounds.contains(
+        random_start(world.truth, 6, 10, world.pitch, random, bounds).position));
+  bounds.translate(Eigen::Vector3d(500, 0, 0));
+  EXPECT_NE(refusal([&] { random_start(world.truth, 6, 10, world.pitch, random, bounds); })
+                .find("nothing of the region"),
+            std::string::npos);
 }
 
 }  // namespace

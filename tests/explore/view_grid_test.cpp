@@ -176,6 +176,9 @@ TEST(RankCorrelation, HasItsKnownValues) {
   const std::vector<float> tied{1, 1, 2, 2}, other{1, 2, 3, 4};
   EXPECT_NEAR(rank_correlation(tied, other), 4 / std::sqrt(20.0), 1e-12);
   EXPECT_TRUE(std::isnan(rank_correlation(std::vector<float>{1, 1}, std::vector<float>{1, 2})));
+  const std::vector<float> broken{1, 2, std::nanf(""), 4};
+  EXPECT_TRUE(std::isnan(rank_correlation(broken, other)));
+  EXPECT_TRUE(std::isnan(rank_correlation(other, broken)));
 }
 
 }  // namespace

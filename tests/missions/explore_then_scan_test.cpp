@@ -32,6 +32,9 @@ TEST_F(ExploringThenScanning, TheTourIsPlannedOnWhatWasExplored) {
   const double explored = result.at("tour").at("explored_seconds").as_number();
   EXPECT_GT(explored, 10);  // nine ways of 2.5 m or a turn, ten rests
   EXPECT_LT(explored, 200);
+  const std::string report = read_file(folder_ / "out/report.html");
+  for (const char* section : {"Growth of the map", "Candidates at the last step"})
+    EXPECT_THAT(report, HasSubstr(section));
   const Plan read = read_plan(folder_ / "out/plan.json");
   EXPECT_EQ(read.environment.maps.at(0).file, "map.ot");
   EXPECT_EQ(read.environment.meshes.at(0).file, "prior.ply");
@@ -54,12 +57,17 @@ TEST_F(ExploringThenScanning, WhatCannotBeIsSaid) {
     EXPECT_EQ(run(std::string("--set ") + more, "both.lua"), 2) << more;
     EXPECT_THAT(error(), HasSubstr(expected)) << more;
   }
-  // One battery: known before anything is flown where the exploration has a budget, after it else.
+  // One battery, for both.
   write_both("");
   EXPECT_EQ(run("--set exploration.budget=1150", "both.lua"), 2);
   EXPECT_THAT(error(), HasSubstr("1150 s of it and a tour of 60 s are more than one battery"));
-  EXPECT_EQ(run("--set tour.budget=1199 --set exploration.images=4", "both.lua"), 2);
-  EXPECT_THAT(error(), HasSubstr("were flown and a tour of 1199 s are more than one battery"));
+  EXPECT_EQ(run("--set tour.budget=1200", "both.lua"), 2);
+  EXPECT_THAT(error(), HasSubstr("a tour of 1200 s leaves it nothing of one battery"));
+  EXPECT_EQ(run("--set tour.budget=1199", "both.lua"), 2);
+  EXPECT_THAT(error(), HasSubstr("it ended after one image (of 1 s it had): the next view lies"));
+  // It stays where the tour may go.
+  EXPECT_EQ(run("--set floor=5", "both.lua"), 2);
+  EXPECT_THAT(error(), HasSubstr("the start lies outside the bounds"));
 }
 
 }  // namespace

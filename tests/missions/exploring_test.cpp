@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "tests/missions/flown_film.h"
@@ -101,11 +102,13 @@ TEST_F(Exploring, UtilitiesAreSwappedByConfiguration) {
 TEST_F(Exploring, BadInputIsNamed) {
   const std::pair<const char*, const char*> cases[] = {
       {"--set start=[10,-3,3]", "obstacle"},
-      {"--set start=[500,500,50]", "far outside the scene: expected within (-50.0"},
+      {"--set start=[500,500,50]", "far outside the scene: expected within (-50, "},
       {"--set moves.step=4", "no neighbour"},
       {"--set utility=learned --set camera.width=160 --set camera.height=120 --set resolution=0.2",
-       "resolution is 0.2, the model's 0.4"},
+       "resolution is 0.2 m, the model's 0.4 m"},
       {"--set lower=[0,0,0]", "belong together"},
+      {"--set lower=[9,9,9] --set upper=[9,19,19]", "lower must be below upper"},
+      {"--set lower=[9,9,1] --set upper=[19,19,9]", "the start lies outside the bounds"},
       {"--set margin=0.6", "half of moves.body"},
       {"--set map.resolution=0.2", "resolution"},
       {"--set utility=frontiers", "frontier"}};
@@ -147,14 +150,33 @@ TEST_F(Exploring, DamagedModelsAndEmptyScenesAreNamed) {
 // A budget that is too short for the first image: no plan, and it says why.
 TEST_F(Exploring, WithoutAnImageThereIsNoPlan) {
   const std::string said = (folder_ / "said.txt").string();
-  const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing run '" +
-                           (kExamples / "../explore/own_mesh.lua").string() + "' --out '" +
-                           (folder_ / "short").string() + "' " + few("--set budget=0.1") + " > '" +
-                           said + "' 2>&1";
-  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
-  EXPECT_NE(read_file(said).find("no image was taken: the next view lies beyond the flight's"),
-            std::string::npos)
-      << read_file(said);
+  for (const auto& [ends, expected] : {std::pair{"--set budget=0.1", "the next view lies beyond"},
+                                       {"--set wall_clock_guard=1e-9", "stopped by the wall"},
+                                       {"--quiet --set budget=0.1", "the next view lies beyond"}}) {
+    const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing run '" +
+                             (kExamples / "../explore/own_mesh.lua").string() + "' --out '" +
+                             (folder_ / "short").string() + "' " + few(ends) + " > '" + said +
+                             "' 2>&1";
+    EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1) << ends;
+    EXPECT_NE(read_file(said).find(std::string("no image was taken: ") + expected),
+              std::string::npos)
+        << ends << read_file(said);
+  }
+}
+
+// The map at four moments, however early it ends; the oracle is compared without the guard.
+TEST_F(Exploring, AnEarlyEndIsShownInFourPicturesToo) {
+  const Flown flown = explore("--set steps=200 --set budget=30 --set compare=false", "early");
+  const auto images = flown.result.at("exploration").at("images").as_integer();
+  ASSERT_LT(images, 200);
+  ASSERT_GT(images, 8);
+  const std::string report = read_file(flown.folder / "report.html");
+  std::set<std::string> pictures;
+  for (std::size_t at = 0; (at = report.find("after ", at)) != std::string::npos; ++at)
+    if (const std::size_t end = report.find(" images", at); end < at + 12)
+      pictures.insert(report.substr(at, end - at));
+  EXPECT_EQ(pictures.size(), 4u);
+  EXPECT_NE(report.find("after " + std::to_string(images) + " images"), std::string::npos);
 }
 
 // What was there is kept, what is missing is made again, and the tables are the same.
@@ -212,8 +234,9 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   for (std::string line, cell; std::getline(table, line);) {
     std::vector<std::string> cells;
     for (std::istringstream row(line); std::getline(row, cell, ',');) cells.push_back(cell);
-    ASSERT_EQ(cells.size(), cells[11] == "0" ? 12u : 13u) << line;
+    ASSERT_EQ(cells.size(), 14u) << line;
     if (cells[0] != "yard.obj") continue;
+    EXPECT_EQ(cells[13], "2");
     ++rows;
     const auto [first, second] = efficiency.at(cells[1]);
     EXPECT_NEAR(std::stod(cells[3]), (first + second) / 2, 1e-3 * first);
@@ -230,8 +253,10 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   }
   EXPECT_EQ(rows, 3);
   EXPECT_NE(read_file(whole / "seconds.csv").find("yard.obj,oracle,2,0."), std::string::npos);
+  refused("--utility learned", folder_ / "twice", "--utility learned: is named twice");
   refused("--resume --seed 5", broken, "seed is 1 there, 5 here");
-  refused("--resume --moves clear=3", broken, "moves is not said there");
+  refused("--resume --moves clear=3", broken, "\"clear\":6.0} there, {\"step\":2.5,");
+  refused("", broken, "go on with --resume");
   // Another mesh of the name, and a folder that is none of ours.
   const std::string mesh = read_file(folder_ / "yard.obj");
   write_file_atomically(folder_ / "yard.obj", mesh + "# moved\n");
@@ -277,6 +302,7 @@ TEST_F(Exploring, AnEvaluationTakesTheSpaceWithinAMesh) {
   EXPECT_LT(within, 1.2 * sides);
   EXPECT_NE(read_file(folder_ / "within/table.csv").find("\nroom.obj@2.5 -4 4.5,frontier,1,"),
             std::string::npos);
+  fs::remove_all(folder_ / "within");
   ASSERT_EQ(evaluate(room.string(), ""), 0);
   EXPECT_GT(surface("room.obj"), 2 * within);
   EXPECT_EQ(evaluate(room.string() + "@1,2", ""), 2);

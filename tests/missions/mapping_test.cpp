@@ -94,6 +94,12 @@ TEST_F(Mapping, WhatIsMissingOrBrokenIsSaid) {
   EXPECT_NE(error().find("map.resolution: it is the file's"), std::string::npos) << error();
   EXPECT_EQ(command("run " + examples + "street.lua --set scene=walls"), 2);
   EXPECT_NE(error().find("'walls' is a part of scenes"), std::string::npos) << error();
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::filesystem::path(LAPWING_SOURCE_DIR) / "scripts/scene"))
+    if (entry.path().extension() == ".lua" &&
+        read_file(entry.path()).find("\nreturn function(options)") != std::string::npos) {
+      EXPECT_NE(error().find(entry.path().stem().string()), std::string::npos) << error();
+    }
   EXPECT_EQ(command("run " + examples + "street.lua --set resolution=0"), 2);
   EXPECT_NE(error().find("resolution"), std::string::npos) << error();
   write_file_atomically(folder_ / "cut.ot", "# Octomap OcTree file\nid OcTree\nsize 9\nres 0.1\n");

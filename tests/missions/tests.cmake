@@ -5,7 +5,7 @@ foreach(name missions missions_long)
   lapwing_add_test_program(${name} ${CMAKE_CURRENT_LIST_DIR}/../${folder})
   add_dependencies(test_${name} lapwing_app ${plugins})
 endforeach()
-set_tests_properties(missions_long PROPERTIES LABELS long TIMEOUT 1800)  # a whole font among them
+set_tests_properties(missions_long PROPERTIES LABELS long TIMEOUT 2700)  # a whole font among them
 # The longest program, in two halves that may run at once; the longest begins first.
 add_test(NAME missions_too COMMAND test_missions)
 foreach(half missions missions_too)

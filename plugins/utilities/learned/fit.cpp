@@ -10,6 +10,7 @@
 #include "framework/core/checksum.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/core/number_text.h"
 #include "framework/core/json.h"
 #include "framework/core/parallel.h"
 #include "plugins/utilities/learned/model_file.h"
@@ -86,11 +87,15 @@ std::string digest_of(const Samples& samples) {
   return sha256(all);
 }
 
-// Who is judged by what it was trained with is told nothing.
+// Who is judged by what it was trained with is told nothing; what is there twice counts twice.
 void require_apart(const FitRequest& request, const Samples& training, const Samples& validation) {
   std::map<std::string, std::size_t> trained;
-  for (std::size_t k = 0; k < training.sets.size(); ++k)
-    trained.emplace(digest_of(training.sets[k]), k);
+  for (std::size_t k = 0; k < training.sets.size(); ++k) {
+    const auto [there, fresh] = trained.emplace(digest_of(training.sets[k]), k);
+    if (!fresh)
+      throw InputError("'" + request.training[k].string() + "' holds the same samples as '" +
+                       request.training[there->second].string() + "': leave one of them out");
+  }
   for (std::size_t k = 0; k < validation.sets.size(); ++k)
     if (const auto found = trained.find(digest_of(validation.sets[k])); found != trained.end())
       throw InputError("'" + request.validation[k].string() + "' holds the same samples as '" +
@@ -303,6 +308,10 @@ Value Training::run() {
     const auto begin_time = std::chrono::steady_clock::now();
     const double loss = epoch(number);
     const Judged judged = judge(validation_, model_, request_.threads);
+    if (!std::isfinite(loss) || !std::isfinite(judged.loss))
+      throw InputError("the training came to no finite loss in epoch " + std::to_string(number) +
+                       ": a rate lower than " + plain_number(asked_.at("rate").as_number()) +
+                       " may help");
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_time).count();
     seconds_ += seconds;

@@ -106,6 +106,9 @@ Model read_model(const std::filesystem::path& path) {
   };
   model.state.parameters = take(layout.parameters);
   model.state.statistics = take(layout.statistics);
+  for (const std::vector<float>* values : {&model.state.parameters, &model.state.statistics})
+    for (const float value : *values)
+      if (!std::isfinite(value)) throw refuse("its network holds what is no finite number");
   if (checkpoint) {
     model.adam.emplace(0);
     model.adam->first = take(layout.parameters);

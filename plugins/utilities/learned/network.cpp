@@ -40,11 +40,15 @@ NetworkShape network_shape_from(const Value& value) {
   Fields fields(value, "network", errors);
   NetworkShape shape;
   const Value grid = fields.opaque("grid");
-  shape.blocks = static_cast<int>(fields.integer("blocks"));
-  shape.units = static_cast<int>(fields.integer("units"));
-  shape.growth = static_cast<int>(fields.integer("growth"));
-  shape.hidden1 = static_cast<int>(fields.integer("hidden1"));
-  shape.hidden2 = static_cast<int>(fields.integer("hidden2"));
+  // Within int first: what is beyond it is refused below.
+  const auto read = [&](const char* key) {
+    return static_cast<int>(std::clamp<std::int64_t>(fields.integer(key), 0, 1 << 20));
+  };
+  shape.blocks = read("blocks");
+  shape.units = read("units");
+  shape.growth = read("growth");
+  shape.hidden1 = read("hidden1");
+  shape.hidden2 = read("hidden2");
   fields.finish();
   errors.throw_if_any();
   shape.grid = grid_shape_from(grid);
@@ -68,8 +72,8 @@ NetworkLayout::NetworkLayout(const NetworkShape& given) : shape(given) {
       unit.out = maps = shape.growth * static_cast<int>(units.size() + 1);
       std::copy(size, size + 3, unit.size);
       unit.last_of_block = k + 1 == shape.units;
-      const auto count = static_cast<std::size_t>(27 * unit.in * unit.out);
       const auto width = static_cast<std::size_t>(unit.out);
+      const std::size_t count = 27 * static_cast<std::size_t>(unit.in) * width;
       unit.weights = take(parameters, count);
       regularised.emplace_back(unit.weights, unit.weights + count);
       unit.scale = take(parameters, width);
@@ -80,7 +84,14 @@ NetworkLayout::NetworkLayout(const NetworkShape& given) : shape(given) {
     }
     for (int& edge : size) edge /= 2;
   }
-  flat = size[0] * size[1] * size[2] * maps;
+  const auto numbers = static_cast<std::size_t>(size[0] * size[1] * size[2]) *
+                       static_cast<std::size_t>(maps);
+  const std::size_t all = parameters + numbers * static_cast<std::size_t>(shape.hidden1);
+  if (all > kMostParameters)
+    throw InputError("a network of " + std::to_string(all) + " parameters; at most " +
+                     std::to_string(kMostParameters) +
+                     ": take fewer units, a smaller growth or fewer hidden numbers");
+  flat = static_cast<int>(numbers);
   const auto dense = [&](int in, int out, std::size_t& weights, std::size_t& bias) {
     const auto count = static_cast<std::size_t>(in) * static_cast<std::size_t>(out);
     weights = take(parameters, count);

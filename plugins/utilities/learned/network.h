@@ -49,6 +49,9 @@ struct UnitPlace {
   }
 };
 struct NetworkLayout {
+  static constexpr std::size_t kMostParameters = std::size_t{1} << 26;
+
+  // InputError for a shape that cannot be, or of more parameters.
   explicit NetworkLayout(const NetworkShape& shape);
 
   NetworkShape shape;

@@ -1,0 +1,13 @@
+-- The scene that a mission's options `scene` and `scene_seed` name, made (scripts/scene).
+local SCENES = "arcade, church, courtyard, district, downtown, office, street, suburb or towers"
+
+return function(run)
+  local o = run.options
+  if not o.scene then run:fail("scene", "say which: " .. SCENES) end
+  local make = require("scene." .. o.scene)
+  if type(make) ~= "function" then
+    run:fail("scene", string.format("'%s' is a part of scenes, no scene: expected %s", o.scene,
+                                    SCENES))
+  end
+  return make { seed = o.scene_seed }
+end

@@ -1,0 +1,253 @@
+// Training, and models as files.
+#include <gtest/gtest.h>
+
+#include "framework/core/checksum.h"
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/map/plain_map.h"
+#include "plugins/utilities/learned/fit.h"
+#include "plugins/utilities/learned/model_file.h"
+
+namespace lapwing {
+namespace {
+
+using namespace learned;
+
+// Small enough to be trained in a moment.
+constexpr GridShape kGrid{8, 4, 4, 1};
+
+// Samples whose target is how much is certain in the middle: easy to learn.
+void write_easy_samples(const std::filesystem::path& folder, int files, std::uint64_t seed) {
+  Random random(seed);
+  for (int file = 0; file < files; ++file) {
+    SampleSet set;
+    set.world = "made " + std::to_string(file);
+    set.shape = kGrid;
+    const PlainMap map{MapSettings{}};
+    EpisodeView known;
+    known.map = &map;
+    set.mapping = mapping_of(known);
+    set.mapping.set("resolution", 0.4);
+    for (int k = 0; k < 64; ++k) {
+      const double level = random.uniform();
+      std::vector<float> grid;
+      for (std::size_t i = 0; i < set.shape.size(); ++i)
+        grid.push_back(static_cast<float>(0.8 * level + 0.2 * random.uniform()));
+      set.add(grid, 100 * level);
+    }
+    write_samples(set, folder / ("set_" + std::to_string(seed * 10 + file) + ".samples"));
+  }
+}
+
+struct FitFixture {
+  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "learned_fit";
+  FitRequest request;
+  Value given = Value::map();
+
+  FitFixture() {
+    std::filesystem::remove_all(folder);
+    write_easy_samples(folder / "training", 2, 1);
+    write_easy_samples(folder / "validation", 1, 2);
+    request.training = sample_files(folder / "training");
+    request.validation = sample_files(folder / "validation");
+    request.model = folder / "a.model";
+    request.checkpoint = folder / "a.checkpoint";
+    Value& grid = given.set("grid", Value::map());
+    grid.set("across", 8);
+    grid.set("ahead", 4);
+    grid.set("up", 4);
+    grid.set("levels", 1);
+    given.set("units", 1);
+    given.set("hidden1", 16);
+    given.set("hidden2", 8);
+    given.set("batch", 32);
+    given.set("epochs", 12);
+    given.set("rate", 0.01);
+    given.set("dropout", 0.0);
+  }
+  ~FitFixture() { std::filesystem::remove_all(folder); }
+  Value run() { return fit(check(fit_parameters(), given), request); }
+};
+
+TEST(LearnedFit, LearnsWhatIsEasy) {
+  FitFixture fixture;
+  const Value figures = fixture.run();
+  EXPECT_GT(figures.at("validation_rho").as_number(), 0.95);
+  const SampleSet set = read_samples(fixture.request.validation.front());
+  const std::vector<float> predicted = predict(fixture.request.model, set, 1);
+  EXPECT_NEAR(rank_correlation(predicted, set.targets), figures.at("validation_rho").as_number(),
+              1e-6);
+  EXPECT_NEAR(loss_of(fixture.request.model, predicted, set.targets),
+              figures.at("validation_loss").as_number(), 1e-3);
+}
+
+// The same order of values, and values of the same size, by way of their square roots.
+TEST(LearnedFit, LearnsRootsAsWell) {
+  FitFixture fixture;
+  fixture.given.set("targets", "root");
+  const Value figures = fixture.run();
+  EXPECT_GT(figures.at("validation_rho").as_number(), 0.95);
+  const SampleSet set = read_samples(fixture.request.validation.front());
+  const std::vector<float> predicted = predict(fixture.request.model, set, 1);
+  double error = 0;
+  for (std::size_t k = 0; k < set.size(); ++k)
+    error += std::abs(static_cast<double>(predicted[k] - set.targets[k])) /
+             static_cast<double>(set.size());
+  EXPECT_LT(error, 10) << "of targets from 0 to 100";
+  EXPECT_NEAR(loss_of(fixture.request.model, predicted, set.targets),
+              figures.at("validation_loss").as_number(), 1e-3);
+  const Model model = read_model(fixture.request.model);
+  for (const double target : {0.0, 1.0, 64.0})
+    EXPECT_NEAR(model.target_of(model.answer_of(target)), target, 1e-9);
+}
+
+// One epoch more of what was learned is better than one of nothing.
+TEST(LearnedFit, SaysThatItCameToNothing) {
+  FitFixture fixture;
+  fixture.given.set("rate", 1e30);
+  try {
+    fixture.run();
+    ADD_FAILURE() << "a rate of 1e30";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("a rate lower than 1e+30"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(LearnedFit, BeginsWithAModel) {
+  FitFixture fixture;
+  const double whole = fixture.run().at("validation_loss").as_number();
+  std::filesystem::rename(fixture.request.model, fixture.folder / "first.model");
+  fixture.given.set("epochs", 1);
+  const double fresh = fixture.run().at("validation_loss").as_number();
+  const auto first = fixture.folder / "first.model";
+  fixture.given.set("begin", first.string());
+  const double begun = fixture.run().at("validation_loss").as_number();
+  const Value told = read_model(fixture.request.model).provenance.at("begin");
+  EXPECT_EQ(told.at("sha256").as_text(), sha256(read_file(first)));
+  EXPECT_EQ(told.at("samples").as_integer(), 128);
+  EXPECT_LT(begun, 0.5 * fresh);
+  EXPECT_LT(begun, 4 * whole);
+  fixture.given.set("hidden1", 24);
+  EXPECT_THROW(fixture.run(), InputError);
+}
+
+TEST(LearnedFit, ResumedItIsAsIfNeverStopped) {
+  FitFixture fixture;
+  fixture.run();
+  const std::string whole = read_file(fixture.request.model);
+  std::filesystem::remove(fixture.request.model);
+  CancellationToken token;
+  fixture.request.cancellation = &token;
+  int lines = 0;
+  fixture.request.log = [&](const std::string&) {
+    if (++lines == 5) token.cancel();
+  };
+  EXPECT_THROW(fixture.run(), Cancelled);
+  fixture.request.cancellation = nullptr;
+  fixture.request.resume = true;
+  fixture.run();
+  EXPECT_EQ(read_file(fixture.request.model), whole);
+}
+
+TEST(LearnedFit, GoesOnWithTheSameAlone) {
+  FitFixture fixture;
+  fixture.given.set("epochs", 1);
+  fixture.run();
+  fixture.request.resume = true;
+  const auto refusal = [&] {
+    try {
+      fixture.run();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(), "");
+  fixture.request.seed = 2;
+  EXPECT_NE(refusal().find("another seed: 1, not 2"), std::string::npos) << refusal();
+  fixture.request.seed = 1;
+  fixture.given.set("rate", 0.02);
+  EXPECT_NE(refusal().find("another rate"), std::string::npos) << refusal();
+  fixture.given.set("rate", 0.01);
+  write_easy_samples(fixture.folder / "validation", 1, 3);
+  fixture.request.validation = sample_files(fixture.folder / "validation");
+  EXPECT_NE(refusal().find("another validation samples"), std::string::npos) << refusal();
+  fixture.request.resume = false;
+  fixture.request.validation = fixture.request.training;
+  EXPECT_NE(refusal().find("must be apart"), std::string::npos) << refusal();
+  fixture.request.training.push_back(fixture.folder / "training" / "copy.samples");
+  std::filesystem::copy_file(fixture.request.training.front(), fixture.request.training.back());
+  EXPECT_NE(refusal().find("leave one of them out"), std::string::npos) << refusal();
+}
+
+// What the shipped model is, header and weights; its figures in the readme are of this one.
+TEST(LearnedModel, TheShippedOneIsWhatItWas) {
+  const auto path = std::filesystem::path(LAPWING_SOURCE_DIR) /
+                    "plugins/utilities/learned/learned.model";
+  const Model model = read_model(path);
+  const std::string bytes = read_file(path);
+  const std::size_t numbers =
+      sizeof(float) * (model.state.parameters.size() + model.state.statistics.size());
+  EXPECT_EQ(sha256(bytes.substr(bytes.size() - numbers)),
+            "176dfdb697b6db13584b29252bc31969278e0a233481c4eb5f16884e8920567f");
+  EXPECT_EQ(model.target_mean, 140.06549994927536);
+  EXPECT_EQ(model.target_deviation, 151.24743494552564);
+  EXPECT_FALSE(model.root);
+  EXPECT_EQ(model.mapping.at("pitch").as_number(), -0.17453292519943295);
+  const Value& begun = model.provenance.at("begin");
+  EXPECT_EQ(begun.at("samples").as_integer(), 89770);
+  EXPECT_EQ(begun.at("begin").at("model").as_text(), "second.model");
+}
+
+TEST(LearnedModel, DamageIsFound) {
+  FitFixture fixture;
+  fixture.given.set("epochs", 1);
+  fixture.run();
+  const auto path = fixture.request.model;
+  const std::string bytes = read_file(path);
+  EXPECT_NO_THROW(read_model(path));
+  const auto refusal = [&](const std::string& damaged) {
+    write_file_atomically(path, damaged);
+    try {
+      read_model(path);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  std::string damaged = bytes;
+  damaged[damaged.size() - 9] ^= 0x40;
+  EXPECT_NE(refusal(damaged).find("damaged"), std::string::npos);
+  EXPECT_NE(refusal(bytes.substr(0, bytes.size() - 100)).find("damaged"), std::string::npos);
+  // The header as well: what the network's answers mean.
+  damaged = bytes;
+  damaged.replace(damaged.find("\"mean\":"), 9, "\"mean\":9");
+  EXPECT_NE(refusal(damaged).find("damaged"), std::string::npos);
+  write_file_atomically(path, bytes);
+  Model whole = read_model(path);
+  whole.mapping = Value::map();
+  write_model(whole, path);
+  EXPECT_NE(refusal(read_file(path)).find("it has no resolution"), std::string::npos);
+  EXPECT_NE(refusal("lapwing").find("first line"), std::string::npos);
+  write_file_atomically(path, bytes);
+  whole = read_model(path);
+  whole.state.parameters.front() = std::nanf("");
+  write_model(whole, path);
+  EXPECT_NE(refusal(read_file(path)).find("no finite number"), std::string::npos);
+  EXPECT_NE(refusal(""), "");
+  SampleSet other = read_samples(fixture.request.validation.front());
+  write_file_atomically(path, bytes);
+  other.mapping.set("resolution", 0.2);
+  try {
+    predict(path, other, 1);
+    ADD_FAILURE() << "a model of another resolution";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("resolution is 0.2 m, the model's 0.4 m"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace lapwing
