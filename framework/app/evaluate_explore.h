@@ -15,17 +15,16 @@ struct ExploreEvaluation {
   double sigma = 0, dropped = 0;  // of the camera's depth (table 5.4); replayed without
   double stereo = 0;              // m between a pair of cameras; 0: a depth camera
   std::filesystem::path folder = "out/evaluate_explore";
+  std::filesystem::path against;  // another evaluation's folder, from the same starts; or empty
   bool resume = false;  // keep the episodes that are there
 };
 
 // The invocation's overrides are parameters of utilities, as "learned.blank=true".
 //
-// Every episode is a file in FOLDER/episodes, whole or not there; from these come table.csv
-// (efficiency, and relative to the oracle's of the same start, with standard deviations and 95 %
-// intervals by Student's t; how far each stays below `learned`, start by start; metres flown; how
-// many ended before all images, and by what), curves.csv, report.html. Wall-clock figures stand
-// apart, in FOLDER/seconds and seconds.csv. FOLDER/settings.json says what all of it was made of;
-// InputError for a folder with episodes but without it.
+// Every episode is a file in FOLDER/episodes, whole or not there; from these come the tables
+// (app/exploration_figures.h). Wall-clock figures stand apart, in FOLDER/seconds and seconds.csv.
+// FOLDER/settings.json says what all of it was made of; InputError for a folder with episodes but
+// without it, and for an evaluation to compare with that has other starts or lacks an episode.
 ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& invocation);
 
 }  // namespace lapwing

@@ -150,6 +150,9 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
            [&](const std::string& text) { request.stereo = read_within("--stereo", text, 100); });
   add_repeated(*made, "--set", "UTILITY.KEY=VALUE", invocation.overrides,
                "set one parameter of a utility");
+  add_text(*made, "--against", "DIR",
+           "another evaluation's folder: efficiency over that there, start by start (table 5.4)",
+           [&](const std::string& path) { request.against = path; });
   add_text(*made, "-o,--output", "DIR", "folder of the results; else out/evaluate_explore",
            [&](const std::string& path) { request.folder = path; });
   add_threads(*made, invocation, "threads to use; else one per core");
