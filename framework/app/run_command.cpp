@@ -232,6 +232,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   registry.find("exporter", "csv");
   RunOutcome outcome;
   outcome.folder = invocation.out.empty() ? run_folder(mission->name()) : invocation.out;
+  require_writable(outcome.folder / "plan.json");
   logging::info("mission " + mission->name() + ", seed " + std::to_string(invocation.seed));
   outcome.result = mission->plan();
   if (outcome.result.mapping) {

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 
 #include "framework/core/error.h"
 
@@ -79,29 +80,56 @@ void flush_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
-}  // namespace
-
-void write_file_atomically(const fs::path& path, std::string_view contents) {
+// Where a file goes. A link is followed, so that it still points to the file afterwards.
+fs::path target_of(const fs::path& path) {
   if (path.filename().empty()) cannot_write(path, "the path names no file");
   std::error_code code;
-  // A link is followed, so that it still points to the file afterwards.
-  fs::path target = fs::is_symlink(path, code) ? fs::weakly_canonical(path, code) : path;
-  if (code && code != std::errc::no_such_file_or_directory) cannot_write(path, code.message());
-  fs::path folder = target.parent_path();
-  if (folder.empty()) folder = ".";
+  const fs::path target = fs::is_symlink(path, code) ? fs::weakly_canonical(path, code) : path;
+  // A file where a folder should be is named below.
+  if (code && code != std::errc::no_such_file_or_directory && code != std::errc::not_a_directory)
+    cannot_write(path, code.message());
+  return target;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+// The permissions of the file that is there already, if one is.
+std::optional<mode_t> mode_there(const fs::path& path, const fs::path& target) {
+  struct stat existing {};
+  if (::stat(target.c_str(), &existing) != 0) return std::nullopt;
+  if (S_ISDIR(existing.st_mode)) cannot_write(path, "it is a folder");
+  if (!S_ISREG(existing.st_mode)) cannot_write(path, "it is not a regular file");
+  return existing.st_mode & 07777;
+}
+
+}  // namespace
+
+void require_writable(const fs::path& path) {
+  const fs::path target = target_of(path);
+  mode_there(path, target);
+  fs::path folder = folder_of(target);
+  std::error_code code;
+  while (!fs::exists(folder, code) && folder != folder_of(folder)) folder = folder_of(folder);
+  if (!fs::is_directory(folder, code))
+    cannot_write(path, "'" + folder.string() + "' is no folder");
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+    cannot_write(path, "folder '" + folder.string() + "': " + reason(errno));
+}
+
+void write_file_atomically(const fs::path& path, std::string_view contents) {
+  const fs::path target = target_of(path), folder = folder_of(target);
+  std::error_code code;
   fs::create_directories(folder, code);
   if (code) cannot_write(path, "cannot create folder '" + folder.string() + "': " + code.message());
-
-  struct stat existing {};
-  const bool exists = ::stat(target.c_str(), &existing) == 0;
-  if (exists && S_ISDIR(existing.st_mode)) cannot_write(path, "it is a folder");
-  if (exists && !S_ISREG(existing.st_mode)) cannot_write(path, "it is not a regular file");
+  const std::optional<mode_t> mode = mode_there(path, target);
 
   static std::atomic<unsigned> counter{0};
   TemporaryFile temporary(folder / ("." + target.filename().string() + ".tmp-" +
                                     std::to_string(::getpid()) + "-" + std::to_string(counter++)));
   if (!temporary.opened()) cannot_write(path, reason(errno));
-  if (exists && !temporary.keep_mode(existing.st_mode & 07777)) cannot_write(path, reason(errno));
+  if (mode && !temporary.keep_mode(*mode)) cannot_write(path, reason(errno));
   if (!temporary.write(contents)) cannot_write(path, reason(errno));
   if (!temporary.move_to(target)) cannot_write(path, reason(errno));
   flush_folder(folder);

@@ -12,6 +12,10 @@ namespace lapwing {
 // Creates missing parent folders; follows a link; refuses what is no regular file.
 void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
+// Whether `write_file_atomically` could write there, as far as that is known without writing:
+// InputError where the path is a folder or none can be made. To be asked before long work.
+void require_writable(const std::filesystem::path& path);
+
 // Throws InputError naming the path and the reason; refuses folders and files above `limit_bytes`.
 std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes = 256u << 20);
 

@@ -124,6 +124,40 @@ TEST_F(FilesTest, AReadOnlyTargetIsNamed) {
   EXPECT_TRUE(names().empty());
 }
 
+// Known beforehand, and nothing is made on the way.
+TEST_F(FilesTest, WhatCannotBeWrittenIsKnownBefore) {
+  const auto refused = [&](const fs::path& path) {
+    try {
+      require_writable(path);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  write_file_atomically(folder_ / "file", "one");
+  EXPECT_EQ(refused(folder_ / "file"), "");
+  EXPECT_EQ(refused(folder_ / "a/b/c.json"), "");
+  EXPECT_EQ(refused("out_of_nowhere.json"), "");
+  EXPECT_NE(refused(folder_).find("it is a folder"), std::string::npos);
+  EXPECT_EQ(refused(folder_ / "file/a/b.json"),
+            "cannot write '" + (folder_ / "file/a/b.json").string() + "': '" +
+                (folder_ / "file").string() + "' is no folder");
+  EXPECT_NE(refusal(folder_ / "file/a/b.json", "x").find("Not a directory"), std::string::npos);
+  EXPECT_EQ(names(), std::vector<std::string>{"file"});
+  fs::permissions(folder_, fs::perms::owner_write, fs::perm_options::remove);
+  fs::permissions(folder_, fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
+                               fs::perms::others_exec,
+                  fs::perm_options::add);
+  std::string message;
+  {
+    const Nobody nobody;
+    message = refused(folder_ / "a/b/c.json");
+  }
+  fs::permissions(folder_, fs::perms::owner_all);
+  EXPECT_EQ(message, "cannot write '" + (folder_ / "a/b/c.json").string() + "': folder '" +
+                         folder_.string() + "': Permission denied");
+}
+
 TEST_F(FilesTest, RefusesWhatIsNoFile) {
   fs::create_directory(folder_ / "sub");
   EXPECT_NE(refusal(folder_ / "sub", "x").find("it is a folder"), std::string::npos);

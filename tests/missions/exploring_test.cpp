@@ -47,7 +47,8 @@ TEST_F(Exploring, BadInputIsNamed) {
       {"--set lower=[9,9,1] --set upper=[19,19,9]", "the start lies outside the bounds"},
       {"--set margin=0.6", "half of moves.body"},
       {"--set map.resolution=0.2", "resolution"},
-      {"--set utility=frontiers", "frontier"}};
+      {"--set utility=frontiers", "frontier"},
+      {"--set utility.pixel_step=64 --set camera.height=24", "80 x 24: expected at most 47"}};
   for (const auto& [more, expected] : cases)
     EXPECT_NE(refusal(few(more)).find(expected), std::string::npos)
         << more << ": " << refusal(few(more));
