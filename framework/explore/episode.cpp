@@ -159,9 +159,9 @@ void Explorer::begin(const Viewpoint& start) {
   const Eigen::AlignedBox3d cleared = cleared_box(map_.grid(), start.position, settings_.clear);
   if (truth_.box_blocked(cleared))
     throw InputError("the start at (" + plain_number(start.position.x()) + ", " +
-                     plain_number(start.position.y()) + ", " +
-                     plain_number(start.position.z()) + ") lies in an obstacle: a box of " +
-                     plain_number(settings_.clear) + " m about it must be free");
+                     plain_number(start.position.y()) + ", " + plain_number(start.position.z()) +
+                     ") lies in an obstacle: a box of " + plain_number(settings_.clear) +
+                     " m about it must be free");
   means_.touch(clear_box(map_, cleared));
   int ways = 0;
   for (const Viewpoint& next : neighbours_of(start, settings_.step, settings_.turn))
@@ -169,8 +169,7 @@ void Explorer::begin(const Viewpoint& start) {
   if (ways == 0)
     throw InputError("no neighbour of the start could be reached: a step of " +
                      plain_number(settings_.step) + " m leaves the box of " +
-                     plain_number(settings_.clear) +
-                     " m that is known to be free, or the bounds");
+                     plain_number(settings_.clear) + " m that is known to be free, or the bounds");
   at_ = graph_.add(start);
   visits_.push_back(0);
   score(std::vector<int>{at_});
@@ -340,9 +339,9 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
   for (step_ = 0; step_ < settings_.steps; ++step_) {
     if (stopped()) break;
     if (settings_.progress)
-      settings_.progress->report(
-          static_cast<double>(step_) / settings_.steps,
-          "view " + std::to_string(step_ + 1) + " of " + std::to_string(settings_.steps));
+      settings_.progress->report(static_cast<double>(step_) / settings_.steps,
+                                 settings_.progress_label + "view " + std::to_string(step_ + 1) +
+                                     " of " + std::to_string(settings_.steps));
     EpisodeStep taken;
     if (!result_.steps.empty()) {
       taken.length = result_.steps.back().length;

@@ -218,8 +218,8 @@ int plan_exploration(lua_State* state) {
                        : e.result.end == EpisodeEnd::time    ? SolveStatus::time_limit
                                                              : SolveStatus::feasible;
   made.report.iterations = static_cast<int>(e.result.steps.size());
-  made.report.message = (e.result.steps.empty() ? "no image was taken: " : "") +
-                        explain(e.result.end);
+  made.report.message =
+      (e.result.steps.empty() ? "no image was taken: " : "") + explain(e.result.end);
   made.notes.push_back(std::to_string(e.result.steps.size()) + " images: " + explain(e.result.end));
   made.block_name = "exploration";
   made.block = Value::map();
@@ -291,8 +291,8 @@ int exploration_field(lua_State* state) {
   fields.set("observed_surface", e.result.observed());
   fields.set("surface", e.result.surface);
   fields.set("length", e.result.length());
-  fields.set("flight", e.result.steps.empty() ? 0.0
-                                              : e.result.steps.back().time + e.settings.pause);
+  fields.set("flight",
+             e.result.steps.empty() ? 0.0 : e.result.steps.back().time + e.settings.pause);
   fields.set("seconds", e.seconds);
   fields.set("relative", e.record.oracle_efficiency > 0
                              ? Value(e.record.efficiency / e.record.oracle_efficiency)
@@ -306,6 +306,22 @@ int exploration_field(lua_State* state) {
   cleared.set("lower", triple_of(box.min().array() + inside));
   cleared.set("upper", triple_of(box.max().array() - inside));
   return push_field(state, "an exploration", field, fields, kExplorationFields);
+}
+
+// What an oracle would have seen from the same start.
+void compare_with_oracle(Exploration& e, const GroundTruth& truth,
+                         const ObservedSurface::NewMap& new_map, const Registry& registry) {
+  EpisodeSettings settings = e.settings;
+  settings.show_truth = true;
+  settings.wall_clock_guard.reset();  // of the mission's own exploration
+  settings.progress_label = "oracle, ";
+  const auto oracle = registry.create<ViewUtility>("oracle");
+  ObservedSurface observed(truth, settings.sensor, new_map);
+  const auto map = new_map();
+  const EpisodeResult best = explore(settings, e.start, truth, observed, *oracle, *map);
+  if (best.end == EpisodeEnd::cancelled) return;
+  e.record.oracle_efficiency = best.efficiency(settings.steps);
+  for (const EpisodeStep& step : best.steps) e.record.oracle.push_back(step.observed);
 }
 
 }  // namespace
@@ -352,9 +368,7 @@ int explore_surface(lua_State* state) {
   record.utility = chosen.type;
   Moments moments(e->settings.steps);
   e->result = explore(e->settings, e->start, truth, observed, *utility, *e->map,
-                      [&](const EpisodeMoment& moment) {
-                        moments.look(moment.step + 1, *e->map);
-                      });
+                      [&](const EpisodeMoment& moment) { moments.look(moment.step + 1, *e->map); });
   record.moments = std::move(moments).shown(static_cast<int>(e->result.steps.size()), *e->map);
   for (const EpisodeStep& step : e->result.steps) {
     record.observed.push_back(step.observed);
@@ -367,19 +381,7 @@ int explore_surface(lua_State* state) {
   record.efficiency = e->result.efficiency(e->settings.steps);
   record_path(*e);
   const bool stopped = e->result.end == EpisodeEnd::cancelled || e->result.end == EpisodeEnd::time;
-  if (given.boolean("compare") && !stopped) {
-    EpisodeSettings settings = e->settings;
-    settings.show_truth = true;
-    settings.wall_clock_guard.reset();  // of the mission's own exploration
-    const auto oracle = registry.create<ViewUtility>("oracle");
-    ObservedSurface anew(truth, settings.sensor, new_map);
-    const auto other = new_map();
-    const EpisodeResult best = explore(settings, e->start, truth, anew, *oracle, *other);
-    if (best.end != EpisodeEnd::cancelled) {
-      record.oracle_efficiency = best.efficiency(settings.steps);
-      for (const EpisodeStep& step : best.steps) record.oracle.push_back(step.observed);
-    }
-  }
+  if (given.boolean("compare") && !stopped) compare_with_oracle(*e, truth, new_map, registry);
   new_object(state, kExplorationType, ExplorationObject{std::move(e)});
   return 1;
 }
