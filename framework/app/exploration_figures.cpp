@@ -241,64 +241,77 @@ std::string seconds_file(const std::vector<Row>& rows) {
   return table;
 }
 
-Table shown_table(const std::vector<Row>& rows, const ExplorationFigures& asked, bool oracle) {
+// A column of the tables for people; those of the file have names of their own.
+struct Column {
+  const char* name;
+  const char* unit;
+  int digits;  // behind the point, on the shell
+  double (*value)(const Row&);
+};
+
+// What the evaluated utilities allow: no ratio to an oracle that did not fly.
+std::vector<Column> columns_for(bool relative, bool below, bool against) {
+  std::vector<Column> columns = {
+      {"efficiency", "", 0, [](const Row& row) { return Mean(row.efficiency).mean; }},
+      {"deviation", "", 0, [](const Row& row) { return Mean(row.efficiency).deviation; }}};
+  const auto add = [&](bool there, std::initializer_list<Column> more) {
+    if (there) columns.insert(columns.end(), more);
+  };
+  add(relative, {{"relative", "", 3, [](const Row& row) { return Mean(row.relative).mean; }},
+                 {"deviation", "", 3, [](const Row& row) { return Mean(row.relative).deviation; }},
+                 {"95 % +-", "", 3, [](const Row& row) { return Mean(row.relative).interval(); }}});
+  add(below, {{"below learned", "", 3, [](const Row& row) { return Mean(row.below).mean; }},
+              {"95 % +-", "", 3, [](const Row& row) { return Mean(row.below).interval(); }}});
+  add(against, {{"against", "", 3, [](const Row& row) { return Mean(row.against).mean; }},
+                {"deviation", "", 3, [](const Row& row) { return Mean(row.against).deviation; }},
+                {"95 % +-", "", 3, [](const Row& row) { return Mean(row.against).interval(); }}});
+  columns.push_back({"flown", "m", 0, [](const Row& row) { return Mean(row.length).mean; }});
+  return columns;
+}
+
+Table shown_table(const std::vector<Row>& rows, const std::vector<Column>& columns,
+                  const ExplorationFigures& asked, bool oracle) {
   Table table;
-  table.title = "Efficiency (5.6), and relative to the oracle's from the same start";
   const bool other = !asked.against.empty();
-  table.columns = {{"world", ""},
-                   {"utility", ""},
-                   {"efficiency", ""},
-                   {"deviation", ""},
-                   {"relative", ""},
-                   {"deviation", ""},
-                   {"95 % interval, half", ""},
-                   {"below learned", ""},
-                   {"95 % interval, half", ""}};
-  if (other) {
-    table.title += "; against: of that in '" + asked.against.string() + "'";
-    for (const char* name : {"against", "deviation", "95 % interval, half"})
-      table.columns.push_back({name, ""});
-  }
-  table.columns.push_back({"length", "m"});
+  table.title = "Efficiency (5.6)";
+  if (oracle) table.title += ", and relative to the oracle's from the same start";
+  if (other) table.title += "; against: of that in '" + asked.against.string() + "'";
+  table.columns = {{"world", ""}, {"utility", ""}};
+  for (const Column& column : columns) table.columns.push_back({column.name, column.unit});
   table.columns.push_back({"ended early", ""});
   for (const Row& row : rows) {
-    const Mean efficiency(row.efficiency), relative(row.relative), below(row.below),
-        against(row.against);
-    std::vector<TableCell> cells = {
-        row.world,       row.utility,        efficiency.mean,     efficiency.deviation,
-        relative.mean,   relative.deviation, relative.interval(), below.mean,
-        below.interval()};
-    if (other)
-      for (const double value : {against.mean, against.deviation, against.interval()})
-        cells.emplace_back(value);
-    cells.emplace_back(Mean(row.length).mean);
+    std::vector<TableCell> cells = {row.world, row.utility};
+    for (const Column& column : columns) cells.emplace_back(column.value(row));
     cells.emplace_back(row.remarks(oracle, other));
     table.rows.push_back({std::move(cells)});
   }
   return table;
 }
 
-std::string in_columns(const std::vector<Row>& rows, const ExplorationFigures& asked, bool oracle) {
-  const bool other = !asked.against.empty();
+std::string in_columns(const std::vector<Row>& rows, std::vector<Column> columns,
+                       const ExplorationFigures& asked, bool oracle) {
+  // Wall-clock figures stand on the shell alone: no two runs agree on them.
+  columns.push_back({"step", "s", 3, [](const Row& row) { return Mean(row.seconds).mean; }});
   std::string text;
   char part[200];
   const auto add = [&](const char* format, auto... values) {
     std::snprintf(part, sizeof part, format, values...);
     text += part;
   };
-  add("%-22s %-18s %10s %9s %8s %9s %8s %8s %8s", "world", "utility", "efficiency", "deviation",
-      "relative", "deviation", "95 % +-", "below", "95 % +-");
-  if (other) add(" %8s %8s", "against", "95 % +-");
-  add(" %7s %7s  %s\n", "m flown", "s/step", "ended early");
+  add("%-22s %-18s", "world", "utility");
+  for (const Column& column : columns)
+    add(" %13s", (std::string(column.name) + (*column.unit ? ", " : "") + column.unit).c_str());
+  text += "  ended early\n";
   for (const Row& row : rows) {
-    const Mean efficiency(row.efficiency), relative(row.relative), below(row.below),
-        against(row.against);
-    add("%-22s %-18s %10.0f %9.0f %8.3f %9.3f %8.3f %8.3f %8.3f", row.world.c_str(),
-        row.utility.c_str(), efficiency.mean, efficiency.deviation, relative.mean,
-        relative.deviation, relative.interval(), below.mean, below.interval());
-    if (other) add(" %8.3f %8.3f", against.mean, against.interval());
-    add(" %7.0f %7.3f  %s\n", Mean(row.length).mean, Mean(row.seconds).mean,
-        row.remarks(oracle, other).c_str());
+    add("%-22s %-18s", row.world.c_str(), row.utility.c_str());
+    for (const Column& column : columns) {
+      const double value = column.value(row);
+      if (std::isfinite(value))
+        add(" %13.*f", column.digits, value);
+      else
+        add(" %13s", "-");
+    }
+    text += "  " + row.remarks(oracle, !asked.against.empty()) + "\n";
   }
   return text;
 }
@@ -310,17 +323,19 @@ std::string write_exploration_figures(const ExplorationFigures& asked) {
   for (const std::string& world : asked.worlds) figures.add_world(world);
   if (asked.worlds.size() > 1) figures.add_all_worlds();
   const bool oracle = figures.evaluated("oracle");
+  const std::vector<Column> columns =
+      columns_for(oracle, oracle && figures.evaluated("learned"), !asked.against.empty());
   Report report;
   report.title = "Exploration";
   report.subtitle = std::to_string(asked.episodes) + " episodes of " + std::to_string(asked.steps) +
                     " images in each world";
-  report.sections.push_back({"Table", {shown_table(figures.rows, asked, oracle)}});
+  report.sections.push_back({"Table", {shown_table(figures.rows, columns, asked, oracle)}});
   for (Section& section : figures.charts) report.sections.push_back(std::move(section));
   write_file_atomically(asked.folder / "table.csv", table_file(figures.rows));
   write_file_atomically(asked.folder / "seconds.csv", seconds_file(figures.rows));
   write_file_atomically(asked.folder / "curves.csv", figures.curves);
   write_file_atomically(asked.folder / "report.html", render_html(report));
-  return in_columns(figures.rows, asked, oracle);
+  return in_columns(figures.rows, columns, asked, oracle);
 }
 
 }  // namespace lapwing
