@@ -60,6 +60,12 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   write_file_atomically(folder / "episodes" / (trial.name() + ".json"), to_json(object) + "\n");
 }
 
+bool of_an_evaluation(const fs::path& settings) {
+  if (!fs::exists(settings)) return false;
+  const Value there = from_json(read_file(settings), settings.string());
+  return there.is_map() && there.find("steps") && there.find("lookahead");
+}
+
 // Makes the folder ready: settings.json says what the episodes in it are. Nothing is taken away
 // from a folder that is not an evaluation's.
 void claim_folder(const ExploreEvaluation& request, Value stated) {
@@ -70,7 +76,7 @@ void claim_folder(const ExploreEvaluation& request, Value stated) {
       throw InputError("'" + episodes.string() + "' is there, but no settings.json that says " +
                        "what it holds: choose another folder with -o");
     const Value there = from_json(read_file(settings), settings.string());
-    if (!there.is_map() || !there.find("steps") || !there.find("lookahead"))
+    if (!of_an_evaluation(settings))
       throw InputError("'" + settings.string() +
                        "' is not of an evaluation of explorations: choose another folder with -o");
     if (!request.resume)
@@ -83,6 +89,12 @@ void claim_folder(const ExploreEvaluation& request, Value stated) {
       for (const auto& [name, sum] : files->as_map())
         if (!stated.at("files").find(name)) stated.find("files")->set(name, sum);
     }
+  } else if (!of_an_evaluation(settings)) {
+    for (const char* name :
+         {"settings.json", "table.csv", "curves.csv", "seconds.csv", "report.html"})
+      if (fs::exists(request.folder / name))
+        throw InputError("'" + (request.folder / name).string() + "' is not of an evaluation of " +
+                         "explorations: choose another folder with -o");
   }
   write_file_atomically(settings, to_json(stated) + "\n");
 }

@@ -122,6 +122,12 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   write_file_atomically(broken / "settings.json", "{\"colour\": 3}");
   refused("", broken, "choose another folder");
   EXPECT_TRUE(fs::exists(half));
+  write_file_atomically(folder_ / "mine/report.html", "mine");
+  refused("", folder_ / "mine", "report.html' is not of an evaluation");
+  EXPECT_EQ(read_file(folder_ / "mine/report.html"), "mine");
+  for (const char* seeds : {"18446744073709551615", "18446744073709551614-18446744073709551615"})
+    refused(std::string("--world street:") + seeds, folder_ / "seeds",
+            "expected seeds up to 9007199254740991");
   for (const char* noise : {"--sigma nan", "--sigma -1", "--sigma inf", "--dropped -3",
                             "--dropped 1.5", "--dropped nan", "--stereo nan", "--stereo -1"})
     refused(noise, folder_ / "noise", "expected a number from 0 to");

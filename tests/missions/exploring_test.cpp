@@ -101,6 +101,20 @@ TEST_F(Exploring, WithoutAnImageThereIsNoPlan) {
   }
 }
 
+// What noise puts into the map is no surface that was found.
+TEST_F(Exploring, NoiseFindsNoSurface) {
+  const auto observed = [&](const char* more, const char* out) {
+    return explore(std::string("--set compare=false --set steps=1 ") + more, out)
+        .result.at("exploration")
+        .at("observed_surface")
+        .as_number();
+  };
+  const double clear = observed("", "clear");  // one image, of the same view
+  EXPECT_GT(clear, 0);
+  EXPECT_DOUBLE_EQ(observed("--set camera.sigma=20", "noisy"), clear);
+  EXPECT_DOUBLE_EQ(observed("--set camera.dropped=0.4", "dropped"), clear);
+}
+
 // The map at four moments, however early it ends; the oracle is compared without the guard.
 TEST_F(Exploring, AnEarlyEndIsShownInFourPicturesToo) {
   const Flown flown = explore("--set steps=200 --set budget=30 --set compare=false", "early");
