@@ -65,16 +65,22 @@ struct Flown {
 Flown flown(const Trial& trial, const fs::path& folder, int steps) {
   const fs::path path = folder / "episodes" / (trial.name() + ".json");
   Flown result;
+  std::string world;
   try {
     const Value object = from_json(read_file(path), path.string());
     for (const Value& value : object.at("observed").as_list())
       result.curve.push_back(value.as_number());
     result.length = object.at("length").as_number();
     result.end = object.at("end").as_text();
+    world = object.at("world").as_text();
   } catch (const InputError& error) {
     throw InputError("'" + path.string() + "' is no whole episode: delete it, and --resume flies " +
                      "it again (" + error.what() + ")");
   }
+  // "a b.obj" and "a_b.obj" have the same files.
+  if (world != trial.world)
+    throw InputError("'" + path.string() + "' is of the world '" + world + "', not '" +
+                     trial.world + "': choose another folder with -o");
   if (result.curve.size() >= static_cast<std::size_t>(steps)) result.end.clear();
   if (result.curve.empty()) result.curve.push_back(0);
   result.curve.resize(static_cast<std::size_t>(steps), result.curve.back());

@@ -117,6 +117,13 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   write_file_atomically(folder_ / "elsewhere" / "yard.obj", mesh);
   refused("--world '" + (folder_ / "elsewhere/yard.obj").string() + "'", folder_ / "twice",
           "would both be called 'yard.obj'");
+  // Names that make the same names of files.
+  const auto blank = [&](const char* name) {
+    fs::copy_file(folder_ / "yard.obj", folder_ / name);
+    return "--world '" + (folder_ / name).string() + "'";
+  };
+  ASSERT_EQ(evaluate(blank("a b.obj"), folder_ / "alike"), 0);
+  refused("--resume " + blank("a_b.obj"), folder_ / "alike", "is of the world 'a b.obj', not");
   fs::remove(broken / "settings.json");
   for (const char* more : {"", "--resume"}) refused(more, broken, "choose another folder");
   write_file_atomically(broken / "settings.json", "{\"colour\": 3}");

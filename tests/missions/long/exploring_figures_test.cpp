@@ -47,7 +47,7 @@ TEST_F(ExploringFigures, TheLearnedUtilityComesNextToTheOracle) {
 }
 
 // Spearman's rho of the network alone in the worlds that it was validated by.
-TEST_F(ExploringFigures, ItRanksTheViewsOfUnseenTowns) {
+TEST_F(ExploringFigures, ItRanksTheViewsOfItsValidation) {
   const std::string program = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing train ";
   const std::string samples = (folder_ / "samples").string(), said = (folder_ / "said").string();
   const std::string made = program + "dataset --world downtown:101-103 --episodes 1 --seed 7 " +
