@@ -60,9 +60,7 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   write_file_atomically(folder / "episodes" / (trial.name() + ".json"), to_json(object) + "\n");
 }
 
-bool of_an_evaluation(const fs::path& settings) {
-  if (!fs::exists(settings)) return false;
-  const Value there = from_json(read_file(settings), settings.string());
+bool of_an_evaluation(const Value& there) {
   return there.is_map() && there.find("steps") && there.find("lookahead");
 }
 
@@ -76,7 +74,7 @@ void claim_folder(const ExploreEvaluation& request, Value stated) {
       throw InputError("'" + episodes.string() + "' is there, but no settings.json that says " +
                        "what it holds: choose another folder with -o");
     const Value there = from_json(read_file(settings), settings.string());
-    if (!of_an_evaluation(settings))
+    if (!of_an_evaluation(there))
       throw InputError("'" + settings.string() +
                        "' is not of an evaluation of explorations: choose another folder with -o");
     if (!request.resume)
@@ -89,7 +87,8 @@ void claim_folder(const ExploreEvaluation& request, Value stated) {
       for (const auto& [name, sum] : files->as_map())
         if (!stated.at("files").find(name)) stated.find("files")->set(name, sum);
     }
-  } else if (!of_an_evaluation(settings)) {
+  } else if (!fs::exists(settings) ||
+             !of_an_evaluation(from_json(read_file(settings), settings.string()))) {
     for (const char* name :
          {"settings.json", "table.csv", "curves.csv", "seconds.csv", "report.html"})
       if (fs::exists(request.folder / name))

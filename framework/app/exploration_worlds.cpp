@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "framework/app/command_options.h"
 #include "framework/config/overrides.h"
 #include "framework/config/shipped.h"
 #include "framework/mission/scene_script.h"
@@ -102,9 +103,8 @@ std::vector<WorldName> world_names(const std::string& given) {
   if (last < first || last - first > 10'000)
     throw InputError("world '" + given + "': the last seed lies before the first, or far beyond");
   std::vector<WorldName> names;
-  constexpr std::uint64_t kLargest = (std::uint64_t{1} << 53) - 1;  // as --seed has it
-  if (last > kLargest)
-    throw InputError("world '" + given + "': expected seeds up to " + std::to_string(kLargest));
+  if (last > kLargestSeed)
+    throw InputError("world '" + given + "': expected seeds up to " + std::to_string(kLargestSeed));
   for (std::uint64_t seed = first; seed <= last; ++seed)
     names.push_back({.scene = name, .seed = seed});
   return names;
