@@ -1,6 +1,6 @@
 -- A church that nobody has seen before: the drone explores it, then scans it for a 3D model with
 -- the map and the mesh that it made, in one visit.
---   --set exploration.utility=frontier --set exploration.images=80
+--   --set utility=frontier --set exploration.images=80
 local scan = require "mission.scan"
 
 return scan.of_scene {

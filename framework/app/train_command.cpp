@@ -8,6 +8,7 @@
 #include "framework/app/progress_line.h"
 #include "framework/app/train_command.h"
 #include "framework/config/overrides.h"
+#include "framework/core/files.h"
 #include "framework/core/parallel.h"
 #include "framework/explore/trainable.h"
 #include "framework/mission/explore_library.h"
@@ -169,6 +170,8 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
     if (!request.resume && fs::exists(file))
       throw InputError("'" + file.string() +
                        "' is there: --resume goes on with it, another name keeps both");
+  require_writable(fit.model);
+  require_writable(fit.checkpoint);
   fit.seed = invocation.seed;
   fit.threads = invocation.threads;
   fit.cancellation = &interruption.token();
@@ -183,28 +186,31 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
 ExitStatus score_model(const TrainRequest& request, const Invocation& invocation) {
   const Registry registry = invocation.registry();
   const Trainable& trainable = trainable_of(registry, request.utility);
-  struct Sums {
+  struct World {
     std::vector<float> predicted, targets;
+    double squares = 0;  // sum of errors
   };
-  std::map<std::string, Sums> worlds;
+  std::map<std::string, World> worlds;
   for (const fs::path& file : sample_files(request.samples)) {
     const SampleSet set = read_samples(file);
-    const std::vector<float> predicted = trainable.predict(request.target, set, invocation.threads);
-    Sums& sums = worlds[set.world];
-    sums.predicted.insert(sums.predicted.end(), predicted.begin(), predicted.end());
-    sums.targets.insert(sums.targets.end(), set.targets.begin(), set.targets.end());
+    const Prediction predicted = trainable.predict(request.target, set, invocation.threads);
+    World& world = worlds[set.world];
+    world.predicted.insert(world.predicted.end(), predicted.values.begin(), predicted.values.end());
+    world.targets.insert(world.targets.end(), set.targets.begin(), set.targets.end());
+    world.squares += predicted.loss * static_cast<double>(set.size());
   }
   Value object = Value::map();
   if (!invocation.json) std::printf("%-24s %8s %8s %8s\n", "world", "samples", "rho", "loss");
-  for (const auto& [world, sums] : worlds) {
-    const double rho = rank_correlation(sums.predicted, sums.targets);
-    const double loss = trainable.loss(request.target, sums.predicted, sums.targets);
-    Value& entry = object.set(world, Value::map());
-    entry.set("samples", static_cast<std::int64_t>(sums.targets.size()));
+  for (const auto& [name, world] : worlds) {
+    const std::size_t count = world.targets.size();
+    const double rho = rank_correlation(world.predicted, world.targets);
+    const double loss = world.squares / static_cast<double>(std::max<std::size_t>(count, 1));
+    Value& entry = object.set(name, Value::map());
+    entry.set("samples", static_cast<std::int64_t>(count));
     entry.set("rho", std::isfinite(rho) ? Value(rho) : Value());
     entry.set("loss", loss);
     if (!invocation.json)
-      std::printf("%-24s %8zu %8.3f %8.3f\n", world.c_str(), sums.targets.size(), rho, loss);
+      std::printf("%-24s %8zu %8.3f %8.3f\n", name.c_str(), count, rho, loss);
   }
   if (invocation.json) print_json(object);
   return ExitStatus::done;

@@ -118,6 +118,19 @@ std::int64_t Fields::integer(std::string_view name) {
   return 0;
 }
 
+int Fields::integer(std::string_view name, int least, int most) {
+  const Value* field = read(name, true);
+  if (!field) return least;
+  if (field->type() == Value::Type::integer && field->as_integer() >= least &&
+      field->as_integer() <= most)
+    return static_cast<int>(field->as_integer());
+  add_error(name, "expected an integer from " + std::to_string(least) + " to " +
+                      std::to_string(most) + ", got " +
+                      (field->type() == Value::Type::integer ? std::to_string(field->as_integer())
+                                                             : field->describe_type()));
+  return least;
+}
+
 bool Fields::boolean(std::string_view name) {
   const Value* field = read(name, true);
   if (!field) return false;

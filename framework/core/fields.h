@@ -40,6 +40,8 @@ class Fields {
   std::vector<std::vector<double>> rows(std::string_view name, int size);
   Eigen::Vector3d vector3(std::string_view name);
   std::int64_t integer(std::string_view name);
+  // From `least` to `most`, both included.
+  int integer(std::string_view name, int least, int most);
   bool boolean(std::string_view name);
   std::string text(std::string_view name);
   std::string optional_text(std::string_view name);

@@ -13,7 +13,8 @@
 namespace lapwing {
 namespace {
 
-constexpr int kRescored = 4;  // views that are re-scored together; a part of the result
+constexpr int kRescored = 4;       // views that are re-scored together; a part of the result
+constexpr std::size_t kListed = 64;  // candidates valued between two looks at the clock
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -125,7 +126,8 @@ class Explorer {
   void list_what_is_left();
   // The neighbours that a way could go on to.
   std::vector<Viewpoint> worth_looking_from(const Viewpoint& view) const;
-  bool stopped();
+  // Why it must not go on.
+  std::optional<EpisodeEnd> stopped() const;
   bool within_bounds(const Viewpoint& view) const {
     return !settings_.bounds || settings_.bounds->contains(view.position);
   }
@@ -317,16 +319,11 @@ void Explorer::add_neighbours(int place, std::vector<Viewpoint>& reachable) {
   score(fresh);
 }
 
-bool Explorer::stopped() {
-  if (settings_.cancellation && settings_.cancellation->cancelled()) {
-    result_.end = EpisodeEnd::cancelled;
-    return true;
-  }
-  if (settings_.wall_clock_guard && wall_seconds() - began_ > *settings_.wall_clock_guard) {
-    result_.end = EpisodeEnd::time;
-    return true;
-  }
-  return false;
+std::optional<EpisodeEnd> Explorer::stopped() const {
+  if (settings_.cancellation && settings_.cancellation->cancelled()) return EpisodeEnd::cancelled;
+  if (settings_.wall_clock_guard && wall_seconds() - began_ > *settings_.wall_clock_guard)
+    return EpisodeEnd::time;
+  return std::nullopt;
 }
 
 EpisodeResult Explorer::run(const Viewpoint& start) {
@@ -337,7 +334,10 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
   double last = began_;
   begin(start);
   for (step_ = 0; step_ < settings_.steps; ++step_) {
-    if (stopped()) break;
+    if (const auto end = stopped()) {
+      result_.end = *end;
+      break;
+    }
     if (settings_.progress)
       settings_.progress->report(static_cast<double>(step_) / settings_.steps,
                                  settings_.progress_label + "view " + std::to_string(step_ + 1) +
@@ -366,7 +366,9 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
       began_ += wall_seconds() - before;
     }
   }
-  if (result_.end != EpisodeEnd::cancelled && result_.end != EpisodeEnd::time) list_what_is_left();
+  if (settings_.list_candidates && result_.end != EpisodeEnd::cancelled &&
+      result_.end != EpisodeEnd::time)
+    list_what_is_left();
   return std::move(result_);
 }
 
@@ -380,7 +382,11 @@ void Explorer::list_what_is_left() {
       views.push_back(graph_[place]);
   }
   std::vector<double> values(views.size());
-  value_of(views, values);
+  for (std::size_t k = 0; k < views.size(); k += kListed) {
+    if (stopped()) return;  // what was flown is whole, and ended as it did
+    const std::size_t count = std::min(kListed, views.size() - k);
+    value_of(std::span(views).subspan(k, count), std::span(values).subspan(k, count));
+  }
   for (std::size_t k = 0; k < views.size(); ++k)
     result_.candidates.push_back({views[k], values[k]});
 }

@@ -37,6 +37,7 @@ struct EpisodeSettings {
   std::optional<double> wall_clock_guard;     // s
   std::optional<Eigen::AlignedBox3d> bounds;  // the explorer stays inside
   bool show_truth = false;                    // to a utility that needs it
+  bool list_candidates = false;               // at the end: takes as long as many steps
   std::uint64_t seed = 1;                     // of the sensor's noise
   int threads = 1;                            // results are the same for any number
   const CancellationToken* cancellation = nullptr;
@@ -76,7 +77,8 @@ struct ScoredView {
 struct EpisodeResult {
   EpisodeEnd end = EpisodeEnd::steps;
   std::vector<EpisodeStep> steps;
-  std::vector<ScoredView> candidates;  // what could be reached at the end, all for the last map
+  // What could be reached at the end, all for the last map; where asked for, and not stopped.
+  std::vector<ScoredView> candidates;
   double surface = 0;                  // voxels there were to find; 0 without a truth
 
   double observed() const { return steps.empty() ? 0 : steps.back().observed; }

@@ -22,18 +22,21 @@ struct FitRequest {
   std::function<void(const std::string&)> log = [](const std::string&) {};
 };
 
+// What a model says of samples.
+struct Prediction {
+  std::vector<float> values;  // one a sample, in the oracle's unit
+  double loss = 0;            // of (5.4) without its weights' part: mean squared error, normalised
+};
+
 // Static data of a library (plugin/plugin.h). InputError as everywhere.
 struct Trainable {
   ParameterTable (*parameters)();  // of architecture and training
+  // Of its input; InputError for what no network takes.
   GridShape (*shape)(const Parameters& parameters);
   // Figures of the best epoch, as the model's provenance holds them.
   Value (*fit)(const Parameters& parameters, const FitRequest& request);
-  // What a model says of samples; refused where they are of another mapping or shape.
-  std::vector<float> (*predict)(const std::filesystem::path& model, const SampleSet& samples,
-                                int threads);
-  // The loss (5.4) without its weights' part: mean squared error of normalised targets.
-  double (*loss)(const std::filesystem::path& model, std::span<const float> predicted,
-                 std::span<const float> targets);
+  // Refused where the samples are of another mapping or shape.
+  Prediction (*predict)(const std::filesystem::path& model, const SampleSet& samples, int threads);
 };
 
 // Spearman's rho: the correlation of ranks, ties sharing their mean rank. NaN for fewer than two

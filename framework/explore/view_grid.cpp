@@ -83,9 +83,15 @@ std::string in_words(const std::string& key, const Value& value) {
 
 }  // namespace
 
+namespace {
+
+constexpr int kLeastPoints = 2, kMostPoints = 64;  // along an edge
+
+}  // namespace
+
 void require_sense(const GridShape& shape) {
   for (const int points : {shape.across, shape.ahead, shape.up})
-    if (points < 2 || points > 64)
+    if (points < kLeastPoints || points > kMostPoints)
       throw InputError("a grid of " + std::to_string(shape.across) + " x " +
                        std::to_string(shape.ahead) + " x " + std::to_string(shape.up) +
                        " points: expected 2 to 64 along each edge");
@@ -107,17 +113,12 @@ GridShape grid_shape_from(const Value& value) {
   Diagnostics errors;
   Fields fields(value, "grid", errors);
   GridShape shape;
-  // Within int first: what is beyond it is refused below.
-  const auto read = [&](const char* key) {
-    return static_cast<int>(std::clamp<std::int64_t>(fields.integer(key), 0, 1 << 20));
-  };
-  shape.across = read("across");
-  shape.ahead = read("ahead");
-  shape.up = read("up");
-  shape.levels = read("levels");
+  shape.across = fields.integer("across", kLeastPoints, kMostPoints);
+  shape.ahead = fields.integer("ahead", kLeastPoints, kMostPoints);
+  shape.up = fields.integer("up", kLeastPoints, kMostPoints);
+  shape.levels = fields.integer("levels", 1, MapMeans::kMostLevels);
   fields.finish();
   errors.throw_if_any();
-  require_sense(shape);
   return shape;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "framework/core/units.h"
 #include "framework/geometry/png.h"
 
 namespace lapwing {
@@ -42,12 +43,19 @@ Facts summary(const ExplorationRecord& record) {
   add("efficiency", number_text(record.efficiency, 6), "voxel images");
   if (record.oracle_efficiency > 0)
     add("relative to the oracle", number_text(record.efficiency / record.oracle_efficiency, 3));
+  if (!record.oracle_end.empty())
+    add("the oracle ended after", std::to_string(record.oracle.size()),
+        "images: " + record.oracle_end);
   return facts;
 }
 
 Section growth(const ExplorationRecord& record) {
   FilmStrip strip;
-  strip.title = "Seen from above: height from blue to yellow, light is free, dark unknown";
+  strip.title = "Seen from above";
+  if (record.cut) strip.title += ", all above " + number_text(*record.cut, 3) + " m left out";
+  strip.title += ": height from blue (" + number_text(record.moments.back().lowest, 3) +
+                 " m) to yellow (" + number_text(record.moments.back().highest, 3) +
+                 " m), light is free, dark unknown";
   for (const ExplorationMoment& moment : record.moments) {
     strip.frames.push_back({encode_png(moment.map),
                             moment.map.width,
@@ -98,10 +106,12 @@ Section candidates(const ExplorationRecord& record) {
   section.blocks.push_back(std::move(chart));
   Table table;
   table.title = "The best of them";
-  table.columns = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"utility", ""}};
-  for (std::size_t k = 0; k < std::min(kListed, sorted.size()); ++k)
-    table.rows.push_back({{sorted[k].position.x(), sorted[k].position.y(), sorted[k].position.z(),
-                           sorted[k].value}});
+  table.columns = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"heading", "deg"}, {"utility", ""}};
+  for (std::size_t k = 0; k < std::min(kListed, sorted.size()); ++k) {
+    const ExplorationCandidate& c = sorted[k];
+    const double heading = degrees(std::atan2(c.direction.y(), c.direction.x()));
+    table.rows.push_back({{c.position.x(), c.position.y(), c.position.z(), heading, c.value}});
+  }
   section.blocks.push_back(std::move(table));
   return section;
 }

@@ -11,7 +11,8 @@ namespace lapwing {
 
 struct ExplorationMoment {
   int images = 0;  // taken so far
-  Picture map;
+  Picture map;                     // from above; of all moments the same frame and colours
+  double lowest = 0, highest = 0;  // m, heights at both ends of the colours
 };
 
 struct ExplorationCandidate {
@@ -26,12 +27,14 @@ struct ExplorationRecord {
   double surface = 0;                      // voxels there were to find
   double efficiency = 0;                   // (5.6)
   double oracle_efficiency = 0;            // 0: not compared
+  std::string oracle_end;                  // a sentence where it took fewer images; else empty
   double length = 0;                       // m
   std::vector<double> observed;            // (5.2), after each image
   std::vector<double> oracle;              // likewise, of the oracle; empty where not compared
   std::vector<Eigen::Vector3d> path;       // m, world
   std::vector<double> path_images;         // taken so far, at each place of the path
   std::vector<ExplorationMoment> moments;  // in time
+  std::optional<double> cut;               // m, height above which they leave all out
   std::vector<ExplorationCandidate> candidates;  // at the end
 };
 

@@ -105,10 +105,6 @@ void paint(Picture& picture, std::size_t pixel, const Byte3& color) {
             picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
 }
 
-double height_of(const Map& map, int key) {
-  return (key - kCenterKey) * map.grid().resolution();
-}
-
 // Colours the pixels whose columns a leaf at this height covers; later leaves are laid over
 // earlier.
 template <class Color>
@@ -137,32 +133,67 @@ MapPicture cut(const Map& map, double height, int most_pixels, Color color_of) {
 
 }  // namespace
 
-MapPicture height_picture(const Map& map, int most_pixels) {
+MapColumns map_columns(const Map& map, double below) {
   const auto bounds = decided_bounds(map);
   if (!bounds) return {};
-  const Columns columns(*bounds, most_pixels);
-  MapPicture made = blank(columns, map);
+  MapColumns columns;
+  columns.box = *bounds;
+  columns.grid = map.grid();
+  const Columns each(*bounds, 1 << 16);
+  const auto count = static_cast<std::size_t>(each.width) * each.height;
+  columns.top.assign(count, MapColumns::kNone);
+  columns.free.assign(count, false);
+  const int last =
+      std::isfinite(below) ? map.grid().index(below) : std::numeric_limits<std::uint16_t>::max();
+  map.for_each_leaf([&](const VoxelLeaf& leaf) {
+    if (leaf.key.z > last) return;
+    const VoxelState state = map.settings().state(leaf.log_odds);
+    const auto top = static_cast<std::uint16_t>(std::min(leaf.key.z + (1 << leaf.level) - 1, last));
+    each.cover(leaf, [&](int pixel) {
+      const auto at = static_cast<std::size_t>(pixel);
+      if (state == VoxelState::occupied)
+        columns.top[at] = std::max(columns.top[at], top);
+      else if (state == VoxelState::free)
+        columns.free[at] = true;
+    });
+  });
+  return columns;
+}
+
+MapPicture height_picture(const Map& map, int most_pixels) {
+  const MapColumns columns = map_columns(map);
+  return height_picture(columns, columns, most_pixels);
+}
+
+MapPicture height_picture(const MapColumns& shown, const MapColumns& frame, int most_pixels) {
+  if (frame.empty()) return {};
+  const Columns columns(frame.box, most_pixels);
+  MapPicture made;
+  made.picture.width = columns.width;
+  made.picture.height = columns.height;
+  made.picture.rgb.resize(static_cast<std::size_t>(columns.width) * columns.height * 3);
+  made.metres = columns.per_pixel * frame.grid.resolution();
   const std::size_t pixels = made.picture.rgb.size() / 3;
   constexpr int kNothing = -1;
   std::vector<int> top(pixels, kNothing);
   std::vector<bool> free(pixels);
-  map.for_each_leaf([&](const VoxelLeaf& leaf) {
-    const VoxelState state = map.settings().state(leaf.log_odds);
-    columns.cover(leaf, [&](int pixel) {
-      const auto at = static_cast<std::size_t>(pixel);
-      if (state == VoxelState::occupied)
-        top[at] = std::max(top[at], leaf.key.z + (1 << leaf.level) - 1);
-      else if (state == VoxelState::free)
-        free[at] = true;
-    });
-  });
-  std::vector<int> heights;
-  for (const int z : top)
-    if (z != kNothing) heights.push_back(z);
-  if (heights.empty()) heights.push_back(bounds->lower.z);
-  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
-  made.lowest = height_of(map, *low), made.highest = height_of(map, *high + 1);
-  const double span = std::max(1, *high - *low);
+  std::size_t k = 0;
+  for (int y = shown.box.upper.y; !shown.empty() && y >= shown.box.lower.y; --y)
+    for (int x = shown.box.lower.x; x <= shown.box.upper.x; ++x, ++k)
+      columns.cover({{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0}, 0, 0, 0},
+                    [&](int pixel) {
+                      const auto at = static_cast<std::size_t>(pixel);
+                      if (shown.top[k] != MapColumns::kNone)
+                        top[at] = std::max<int>(top[at], shown.top[k]);
+                      free[at] = free[at] || shown.free[k];
+                    });
+  int low = 65535, high = 0;
+  for (const std::uint16_t z : frame.top)
+    if (z != MapColumns::kNone) low = std::min<int>(low, z), high = std::max<int>(high, z);
+  if (low > high) low = high = frame.box.lower.z;
+  const auto metres = [&](int key) { return (key - kCenterKey) * frame.grid.resolution(); };
+  made.lowest = metres(low), made.highest = metres(high + 1);
+  const double span = std::max(1, high - low);
   for (std::size_t i = 0; i < pixels; ++i) {
     if (top[i] == kNothing) {
       paint(made.picture, i, free[i] ? kFree : kUnknown);
@@ -176,7 +207,7 @@ MapPicture height_picture(const Map& map, int most_pixels) {
     const double slope =
         (top[i] - neighbour(x > 0, i - 1)) + (top[i] - neighbour(i >= row, i - row));
     const double light = 1 + 0.25 * std::tanh(slope * 0.5 / columns.per_pixel);
-    paint(made.picture, i, lit(height_color((top[i] - *low) / span), light));
+    paint(made.picture, i, lit(height_color((top[i] - low) / span), light));
   }
   magnify(made, most_pixels);
   return made;

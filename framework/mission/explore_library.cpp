@@ -121,33 +121,51 @@ bool is_moment(int images, int steps) {
 }
 
 // How the map grew, in four pictures whenever it ends: after shares of the images that were asked
-// for, or, where it ended before them, after as many as the last powers of two.
+// for, or, where it ended before them, after as many as the last powers of two. All are drawn in
+// the last one's frame.
 class Moments {
  public:
   static constexpr std::size_t kShown = 4;
 
-  explicit Moments(int steps) : steps_(steps) {}
+  // What is above `below` (m) is left out.
+  Moments(int steps, double below) : steps_(steps), below_(below) {}
   void look(int images, const Map& map) {
     if (is_moment(images, steps_) || std::has_single_bit(static_cast<unsigned>(images)))
-      all_.push_back({images, height_picture(map, kMomentPixels).picture});
+      all_.push_back({images, map_columns(map, below_)});
   }
   std::vector<ExplorationMoment> shown(int images, const Map& map) && {
     const bool whole = images == steps_;
-    std::erase_if(all_, [&](const ExplorationMoment& moment) {
+    std::erase_if(all_, [&](const Moment& moment) {
       return whole ? !is_moment(moment.images, steps_)
                    : !std::has_single_bit(static_cast<unsigned>(moment.images));
     });
     if (images > 0 && (all_.empty() || all_.back().images < images))
-      all_.push_back({images, height_picture(map, kMomentPixels).picture});
+      all_.push_back({images, map_columns(map, below_)});
     if (all_.size() > kShown)
       all_.erase(all_.begin(), all_.end() - static_cast<std::ptrdiff_t>(kShown));
-    return std::move(all_);
+    std::vector<ExplorationMoment> drawn;
+    for (const Moment& moment : all_) {
+      MapPicture made = height_picture(moment.columns, all_.back().columns, kMomentPixels);
+      drawn.push_back({moment.images, std::move(made.picture), made.lowest, made.highest});
+    }
+    return drawn;
   }
 
  private:
+  struct Moment {
+    int images;
+    MapColumns columns;
+  };
   int steps_;
-  std::vector<ExplorationMoment> all_;
+  double below_;
+  std::vector<Moment> all_;
 };
+
+// Under a roof the picture from above is of what lies below the start: a room without its ceiling.
+std::optional<double> cut_height(const MeshScene& scene, const Viewpoint& start) {
+  const bool roofed = scene.blocked({start.position, Eigen::Vector3d::UnitZ()});
+  return roofed ? std::optional(start.position.z()) : std::nullopt;
+}
 
 void record_path(Exploration& e) {
   ExplorationRecord& record = e.record;
@@ -324,6 +342,7 @@ void compare_with_oracle(Exploration& e, const GroundTruth& truth,
                          const ObservedSurface::NewMap& new_map, const Registry& registry) {
   EpisodeSettings settings = e.settings;
   settings.show_truth = true;
+  settings.list_candidates = false;
   settings.wall_clock_guard.reset();  // of the mission's own exploration
   settings.progress_label = "oracle, ";
   const auto oracle = registry.create<ViewUtility>("oracle");
@@ -333,6 +352,7 @@ void compare_with_oracle(Exploration& e, const GroundTruth& truth,
   if (best.end == EpisodeEnd::cancelled) return;
   observe_truly(best, settings, truth, new_map);
   e.record.oracle_efficiency = best.efficiency(settings.steps);
+  if (best.end != EpisodeEnd::steps) e.record.oracle_end = explain(best.end);
   for (const EpisodeStep& step : best.steps) e.record.oracle.push_back(step.observed);
 }
 
@@ -350,6 +370,7 @@ int explore_surface(lua_State* state) {
   const Registry& registry = *run.settings.registry;
   auto e = std::make_shared<Exploration>();
   e->settings = settings_of(given, run);
+  e->settings.list_candidates = true;
   e->settings.show_truth = needs_truth(registry, chosen.type);
   const auto utility = registry.create<ViewUtility>(chosen.type, chosen.parameters, "utility");
   const auto new_map = [&] { return registry.create<Map>(map.type, map.parameters, "map"); };
@@ -378,7 +399,8 @@ int explore_surface(lua_State* state) {
   ObservedSurface observed(truth, e->settings.sensor, new_map);
   ExplorationRecord& record = e->record;
   record.utility = chosen.type;
-  Moments moments(e->settings.steps);
+  record.cut = cut_height(*scene, e->start);
+  Moments moments(e->settings.steps, record.cut.value_or(HUGE_VAL));
   e->result = explore(e->settings, e->start, truth, observed, *utility, *e->map,
                       [&](const EpisodeMoment& moment) { moments.look(moment.step + 1, *e->map); });
   observe_truly(e->result, e->settings, truth, new_map);

@@ -12,7 +12,6 @@ M.DECLARATION = { name = "exploration", type = "table",
   summary = "in place of the first flight: nothing is known before it", table = {
     { name = "images", type = "integer", default = 0, minimum = 0, maximum = 100000,
       summary = "depth images at most; 0: no exploration" },
-    { name = "utility", type = "text", default = "learned", summary = "how useful a view is" },
     { name = "budget", type = "number", unit = "s", above = 0,
       summary = "of its flight; absent: what the tour leaves of one battery" },
     { name = "range", type = "number", unit = "m", default = 20, minimum = 1, maximum = 1000,
@@ -34,7 +33,6 @@ end
 -- What its options say, before anything is flown.
 function M.check(run)
   local o, e = run.options, run.options.exploration
-  run:expect_plugin("exploration.utility", "utility")
   if e.start_yaw_deg and not e.start then
     run:fail("exploration.start_yaw_deg", "is the heading at exploration.start: give both")
   end
@@ -90,7 +88,7 @@ function M.knowledge(run, surface, region, room, seconds)
   own.observations = true
   local body = 2 * math.max(table.unpack(o.body))
   local done = run:explore {
-    surface = surface, map = own, utility = e.utility, steps = e.images, budget = seconds,
+    surface = surface, map = own, utility = o.utility, steps = e.images, budget = seconds,
     camera = { width = WIDTH, height = HEIGHT, view_deg = VIEW_DEG, pitch_deg = PITCH_DEG },
     range = e.range, noise = o.noise, body = body, clear = e.clear, speed = e.speed,
     bounds = { room },

@@ -62,6 +62,8 @@ local DECLARATIONS = {
   { name = "flights", type = "tables", table = PATTERN,
     summary = "first flights, into one map; absent: one meander" },
   exploration.DECLARATION,
+  { name = "utility", type = "plugin", kind = "utility", default = "learned",
+    summary = "of an exploration: how useful a view is" },
   { name = "camera", type = "table", table = CAMERA, summary = "of all images" },
   { name = "noise", type = "table", summary = "of measured depth", table = {
     number("dropped", 0, "", "share of pixels without a measurement", { minimum = 0, maximum = 1 }),

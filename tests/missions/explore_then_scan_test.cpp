@@ -11,7 +11,7 @@ class ExploringThenScanning : public Scanning {
 local scan = require "mission.scan"
 return scan.of_scene {
   name = "hut", scene = "hut", resolution = 0.4, body = { 0.5, 0.5, 0.5 },
-  exploration = { images = 10, utility = "frontier", start = { 0, -11, 4 }, start_yaw_deg = 90 },
+  exploration = { images = 10, start = { 0, -11, 4 }, start_yaw_deg = 90 }, utility = "frontier",
   tour = { budget = 60, iterations = 20 }, closed_loop = "reported",
   surface = { spacing = 0.8, cell = 1, trim = 2 },
   candidates = { most = 30, step = 2.5, distance_apart = 2 },
@@ -51,7 +51,7 @@ TEST_F(ExploringThenScanning, WhatCannotBeIsSaid) {
   EXPECT_THAT(error(), HasSubstr("leave them out"));
   write_both("");
   for (const auto& [more, expected] : std::vector<std::pair<const char*, const char*>>{
-           {"exploration.images=0 --set exploration.utility=frontir", "did you mean 'frontier'?"},
+           {"exploration.images=0 --set utility=frontir", "did you mean 'frontier'?"},
            {"exploration.images=0", "set exploration.images"},
            {"exploration.images=1", "2 at least"}}) {
     EXPECT_EQ(run(std::string("--set ") + more, "both.lua"), 2) << more;

@@ -53,8 +53,10 @@ Samples read_all(const std::vector<std::filesystem::path>& files, const GridShap
 }
 
 NetworkShape shape_of(const Parameters& p) {
+  const Parameters& grid = p.table("grid");
   NetworkShape shape;
-  shape.grid = fit_shape(p);
+  shape.grid = {static_cast<int>(grid.integer("across")), static_cast<int>(grid.integer("ahead")),
+                static_cast<int>(grid.integer("up")), static_cast<int>(grid.integer("levels"))};
   shape.blocks = static_cast<int>(p.integer("blocks"));
   shape.units = static_cast<int>(p.integer("units"));
   shape.growth = static_cast<int>(p.integer("growth"));
@@ -65,12 +67,23 @@ NetworkShape shape_of(const Parameters& p) {
 }
 
 // What the network says of samples, normalised.
-std::vector<float> answers(const Samples& samples, const Model& model, int threads) {
+template <class GridOf>
+std::vector<float> answers_to(const Model& model, std::size_t count, int threads, GridOf grid_of) {
   const FoldedNetwork network(NetworkLayout(model.shape), model.state);
-  std::vector<float> values(samples.size());
-  parallel_for(samples.size(), threads,
-               [&](std::size_t k) { values[k] = network.answer(samples.grid(k)); });
-  return values;
+  std::vector<float> answers(count);
+  parallel_for(count, threads, [&](std::size_t k) { answers[k] = network.answer(grid_of(k)); });
+  return answers;
+}
+
+double mean_squared_error(const Model& model, std::span<const float> answers,
+                          std::span<const float> targets) {
+  double sum = 0;
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    const double error =
+        static_cast<double>(answers[k]) - model.answer_of(static_cast<double>(targets[k]));
+    sum += error * error;
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(answers.size(), 1));
 }
 
 // Says which samples these are without holding them.
@@ -108,17 +121,11 @@ struct Judged {
 };
 
 Judged judge(const Samples& samples, const Model& model, int threads) {
-  const std::vector<float> values = answers(samples, model, threads);
-  std::vector<float> targets(values.size());
-  Judged judged;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    targets[k] = samples.target(k);
-    const double error =
-        static_cast<double>(values[k]) - model.answer_of(static_cast<double>(targets[k]));
-    judged.loss += error * error / static_cast<double>(values.size());
-  }
-  judged.rho = rank_correlation(values, targets);
-  return judged;
+  const std::vector<float> answers = answers_to(model, samples.size(), threads,
+                                                [&](std::size_t k) { return samples.grid(k); });
+  std::vector<float> targets(samples.size());
+  for (std::size_t k = 0; k < targets.size(); ++k) targets[k] = samples.target(k);
+  return {mean_squared_error(model, answers, targets), rank_correlation(answers, targets)};
 }
 
 class Training {
@@ -136,7 +143,7 @@ class Training {
   const FitRequest& request_;
   NetworkShape shape_;
   NetworkLayout layout_;
-  int batch_, epochs_, patience_;
+  int batch_, epochs_, until_, patience_;
   double rate_, dropout_, regularisation_;
   bool mirror_, cosine_, root_;
   std::string from_;  // a model to begin with
@@ -154,6 +161,7 @@ Training::Training(const Parameters& p, const FitRequest& request)
       layout_(shape_),
       batch_(static_cast<int>(p.integer("batch"))),
       epochs_(static_cast<int>(p.integer("epochs"))),
+      until_(static_cast<int>(p.has("until") ? p.integer("until") : epochs_)),
       patience_(static_cast<int>(p.integer("patience"))),
       rate_(p.number("rate")),
       dropout_(p.number("dropout")),
@@ -167,7 +175,8 @@ Training::Training(const Parameters& p, const FitRequest& request)
   validation_ = read_all(request.validation, shape_.grid, mapping);
   require_apart(request, training_, validation_);
   asked_.set("seed", static_cast<std::int64_t>(request.seed));
-  for (const auto& [key, value] : p.value().as_map()) asked_.set(key, value);
+  for (const auto& [key, value] : p.value().as_map())
+    if (key != "until") asked_.set(key, value);
   asked_.set("training samples", digest_of(training_));
   asked_.set("validation samples", digest_of(validation_));
   // Evenly over all of them.
@@ -241,7 +250,8 @@ void Training::resume() {
   first_ = model_.progress.at("epoch").as_integer() + 1;
   best_epoch_ = model_.progress.at("best_epoch").as_integer();
   best_.loss = model_.progress.at("best_loss").as_number();
-  best_.rho = model_.progress.at("best_rho").as_number();
+  const Value& rho = model_.progress.at("best_rho");
+  best_.rho = rho.is_null() ? std::nan("") : rho.as_number();
   seconds_ = model_.progress.at("seconds").as_number();
 }
 
@@ -300,7 +310,7 @@ Value Training::run() {
   std::snprintf(line, sizeof line, "%zu samples of training, %zu of validation, %zu parameters",
                 training_.size(), validation_.size(), layout_.parameters);
   request_.log(line);
-  for (std::int64_t number = first_; number <= epochs_; ++number) {
+  for (std::int64_t number = first_; number <= std::min(epochs_, until_); ++number) {
     if (number - 1 - best_epoch_ >= patience_ && best_epoch_ > 0) {
       request_.log("stopped: no better for " + std::to_string(patience_) + " epochs");
       break;
@@ -341,7 +351,7 @@ Value Training::run() {
     progress.set("epoch", number);
     progress.set("best_epoch", best_epoch_);
     progress.set("best_loss", best_.loss);
-    progress.set("best_rho", std::isfinite(best_.rho) ? best_.rho : 0.0);
+    progress.set("best_rho", std::isfinite(best_.rho) ? Value(best_.rho) : Value());
     progress.set("seconds", seconds_);
     progress.set("asked", asked_);
     write_model(model_, request_.checkpoint);
@@ -349,7 +359,7 @@ Value Training::run() {
   Value figures = Value::map();
   figures.set("epoch", best_epoch_);
   figures.set("validation_loss", best_.loss);
-  figures.set("validation_rho", std::isfinite(best_.rho) ? best_.rho : 0.0);
+  figures.set("validation_rho", std::isfinite(best_.rho) ? Value(best_.rho) : Value());
   figures.set("seconds", seconds_);
   return figures;
 }
@@ -371,6 +381,8 @@ ParameterTable fit_parameters() {
       .integer("hidden2", 32, "N_h2", between(8, 1024))
       .integer("batch", 128, "samples of a step", between(8, 4096))
       .integer("epochs", 30, "passes over the samples", between(1, 100000))
+      .optional_integer("until", "the last epoch of this run, before the schedule's end",
+                        between(1, 100000))
       .integer("patience", 10, "epochs without a better validation, then it stops",
                between(1, 100000))
       .number("rate", 1e-4, "", "of Adam", above(0))
@@ -385,18 +397,13 @@ ParameterTable fit_parameters() {
       .integer("validation_samples", 20000, "at most, evenly over all", between(2, 10000000));
 }
 
-GridShape fit_shape(const Parameters& parameters) {
-  const Parameters& grid = parameters.table("grid");
-  return {static_cast<int>(grid.integer("across")), static_cast<int>(grid.integer("ahead")),
-          static_cast<int>(grid.integer("up")), static_cast<int>(grid.integer("levels"))};
-}
+GridShape fit_shape(const Parameters& parameters) { return shape_of(parameters).grid; }
 
 Value fit(const Parameters& parameters, const FitRequest& request) {
   return Training(parameters, request).run();
 }
 
-std::vector<float> predict(const std::filesystem::path& path, const SampleSet& samples,
-                           int threads) {
+Prediction predict(const std::filesystem::path& path, const SampleSet& samples, int threads) {
   const Model model = read_model(path);
   if (!(samples.shape == model.shape.grid))
     throw InputError("the samples hold grids of another shape than the model '" + path.string() +
@@ -404,26 +411,13 @@ std::vector<float> predict(const std::filesystem::path& path, const SampleSet& s
   const std::string difference = mapping_difference(samples.mapping, model.mapping);
   if (!difference.empty())
     throw InputError("the samples do not fit the model '" + path.string() + "': " + difference);
-  const FoldedNetwork network(NetworkLayout(model.shape), model.state);
-  std::vector<float> values(samples.size());
-  parallel_for(samples.size(), threads, [&](std::size_t k) {
-    values[k] = static_cast<float>(model.target_of(
-        static_cast<double>(network.answer(samples.grids.data() + k * samples.shape.size()))));
-  });
-  return values;
-}
-
-double loss_of(const std::filesystem::path& path, std::span<const float> predicted,
-               std::span<const float> targets) {
-  if (predicted.size() != targets.size()) throw Error("loss: sizes differ");
-  const Model model = read_model(path);
-  double sum = 0;
-  for (std::size_t k = 0; k < targets.size(); ++k) {
-    const double error = model.answer_of(static_cast<double>(predicted[k])) -
-                         model.answer_of(static_cast<double>(targets[k]));
-    sum += error * error;
-  }
-  return sum / static_cast<double>(std::max<std::size_t>(targets.size(), 1));
+  const std::vector<float> answers =
+      answers_to(model, samples.size(), threads,
+                 [&](std::size_t k) { return samples.grids.data() + k * samples.shape.size(); });
+  Prediction predicted{{}, mean_squared_error(model, answers, samples.targets)};
+  for (const float answer : answers)
+    predicted.values.push_back(static_cast<float>(model.target_of(static_cast<double>(answer))));
+  return predicted;
 }
 
 }  // namespace lapwing::learned

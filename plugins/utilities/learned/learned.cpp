@@ -86,7 +86,7 @@ class Learned final : public ViewUtility {
   }
   static std::span<const Extension> extensions() {
     static const Trainable trainable{&learned::fit_parameters, &learned::fit_shape, &learned::fit,
-                                     &learned::predict, &learned::loss_of};
+                                     &learned::predict};
     static const Extension all[] = {{kTrainable, &trainable}};
     return all;
   }

@@ -9,9 +9,16 @@
 
 namespace lapwing::learned {
 
+namespace {
+
+constexpr int kMostBlocks = 5, kMostUnits = 16, kMostWidth = 1024;
+
+}  // namespace
+
 void require_sense(const NetworkShape& shape) {
   lapwing::require_sense(shape.grid);
-  if (shape.blocks < 1 || shape.blocks > 5 || shape.units < 1 || shape.units > 16)
+  if (shape.blocks < 1 || shape.blocks > kMostBlocks || shape.units < 1 ||
+      shape.units > kMostUnits)
     throw InputError("a network of " + std::to_string(shape.blocks) + " blocks of " +
                      std::to_string(shape.units) + " units: expected 1 to 5 and 1 to 16");
   for (const int edge : {shape.grid.across, shape.grid.ahead, shape.grid.up})
@@ -19,7 +26,7 @@ void require_sense(const NetworkShape& shape) {
       throw InputError("an edge of " + std::to_string(edge) + " points cannot be halved " +
                        std::to_string(shape.blocks) + " times");
   for (const int width : {shape.growth, shape.hidden1, shape.hidden2})
-    if (width < kLanes || width > 1024 || width % kLanes != 0)
+    if (width < kLanes || width > kMostWidth || width % kLanes != 0)
       throw InputError("growth and hidden layers must be multiples of 8 up to 1024, not " +
                        std::to_string(width));
 }
@@ -40,15 +47,11 @@ NetworkShape network_shape_from(const Value& value) {
   Fields fields(value, "network", errors);
   NetworkShape shape;
   const Value grid = fields.opaque("grid");
-  // Within int first: what is beyond it is refused below.
-  const auto read = [&](const char* key) {
-    return static_cast<int>(std::clamp<std::int64_t>(fields.integer(key), 0, 1 << 20));
-  };
-  shape.blocks = read("blocks");
-  shape.units = read("units");
-  shape.growth = read("growth");
-  shape.hidden1 = read("hidden1");
-  shape.hidden2 = read("hidden2");
+  shape.blocks = fields.integer("blocks", 1, kMostBlocks);
+  shape.units = fields.integer("units", 1, kMostUnits);
+  shape.growth = fields.integer("growth", kLanes, kMostWidth);
+  shape.hidden1 = fields.integer("hidden1", kLanes, kMostWidth);
+  shape.hidden2 = fields.integer("hidden2", kLanes, kMostWidth);
   fields.finish();
   errors.throw_if_any();
   shape.grid = grid_shape_from(grid);
