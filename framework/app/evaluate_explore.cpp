@@ -64,9 +64,9 @@ bool of_an_evaluation(const Value& there) {
   return there.is_map() && there.find("steps") && there.find("lookahead");
 }
 
-// Makes the folder ready: settings.json says what the episodes in it are. Nothing is taken away
-// from a folder that is not an evaluation's.
-void claim_folder(const ExploreEvaluation& request, Value stated) {
+// Whether the folder may be used, and what its settings.json will say. Nothing is taken away from a
+// folder that is not an evaluation's.
+Value settings_for(const ExploreEvaluation& request, Value stated) {
   const fs::path settings = request.folder / "settings.json";
   const fs::path episodes = request.folder / "episodes";
   if (fs::exists(episodes) && !fs::is_empty(episodes)) {
@@ -95,7 +95,8 @@ void claim_folder(const ExploreEvaluation& request, Value stated) {
         throw InputError("'" + (request.folder / name).string() + "' is not of an evaluation of " +
                          "explorations: choose another folder with -o");
   }
-  write_file_atomically(settings, to_json(stated) + "\n");
+  require_writable(settings);
+  return stated;
 }
 
 // What is compared start by start was flown from the same starts, in the same worlds, by the same
@@ -113,7 +114,7 @@ void require_same_starts(const ExploreEvaluation& request, const Value& stated,
   const Value there = from_json(read_file(settings), settings.string());
   const auto part = [&](const Value& of) {
     Value kept = Value::map();
-    for (const char* key : {"program", "steps", "seed", "moves", "up"})
+    for (const char* key : {"program", "steps", "seed", "moves", "mapping", "up"})
       if (const Value* value = of.find(key)) kept.set(key, *value);
     Value& files = kept.set("files", Value::map());
     if (const Value* sums = of.find("files"))
@@ -154,6 +155,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   setup.episode.lookahead = request.lookahead;
+  const Value mapping = setup.set_mapping(request.mapping);
   const Value moves = setup.set_moves(request.moves);
   setup.episode.cancellation = &interruption.token();
   if (request.sigma > 0 || request.dropped > 0)
@@ -180,10 +182,11 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   stated.set("lookahead", request.lookahead);
   stated.set("parameters", parameters);
   stated.set("moves", moves);
+  stated.set("mapping", mapping);
   stated.set("up", request.up);
-  stated.set("files", checksums_of(names, utilities, parameters, registry));
+  stated.set("files", checksums_of(names, utilities, parameters, registry, invocation));
   if (!request.against.empty()) require_same_starts(request, stated, names, utilities);
-  claim_folder(request, std::move(stated));
+  const Value settings = settings_for(request, std::move(stated));
 
   for (const WorldName& name : names) {
     std::vector<Trial> trials;
@@ -196,6 +199,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     if (trials.empty()) continue;
     const World world = load_world(name, request.up, registry, invocation);
     const GroundTruth truth = setup.truth_of(world);
+    write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
     std::atomic<std::size_t> done{0};
     parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
       if (interruption.token().cancelled()) return;
@@ -208,11 +212,22 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     });
     if (interruption.token().cancelled()) throw Cancelled();
   }
+  write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
   std::vector<std::string> worlds;
   for (const WorldName& name : names) worlds.push_back(name.text());
-  const std::string table = write_exploration_figures(
-      {request.folder, request.against, worlds, utilities, request.episodes, request.steps});
-  if (!invocation.quiet) std::cout << table << std::flush;
+  const ExplorationTables tables =
+      write_exploration_figures({request.folder, request.against, settings, worlds, utilities,
+                                 request.episodes, request.steps});
+  const std::string report = (request.folder / "report.html").string();
+  if (invocation.json) {
+    Value object = Value::map();
+    object.set("status", "ok");
+    object.set("report", report);
+    object.set("rows", tables.rows);
+    print_json(object);
+  } else if (!invocation.quiet) {
+    std::cout << tables.text << "\nreport: " << report << std::endl;
+  }
   return ExitStatus::done;
 }
 

@@ -9,6 +9,7 @@ struct ExploreEvaluation {
   std::vector<std::string> worlds;     // "downtown:101-104", "street", files
   std::vector<std::string> utilities;  // empty: all that are shipped
   std::vector<std::string> moves;      // "clear=2": ExplorationSetup::set_moves
+  std::vector<std::string> mapping;    // "range=30": likewise set_mapping
   std::string up;                      // of mesh files, as `load_world` takes it
   std::int64_t episodes = 10;          // of each world, with the same starts for every utility
   int steps = 200, lookahead = 1;
@@ -16,7 +17,7 @@ struct ExploreEvaluation {
   double stereo = 0;              // m between a pair of cameras; 0: a depth camera
   std::filesystem::path folder = "out/evaluate_explore";
   std::filesystem::path against;  // another evaluation's folder, from the same starts; or empty
-  bool resume = false;  // keep the episodes that are there
+  bool resume = false;            // keep the episodes that are there
 };
 
 // The invocation's overrides are parameters of utilities, as "learned.blank=true".

@@ -28,24 +28,71 @@ constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365,
                                2.110,  2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
                                2.060,  2.056, 2.052, 2.048, 2.045, 2.042};
 
-// Mean and sample standard deviation; not a number where there are too few values.
-struct Mean {
-  explicit Mean(const std::vector<double>& values) : count(values.size()) {
-    if (values.empty()) return;
-    mean = 0;
-    for (const double v : values) mean += v / static_cast<double>(count);
+// The 97.5 % quantile of Student's t. Beyond the table by the first terms of its expansion about
+// the normal distribution's (Abramowitz and Stegun 26.7.5), right to 1e-4 there.
+double student(std::size_t freedom) {
+  if (freedom <= std::size(kStudent)) return kStudent[freedom - 1];
+  constexpr double z = 1.959964;
+  const double n = static_cast<double>(freedom);
+  return z + (z * z * z + z) / (4 * n) +
+         (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * n * n);
+}
+
+// Values of episodes, in groups: those of one world. What there are too few values for is not a
+// number.
+class Sample {
+ public:
+  void add(double value) {
+    if (groups_.empty()) groups_.emplace_back();
+    groups_.back().push_back(value);
+  }
+  // As groups of their own.
+  void join(const Sample& other) {
+    for (const auto& group : other.groups_)
+      if (!group.empty()) groups_.push_back(group);
+  }
+  std::size_t count() const {
+    std::size_t sum = 0;
+    for (const auto& group : groups_) sum += group.size();
+    return sum;
+  }
+  double mean() const {
+    double sum = 0;
+    for (const auto& group : groups_)
+      for (const double value : group) sum += value;
+    return count() > 0 ? sum / static_cast<double>(count()) : std::nan("");
+  }
+  // The sample's standard deviation, whatever the group.
+  double deviation() const {
+    if (count() < 2) return count() == 1 ? 0 : std::nan("");
     double squares = 0;
-    for (const double v : values) squares += (v - mean) * (v - mean);
-    deviation = count > 1 ? std::sqrt(squares / static_cast<double>(count - 1)) : 0;
+    for (const auto& group : groups_) squares += squares_about(group, mean());
+    return std::sqrt(squares / static_cast<double>(count() - 1));
   }
-  // Half the width of the 95 % interval of the mean; beyond 31 values by the normal distribution.
+  // Half the width of the 95 % interval of the mean. Groups are strata: what lies between their
+  // means is no chance.
   double interval() const {
-    if (count < 2) return std::nan("");
-    const double t = count - 2 < std::size(kStudent) ? kStudent[count - 2] : 1.96;
-    return t * deviation / std::sqrt(static_cast<double>(count));
+    double variance = 0;
+    std::size_t freedom = 0;
+    for (const auto& group : groups_) {
+      if (group.size() < 2) return std::nan("");
+      double own = 0;
+      for (const double value : group) own += value / static_cast<double>(group.size());
+      const double size = static_cast<double>(group.size());
+      const double share = size / static_cast<double>(count());
+      variance += share * share * squares_about(group, own) / (size - 1) / size;
+      freedom += group.size() - 1;
+    }
+    return freedom > 0 ? student(freedom) * std::sqrt(variance) : std::nan("");
   }
-  std::size_t count = 0;
-  double mean = std::nan(""), deviation = std::nan("");
+
+ private:
+  static double squares_about(const std::vector<double>& group, double middle) {
+    double sum = 0;
+    for (const double value : group) sum += (value - middle) * (value - middle);
+    return sum;
+  }
+  std::vector<std::vector<double>> groups_;
 };
 
 // An episode as its files have it.
@@ -93,19 +140,16 @@ Flown flown(const Trial& trial, const fs::path& folder, int steps) {
 // What one row is made of: the episodes of a utility in a world, or in all of them.
 struct Row {
   std::string world, utility;
-  std::vector<double> efficiency, relative, below, against, length, seconds;  // by episode
-  std::map<std::string, int> ends;  // before all images, by kind
+  Sample efficiency, relative, below, against, length, seconds;  // by episode
+  std::map<std::string, int> ends;                               // before all images, by kind
 
   void add(const Row& other) {
-    const auto join = [](std::vector<double>& all, const std::vector<double>& more) {
-      all.insert(all.end(), more.begin(), more.end());
-    };
-    join(efficiency, other.efficiency);
-    join(relative, other.relative);
-    join(below, other.below);
-    join(against, other.against);
-    join(length, other.length);
-    join(seconds, other.seconds);
+    efficiency.join(other.efficiency);
+    relative.join(other.relative);
+    below.join(other.below);
+    against.join(other.against);
+    length.join(other.length);
+    seconds.join(other.seconds);
     for (const auto& [end, times] : other.ends) ends[end] += times;
   }
   int ended_early() const {
@@ -125,15 +169,23 @@ struct Row {
     const int count = ended_early();
     std::string text = std::to_string(count) + (count > 0 ? ": " + ends_with(", ") : "");
     // Where the oracle, or the other flight, saw nothing there is no ratio.
-    if (oracle && relative.size() < efficiency.size())
-      text += "; relative: " + std::to_string(relative.size()) + " episodes";
-    if (other && against.size() < efficiency.size())
-      text += "; against: " + std::to_string(against.size()) + " episodes";
+    if (oracle && relative.count() < efficiency.count())
+      text += "; relative: " + std::to_string(relative.count()) + " episodes";
+    if (other && against.count() < efficiency.count())
+      text += "; against: " + std::to_string(against.count()) + " episodes";
     return text;
   }
 };
 
 using Episodes = std::vector<Flown>;
+
+// Of comma-separated values (RFC 4180).
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
 
 struct Figures {
   const ExplorationFigures& asked;
@@ -162,13 +214,12 @@ struct Figures {
   Series curve_of(const std::string& world, const std::string& utility, const Episodes& all) {
     Series series{utility, {0}, {0}};
     for (int t = 0; t < asked.steps; ++t) {
-      std::vector<double> at;
-      for (const Flown& episode : all) at.push_back(episode.curve[static_cast<std::size_t>(t)]);
-      const Mean mean(at);
-      curves += world + "," + utility + "," + std::to_string(t + 1) + "," +
-                plain_number(mean.mean) + "," + plain_number(mean.deviation) + "\n";
+      Sample at;
+      for (const Flown& episode : all) at.add(episode.curve[static_cast<std::size_t>(t)]);
+      curves += cell(world) + "," + cell(utility) + "," + std::to_string(t + 1) + "," +
+                plain_number(at.mean()) + "," + plain_number(at.deviation()) + "\n";
       series.x.push_back(t + 1);
-      series.y.push_back(mean.mean);
+      series.y.push_back(at.mean());
     }
     return series;
   }
@@ -187,15 +238,15 @@ struct Figures {
       Row row{world, utility, {}, {}, {}, {}, {}, {}, {}};
       for (std::size_t e = 0; e < all.size(); ++e) {
         const double efficiency = all[e].efficiency();
-        row.efficiency.push_back(efficiency);
-        row.length.push_back(all[e].length);
-        if (std::isfinite(all[e].seconds)) row.seconds.push_back(all[e].seconds);
+        row.efficiency.add(efficiency);
+        row.length.add(all[e].length);
+        if (std::isfinite(all[e].seconds)) row.seconds.add(all[e].seconds);
         if (!all[e].end.empty()) ++row.ends[all[e].end];
         if (!other.empty() && other[e].efficiency() > 0)
-          row.against.push_back(efficiency / other[e].efficiency());
+          row.against.add(efficiency / other[e].efficiency());
         if (oracle.empty() || !(oracle[e] > 0)) continue;
-        row.relative.push_back(efficiency / oracle[e]);
-        if (!learned.empty()) row.below.push_back((learned[e] - efficiency) / oracle[e]);
+        row.relative.add(efficiency / oracle[e]);
+        if (!learned.empty()) row.below.add((learned[e] - efficiency) / oracle[e]);
       }
       rows.push_back(std::move(row));
       chart.series.push_back(curve_of(world, utility, all));
@@ -213,28 +264,60 @@ struct Figures {
   }
 };
 
-// Empty for what there is not.
-std::string number(double value) {
-  return std::isfinite(value) ? plain_number(value) : "";
+// A number that is not finite is absent: an empty cell, a null.
+struct Figure {
+  const char* name;
+  double (*value)(const Row&);
+};
+
+constexpr Figure kFigures[] = {
+    {"efficiency", [](const Row& row) { return row.efficiency.mean(); }},
+    {"efficiency_deviation", [](const Row& row) { return row.efficiency.deviation(); }},
+    {"relative", [](const Row& row) { return row.relative.mean(); }},
+    {"relative_deviation", [](const Row& row) { return row.relative.deviation(); }},
+    {"relative_interval", [](const Row& row) { return row.relative.interval(); }},
+    {"below_learned", [](const Row& row) { return row.below.mean(); }},
+    {"below_learned_interval", [](const Row& row) { return row.below.interval(); }},
+    {"against", [](const Row& row) { return row.against.mean(); }},
+    {"against_deviation", [](const Row& row) { return row.against.deviation(); }},
+    {"against_interval", [](const Row& row) { return row.against.interval(); }},
+    {"length", [](const Row& row) { return row.length.mean(); }}};
+
+Value rows_value(const std::vector<Row>& rows) {
+  Value list = Value::list();
+  for (const Row& row : rows) {
+    Value entry = Value::map();
+    entry.set("world", row.world);
+    entry.set("utility", row.utility);
+    entry.set("episodes", static_cast<std::int64_t>(row.efficiency.count()));
+    entry.set("compared", static_cast<std::int64_t>(row.relative.count()));
+    entry.set("ended_early", row.ended_early());
+    entry.set("ends", row.ends_with("; "));
+    for (const Figure& figure : kFigures) {
+      const double value = figure.value(row);
+      entry.set(figure.name, std::isfinite(value) ? Value(value) : Value());
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
 }
 
-std::string table_file(const std::vector<Row>& rows) {
-  std::string table =
-      "world,utility,episodes,efficiency,efficiency_deviation,relative,relative_deviation,"
-      "relative_interval,below_learned,below_learned_interval,length,ended_early,ends,against,"
-      "against_deviation,against_interval,compared\n";
-  for (const Row& row : rows) {
-    const Mean efficiency(row.efficiency), relative(row.relative), below(row.below),
-        against(row.against);
-    table += row.world + "," + row.utility + "," + std::to_string(row.efficiency.size());
-    for (const double value :
-         {efficiency.mean, efficiency.deviation, relative.mean, relative.deviation,
-          relative.interval(), below.mean, below.interval(), Mean(row.length).mean})
-      table += "," + number(value);
-    table += "," + std::to_string(row.ended_early()) + "," + row.ends_with("; ");
-    for (const double value : {against.mean, against.deviation, against.interval()})
-      table += "," + number(value);
-    table += "," + std::to_string(row.relative.size()) + "\n";
+// The same as a file of cells, with the same names.
+std::string table_file(const Value& rows) {
+  const auto text_of = [](const Value& value) -> std::string {
+    if (value.is_null()) return "";
+    if (value.is_text()) return cell(value.as_text());
+    return plain_number(value.as_number());
+  };
+  std::string table;
+  for (const Value& row : rows.as_list()) {
+    std::string names, cells;
+    for (const auto& [name, value] : row.as_map()) {
+      names += (names.empty() ? "" : ",") + name;
+      cells += (cells.empty() ? "" : ",") + text_of(value);
+    }
+    if (table.empty()) table = names + "\n";
+    table += cells + "\n";
   }
   return table;
 }
@@ -242,8 +325,8 @@ std::string table_file(const std::vector<Row>& rows) {
 std::string seconds_file(const std::vector<Row>& rows) {
   std::string table = "world,utility,episodes,seconds_per_step\n";  // table 5.3
   for (const Row& row : rows)
-    table += row.world + "," + row.utility + "," + std::to_string(row.seconds.size()) + "," +
-             number(Mean(row.seconds).mean) + "\n";
+    table += cell(row.world) + "," + cell(row.utility) + "," + std::to_string(row.seconds.count()) +
+             "," + (row.seconds.count() > 0 ? plain_number(row.seconds.mean()) : "") + "\n";
   return table;
 }
 
@@ -258,20 +341,20 @@ struct Column {
 // What the evaluated utilities allow: no ratio to an oracle that did not fly.
 std::vector<Column> columns_for(bool relative, bool below, bool against) {
   std::vector<Column> columns = {
-      {"efficiency", "", 0, [](const Row& row) { return Mean(row.efficiency).mean; }},
-      {"deviation", "", 0, [](const Row& row) { return Mean(row.efficiency).deviation; }}};
+      {"efficiency", "", 0, [](const Row& row) { return row.efficiency.mean(); }},
+      {"deviation", "", 0, [](const Row& row) { return row.efficiency.deviation(); }}};
   const auto add = [&](bool there, std::initializer_list<Column> more) {
     if (there) columns.insert(columns.end(), more);
   };
-  add(relative, {{"relative", "", 3, [](const Row& row) { return Mean(row.relative).mean; }},
-                 {"deviation", "", 3, [](const Row& row) { return Mean(row.relative).deviation; }},
-                 {"95 % +-", "", 3, [](const Row& row) { return Mean(row.relative).interval(); }}});
-  add(below, {{"below learned", "", 3, [](const Row& row) { return Mean(row.below).mean; }},
-              {"95 % +-", "", 3, [](const Row& row) { return Mean(row.below).interval(); }}});
-  add(against, {{"against", "", 3, [](const Row& row) { return Mean(row.against).mean; }},
-                {"deviation", "", 3, [](const Row& row) { return Mean(row.against).deviation; }},
-                {"95 % +-", "", 3, [](const Row& row) { return Mean(row.against).interval(); }}});
-  columns.push_back({"flown", "m", 0, [](const Row& row) { return Mean(row.length).mean; }});
+  add(relative, {{"relative", "", 3, [](const Row& row) { return row.relative.mean(); }},
+                 {"deviation", "", 3, [](const Row& row) { return row.relative.deviation(); }},
+                 {"95 % +-", "", 3, [](const Row& row) { return row.relative.interval(); }}});
+  add(below, {{"below learned", "", 3, [](const Row& row) { return row.below.mean(); }},
+              {"95 % +-", "", 3, [](const Row& row) { return row.below.interval(); }}});
+  add(against, {{"against", "", 3, [](const Row& row) { return row.against.mean(); }},
+                {"deviation", "", 3, [](const Row& row) { return row.against.deviation(); }},
+                {"95 % +-", "", 3, [](const Row& row) { return row.against.interval(); }}});
+  columns.push_back({"flown", "m", 0, [](const Row& row) { return row.length.mean(); }});
   return columns;
 }
 
@@ -297,34 +380,67 @@ Table shown_table(const std::vector<Row>& rows, const std::vector<Column>& colum
 std::string in_columns(const std::vector<Row>& rows, std::vector<Column> columns,
                        const ExplorationFigures& asked, bool oracle) {
   // Wall-clock figures stand on the shell alone: no two runs agree on them.
-  columns.push_back({"step", "s", 3, [](const Row& row) { return Mean(row.seconds).mean; }});
-  std::string text;
-  char part[200];
-  const auto add = [&](const char* format, auto... values) {
-    std::snprintf(part, sizeof part, format, values...);
-    text += part;
+  columns.push_back({"step", "s", 3, [](const Row& row) { return row.seconds.mean(); }});
+  std::size_t world = 5, utility = 7;  // the names of these columns
+  for (const Row& row : rows) {
+    world = std::max(world, row.world.size());
+    utility = std::max(utility, row.utility.size());
+  }
+  const auto fixed = [](double value, int digits) {
+    char shown[400];  // of any double
+    std::snprintf(shown, sizeof shown, "%.*f", digits, value);
+    return std::string(shown);
   };
-  add("%-22s %-18s", "world", "utility");
+  const auto left = [](const std::string& text, std::size_t width) {
+    return text + std::string(width - std::min(width, text.size()), ' ');
+  };
+  const auto right = [](const std::string& text) {
+    constexpr std::size_t kWidth = 14;
+    return std::string(kWidth - std::min(kWidth, text.size()), ' ') + text;
+  };
+  std::string text = left("world", world) + " " + left("utility", utility);
   for (const Column& column : columns)
-    add(" %13s", (std::string(column.name) + (*column.unit ? ", " : "") + column.unit).c_str());
+    text += right(std::string(column.name) + (*column.unit ? ", " : "") + column.unit);
   text += "  ended early\n";
   for (const Row& row : rows) {
-    add("%-22s %-18s", row.world.c_str(), row.utility.c_str());
+    text += left(row.world, world) + " " + left(row.utility, utility);
     for (const Column& column : columns) {
       const double value = column.value(row);
-      if (std::isfinite(value))
-        add(" %13.*f", column.digits, value);
-      else
-        add(" %13s", "-");
+      text += right(std::isfinite(value) ? fixed(value, column.digits) : "-");
     }
     text += "  " + row.remarks(oracle, !asked.against.empty()) + "\n";
   }
   return text;
 }
 
+// What was asked, and what follows from it alone: no time of day, no wall clock.
+Facts settings_facts(const ExplorationFigures& asked) {
+  Facts facts;
+  const auto add = [&](const char* label, std::string value, const char* unit = "") {
+    facts.facts.push_back({label, std::move(value), unit});
+  };
+  const Value& settings = asked.settings;
+  const auto number_of = [&](const char* key) { return settings.at(key).as_number(); };
+  add("starts by seed", std::to_string(settings.at("seed").as_integer()));
+  if (number_of("sigma") > 0 || number_of("dropped") > 0) {
+    add("noise of the depth", plain_number(number_of("sigma")), "m");
+    add("pixels dropped", plain_number(100 * number_of("dropped")), "%");
+  }
+  if (number_of("stereo") > 0) add("stereo, apart", plain_number(number_of("stereo")), "m");
+  if (settings.at("lookahead").as_integer() > 1)
+    add("looking ahead", std::to_string(settings.at("lookahead").as_integer()), "views");
+  for (const char* key : {"moves", "mapping", "parameters"}) {
+    std::string text;
+    for (const auto& [name, value] : settings.at(key).as_map())
+      text += (text.empty() ? "" : ", ") + name + " " + to_json(value, -1);
+    if (!text.empty()) add(key, text);
+  }
+  return facts;
+}
+
 }  // namespace
 
-std::string write_exploration_figures(const ExplorationFigures& asked) {
+ExplorationTables write_exploration_figures(const ExplorationFigures& asked) {
   Figures figures{asked, {}};
   for (const std::string& world : asked.worlds) figures.add_world(world);
   if (asked.worlds.size() > 1) figures.add_all_worlds();
@@ -335,13 +451,15 @@ std::string write_exploration_figures(const ExplorationFigures& asked) {
   report.title = "Exploration";
   report.subtitle = std::to_string(asked.episodes) + " episodes of " + std::to_string(asked.steps) +
                     " images in each world";
-  report.sections.push_back({"Table", {shown_table(figures.rows, columns, asked, oracle)}});
+  report.sections.push_back(
+      {"Table", {shown_table(figures.rows, columns, asked, oracle), settings_facts(asked)}});
   for (Section& section : figures.charts) report.sections.push_back(std::move(section));
-  write_file_atomically(asked.folder / "table.csv", table_file(figures.rows));
+  Value rows = rows_value(figures.rows);
+  write_file_atomically(asked.folder / "table.csv", table_file(rows));
   write_file_atomically(asked.folder / "seconds.csv", seconds_file(figures.rows));
   write_file_atomically(asked.folder / "curves.csv", figures.curves);
   write_file_atomically(asked.folder / "report.html", render_html(report));
-  return in_columns(figures.rows, columns, asked, oracle);
+  return {in_columns(figures.rows, columns, asked, oracle), std::move(rows)};
 }
 
 }  // namespace lapwing

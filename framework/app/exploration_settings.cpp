@@ -9,13 +9,18 @@ namespace lapwing {
 namespace fs = std::filesystem;
 
 Value checksums_of(const std::vector<WorldName>& worlds, const std::vector<std::string>& utilities,
-                   const Value& parameters, const Registry& registry) {
+                   const Value& parameters, const Registry& registry,
+                   const Invocation& invocation) {
   constexpr std::size_t kMost = std::size_t{4} << 30;
   Value files = Value::map();
   const auto keep = [&](const std::string& name, const fs::path& path) {
     if (fs::is_regular_file(path)) files.set(name, sha256(read_file(path, kMost)));
   };
-  for (const WorldName& world : worlds) keep(world.text(), world.file());
+  for (const WorldName& world : worlds)
+    if (world.is_mesh())
+      keep(world.text(), world.file());
+    else
+      files.set(world.text(), checksum(made_world(world, registry, invocation)));
   for (const std::string& utility : utilities) {
     keep(utility, fs::path(registry.find("utility", utility).library).replace_extension("model"));
     const Value* given = parameters.find(utility);

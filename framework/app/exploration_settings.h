@@ -5,10 +5,11 @@
 
 namespace lapwing {
 
-// SHA-256 of the files that an exploration depends on: by world, and by utility its model (a
-// parameter that names a file, else NAME.model beside its library). `parameters` are by utility.
+// SHA-256 of what an exploration depends on: by world of its mesh file, or of the surface that its
+// script makes; by utility of its model (a parameter that names a file, else NAME.model beside its
+// library). `parameters` are by utility. InputError for a script that fails.
 Value checksums_of(const std::vector<WorldName>& worlds, const std::vector<std::string>& utilities,
-                   const Value& parameters, const Registry& registry);
+                   const Value& parameters, const Registry& registry, const Invocation& invocation);
 
 // The first setting that differs, in words; empty where all agree. Of "files" only those that both
 // name: other worlds and utilities may join.

@@ -9,7 +9,8 @@
 #include "framework/app/command_options.h"
 #include "framework/config/overrides.h"
 #include "framework/config/shipped.h"
-#include "framework/mission/scene_script.h"
+#include "framework/core/checksum.h"
+#include "framework/core/units.h"
 
 namespace lapwing {
 namespace {
@@ -48,6 +49,11 @@ std::string WorldName::text() const {
   if (!path.has_extension()) return scene + " " + std::to_string(seed);
   if (path.extension() == ".lua") return path.filename().string() + " " + std::to_string(seed);
   return path.filename().string() + (inside_text.empty() ? "" : "@" + inside_text);
+}
+
+bool WorldName::is_mesh() const {
+  const fs::path file(scene);
+  return file.has_extension() && file.extension() != ".lua";
 }
 
 fs::path WorldName::file() const {
@@ -95,8 +101,12 @@ std::vector<WorldName> world_names(const std::string& given) {
     return {name};
   }
   const std::size_t colon = given.rfind(':');
-  if (colon == given.npos) return {WorldName{.scene = given}};
+  if (colon == given.npos || given.find('/', colon) != given.npos)  // one in a folder's name
+    return {WorldName{.scene = given}};
   const std::string name = given.substr(0, colon), seeds = given.substr(colon + 1);
+  if (WorldName{.scene = name}.is_mesh())
+    throw InputError("world '" + given +
+                     "': seeds are for scenes and scripts; a mesh file has none");
   const std::size_t dash = seeds.find('-');
   const std::uint64_t first = seed_of(seeds.substr(0, dash), given);
   const std::uint64_t last = dash == seeds.npos ? first : seed_of(seeds.substr(dash + 1), given);
@@ -110,28 +120,19 @@ std::vector<WorldName> world_names(const std::string& given) {
   return names;
 }
 
-namespace {
-
-bool is_mesh(const WorldName& name) {
-  const fs::path file(name.scene);
-  return file.has_extension() && file.extension() != ".lua";
-}
-
-}  // namespace
-
 void require_world(const WorldName& name, const std::string& up) {
   if (!up.empty()) up_axis(up);
-  if (!up.empty() && !is_mesh(name))
+  if (!up.empty() && !name.is_mesh())
     throw InputError("--up is for mesh files, and '" + name.scene + "' is none");
   if (fs::exists(name.file())) return;
-  if (is_mesh(name)) throw InputError("'" + name.file().string() + "' not found");
+  if (name.is_mesh()) throw InputError("'" + name.file().string() + "' not found");
   throw InputError("'" + name.scene + "' is no scene of scripts/scene and no file");
 }
 
 World load_world(const WorldName& name, const std::string& up, const Registry& registry,
                  const Invocation& invocation) {
   require_world(name, up);
-  if (is_mesh(name)) {
+  if (name.is_mesh()) {
     const fs::path file(name.scene);
     MeshFileOptions options;
     if (!up.empty()) options.up = up_axis(up);
@@ -144,7 +145,13 @@ World load_world(const WorldName& name, const std::string& up, const Registry& r
     return {name.text(), std::make_shared<MeshScene>(std::move(open.mesh), name.text()),
             open.region, std::nullopt};
   }
-  const fs::path script = name.file();
+  GeneratedScene made = made_world(name, registry, invocation);
+  return {name.text(), std::make_shared<MeshScene>(std::move(made.mesh), name.text()), made.region,
+          std::nullopt};
+}
+
+GeneratedScene made_world(const WorldName& name, const Registry& registry,
+                          const Invocation& invocation) {
   MissionSettings settings;
   settings.scripts = shipped_folder("scripts");
   settings.configs = shipped_folder("configs");
@@ -154,9 +161,19 @@ World load_world(const WorldName& name, const std::string& up, const Registry& r
   settings.limits.seconds = 600;
   Value options = Value::map();
   options.set("seed", static_cast<std::int64_t>(name.seed));
-  GeneratedScene made = generate_scene(script, options, settings);
-  return {name.text(), std::make_shared<MeshScene>(std::move(made.mesh), name.text()), made.region,
-          std::nullopt};
+  return generate_scene(name.file(), options, settings);
+}
+
+std::string checksum(const GeneratedScene& scene) {
+  std::string bytes;
+  const auto add = [&](const auto* first, std::size_t count) {
+    bytes.append(reinterpret_cast<const char*>(first), count * sizeof *first);
+  };
+  for (const Eigen::Vector3d& corner : {scene.region.min(), scene.region.max()})
+    add(corner.data(), 3);
+  for (const Eigen::Vector3d& vertex : scene.mesh.vertices) add(vertex.data(), 3);
+  for (const auto& triangle : scene.mesh.triangles) add(triangle.data(), 3);
+  return sha256(bytes);
 }
 
 GroundTruth ExplorationSetup::truth_of(const World& world) const {
@@ -164,21 +181,40 @@ GroundTruth ExplorationSetup::truth_of(const World& world) const {
 }
 
 ExplorationSetup::ExplorationSetup() : map(Value::map()) {
-  constexpr int kWidth = 160, kHeight = 120;
-  constexpr double kFocal = kWidth / 2.0;  // 90 degrees across
-  pitch = -10 * EIGEN_PI / 180;
-  episode.sensor.pinhole = {
-      kWidth, kHeight, kFocal, kFocal, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
-  map.set("resolution", 0.4);
-  map.set("hit", 0.9);
-  map.set("miss", 0.1);
-  map.set("maximum_range", episode.sensor.range);
   map.set("observations", true);
+  set_mapping({});
+}
+
+Value ExplorationSetup::set_mapping(const std::vector<std::string>& given) {
+  Value mapping = Value::map();
+  for (const std::string& text : given) apply_override(mapping, text, "--mapping");
+  const Parameters p = check(
+      ParameterTable()
+          .integer("width", 160, "pixels", between(1, 2000))
+          .integer("height", 120, "pixels", between(1, 2000))
+          .number("view_deg", 90, "deg", "angle across the image", between(1, 170))
+          .number("pitch_deg", -10, "deg", "of every view, positive up", between(-89, 89))
+          .number("range", EpisodeSettings().sensor.range, "m", "largest depth", between(0.1, 1000))
+          .number("resolution", 0.4, "m", "edge of a voxel", between(0.01, 10))
+          .number("hit", 0.9, "", "that a voxel with a measured point is occupied",
+                  between(0.501, 0.999))
+          .number("miss", 0.1, "", "that a voxel that a ray passed is occupied",
+                  between(0.001, 0.499)),
+      mapping, "mapping");
+  const auto width = static_cast<int>(p.integer("width")),
+             height = static_cast<int>(p.integer("height"));
+  const double focal = width / 2.0 / std::tan(radians(p.number("view_deg")) / 2);
+  episode.sensor.pinhole = {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
+  episode.sensor.range = p.number("range");
+  pitch = radians(p.number("pitch_deg"));
+  for (const char* key : {"resolution", "hit", "miss"}) map.set(key, p.number(key));
+  map.set("maximum_range", episode.sensor.range);
+  return p.value();
 }
 
 Value ExplorationSetup::set_moves(const std::vector<std::string>& given) {
   Value moves = Value::map();
-  for (const std::string& text : given) apply_override(moves, text);
+  for (const std::string& text : given) apply_override(moves, text, "--moves");
   const Parameters p =
       check(ParameterTable()
                 .number("step", episode.step, "m", "to a neighbour", above(0))

@@ -4,6 +4,7 @@
 #include "framework/app/command_line.h"
 #include "framework/explore/episode.h"
 #include "framework/geometry/mesh_file.h"
+#include "framework/mission/scene_script.h"
 
 namespace lapwing {
 
@@ -13,6 +14,7 @@ struct WorldName {
   std::optional<Eigen::Vector3d> inside = std::nullopt;  // of a mesh file that gets no floor
   std::string inside_text = {};                          // with blanks between
   std::string text() const;  // "downtown 3", "my.lua 1", "delft_block.obj", "mine.dae@1 2 3"
+  bool is_mesh() const;      // a mesh file; else a script makes it
   // The file that it is made of or by; of a shipped script that script.
   std::filesystem::path file() const;
 };
@@ -35,6 +37,11 @@ struct World {
 };
 // InputError where there is no such file or scene, or `up` does not fit it. Cheap.
 void require_world(const WorldName& name, const std::string& up);
+// What a script makes of its seed, and a checksum of its surface and region. InputError with the
+// script's line.
+GeneratedScene made_world(const WorldName& name, const Registry& registry,
+                          const Invocation& invocation);
+std::string checksum(const GeneratedScene& scene);
 // A mesh file gets a floor (explore/ground_truth.h, with_floor) unless a place inside is given.
 // `up` is the axis of a mesh file that points up, "x", "y" or "z"; empty: what the file says.
 World load_world(const WorldName& name, const std::string& up, const Registry& registry,
@@ -51,6 +58,9 @@ struct ExplorationSetup {
   // "clear=2": how the camera moves, by the names of the mission's `moves`; all of them come
   // back as a map. InputError for others and for what makes no sense.
   Value set_moves(const std::vector<std::string>& given);
+  // "resolution=0.2": camera and map that a learned utility is good for, by the mission's names;
+  // likewise.
+  Value set_mapping(const std::vector<std::string>& given);
   GroundTruth truth_of(const World& world) const;
   ObservedSurface::NewMap new_map(const Registry& registry) const;
 };

@@ -14,6 +14,9 @@ constexpr const char* kWorldHelp =
     "a scene of scripts/scene with its seeds, a mesh file, which gets a floor, or FILE@X,Y,Z: the "
     "space within a mesh that holds that place; repeatable";
 constexpr const char* kMovesHelp = "step, turn_deg, body or clear, as a mission's `moves`";
+constexpr const char* kMappingHelp =
+    "width, height, view_deg, pitch_deg or range of the camera, resolution, hit or miss of the "
+    "map, as a mission has them: a learned utility is good for one of these alone";
 
 std::uint64_t read_seed(const std::string& text) {
   std::uint64_t seed = 0;
@@ -79,19 +82,22 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
                         Command& command) {
   CLI::App* train = app.add_subcommand("train", "learned utilities: samples, training, judging");
   train->require_subcommand(1);
-  const auto add = [&](const char* name, const char* help, const char* target) {
+  const auto add = [&](const char* name, const char* help) {
     CLI::App* made = train->add_subcommand(name, help);
-    add_text(*made, "-o,--output", "PATH", target, [&](const std::string& path) {
-      request.target = path;
-    })->required();
     add_text(*made, "--utility", "NAME", "the utility that is trained; else learned",
              [&](const std::string& given) { request.utility = given; });
-    add_repeated(*made, "--set", "KEY=VALUE", invocation.overrides,
-                 "set one parameter of the network or its training");
     add_threads(*made, invocation, "threads to use; else one per core");
-    add_seed(*made, invocation.seed, "of all random numbers");
-    made->add_flag("--quiet", invocation.quiet, "no lines of progress");
     return made;
+  };
+  const auto add_making = [&](CLI::App& made, const char* target) {
+    add_text(made, "-o,--output", "PATH", target, [&](const std::string& path) {
+      request.target = path;
+    })->required();
+    add_repeated(made, "--set", "KEY=VALUE", invocation.overrides,
+                 "set one parameter of the network or its training");
+    add_seed(made, invocation.seed, "of all random numbers");
+    made.add_flag("--quiet", invocation.quiet, "no lines of progress");
+    made.add_flag("--resume", request.resume, "go on with what is there");
   };
   const auto add_samples = [&](CLI::App& made) {
     add_text(made, "samples", "DIR", "a folder of samples", [&](const std::string& path) {
@@ -99,7 +105,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
     })->required();
     add_json(made, invocation);
   };
-  CLI::App* dataset = add("dataset", "samples from episodes of the oracle", "a folder");
+  CLI::App* dataset = add("dataset", "samples from episodes of the oracle");
+  add_making(*dataset, "a folder");
   add_repeated(*dataset, "--world", "NAME[:FIRST-LAST]", request.worlds, kWorldHelp);
   add_text(*dataset, "--explorer", "NAME", "the utility that explores; else the oracle",
            [&](const std::string& given) { request.explorer = given; });
@@ -109,18 +116,21 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
            "the axis of mesh files that points up, in place of their own",
            [&](const std::string& axis) { request.up = axis; });
   add_repeated(*dataset, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
+  add_repeated(*dataset, "--mapping", "KEY=VALUE", request.mapping, kMappingHelp);
   add_count(*dataset, "--episodes", 1, 100'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*dataset, "--steps", 1, 100'000, "of each episode",
             [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
-  CLI::App* fit = add("fit", "train a model", "the model's file");
+  CLI::App* fit = add("fit", "train a model");
+  add_making(*fit, "the model's file");
   add_samples(*fit);
   add_text(*fit, "--validation", "DIR", "samples of other worlds or episodes",
            [&](const std::string& path) { request.validation = path; })
       ->required();
-  for (CLI::App* made : {dataset, fit})
-    made->add_flag("--resume", request.resume, "go on with what is there");
-  CLI::App* score = add("score", "rank correlation and loss of a model", "the model's file");
+  CLI::App* score = add("score", "rank correlation and loss of a model");
+  add_text(*score, "--model", "FILE", "that is judged", [&](const std::string& path) {
+    request.model = path;
+  })->required();
   add_samples(*score);
   dataset->callback([&] { command = [&] { return make_dataset(request, invocation); }; });
   fit->callback([&] { command = [&] { return fit_model(request, invocation); }; });
@@ -136,6 +146,7 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
   add_text(*made, "--up", "x|y|z", "the axis of mesh files that points up, in place of their own",
            [&](const std::string& axis) { request.up = axis; });
   add_repeated(*made, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
+  add_repeated(*made, "--mapping", "KEY=VALUE", request.mapping, kMappingHelp);
   add_count(*made, "--episodes", 1, 10'000, "of each world",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*made, "--steps", 1, 100'000, "of each episode",
@@ -158,7 +169,8 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
   add_threads(*made, invocation, "threads to use; else one per core");
   add_seed(*made, invocation.seed, "of the starts");
   made->add_flag("--resume", request.resume, "keep the episodes that are there");
-  made->add_flag("--quiet", invocation.quiet, "no lines of progress");
+  add_json(*made, invocation);
+  made->add_flag("--quiet", invocation.quiet, "no progress, no tables");
   made->callback([&] { command = [&] { return evaluate_explore(request, invocation); }; });
 }
 

@@ -80,10 +80,10 @@ std::vector<std::int64_t> missing_episodes(const TrainRequest& request, const st
                        "folder keeps both");
     } else {
       const SampleSet there = read_samples(file);
-      const std::string difference =
-          there.world != world       ? "its world is " + there.world
-          : there.episode != episode ? "it is episode " + std::to_string(there.episode)
-                                     : settings_difference(there.made_by, made_by);
+      const std::string difference = there.world != world ? "its world is " + there.world
+                                     : there.episode != episode
+                                         ? "it is episode " + std::to_string(there.episode)
+                                         : settings_difference(there.made_by, made_by);
       if (!difference.empty())
         throw InputError("'" + file.string() + "' was made otherwise: " + difference +
                          "; another folder keeps both");
@@ -103,13 +103,16 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   for (const WorldName& name : names) require_world(name, request.up);
   if (fs::exists(request.target) && !fs::is_directory(request.target))
     throw InputError("'" + request.target.string() + "' is a file: samples go into a folder");
+  require_writable(request.target / "any.samples");
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
+  const Value mapping = setup.set_mapping(request.mapping);
   const Value moves = setup.set_moves(request.moves);
   setup.episode.show_truth = needs_truth(registry, request.explorer);
   setup.episode.cancellation = &interruption.token();
   Value explorer = Value::map();
-  for (const std::string& text : request.explorer_overrides) apply_override(explorer, text);
+  for (const std::string& text : request.explorer_overrides)
+    apply_override(explorer, text, "--explorer-set");
   registry.create<ViewUtility>(request.explorer, explorer, request.explorer);  // may refuse it
   Value parameters = Value::map();
   parameters.set(request.explorer, explorer);
@@ -123,9 +126,10 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
     made.set("seed", static_cast<std::int64_t>(invocation.seed));
     made.set("steps", request.steps);
     made.set("moves", moves);
+    made.set("mapping", mapping);
     made.set("up", request.up);
     made.set("grid", to_value(shape));
-    made.set("files", checksums_of({name}, {request.explorer}, parameters, registry));
+    made.set("files", checksums_of({name}, {request.explorer}, parameters, registry, invocation));
     missing.push_back(missing_episodes(request, name.text(), made));
     made_by.push_back(std::move(made));
   }
@@ -186,15 +190,15 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
 ExitStatus score_model(const TrainRequest& request, const Invocation& invocation) {
   const Registry registry = invocation.registry();
   const Trainable& trainable = trainable_of(registry, request.utility);
-  struct World {
+  struct OneWorld {
     std::vector<float> predicted, targets;
     double squares = 0;  // sum of errors
   };
-  std::map<std::string, World> worlds;
+  std::map<std::string, OneWorld> worlds;
   for (const fs::path& file : sample_files(request.samples)) {
     const SampleSet set = read_samples(file);
-    const Prediction predicted = trainable.predict(request.target, set, invocation.threads);
-    World& world = worlds[set.world];
+    const Prediction predicted = trainable.predict(request.model, set, invocation.threads);
+    OneWorld& world = worlds[set.world];
     world.predicted.insert(world.predicted.end(), predicted.values.begin(), predicted.values.end());
     world.targets.insert(world.targets.end(), set.targets.begin(), set.targets.end());
     world.squares += predicted.loss * static_cast<double>(set.size());
@@ -209,8 +213,7 @@ ExitStatus score_model(const TrainRequest& request, const Invocation& invocation
     entry.set("samples", static_cast<std::int64_t>(count));
     entry.set("rho", std::isfinite(rho) ? Value(rho) : Value());
     entry.set("loss", loss);
-    if (!invocation.json)
-      std::printf("%-24s %8zu %8.3f %8.3f\n", name.c_str(), count, rho, loss);
+    if (!invocation.json) std::printf("%-24s %8zu %8.3f %8.3f\n", name.c_str(), count, rho, loss);
   }
   if (invocation.json) print_json(object);
   return ExitStatus::done;

@@ -11,12 +11,14 @@ struct TrainRequest {
   std::vector<std::string> explorer_overrides;  // dataset: its parameters, as "model=FILE"
   std::vector<std::string> worlds;              // dataset: "downtown:1-8", files
   std::vector<std::string> moves;               // dataset: "clear=2", ExplorationSetup::set_moves
+  std::vector<std::string> mapping;             // dataset: "range=30", likewise set_mapping
   std::string up;                               // dataset: of mesh files, as `load_world` takes it
   std::int64_t episodes = 4;                    // dataset: of each world
   int steps = 200;                              // dataset: of each episode
   std::filesystem::path samples;                // fit, score: a folder
   std::filesystem::path validation;             // fit: a folder of other worlds or episodes
-  std::filesystem::path target;                 // dataset: a folder; fit, score: a model
+  std::filesystem::path target;                 // dataset: a folder; fit: a model
+  std::filesystem::path model;                  // score
   bool resume = false;
 };
 

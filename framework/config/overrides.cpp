@@ -10,8 +10,6 @@ namespace lapwing {
 
 namespace {
 
-const Origin kOrigin{"--set", 0};
-
 // One step of a path: a key, or the number of a list entry where `index` is above 0.
 struct Step {
   std::string key;
@@ -23,17 +21,18 @@ struct Override {
   Value value;
 };
 
+// `text` with its option, as the user wrote it.
 [[noreturn]] void malformed(const std::string& text, const std::string& why) {
-  throw InputError("--set " + text + ": " + why);
+  throw InputError(text + ": " + why);
 }
 
-void set_origins(Value& value) {
-  value.with_origin(kOrigin);
+void set_origins(Value& value, const Origin& origin) {
+  value.with_origin(origin);
   if (value.is_list()) {
-    for (Value& entry : value.as_list()) set_origins(entry);
+    for (Value& entry : value.as_list()) set_origins(entry, origin);
   }
   if (value.is_map()) {
-    for (auto& entry : value.as_map()) set_origins(entry.second);
+    for (auto& entry : value.as_map()) set_origins(entry.second, origin);
   }
 }
 
@@ -75,24 +74,25 @@ std::vector<Step> parse_path(std::string_view rest, const std::string& text) {
   }
 }
 
-Override parse_override(const std::string& text) {
+Override parse_override(const std::string& text, const std::string& option) {
+  const std::string shown = option + " " + text;
   const std::size_t equals = text.find('=');
-  if (equals == text.npos) malformed(text, "'=' is missing; expected key.path=value");
+  if (equals == text.npos) malformed(shown, "'=' is missing; expected key.path=value");
   Override result;
-  result.path = parse_path(std::string_view(text).substr(0, equals), text);
+  result.path = parse_path(std::string_view(text).substr(0, equals), shown);
   const std::string value = text.substr(equals + 1);
   if (value.find_first_not_of(" \t") == value.npos) {
-    malformed(text, "the value is missing; write '' for an empty text, null for nothing");
+    malformed(shown, "the value is missing; write '' for an empty text, null for nothing");
   }
   Value read;
   try {
     read = from_yaml("value: " + value, "value");  // of a key, so that a null is not an empty map
   } catch (const InputError& error) {
-    malformed(text, error.what());
+    malformed(shown, error.what());
   }
-  if (read.as_map().size() != 1) malformed(text, "the value must be one value");
+  if (read.as_map().size() != 1) malformed(shown, "the value must be one value");
   result.value = read.at("value");
-  set_origins(result.value);
+  set_origins(result.value, {option, 0});
   return result;
 }
 
@@ -137,14 +137,14 @@ Value* find_entry(Value& base, const Override& over, const std::string& text, st
 
 }  // namespace
 
-void apply_override(Value& base, const std::string& text) {
-  const Override over = parse_override(text);
+void apply_override(Value& base, const std::string& text, const std::string& option) {
+  const Override over = parse_override(text, option);
   std::size_t used = 0;
-  Value* node = find_entry(base, over, text, used);
+  Value* node = find_entry(base, over, option + " " + text, used);
   Value layer = over.value;
   for (std::size_t i = over.path.size(); i > used; --i) {
     Value map = Value::map();
-    map.with_origin(kOrigin);
+    map.with_origin({option, 0});
     map.set(over.path[i - 1].key, std::move(layer));
     layer = std::move(map);
   }

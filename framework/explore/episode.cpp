@@ -13,8 +13,9 @@
 namespace lapwing {
 namespace {
 
-constexpr int kRescored = 4;       // views that are re-scored together; a part of the result
-constexpr std::size_t kListed = 64;  // candidates valued between two looks at the clock
+constexpr double kMostCleared = 1 << 24;  // voxels
+constexpr int kRescored = 4;              // views that are re-scored together; a part of the result
+constexpr std::size_t kListed = 64;       // candidates valued between two looks at the clock
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -33,6 +34,9 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
   above(s.turn_rate, "the turn rate");
   if (!(s.pause >= 0)) throw InputError("the pause for an image must be at least 0 s");
   if (!(s.clear >= s.body)) throw InputError("the box cleared at the start must hold the body");
+  if (const double edge = s.clear / map.grid().resolution() + 2; edge * edge * edge > kMostCleared)
+    throw InputError("the box of " + plain_number(s.clear) + " m cleared at the start holds " +
+                     "more than 2^24 voxels of " + plain_number(map.grid().resolution()) + " m");
   if (s.lookahead < 1 || s.lookahead > EpisodeSettings::kMostLookahead)
     throw InputError("lookahead: expected 1 to " + std::to_string(EpisodeSettings::kMostLookahead) +
                      " views, not " + std::to_string(s.lookahead));

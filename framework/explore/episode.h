@@ -79,7 +79,7 @@ struct EpisodeResult {
   std::vector<EpisodeStep> steps;
   // What could be reached at the end, all for the last map; where asked for, and not stopped.
   std::vector<ScoredView> candidates;
-  double surface = 0;                  // voxels there were to find; 0 without a truth
+  double surface = 0;  // voxels there were to find; 0 without a truth
 
   double observed() const { return steps.empty() ? 0 : steps.back().observed; }
   double length() const { return steps.empty() ? 0 : steps.back().length; }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kAlike = 1e-6;  // of two numbers of a mapping
 constexpr const char* kMappingKeys[] = {
-    "resolution", "mode",  "hit",   "miss",   "clamp_min", "clamp_max", "pixel_step",
+    "resolution",  "mode",  "hit",   "miss",   "clamp_min", "clamp_max", "pixel_step",
     "information", "range", "width", "height", "focal_x",   "focal_y",   "pitch"};
 
 // One level: the cubes around the camera are copied, then interpolated.

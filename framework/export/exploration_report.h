@@ -10,7 +10,7 @@
 namespace lapwing {
 
 struct ExplorationMoment {
-  int images = 0;  // taken so far
+  int images = 0;                  // taken so far
   Picture map;                     // from above; of all moments the same frame and colours
   double lowest = 0, highest = 0;  // m, heights at both ends of the colours
 };

@@ -10,8 +10,8 @@
 #include "framework/core/checksum.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/core/number_text.h"
 #include "framework/core/json.h"
+#include "framework/core/number_text.h"
 #include "framework/core/parallel.h"
 #include "plugins/utilities/learned/model_file.h"
 
@@ -38,8 +38,8 @@ Samples read_all(const std::vector<std::filesystem::path>& files, const GridShap
     if (!(set.shape == shape))
       throw InputError("'" + file.string() + "' holds grids of another shape than the network's");
     if (const std::string fault = mapping_fault(set.mapping); !fault.empty())
-      throw InputError("'" + file.string() + "' was made with a mapping that is not whole: " +
-                       fault);
+      throw InputError("'" + file.string() +
+                       "' was made with a mapping that is not whole: " + fault);
     if (mapping.is_null()) mapping = set.mapping;
     const std::string difference = mapping_difference(set.mapping, mapping);
     if (!difference.empty())
@@ -121,8 +121,8 @@ struct Judged {
 };
 
 Judged judge(const Samples& samples, const Model& model, int threads) {
-  const std::vector<float> answers = answers_to(model, samples.size(), threads,
-                                                [&](std::size_t k) { return samples.grid(k); });
+  const std::vector<float> answers =
+      answers_to(model, samples.size(), threads, [&](std::size_t k) { return samples.grid(k); });
   std::vector<float> targets(samples.size());
   for (std::size_t k = 0; k < targets.size(); ++k) targets[k] = samples.target(k);
   return {mean_squared_error(model, answers, targets), rank_correlation(answers, targets)};
@@ -161,7 +161,7 @@ Training::Training(const Parameters& p, const FitRequest& request)
       layout_(shape_),
       batch_(static_cast<int>(p.integer("batch"))),
       epochs_(static_cast<int>(p.integer("epochs"))),
-      until_(static_cast<int>(p.has("until") ? p.integer("until") : epochs_)),
+      until_(static_cast<int>(p.integer("until") > 0 ? p.integer("until") : epochs_)),
       patience_(static_cast<int>(p.integer("patience"))),
       rate_(p.number("rate")),
       dropout_(p.number("dropout")),
@@ -275,8 +275,7 @@ double Training::epoch(std::int64_t number) {
     parallel_for(targets.size(), request_.threads, [&](std::size_t i) {
       const std::size_t k = order[b * targets.size() + i];
       decode_grid(layout_, training_.grid(k), mirrored[i] != 0, network.input(static_cast<int>(i)));
-      targets[i] =
-          static_cast<float>(model_.answer_of(static_cast<double>(training_.target(k))));
+      targets[i] = static_cast<float>(model_.answer_of(static_cast<double>(training_.target(k))));
     });
     BatchOptions options;
     options.dropout = dropout_;
@@ -381,8 +380,8 @@ ParameterTable fit_parameters() {
       .integer("hidden2", 32, "N_h2", between(8, 1024))
       .integer("batch", 128, "samples of a step", between(8, 4096))
       .integer("epochs", 30, "passes over the samples", between(1, 100000))
-      .optional_integer("until", "the last epoch of this run, before the schedule's end",
-                        between(1, 100000))
+      .integer("until", 0, "the last epoch of this run, though epochs are more; 0: all of them",
+               between(0, 100000))
       .integer("patience", 10, "epochs without a better validation, then it stops",
                between(1, 100000))
       .number("rate", 1e-4, "", "of Adam", above(0))
@@ -397,7 +396,9 @@ ParameterTable fit_parameters() {
       .integer("validation_samples", 20000, "at most, evenly over all", between(2, 10000000));
 }
 
-GridShape fit_shape(const Parameters& parameters) { return shape_of(parameters).grid; }
+GridShape fit_shape(const Parameters& parameters) {
+  return shape_of(parameters).grid;
+}
 
 Value fit(const Parameters& parameters, const FitRequest& request) {
   return Training(parameters, request).run();
@@ -411,9 +412,9 @@ Prediction predict(const std::filesystem::path& path, const SampleSet& samples, 
   const std::string difference = mapping_difference(samples.mapping, model.mapping);
   if (!difference.empty())
     throw InputError("the samples do not fit the model '" + path.string() + "': " + difference);
-  const std::vector<float> answers =
-      answers_to(model, samples.size(), threads,
-                 [&](std::size_t k) { return samples.grids.data() + k * samples.shape.size(); });
+  const std::vector<float> answers = answers_to(model, samples.size(), threads, [&](std::size_t k) {
+    return samples.grids.data() + k * samples.shape.size();
+  });
   Prediction predicted{{}, mean_squared_error(model, answers, samples.targets)};
   for (const float answer : answers)
     predicted.values.push_back(static_cast<float>(model.target_of(static_cast<double>(answer))));

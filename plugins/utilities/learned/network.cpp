@@ -17,8 +17,7 @@ constexpr int kMostBlocks = 5, kMostUnits = 16, kMostWidth = 1024;
 
 void require_sense(const NetworkShape& shape) {
   lapwing::require_sense(shape.grid);
-  if (shape.blocks < 1 || shape.blocks > kMostBlocks || shape.units < 1 ||
-      shape.units > kMostUnits)
+  if (shape.blocks < 1 || shape.blocks > kMostBlocks || shape.units < 1 || shape.units > kMostUnits)
     throw InputError("a network of " + std::to_string(shape.blocks) + " blocks of " +
                      std::to_string(shape.units) + " units: expected 1 to 5 and 1 to 16");
   for (const int edge : {shape.grid.across, shape.grid.ahead, shape.grid.up})
@@ -87,8 +86,8 @@ NetworkLayout::NetworkLayout(const NetworkShape& given) : shape(given) {
     }
     for (int& edge : size) edge /= 2;
   }
-  const auto numbers = static_cast<std::size_t>(size[0] * size[1] * size[2]) *
-                       static_cast<std::size_t>(maps);
+  const auto numbers =
+      static_cast<std::size_t>(size[0] * size[1] * size[2]) * static_cast<std::size_t>(maps);
   const std::size_t all = parameters + numbers * static_cast<std::size_t>(shape.hidden1);
   if (all > kMostParameters)
     throw InputError("a network of " + std::to_string(all) + " parameters; at most " +

@@ -75,8 +75,8 @@ TEST(LearnedFit, LearnsWhatIsEasy) {
   EXPECT_GT(figures.at("validation_rho").as_number(), 0.95);
   const SampleSet set = read_samples(fixture.request.validation.front());
   const Prediction predicted = predict(fixture.request.model, set, 1);
-  EXPECT_NEAR(rank_correlation(predicted.values, set.targets), figures.at("validation_rho").as_number(),
-              1e-6);
+  EXPECT_NEAR(rank_correlation(predicted.values, set.targets),
+              figures.at("validation_rho").as_number(), 1e-6);
   const double loss = figures.at("validation_loss").as_number();
   EXPECT_NEAR(predicted.loss, loss, 1e-5 * loss);
 }
@@ -183,8 +183,8 @@ TEST(LearnedFit, GoesOnWithTheSameAlone) {
 
 // What the shipped model is, header and weights; its figures in the readme are of this one.
 TEST(LearnedModel, TheShippedOneIsWhatItWas) {
-  const auto path = std::filesystem::path(LAPWING_SOURCE_DIR) /
-                    "plugins/utilities/learned/learned.model";
+  const auto path =
+      std::filesystem::path(LAPWING_SOURCE_DIR) / "plugins/utilities/learned/learned.model";
   const Model model = read_model(path);
   const std::string bytes = read_file(path);
   const std::size_t numbers =
