@@ -34,7 +34,7 @@ void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& scrip
   CLI::App* run = app.add_subcommand("run", "plan a mission, certify and write it");
   add_mission(*run, script);
   add_configuration(*run, invocation);
-  add_text(*run, "--out", "DIR", "folder of the results; else out/<mission>",
+  add_text(*run, "-o,--out", "DIR", "folder of the results; else out/<mission>",
            [&](const std::string& path) { invocation.out = path; });
   add_threads(*run, invocation, "threads to use; else one per core");
   run->add_flag("--quiet", invocation.quiet, "no progress, no summary");
@@ -57,7 +57,7 @@ void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& com
                "values of one option; of several, all combinations are run");
   add_count(*sweep, "--jobs", 1, 64, "runs at once; else 2",
             [&](std::uint64_t jobs) { asked.jobs = static_cast<int>(jobs); });
-  add_text(*sweep, "--out", "DIR", "folder of the results; else out/sweep",
+  add_text(*sweep, "-o,--out", "DIR", "folder of the results; else out/sweep",
            [&](const std::string& path) { invocation.out = path; });
   add_json(*sweep, invocation);
   sweep->callback([&] { command = [&] { return sweep_missions(asked, invocation); }; });

@@ -177,7 +177,11 @@ std::string checksum(const GeneratedScene& scene) {
 }
 
 GroundTruth ExplorationSetup::truth_of(const World& world) const {
-  return {world.scene, world.region, map.at("resolution").as_number(), world.inside};
+  try {
+    return {world.scene, world.region, map.at("resolution").as_number(), world.inside};
+  } catch (const InputError& error) {
+    throw InputError("world '" + world.name + "': " + error.what());
+  }
 }
 
 ExplorationSetup::ExplorationSetup() : map(Value::map()) {

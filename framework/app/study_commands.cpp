@@ -70,7 +70,7 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
                "a configuration file or its name in configs/, of all missions");
   add_repeated(*scan, "--set", "KEY=VALUE", invocation.overrides, "set one option of all missions");
   add_repeated(*scan, "--data", "DIR", invocation.data, "a folder that the scripts may read");
-  add_text(*scan, "--out", "DIR", "folder of the results; else out/evaluate_scan",
+  add_text(*scan, "-o,--out", "DIR", "folder of the results; else out/evaluate_scan",
            [&](const std::string& path) { invocation.out = path; });
   add_threads(*scan, invocation, "rows at once; else one per core");
   scan->add_flag("--quiet", invocation.quiet, "no progress, no tables");
@@ -164,7 +164,7 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
   add_text(*made, "--against", "DIR",
            "another evaluation's folder: efficiency over that there, start by start (table 5.4)",
            [&](const std::string& path) { request.against = path; });
-  add_text(*made, "-o,--output", "DIR", "folder of the results; else out/evaluate_explore",
+  add_text(*made, "-o,--out,--output", "DIR", "folder of the results; else out/evaluate_explore",
            [&](const std::string& path) { request.folder = path; });
   add_threads(*made, invocation, "threads to use; else one per core");
   add_seed(*made, invocation.seed, "of the starts");

@@ -77,6 +77,13 @@ void GroundTruth::lay_out() {
   const Eigen::AlignedBox3d bounds = scene_->mesh().bounds();
   const Eigen::Vector3d beside(kBeside, kBeside, 0), above(kBeside, kBeside, kAbove);
   const double reach = grid_.reach() - grid_.resolution();
+  const double farthest =
+      std::max(bounds.max().cwiseAbs().maxCoeff(), bounds.min().cwiseAbs().maxCoeff());
+  if (farthest > reach)
+    throw InputError("the scene reaches " + plain_number(farthest) +
+                     " m from the world's origin, and a map with voxels of " +
+                     plain_number(grid_.resolution()) + " m ends at " + plain_number(reach) +
+                     " m: move it nearer, or take larger voxels");
   std::size_t voxels = 1;
   for (int i = 0; i < 3; ++i) {
     low_[i] = grid_.index(std::clamp(bounds.min()[i] - beside[i], -reach, reach));

@@ -1,5 +1,10 @@
 // The guides, followed to the letter: files are saved under the name in their first line, commands
 // are typed in the order in which they stand.
+#include <iterator>
+#include <regex>
+#include <set>
+#include <sstream>
+
 #include "tests/app/program_fixture.h"
 #include "tests/guide.h"
 
@@ -73,6 +78,40 @@ TEST_F(Guides, OfConfigurationsHolds) {
   EXPECT_NE(line_of("  effort: ").find("default"), std::string::npos) << log_;
   for (const char* kind : {"mission", "vehicle", "film"})
     EXPECT_TRUE(fs::exists(folder_ / (std::string(kind) + ".schema.json")));
+}
+
+// The command line's reference names every option of every command, and none that there is not.
+TEST_F(Guides, TheSynopsisIsWhole) {
+  const std::string text = read_file(fs::path(LAPWING_SOURCE_DIR) / "framework/app/README.md");
+  const std::size_t begin = text.find("```\n") + 4;
+  std::istringstream lines(text.substr(begin, text.find("```", begin) - begin));
+  std::vector<std::string> synopses;
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind("lapwing ", 0) == 0)
+      synopses.push_back(line);
+    else
+      synopses.back() += line;
+  ASSERT_GE(synopses.size(), 20u);
+  const auto options_in = [](const std::string& where, const std::regex& pattern) {
+    std::set<std::string> found;
+    for (std::sregex_iterator at(where.begin(), where.end(), pattern), end; at != end; ++at)
+      found.insert((*at)[1]);
+    return found;
+  };
+  for (const std::string& synopsis : synopses) {
+    std::smatch command;
+    ASSERT_TRUE(std::regex_search(synopsis, command, std::regex("^lapwing ((?:[a-z]+ ?)+)")));
+    std::istringstream words(command[1].str());
+    std::vector<std::string> typed{std::istream_iterator<std::string>(words), {}};
+    typed.push_back("--help");
+    const Finished finished = run(typed);
+    ASSERT_EQ(finished.status, 0) << synopsis;
+    // An option's first name: "-o" of "-o,--output".
+    std::set<std::string> known = options_in(finished.out, std::regex("\n  (-[a-z]|--[a-z-]+)"));
+    known.erase("-h");
+    EXPECT_EQ(options_in(synopsis, std::regex("(?:^|[ \\[])(-[a-z]|--[a-z-]+)")), known)
+        << synopsis;
+  }
 }
 
 // Its commands are typed in the tree: here in a folder of links to it, with this build.
