@@ -100,9 +100,11 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
     made.add_flag("--resume", request.resume, "go on with what is there");
   };
   const auto add_samples = [&](CLI::App& made) {
-    add_text(made, "samples", "DIR", "a folder of samples", [&](const std::string& path) {
-      request.samples = path;
-    })->required();
+    add_text(made, "samples", "DIR|FILE...", "files of samples, and folders of them",
+             [&](const std::string& path) { request.samples.emplace_back(path); })
+        ->required()
+        ->expected(-1)
+        ->take_all();
     add_json(made, invocation);
   };
   CLI::App* dataset = add("dataset", "samples from episodes of the oracle");
@@ -124,9 +126,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   CLI::App* fit = add("fit", "train a model");
   add_making(*fit, "the model's file");
   add_samples(*fit);
-  add_text(*fit, "--validation", "DIR", "samples of other worlds or episodes",
-           [&](const std::string& path) { request.validation = path; })
-      ->required();
+  add_repeated(*fit, "--validation", "DIR|FILE", request.validation,
+               "samples of other worlds or episodes; repeatable");
   CLI::App* score = add("score", "rank correlation and loss of a model");
   add_text(*score, "--model", "FILE", "that is judged", [&](const std::string& path) {
     request.model = path;

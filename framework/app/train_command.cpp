@@ -161,6 +161,8 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
   const Registry registry = invocation.registry();
   const Interruption interruption;
   const Trainable& trainable = trainable_of(registry, request.utility);
+  if (request.validation.empty())
+    throw InputError("train fit: say with --validation what it is judged by");
   FitRequest fit;
   fit.training = sample_files(request.samples);
   fit.validation = sample_files(request.validation);

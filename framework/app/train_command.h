@@ -15,10 +15,10 @@ struct TrainRequest {
   std::string up;                               // dataset: of mesh files, as `load_world` takes it
   std::int64_t episodes = 4;                    // dataset: of each world
   int steps = 200;                              // dataset: of each episode
-  std::filesystem::path samples;                // fit, score: a folder
-  std::filesystem::path validation;             // fit: a folder of other worlds or episodes
-  std::filesystem::path target;                 // dataset: a folder; fit: a model
-  std::filesystem::path model;                  // score
+  std::vector<std::filesystem::path> samples;   // fit, score: files and folders of them
+  std::vector<std::filesystem::path> validation;  // fit: likewise, of other worlds or episodes
+  std::filesystem::path target;                   // dataset: a folder; fit: a model
+  std::filesystem::path model;                    // score
   bool resume = false;
 };
 

@@ -84,14 +84,25 @@ SampleSet read_samples(const std::filesystem::path& path) {
   return samples;
 }
 
-std::vector<std::filesystem::path> sample_files(const std::filesystem::path& folder) {
-  std::error_code code;
+std::vector<std::filesystem::path> sample_files(const std::vector<std::filesystem::path>& given) {
+  const auto holds_samples = [](const std::filesystem::path& path) {
+    return path.extension() == ".samples";
+  };
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, code))
-    if (entry.path().extension() == ".samples") files.push_back(entry.path());
-  if (code) throw InputError("'" + folder.string() + "': " + code.message());
-  if (files.empty()) throw InputError("'" + folder.string() + "' holds no file NAME.samples");
-  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& path : given) {
+    if (std::filesystem::is_regular_file(path) && holds_samples(path)) {
+      files.push_back(path);
+      continue;
+    }
+    std::error_code code;
+    std::vector<std::filesystem::path> within;
+    for (const auto& entry : std::filesystem::directory_iterator(path, code))
+      if (holds_samples(entry.path())) within.push_back(entry.path());
+    if (code) throw InputError("'" + path.string() + "': " + code.message());
+    if (within.empty()) throw InputError("'" + path.string() + "' holds no file NAME.samples");
+    std::sort(within.begin(), within.end());
+    files.insert(files.end(), within.begin(), within.end());
+  }
   return files;
 }
 

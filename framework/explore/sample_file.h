@@ -29,7 +29,8 @@ struct SampleSet {
 void write_samples(const SampleSet& samples, const std::filesystem::path& path);
 // InputError naming the file: no such file, another format, truncated, contradicting itself.
 SampleSet read_samples(const std::filesystem::path& path);
-// All files NAME.samples of a folder, by name. InputError where there is none.
-std::vector<std::filesystem::path> sample_files(const std::filesystem::path& folder);
+// Of files NAME.samples and folders of them, in the order given; those of a folder by name.
+// InputError for what is neither, and for a folder without any.
+std::vector<std::filesystem::path> sample_files(const std::vector<std::filesystem::path>& given);
 
 }  // namespace lapwing

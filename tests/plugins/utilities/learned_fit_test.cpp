@@ -48,8 +48,8 @@ struct FitFixture {
     std::filesystem::remove_all(folder);
     write_easy_samples(folder / "training", 2, 1);
     write_easy_samples(folder / "validation", 1, 2);
-    request.training = sample_files(folder / "training");
-    request.validation = sample_files(folder / "validation");
+    request.training = sample_files({folder / "training"});
+    request.validation = sample_files({folder / "validation"});
     request.model = folder / "a.model";
     request.checkpoint = folder / "a.checkpoint";
     Value& grid = given.set("grid", Value::map());
@@ -132,6 +132,23 @@ TEST(LearnedFit, BeginsWithAModel) {
   EXPECT_THROW(fixture.run(), InputError);
 }
 
+// The schedule is that of all epochs: what is left may follow.
+TEST(LearnedFit, EndsWhereItIsAskedTo) {
+  FitFixture fixture;
+  fixture.given.set("schedule", "cosine");
+  fixture.run();
+  const std::string whole = read_file(fixture.request.model);
+  std::filesystem::remove(fixture.request.model);
+  std::filesystem::remove(fixture.request.checkpoint);
+  fixture.given.set("until", 2);
+  EXPECT_LE(fixture.run().at("epoch").as_integer(), 2);
+  EXPECT_EQ(read_model(fixture.request.checkpoint).progress.at("epoch").as_integer(), 2);
+  fixture.given.set("until", 0);
+  fixture.request.resume = true;
+  fixture.run();
+  EXPECT_EQ(read_file(fixture.request.model), whole);
+}
+
 TEST(LearnedFit, ResumedItIsAsIfNeverStopped) {
   FitFixture fixture;
   fixture.run();
@@ -171,7 +188,7 @@ TEST(LearnedFit, GoesOnWithTheSameAlone) {
   EXPECT_NE(refusal().find("another rate"), std::string::npos) << refusal();
   fixture.given.set("rate", 0.01);
   write_easy_samples(fixture.folder / "validation", 1, 3);
-  fixture.request.validation = sample_files(fixture.folder / "validation");
+  fixture.request.validation = sample_files({fixture.folder / "validation"});
   EXPECT_NE(refusal().find("another validation samples"), std::string::npos) << refusal();
   fixture.request.resume = false;
   fixture.request.validation = fixture.request.training;
