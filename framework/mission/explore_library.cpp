@@ -356,6 +356,45 @@ void compare_with_oracle(Exploration& e, const GroundTruth& truth,
   for (const EpisodeStep& step : best.steps) e.record.oracle.push_back(step.observed);
 }
 
+// The world that is explored, and the region of interest in it.
+GroundTruth truth_for(const SurfaceObject& surface, const Parameters& given, double resolution) {
+  std::shared_ptr<const MeshScene> scene = surface.scene;
+  Eigen::AlignedBox3d region = surface.region;
+  if (given.boolean("ground")) {
+    OpenWorld open = with_floor(scene->mesh());
+    scene = std::make_shared<MeshScene>(std::move(open.mesh), surface.name);
+    region = open.region;
+  }
+  const auto& starts = given.tables("start");
+  std::optional<Eigen::Vector3d> inside;
+  if (!starts.empty()) inside = vector_of(starts[0].numbers("position"));
+  return {std::move(scene), region, resolution, inside};
+}
+
+Viewpoint start_in(const GroundTruth& truth, const Parameters& given,
+                   const EpisodeSettings& settings, std::uint64_t seed) {
+  const double pitch = radians(given.table("camera").number("pitch_deg"));
+  const auto& starts = given.tables("start");
+  if (!starts.empty())
+    return {vector_of(starts[0].numbers("position")), starts[0].number("yaw"), pitch};
+  Random random(seed);
+  return random_start(truth, settings.clear, settings.sensor.range / 2, pitch, random,
+                      settings.bounds);
+}
+
+void record_flight(Exploration& e) {
+  ExplorationRecord& record = e.record;
+  for (const EpisodeStep& step : e.result.steps) {
+    record.observed.push_back(step.observed);
+    e.seconds += step.seconds;
+  }
+  record.end = explain(e.result.end);
+  record.surface = e.result.surface;
+  record.length = e.result.length();
+  record.efficiency = e.result.efficiency(e.settings.steps);
+  record_path(e);
+}
+
 }  // namespace
 
 int explore_surface(lua_State* state) {
@@ -370,51 +409,26 @@ int explore_surface(lua_State* state) {
   const Registry& registry = *run.settings.registry;
   auto e = std::make_shared<Exploration>();
   e->settings = settings_of(given, run);
-  e->settings.list_candidates = true;
   e->settings.show_truth = needs_truth(registry, chosen.type);
+  e->settings.list_candidates = true;
+  if (given.tables("start").size() > 1)
+    throw InputError(given.origin("start"), "start: at most one");
   const auto utility = registry.create<ViewUtility>(chosen.type, chosen.parameters, "utility");
   const auto new_map = [&] { return registry.create<Map>(map.type, map.parameters, "map"); };
   e->map = new_map();
   const Sandbox::ClockPause pause(Sandbox::of(state));
-  const double pitch = radians(given.table("camera").number("pitch_deg"));
-  const auto& starts = given.tables("start");
-  if (starts.size() > 1) throw InputError(given.origin("start"), "start: at most one");
-  std::shared_ptr<const MeshScene> scene = surface.scene;
-  Eigen::AlignedBox3d region = surface.region;
-  if (given.boolean("ground")) {
-    OpenWorld open = with_floor(scene->mesh());
-    scene = std::make_shared<MeshScene>(std::move(open.mesh), surface.name);
-    region = open.region;
-  }
-  std::optional<Eigen::Vector3d> inside;
-  if (!starts.empty()) inside = vector_of(starts[0].numbers("position"));
-  const GroundTruth truth(scene, region, e->map->grid().resolution(), inside);
-  if (starts.empty()) {
-    Random random(run.settings.seed);
-    e->start = random_start(truth, e->settings.clear, e->settings.sensor.range / 2, pitch, random,
-                            e->settings.bounds);
-  } else {
-    e->start = {vector_of(starts[0].numbers("position")), starts[0].number("yaw"), pitch};
-  }
+  const GroundTruth truth = truth_for(surface, given, e->map->grid().resolution());
+  e->start = start_in(truth, given, e->settings, run.settings.seed);
   ObservedSurface observed(truth, e->settings.sensor, new_map);
-  ExplorationRecord& record = e->record;
-  record.utility = chosen.type;
-  record.cut = cut_height(*scene, e->start);
-  Moments moments(e->settings.steps, record.cut.value_or(HUGE_VAL));
+  e->record.utility = chosen.type;
+  e->record.cut = cut_height(truth.scene(), e->start);
+  Moments moments(e->settings.steps, e->record.cut.value_or(HUGE_VAL));
   e->result = explore(e->settings, e->start, truth, observed, *utility, *e->map,
                       [&](const EpisodeMoment& moment) { moments.look(moment.step + 1, *e->map); });
   observe_truly(e->result, e->settings, truth, new_map);
-  record.moments = std::move(moments).shown(static_cast<int>(e->result.steps.size()), *e->map);
-  for (const EpisodeStep& step : e->result.steps) {
-    record.observed.push_back(step.observed);
-    e->seconds += step.seconds;
-  }
+  e->record.moments = std::move(moments).shown(static_cast<int>(e->result.steps.size()), *e->map);
+  record_flight(*e);
   run.solve_seconds += e->seconds;
-  record.end = explain(e->result.end);
-  record.surface = e->result.surface;
-  record.length = e->result.length();
-  record.efficiency = e->result.efficiency(e->settings.steps);
-  record_path(*e);
   const bool stopped = e->result.end == EpisodeEnd::cancelled || e->result.end == EpisodeEnd::time;
   if (given.boolean("compare") && !stopped) compare_with_oracle(*e, truth, new_map, registry);
   new_object(state, kExplorationType, ExplorationObject{std::move(e)});
