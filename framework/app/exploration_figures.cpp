@@ -212,7 +212,7 @@ struct Figures {
   }
 
   Series curve_of(const std::string& world, const std::string& utility, const Episodes& all) {
-    Series series{utility, {0}, {0}};
+    Series series{utility, {0}, {0}, false, {0}};
     for (int t = 0; t < asked.steps; ++t) {
       Sample at;
       for (const Flown& episode : all) at.add(episode.curve[static_cast<std::size_t>(t)]);
@@ -220,13 +220,14 @@ struct Figures {
                 plain_number(at.mean()) + "," + plain_number(at.deviation()) + "\n";
       series.x.push_back(t + 1);
       series.y.push_back(at.mean());
+      series.spread.push_back(at.deviation());
     }
     return series;
   }
 
   void add_world(const std::string& world) {
     Chart chart;
-    chart.title = world;
+    chart.title = world + ": mean and standard deviation";
     chart.x = {"images", "", false, true};
     chart.y = {"observed surface", "voxels"};
     const std::vector<double> oracle = efficiencies(world, "oracle"),

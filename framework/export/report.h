@@ -67,6 +67,8 @@ struct Series {
   std::vector<double> x;  // finite, not decreasing
   std::vector<double> y;  // as many; not finite: a gap
   bool stepped = false;   // y holds until the next x
+  // Half the height of a band around y, such as a deviation; as many, at least 0, or none at all.
+  std::vector<double> spread = {};
 };
 
 struct LimitLine {

@@ -8,6 +8,12 @@ function extent(lists) {
   return low <= high ? [low, high] : [0, 1];
 }
 
+// y shifted by its spread, up or down.
+function bandEdge(series, sign) {
+  return series.y.map((v, k) => (finite(v) && finite(series.spread[k])
+    ? v + sign * series.spread[k] : null));
+}
+
 function chartDomain(spec) {
   const x = extent([...spec.series.map((s) => s.x), spec.markers.map((m) => m.x)]);
   if (x[0] === x[1]) { x[0] -= 0.5; x[1] += 0.5; }
@@ -17,7 +23,8 @@ function chartDomain(spec) {
     const [low, high] = extent(positive);
     return { x, y: low > 0 ? [low / 1.5, high * 1.5 + (low === high ? low : 0)] : [0.1, 10] };
   }
-  let [low, high] = extent([...spec.series.map((s) => s.y), limits]);
+  let [low, high] = extent([...spec.series.map((s) => s.y),
+    ...spec.series.flatMap((s) => (s.spread ? [bandEdge(s, 1), bandEdge(s, -1)] : [])), limits]);
   if (low > 0 && low < 0.5 * high) low = 0;
   if (high < 0 && high > 0.5 * low) high = 0;
   const pad = high > low ? 0.07 * (high - low) : Math.max(Math.abs(high) * 0.1, 0.5);
@@ -56,6 +63,15 @@ function seriesPath(series, sx, sy, log, columns) {
     ++count;
   }
   return { d, count };
+}
+
+// Of linear axes.
+function bandPath(series, sx, sy) {
+  const above = bandEdge(series, 1), below = bandEdge(series, -1);
+  const kept = series.x.map((_, k) => k).filter((k) => above[k] !== null);
+  const at = (edge) => (k) => `${sx(series.x[k]).toFixed(1)} ${sy(edge[k]).toFixed(1)}`;
+  if (!kept.length) return "";
+  return `M${kept.map(at(above)).join("L")}L${kept.reverse().map(at(below)).join("L")}Z`;
 }
 
 function makeChart(figure, spec) {
@@ -125,6 +141,10 @@ function makeChart(figure, spec) {
 
   function drawSeries() {
     let points = 0, samples = 0;
+    spec.series.forEach((s, i) => {
+      if (!s.spread || spec.y.log) return;
+      svgChild(svg, "path", { class: "band", d: bandPath(s, sx, sy), style: `fill:${color(i)}` });
+    });
     spec.series.forEach((s, i) => {
       const path = seriesPath(s, sx, sy, spec.y.log, Math.round(area.right - area.left));
       const line = svgChild(svg, "path", { class: "series", d: path.d,

@@ -87,10 +87,15 @@ Json chart(const Chart& c, Writer& writer) {
       writer.fail("series '" + s.name + "' has " + std::to_string(s.x.size()) + " x and " +
                   std::to_string(s.y.size()) + " y");
     }
-    series.push_back({{"name", s.name},
-                      {"x", writer.ascending(s.x, "x of series '" + s.name + "'")},
-                      {"y", writer.array(s.y)},
-                      {"stepped", s.stepped}});
+    if (!s.spread.empty() && s.spread.size() != s.y.size())
+      writer.fail("series '" + s.name + "' has " + std::to_string(s.spread.size()) +
+                  " of spread and " + std::to_string(s.y.size()) + " y");
+    Json one = {{"name", s.name},
+                {"x", writer.ascending(s.x, "x of series '" + s.name + "'")},
+                {"y", writer.array(s.y)},
+                {"stepped", s.stepped}};
+    if (!s.spread.empty()) one["spread"] = writer.array(s.spread);
+    series.push_back(std::move(one));
   }
   Json limits = Json::array(), markers = Json::array(), spans = Json::array();
   for (const LimitLine& l : c.limits) {

@@ -4,7 +4,11 @@ performance.mark("draw-begin");
 const data = JSON.parse(document.getElementById("report-data").textContent);
 
 function resolve(node) {
-  for (const s of node.series || []) [s.x, s.y] = [data.arrays[s.x], data.arrays[s.y]];
+  for (const s of node.series || []) {
+    for (const key of ["x", "y", "spread"]) {
+      if (s[key] !== undefined) s[key] = data.arrays[s[key]];
+    }
+  }
   for (const l of (node.drawing || {}).lines || []) {
     for (const key of ["x", "y", "z", "along", "values"]) {
       if (l[key] !== undefined) l[key] = data.arrays[l[key]];

@@ -147,7 +147,7 @@ Chart chart_block(Fields& fields) {
   out.y = axis(fields.table("y"), true);
   for (Fields& f : tables(fields, "series", true)) {
     out.series.push_back({f.text("name"), numbers(f, "x", true, false), numbers(f, "y", true, true),
-                          flag(f, "stepped")});
+                          flag(f, "stepped"), numbers(f, "spread", false, true)});
     f.finish();
   }
   for (Fields& f : tables(fields, "limits")) {

@@ -6,7 +6,7 @@
 //     text   text, preformatted, folded
 //     facts  facts: label, value (text or number), unit, result
 //     table  title, columns: name, unit; rows: cells (text or number), result
-//     chart  title, x, y (axes), series: name, x, y, stepped; limits: label, value;
+//     chart  title, x, y (axes), series: name, x, y, stepped, spread; limits: label, value;
 //            markers: label, x; spans: label, from, to
 //     path   title, projection (above, from_south, from_east), and a drawing
 //     scene  title, and a drawing

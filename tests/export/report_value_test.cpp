@@ -19,7 +19,8 @@ constexpr const char* kFull = R"({
        "rows": [{"cells": ["1", 0.5], "result": "skipped"}, {"cells": ["2", 1]}]},
       {"type": "chart", "title": "speed", "x": {"label": "time", "unit": "s"},
        "y": {"label": "speed", "unit": "m/s", "logarithmic": true, "whole": true},
-       "series": [{"name": "a", "x": [0, 1, 2], "y": [1, null, 3.5], "stepped": true}],
+       "series": [{"name": "a", "x": [0, 1, 2], "y": [1, null, 3.5], "stepped": true,
+                   "spread": [0.5, 0, 1]}],
        "limits": [{"label": "maximum", "value": 4}], "markers": [{"label": "g1", "x": 1}],
        "spans": [{"label": "cut", "from": 0.5, "to": 1}]},
       {"type": "path", "title": "side", "projection": "from_east",
@@ -72,6 +73,7 @@ TEST(ReportValue, ReadsEveryBlock) {
   EXPECT_TRUE(chart.y.logarithmic && chart.y.whole && chart.series[0].stepped);
   EXPECT_TRUE(std::isnan(chart.series[0].y[1]));
   EXPECT_EQ(chart.series[0].y[2], 3.5);
+  EXPECT_EQ(chart.series[0].spread, (std::vector<double>{0.5, 0, 1}));
   EXPECT_EQ(chart.limits[0].value, 4);
   EXPECT_EQ(chart.markers[0].x, 1);
   EXPECT_EQ(chart.spans[0].from, 0.5);
@@ -128,6 +130,8 @@ TEST(ReportValue, RefusesSeriesThatCannotBeDrawn) {
   };
   EXPECT_EQ(chart(R"({"name": "a", "x": [0, 1], "y": [1, 2]})"), "");
   EXPECT_TRUE(has_text(chart(R"({"name": "a", "x": [0, 1], "y": [1]})"), "2 x and 1 y"));
+  EXPECT_TRUE(has_text(chart(R"({"name": "a", "x": [0, 1], "y": [1, 2], "spread": [1]})"),
+                       "1 of spread and 2 y"));
   EXPECT_TRUE(has_text(chart(R"({"name": "a", "x": [0, null], "y": [1, 2]})"),
                        "series[1].x[2]: expected a finite number"));
   EXPECT_TRUE(
