@@ -6,6 +6,7 @@
 #include <map>
 
 #include "framework/app/exploration_worlds.h"
+#include "framework/app/stratified_sample.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
@@ -21,79 +22,6 @@ std::string Trial::name() const {
 }
 
 namespace {
-
-// Student's t of 97.5 %: of 1 degree of freedom, of 2, ...
-constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,
-                               2.262,  2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
-                               2.110,  2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
-                               2.060,  2.056, 2.052, 2.048, 2.045, 2.042};
-
-// The 97.5 % quantile of Student's t. Beyond the table by the first terms of its expansion about
-// the normal distribution's (Abramowitz and Stegun 26.7.5), right to 1e-4 there.
-double student(std::size_t freedom) {
-  if (freedom <= std::size(kStudent)) return kStudent[freedom - 1];
-  constexpr double z = 1.959964;
-  const double n = static_cast<double>(freedom);
-  return z + (z * z * z + z) / (4 * n) +
-         (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * n * n);
-}
-
-// Values of episodes, in groups: those of one world. What there are too few values for is not a
-// number.
-class Sample {
- public:
-  void add(double value) {
-    if (groups_.empty()) groups_.emplace_back();
-    groups_.back().push_back(value);
-  }
-  // As groups of their own.
-  void join(const Sample& other) {
-    for (const auto& group : other.groups_)
-      if (!group.empty()) groups_.push_back(group);
-  }
-  std::size_t count() const {
-    std::size_t sum = 0;
-    for (const auto& group : groups_) sum += group.size();
-    return sum;
-  }
-  double mean() const {
-    double sum = 0;
-    for (const auto& group : groups_)
-      for (const double value : group) sum += value;
-    return count() > 0 ? sum / static_cast<double>(count()) : std::nan("");
-  }
-  // The sample's standard deviation, whatever the group.
-  double deviation() const {
-    if (count() < 2) return count() == 1 ? 0 : std::nan("");
-    double squares = 0;
-    for (const auto& group : groups_) squares += squares_about(group, mean());
-    return std::sqrt(squares / static_cast<double>(count() - 1));
-  }
-  // Half the width of the 95 % interval of the mean. Groups are strata: what lies between their
-  // means is no chance.
-  double interval() const {
-    double variance = 0;
-    std::size_t freedom = 0;
-    for (const auto& group : groups_) {
-      if (group.size() < 2) return std::nan("");
-      double own = 0;
-      for (const double value : group) own += value / static_cast<double>(group.size());
-      const double size = static_cast<double>(group.size());
-      const double share = size / static_cast<double>(count());
-      variance += share * share * squares_about(group, own) / (size - 1) / size;
-      freedom += group.size() - 1;
-    }
-    return freedom > 0 ? student(freedom) * std::sqrt(variance) : std::nan("");
-  }
-
- private:
-  static double squares_about(const std::vector<double>& group, double middle) {
-    double sum = 0;
-    for (const double value : group) sum += (value - middle) * (value - middle);
-    return sum;
-  }
-  std::vector<std::vector<double>> groups_;
-};
 
 // An episode as its files have it.
 struct Flown {
@@ -140,8 +68,8 @@ Flown flown(const Trial& trial, const fs::path& folder, int steps) {
 // What one row is made of: the episodes of a utility in a world, or in all of them.
 struct Row {
   std::string world, utility;
-  Sample efficiency, relative, below, against, length, seconds;  // by episode
-  std::map<std::string, int> ends;                               // before all images, by kind
+  StratifiedSample efficiency, relative, below, against, length, seconds;  // by episode
+  std::map<std::string, int> ends;  // before all images, by kind
 
   void add(const Row& other) {
     efficiency.join(other.efficiency);
@@ -214,7 +142,7 @@ struct Figures {
   Series curve_of(const std::string& world, const std::string& utility, const Episodes& all) {
     Series series{utility, {0}, {0}, false, {0}};
     for (int t = 0; t < asked.steps; ++t) {
-      Sample at;
+      StratifiedSample at;
       for (const Flown& episode : all) at.add(episode.curve[static_cast<std::size_t>(t)]);
       curves += cell(world) + "," + cell(utility) + "," + std::to_string(t + 1) + "," +
                 plain_number(at.mean()) + "," + plain_number(at.deviation()) + "\n";
