@@ -199,6 +199,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     if (trials.empty()) continue;
     const World world = load_world(name, request.up, registry, invocation);
     const GroundTruth truth = setup.truth_of(world);
+    // Before the first episode, and not for a world that cannot be loaded.
     write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
     std::atomic<std::size_t> done{0};
     parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
