@@ -19,13 +19,11 @@
 #include "framework/core/units.h"
 #include "framework/vehicle/closed_loop.h"
 
-
 namespace lapwing {
 
 const char* program_version() {
   return LAPWING_VERSION;
 }
-
 
 namespace {
 
@@ -196,7 +194,7 @@ ExitStatus report_error(const Invocation& invocation, ExitStatus status,
   if (invocation.json) {
     Value object = Value::map();
     object.set("status", "failed");
-    object.set("error", message);
+    object.set("error", as_utf8(message));
     print_json(object);
   }
   return status;
@@ -264,6 +262,15 @@ int run_command_line(int argc, const char* const* argv) {
   evaluate->require_subcommand(1);
   add_evaluate_scan(*evaluate, invocation, asked, command);
   add_evaluate_explore(*evaluate, invocation, exploring, command);
+  // Documents name files, and JSON holds nothing else.
+  for (int k = 1; k < argc; ++k)
+    if (!is_utf8(argv[k])) {
+      invocation.json = std::any_of(argv + 1, argv + argc,
+                                    [](const char* a) { return std::string(a) == "--json"; });
+      return static_cast<int>(
+          report_error(invocation, ExitStatus::bad_input,
+                       "'" + as_utf8(argv[k]) + "': a name or text that is not UTF-8; rename it"));
+    }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
+// False where it was cancelled: nothing is written then.
+bool run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
                const ExplorationSetup& setup, const Registry& registry, const Value& parameters,
                std::uint64_t seed, const fs::path& folder) {
   Random random = Random(seed).split(static_cast<std::uint64_t>(trial.episode));
@@ -33,7 +34,7 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   ObservedSurface observed(truth, settings.sensor, new_map);
   const auto map = new_map();
   EpisodeResult result = explore(settings, start, truth, observed, *utility, *map);
-  if (result.end == EpisodeEnd::cancelled) return;
+  if (result.end == EpisodeEnd::cancelled) return false;
   std::vector<double> curve;
   double seconds = 0;
   for (const EpisodeStep& step : result.steps) {
@@ -58,6 +59,7 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
            seconds / static_cast<double>(std::max<std::size_t>(1, curve.size())));
   write_file_atomically(folder / "seconds" / (trial.name() + ".json"), to_json(time) + "\n");
   write_file_atomically(folder / "episodes" / (trial.name() + ".json"), to_json(object) + "\n");
+  return true;
 }
 
 bool of_an_evaluation(const Value& there) {
@@ -188,32 +190,35 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   if (!request.against.empty()) require_same_starts(request, stated, names, utilities);
   const Value settings = settings_for(request, std::move(stated));
 
-  for (const WorldName& name : names) {
-    std::vector<Trial> trials;
+  std::vector<std::pair<const WorldName*, Trial>> trials;
+  WorldsInUse in_use(setup, request.up, registry, invocation);
+  for (const WorldName& name : names)
     for (std::int64_t episode = 1; episode <= request.episodes; ++episode)
       for (const std::string& utility : utilities) {
         const Trial trial{name.text(), utility, episode};
-        if (!fs::exists(request.folder / "episodes" / (trial.name() + ".json")))
-          trials.push_back(trial);
+        if (fs::exists(request.folder / "episodes" / (trial.name() + ".json"))) continue;
+        trials.emplace_back(&name, trial);
+        in_use.expect(name);
       }
-    if (trials.empty()) continue;
-    const World world = load_world(name, request.up, registry, invocation);
-    const GroundTruth truth = setup.truth_of(world);
-    // Before the first episode, and not for a world that cannot be loaded.
+  const auto write_settings = [&] {
     write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
-    std::atomic<std::size_t> done{0};
-    parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
-      if (interruption.token().cancelled()) return;
-      run_trial(trials[k], world, truth, setup, registry, parameters, invocation.seed,
-                request.folder);
-      const std::size_t count = ++done;
-      if (!invocation.quiet)
-        std::cerr << name.text() + ": " + std::to_string(count) + " of " +
-                         std::to_string(trials.size()) + " episodes\n";
-    });
-    if (interruption.token().cancelled()) throw Cancelled();
-  }
-  write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
+  };
+  std::once_flag stated_once;
+  parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
+    if (interruption.token().cancelled()) return;
+    const auto& [name, trial] = trials[k];
+    const auto used = in_use.begin(*name);
+    std::call_once(stated_once, write_settings);  // not for a world that cannot be loaded
+    if (!run_trial(trial, used->world, used->truth, setup, registry, parameters, invocation.seed,
+                   request.folder))
+      return;
+    const auto [ended, expected] = in_use.end(*name);
+    if (!invocation.quiet)
+      std::cerr << trial.world + ": " + std::to_string(ended) + " of " + std::to_string(expected) +
+                       " episodes\n";
+  });
+  if (interruption.token().cancelled()) throw Cancelled();
+  write_settings();
   std::vector<std::string> worlds;
   for (const WorldName& name : names) worlds.push_back(name.text());
   const ExplorationTables tables =

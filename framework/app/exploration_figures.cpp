@@ -40,22 +40,26 @@ struct Flown {
 Flown flown(const Trial& trial, const fs::path& folder, int steps) {
   const fs::path path = folder / "episodes" / (trial.name() + ".json");
   Flown result;
-  std::string world;
+  Trial of;
   try {
     const Value object = from_json(read_file(path), path.string());
     for (const Value& value : object.at("observed").as_list())
       result.curve.push_back(value.as_number());
     result.length = object.at("length").as_number();
     result.end = object.at("end").as_text();
-    world = object.at("world").as_text();
+    of = {object.at("world").as_text(), object.at("utility").as_text(),
+          object.at("episode").as_integer()};
   } catch (const InputError& error) {
     throw InputError("'" + path.string() + "' is no whole episode: delete it, and --resume flies " +
                      "it again (" + error.what() + ")");
   }
   // "a b.obj" and "a_b.obj" have the same files.
-  if (world != trial.world)
-    throw InputError("'" + path.string() + "' is of the world '" + world + "', not '" +
+  if (of.world != trial.world)
+    throw InputError("'" + path.string() + "' is of the world '" + of.world + "', not '" +
                      trial.world + "': choose another folder with -o");
+  if (of.utility != trial.utility || of.episode != trial.episode)
+    throw InputError("'" + path.string() + "' is " + of.utility + "'s episode " +
+                     std::to_string(of.episode) + ": delete it, and --resume flies its own");
   if (result.curve.size() >= static_cast<std::size_t>(steps)) result.end.clear();
   if (result.curve.empty()) result.curve.push_back(0);
   result.curve.resize(static_cast<std::size_t>(steps), result.curve.back());
@@ -145,7 +149,8 @@ struct Figures {
       StratifiedSample at;
       for (const Flown& episode : all) at.add(episode.curve[static_cast<std::size_t>(t)]);
       curves += cell(world) + "," + cell(utility) + "," + std::to_string(t + 1) + "," +
-                plain_number(at.mean()) + "," + plain_number(at.deviation()) + "\n";
+                plain_number(at.mean()) + "," +
+                (at.count() > 1 ? plain_number(at.deviation()) : "") + "\n";
       series.x.push_back(t + 1);
       series.y.push_back(at.mean());
       series.spread.push_back(at.deviation());

@@ -22,7 +22,9 @@ Value checksums_of(const std::vector<WorldName>& worlds, const std::vector<std::
     else
       files.set(world.text(), checksum(made_world(world, registry, invocation)));
   for (const std::string& utility : utilities) {
-    keep(utility, fs::path(registry.find("utility", utility).library).replace_extension("model"));
+    const fs::path library = registry.find("utility", utility).library;
+    keep(utility + ".library", library);
+    keep(utility, fs::path(library).replace_extension("model"));
     const Value* given = parameters.find(utility);
     if (!given || !given->is_map()) continue;
     for (const auto& [key, value] : given->as_map())

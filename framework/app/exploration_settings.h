@@ -6,8 +6,8 @@
 namespace lapwing {
 
 // SHA-256 of what an exploration depends on: by world of its mesh file, or of the surface that its
-// script makes; by utility of its model (a parameter that names a file, else NAME.model beside its
-// library). `parameters` are by utility. InputError for a script that fails.
+// script makes; by utility of its library and its model (a parameter that names a file, else
+// NAME.model beside it). `parameters` are by utility. InputError for a script that fails.
 Value checksums_of(const std::vector<WorldName>& worlds, const std::vector<std::string>& utilities,
                    const Value& parameters, const Registry& registry, const Invocation& invocation);
 

@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLongestName = 150;  // of 255 that file systems allow; more is added
+
 std::uint64_t seed_of(const std::string& text, const std::string& given) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
@@ -77,6 +79,9 @@ std::vector<WorldName> distinct_worlds(const std::vector<std::string>& given,
   for (const std::string& one : given)
     for (WorldName& name : world_names(one)) {
       const auto [found, fresh] = taken.emplace(file_text(name.text()), one);
+      if (found->first.size() > kLongestName)
+        throw InputError(command + ": the name of world '" + name.text() + "' is too long for " +
+                         "files that are called after it: rename it");
       if (!fresh)
         throw InputError(command + ": the worlds '" + found->second + "' and '" + one +
                          "' would both be called '" + name.text() +
@@ -237,6 +242,28 @@ Value ExplorationSetup::set_moves(const std::vector<std::string>& given) {
 
 ObservedSurface::NewMap ExplorationSetup::new_map(const Registry& registry) const {
   return [&registry, type = backend, given = map] { return registry.create<Map>(type, given); };
+}
+
+void WorldsInUse::expect(const WorldName& name) {
+  ++entries_[name.text()].expected;
+}
+
+std::shared_ptr<const WorldsInUse::InUse> WorldsInUse::begin(const WorldName& name) {
+  const std::lock_guard lock(mutex_);
+  Entry& entry = entries_.at(name.text());
+  if (!entry.held) {
+    World world = load_world(name, up_, registry_, invocation_);
+    GroundTruth truth = setup_.truth_of(world);
+    entry.held = std::make_shared<const InUse>(InUse{std::move(world), std::move(truth)});
+  }
+  return entry.held;
+}
+
+std::pair<int, int> WorldsInUse::end(const WorldName& name) {
+  const std::lock_guard lock(mutex_);
+  Entry& entry = entries_.at(name.text());
+  if (++entry.ended == entry.expected) entry.held.reset();
+  return {entry.ended, entry.expected};
 }
 
 }  // namespace lapwing

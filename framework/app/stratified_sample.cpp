@@ -22,10 +22,11 @@ double student(std::size_t freedom) {
          (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * n * n);
 }
 
+// About the first value: exact where all are equal.
 double middle_of(const std::vector<double>& values) {
   double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
+  for (const double value : values) sum += value - values.front();
+  return values.front() + sum / static_cast<double>(values.size());
 }
 
 double squares_about(const std::vector<double>& values, double middle) {
@@ -59,7 +60,7 @@ double StratifiedSample::mean() const {
 }
 
 double StratifiedSample::deviation() const {
-  if (count() < 2) return count() == 1 ? 0 : std::nan("");
+  if (count() < 2) return std::nan("");
   double squares = 0;
   for (const auto& group : groups_) squares += squares_about(group, mean());
   return std::sqrt(squares / static_cast<double>(count() - 1));

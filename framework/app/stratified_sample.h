@@ -16,7 +16,7 @@ class StratifiedSample {
 
   std::size_t count() const;
   double mean() const;
-  // The sample's standard deviation, whatever the group; 0 of one value.
+  // The sample's standard deviation, whatever the group.
   double deviation() const;
   // Half the width of the 95 % interval of the mean, by Student's t. Groups are strata: what lies
   // between their means is no chance, and a group of one value leaves it open.

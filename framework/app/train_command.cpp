@@ -25,10 +25,10 @@ const Trainable& trainable_of(const Registry& registry, const std::string& utili
   return *static_cast<const Trainable*>(table);
 }
 
-Parameters training_parameters(const Trainable& trainable, const Invocation& invocation) {
+Parameters training_parameters(const ParameterTable& table, const Invocation& invocation) {
   Value given = Value::map();
   for (const std::string& text : invocation.overrides) apply_override(given, text);
-  return check(trainable.parameters(), given);
+  return check(table, given);
 }
 
 std::string file_name(const std::string& world, std::int64_t episode) {
@@ -98,7 +98,8 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   const Registry registry = invocation.registry();
   const Interruption interruption;
   const Trainable& trainable = trainable_of(registry, request.utility);
-  const GridShape shape = trainable.shape(training_parameters(trainable, invocation));
+  const GridShape shape =
+      trainable.sample_shape(training_parameters(trainable.sample_parameters(), invocation));
   const std::vector<WorldName> names = distinct_worlds(request.worlds, "train dataset");
   for (const WorldName& name : names) require_world(name, request.up);
   if (fs::exists(request.target) && !fs::is_directory(request.target))
@@ -133,27 +134,29 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
     missing.push_back(missing_episodes(request, name.text(), made));
     made_by.push_back(std::move(made));
   }
-  std::size_t samples = 0;
-  for (std::size_t w = 0; w < names.size(); ++w) {
-    if (missing[w].empty()) continue;
-    const World world = load_world(names[w], request.up, registry, invocation);
-    const GroundTruth truth = setup.truth_of(world);
-    std::vector<std::size_t> made(missing[w].size());
-    parallel_for(missing[w].size(), invocation.threads, [&](std::size_t k) {
-      if (interruption.token().cancelled()) return;
-      const SampleSet set =
-          sampled_episode(world, truth, setup, registry, request.explorer, explorer, made_by[w],
-                          shape, missing[w][k], invocation.seed);
-      if (interruption.token().cancelled()) return;
-      write_samples(set, request.target / file_name(names[w].text(), missing[w][k]));
-      made[k] = set.size();
-    });
-    if (interruption.token().cancelled()) throw Cancelled();
-    for (const std::size_t count : made) samples += count;
+  std::vector<std::pair<std::size_t, std::int64_t>> tasks;  // world, episode
+  WorldsInUse in_use(setup, request.up, registry, invocation);
+  for (std::size_t w = 0; w < names.size(); ++w)
+    for (const std::int64_t episode : missing[w]) {
+      tasks.emplace_back(w, episode);
+      in_use.expect(names[w]);
+    }
+  parallel_for(tasks.size(), invocation.threads, [&](std::size_t k) {
+    if (interruption.token().cancelled()) return;
+    const auto [w, episode] = tasks[k];
+    const auto used = in_use.begin(names[w]);
+    const SampleSet set =
+        sampled_episode(used->world, used->truth, setup, registry, request.explorer, explorer,
+                        made_by[w], shape, episode, invocation.seed);
+    if (interruption.token().cancelled()) return;
+    write_samples(set, request.target / file_name(names[w].text(), episode));
+    const auto [ended, expected] = in_use.end(names[w]);
     if (!invocation.quiet)
-      std::cerr << names[w].text() << ": " << missing[w].size() << " episodes, " << samples
-                << " samples so far\n";
-  }
+      std::cerr << names[w].text() + ": " + std::to_string(ended) + " of " +
+                       std::to_string(expected) + " episodes, this one of " +
+                       std::to_string(set.size()) + " samples\n";
+  });
+  if (interruption.token().cancelled()) throw Cancelled();
   return ExitStatus::done;
 }
 
@@ -184,7 +187,8 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
   fit.log = [&](const std::string& line) {
     if (!invocation.quiet) std::cerr << line << std::endl;
   };
-  const Value figures = trainable.fit(training_parameters(trainable, invocation), fit);
+  const Value figures =
+      trainable.fit(training_parameters(trainable.fit_parameters(), invocation), fit);
   if (invocation.json) print_json(figures);
   return ExitStatus::done;
 }

@@ -245,6 +245,16 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
 
 }  // namespace
 
+bool is_utf8(std::string_view text) {
+  return as_utf8(text) == text;
+}
+
+std::string as_utf8(std::string_view text) {
+  const std::string dumped =
+      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return nlohmann::json::parse(dumped).get<std::string>();
+}
+
 std::string to_json(const Value& value, int indent) {
   Writer writer(indent);
   writer.write(value, "", 0);

@@ -12,6 +12,10 @@ namespace lapwing {
 // bytes. Throws Error on NaN and infinity, naming the key path: JSON cannot hold them.
 std::string to_json(const Value& value, int indent = 2);
 
+// Whether JSON can hold a text, and the same with every byte that it cannot as U+FFFD.
+bool is_utf8(std::string_view text);
+std::string as_utf8(std::string_view text);
+
 // Throws InputError naming `source`, line and column on malformed or truncated text, and on
 // repeated keys.
 Value from_json(std::string_view text, const std::string& source);

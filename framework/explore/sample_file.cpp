@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "framework/core/checksum.h"
 #include "framework/core/error.h"
 #include "framework/core/fields.h"
 #include "framework/core/files.h"
@@ -12,7 +13,7 @@
 namespace lapwing {
 namespace {
 
-constexpr std::string_view kMagic = "lapwing samples 2\n";
+constexpr std::string_view kMagic = "lapwing samples 3\n";
 constexpr std::size_t kMostBytes = std::size_t{4} << 30;
 
 }  // namespace
@@ -34,14 +35,12 @@ void write_samples(const SampleSet& samples, const std::filesystem::path& path) 
   header.set("samples", static_cast<std::int64_t>(samples.size()));
   header.set("grid", to_value(samples.shape));
   header.set("mapping", samples.mapping);
-  std::string bytes(kMagic);
-  bytes += to_json(header, -1);
-  bytes += '\n';
-  const std::size_t begin = bytes.size(), numbers = samples.size() * sizeof(float);
-  bytes.resize(begin + numbers + samples.grids.size());
-  std::memcpy(bytes.data() + begin, samples.targets.data(), numbers);
-  std::memcpy(bytes.data() + begin + numbers, samples.grids.data(), samples.grids.size());
-  write_file_atomically(path, bytes);
+  const std::size_t numbers = samples.size() * sizeof(float);
+  std::string data(numbers + samples.grids.size(), '\0');
+  std::memcpy(data.data(), samples.targets.data(), numbers);
+  std::memcpy(data.data() + numbers, samples.grids.data(), samples.grids.size());
+  header.set("sha256", sha256(data));
+  write_file_atomically(path, std::string(kMagic) + to_json(header, -1) + '\n' + data);
 }
 
 SampleSet read_samples(const std::filesystem::path& path) {
@@ -51,7 +50,7 @@ SampleSet read_samples(const std::filesystem::path& path) {
                       "; delete it or leave it out");
   };
   if (bytes.starts_with("lapwing samples ") && !bytes.starts_with(kMagic))
-    throw InputError("'" + path.string() + "' is of another format than 2, which this program " +
+    throw InputError("'" + path.string() + "' is of another format than 3, which this program " +
                      "reads: make its samples again, in another folder");
   if (!std::string_view(bytes).starts_with(kMagic)) throw refuse("another first line");
   const std::size_t line = bytes.find('\n', kMagic.size());
@@ -67,6 +66,7 @@ SampleSet read_samples(const std::filesystem::path& path) {
   const std::int64_t count = fields.integer("samples");
   const Value grid = fields.opaque("grid");
   samples.mapping = fields.opaque("mapping");
+  const std::string sum = fields.text("sha256");
   fields.finish();
   errors.throw_if_any();
   samples.shape = grid_shape_from(grid);
@@ -75,6 +75,8 @@ SampleSet read_samples(const std::filesystem::path& path) {
   if (count < 0 || rest / each != static_cast<std::size_t>(count) || rest % each != 0)
     throw refuse("it says " + std::to_string(count) + " samples, its " + std::to_string(rest) +
                  " bytes hold another number");
+  if (sha256(std::string_view(bytes).substr(begin)) != sum)
+    throw refuse("its data is not what its checksum is of");
   samples.targets.resize(static_cast<std::size_t>(count));
   const std::size_t numbers = samples.targets.size() * sizeof(float);
   std::memcpy(samples.targets.data(), bytes.data() + begin, numbers);
@@ -89,9 +91,15 @@ std::vector<std::filesystem::path> sample_files(const std::vector<std::filesyste
     return path.extension() == ".samples";
   };
   std::vector<std::filesystem::path> files;
+  const auto add = [&](const std::filesystem::path& file) {
+    for (const std::filesystem::path& other : files)
+      if (std::filesystem::equivalent(file, other))
+        throw InputError("'" + file.string() + "' is named twice");
+    files.push_back(file);
+  };
   for (const std::filesystem::path& path : given) {
     if (std::filesystem::is_regular_file(path) && holds_samples(path)) {
-      files.push_back(path);
+      add(path);
       continue;
     }
     std::error_code code;
@@ -101,7 +109,7 @@ std::vector<std::filesystem::path> sample_files(const std::vector<std::filesyste
     if (code) throw InputError("'" + path.string() + "': " + code.message());
     if (within.empty()) throw InputError("'" + path.string() + "' holds no file NAME.samples");
     std::sort(within.begin(), within.end());
-    files.insert(files.end(), within.begin(), within.end());
+    for (const auto& file : within) add(file);
   }
   return files;
 }

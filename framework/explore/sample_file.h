@@ -30,7 +30,7 @@ void write_samples(const SampleSet& samples, const std::filesystem::path& path);
 // InputError naming the file: no such file, another format, truncated, contradicting itself.
 SampleSet read_samples(const std::filesystem::path& path);
 // Of files NAME.samples and folders of them, in the order given; those of a folder by name.
-// InputError for what is neither, and for a folder without any.
+// InputError for what is neither, for a folder without any, and for a file named twice.
 std::vector<std::filesystem::path> sample_files(const std::vector<std::filesystem::path>& given);
 
 }  // namespace lapwing

@@ -15,7 +15,7 @@ struct FitRequest {
   std::vector<std::filesystem::path> training, validation;  // files of samples
   std::filesystem::path model;       // is written whenever the validation improves
   std::filesystem::path checkpoint;  // is written after every epoch
-  bool resume = false;               // go on from the checkpoint, with the same result
+  bool resume = false;  // go on from the checkpoint, if there is one, with the same result
   std::uint64_t seed = 1;
   int threads = 1;  // the result is the same for any number
   const CancellationToken* cancellation = nullptr;
@@ -30,9 +30,10 @@ struct Prediction {
 
 // Static data of a library (plugin/plugin.h). InputError as everywhere.
 struct Trainable {
-  ParameterTable (*parameters)();  // of architecture and training
-  // Of its input; InputError for what no network takes.
-  GridShape (*shape)(const Parameters& parameters);
+  ParameterTable (*sample_parameters)();
+  // Of what samples hold; InputError for what no network takes.
+  GridShape (*sample_shape)(const Parameters& parameters);
+  ParameterTable (*fit_parameters)();  // of samples, architecture and training
   // Figures of the best epoch, as the model's provenance holds them.
   Value (*fit)(const Parameters& parameters, const FitRequest& request);
   // Refused where the samples are of another mapping or shape.

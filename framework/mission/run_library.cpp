@@ -72,6 +72,15 @@ int expect_plugin(lua_State* state) {
   return 0;
 }
 
+// run:stated("exploration.speed"): whether somebody wrote that option, or it is its default.
+int stated(lua_State* state) {
+  const std::string path = text_argument(state, 2, "stated");
+  const Value* value = at_path(run_of(state).configuration, path);
+  lua_pushboolean(state, value && !value->is_null() && !value->origin().source.empty() &&
+                             value->origin().source != "default");
+  return 1;
+}
+
 std::span<const Binding> told_methods() {
   static const Binding methods[] = {
       {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user asked to end"},
@@ -80,7 +89,9 @@ std::span<const Binding> told_methods() {
       {"fail", &guarded<fail>, "(option: string, message: string)",
        "an error where that option was written"},
       {"expect_plugin", &guarded<expect_plugin>, "(option: string, kind: string)",
-       "an error where that option is given and names no plugin of the kind"}};
+       "an error where that option is given and names no plugin of the kind"},
+      {"stated", &guarded<stated>, "(option: string): boolean",
+       "whether that option was written, or is its default"}};
   return methods;
 }
 

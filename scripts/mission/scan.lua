@@ -188,7 +188,7 @@ local function planned(run)
   local vehicle = run:vehicle(o.vehicle)
   exploration.check(run)
   local seconds = exploration.seconds(run, vehicle, budget_of(run))
-  local known, poses, surface, explored = first.knowledge(run, seconds)
+  local known, poses, surface, explored = first.knowledge(run, seconds, vehicle)
   local starts, finish = first.starts(run, poses)
   local plan
   for round = 1, o.rounds do

@@ -22,8 +22,8 @@ M.DECLARATION = { name = "exploration", type = "table",
       summary = "edge of the box that is taken to be free where it begins" },
     { name = "start", type = "numbers", size = 3, unit = "m",
       summary = "where it begins; absent: drawn by the run's seed" },
-    { name = "start_yaw_deg", type = "number", unit = "deg",
-      summary = "heading there; absent: 0" },
+    { name = "start_yaw_deg", type = "number", unit = "deg", minimum = -360,
+      maximum = 360, summary = "heading there; absent: 0" },
   } }
 
 function M.wanted(run)
@@ -36,11 +36,22 @@ function M.check(run)
   if e.start_yaw_deg and not e.start then
     run:fail("exploration.start_yaw_deg", "is the heading at exploration.start: give both")
   end
-  if e.images == 0 and (e.budget or e.start) then
-    run:fail("exploration", "without images it is none: set exploration.images")
+  if e.images == 0 then
+    for _, option in ipairs { "exploration.budget", "exploration.range", "exploration.speed",
+                              "exploration.clear", "exploration.start", "utility" } do
+      if run:stated(option) then
+        run:fail(option, "without images there is no exploration: set exploration.images")
+      end
+    end
+    return
   end
   if e.images == 1 then run:fail("exploration.images", "2 at least, or 0 for no exploration") end
-  if e.images == 0 then return end
+  for _, option in ipairs { "map.hit", "map.miss" } do
+    if run:stated(option) then
+      run:fail(option, string.format("an exploration's map has hit %g and miss %g: leave it out",
+                                     HIT, MISS))
+    end
+  end
   for option, given in pairs { ["prior.map"] = o.prior.map, flights = o.flights[1] } do
     if given then
       run:fail(option, "an exploration takes the place of flights and of files of an earlier "
@@ -81,7 +92,7 @@ end
 
 -- What is known of a surface after an exploration of so many seconds at most that stays in the box
 -- `room`: a prior with its mesh, and the views, the last one first. `region` is to be scanned.
-function M.knowledge(run, surface, region, room, seconds)
+function M.knowledge(run, surface, region, room, seconds, vehicle)
   local o = run.options
   local e = o.exploration
   local own = map_of(o, e.range)
@@ -97,6 +108,11 @@ function M.knowledge(run, surface, region, room, seconds)
   if done.images < 2 then
     run:fail("exploration", string.format("it ended after one image (of %.6g s it had): %s",
                                           seconds, done.reason))
+  end
+  -- The tour's certificate begins where this flight ends.
+  local judged = run:certify(done:plan { vehicle = vehicle, margin = math.min(o.margin, body / 2) })
+  if not judged.feasible then
+    run:fail("exploration", "the flight that explores is not certified: " .. judged.failures[1])
   end
   local known = run:prior { map = map_of(o, e.range), spacing = o.surface.spacing,
                             range = e.range, stride = o.surface.stride }

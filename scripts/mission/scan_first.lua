@@ -197,8 +197,8 @@ local function open_air(run, known, surface, poses)
 end
 
 -- What is known (a prior with its mesh), the poses of the first flights, what they were flown in,
--- if anything, and the exploration, if there was one, which has so many seconds.
-function M.knowledge(run, seconds)
+-- if anything, and the vehicle's exploration, if there was one, which has so many seconds.
+function M.knowledge(run, seconds, vehicle)
   local o = run.options
   local files, surface = prior_files(run), surface_of(run)
   if not surface and not files then
@@ -207,7 +207,7 @@ function M.knowledge(run, seconds)
   end
   if exploration.wanted(run) then
     local known, poses, done = exploration.knowledge(run, surface, M.region_of(run),
-                                                     M.room(run, {}), seconds)
+                                                     M.room(run, {}), seconds, vehicle)
     return known, poses, surface, done
   end
   local known, poses = new_prior(run), {}

@@ -190,6 +190,21 @@ TEST_F(CommandLine, BadInputWithJsonIsStillOneObject) {
             std::string::npos);
 }
 
+// Documents are JSON, and JSON is UTF-8: what is not is refused before anything is done.
+TEST_F(CommandLine, TextThatIsNotUtf8IsRefused) {
+  write("shot.lua", film(""));
+  for (const std::vector<std::string>& typed :
+       {std::vector<std::string>{"run", "shot.lua", "--set", "name=\xff", "--json"},
+        {"run", "\xff.lua", "--json"},
+        {"evaluate", "explore", "--world", "a\xff.obj", "--json"}}) {
+    const Finished finished = run(typed);
+    EXPECT_EQ(finished.status, 2) << finished.err;
+    EXPECT_NE(from_json(finished.out, "stdout").at("error").as_text().find("not UTF-8"),
+              std::string::npos);
+  }
+  EXPECT_EQ(run({"run", "\xc3\xbc.lua"}).status, 2);  // UTF-8, and no file
+}
+
 // Everything that can be wrong with a mission: one clear message, exit 2, nothing written.
 TEST_F(CommandLine, BadMissionsAreRefused) {
   refused_script(film("wieghts = {},"), {"shot.lua:2: wieghts: unknown key", "'weights'"});

@@ -106,6 +106,10 @@ TEST_F(Guides, TheSynopsisIsWhole) {
     typed.push_back("--help");
     const Finished finished = run(typed);
     ASSERT_EQ(finished.status, 0) << synopsis;
+    typed.pop_back();
+    std::string usage = "Usage: lapwing";
+    for (const std::string& word : typed) usage += " " + word;
+    EXPECT_NE(finished.out.find(usage + " "), std::string::npos) << synopsis << finished.out;
     // An option's first name: "-o" of "-o,--output".
     std::set<std::string> known = options_in(finished.out, std::regex("\n  (-[a-z]|--[a-z-]+)"));
     known.erase("-h");

@@ -53,7 +53,7 @@ TEST(StratifiedSample, TooFewValuesAreNoFigure) {
   EXPECT_TRUE(std::isnan(StratifiedSample().mean()));
   EXPECT_TRUE(std::isnan(StratifiedSample().deviation()));
   EXPECT_TRUE(std::isnan(StratifiedSample().interval()));
-  EXPECT_EQ(sample_of({3}).deviation(), 0);
+  EXPECT_TRUE(std::isnan(sample_of({3}).deviation()));
   EXPECT_TRUE(std::isnan(sample_of({3}).interval()));
   StratifiedSample mixed = sample_of({1, 2});
   mixed.join(sample_of({3}));

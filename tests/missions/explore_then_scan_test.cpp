@@ -53,6 +53,8 @@ TEST_F(ExploringThenScanning, WhatCannotBeIsSaid) {
   for (const auto& [more, expected] : std::vector<std::pair<const char*, const char*>>{
            {"exploration.images=0 --set utility=frontir", "did you mean 'frontier'?"},
            {"exploration.images=0", "set exploration.images"},
+           {"map='{type: brick, hit: 0.7}'", "an exploration's map has hit 0.9"},
+           {"exploration.speed=50", "is not certified: speed_across"},
            {"exploration.images=1", "2 at least"}}) {
     EXPECT_EQ(run(std::string("--set ") + more, "both.lua"), 2) << more;
     EXPECT_THAT(error(), HasSubstr(expected)) << more;

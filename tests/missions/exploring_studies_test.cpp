@@ -104,6 +104,13 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   }
   EXPECT_EQ(rows, 3);
   EXPECT_NE(read_file(whole / "seconds.csv").find("yard.obj,oracle,2,0."), std::string::npos);
+  // Another utility's episode in the place of one.
+  const fs::path theirs = broken / "episodes" / "yard.obj_frontier_1.json";
+  const std::string own_text = read_file(theirs);
+  fs::copy_file(broken / "episodes" / "yard.obj_oracle_1.json", theirs,
+                fs::copy_options::overwrite_existing);
+  refused("--resume", broken, "is oracle's episode 1: delete it");
+  write_file_atomically(theirs, own_text);
   refused("--utility learned", folder_ / "twice", "--utility learned: is named twice");
   refused("--resume --seed 5", broken, "seed is 1 there, 5 here");
   refused("--resume --moves clear=3", broken, "\"clear\":6.0} there, {\"step\":2.5,");
@@ -335,7 +342,17 @@ TEST_F(Exploring, AModelIsTrainedForAnotherMapping) {
       << read_file(errors);
   ASSERT_EQ(run("train score", others + "--model " + model), 0) << read_file(errors);
   EXPECT_EQ(evaluate("--set learned.model=" + model), 0) << read_file(errors);
-  // A grid that no network of so many blocks takes is refused before anything is flown.
+  EXPECT_EQ(run("train score", others + others + "--model " + model), 2);
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("is named twice"));
+  const fs::path sample = folder_ / "others" / "yard.obj_1.samples";
+  std::string damaged = read_file(sample);
+  damaged[damaged.size() - 9] ^= 1;
+  write_file_atomically(sample, damaged);
+  EXPECT_EQ(run("train score", others + "--model " + model), 2);
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("is not what its checksum is of"));
+  EXPECT_EQ(run("train dataset", world + "--set epochs=3 -o " + samples), 2);
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("epochs: unknown key"));
+  // A grid that no network takes is refused before anything is flown.
   EXPECT_EQ(run("train dataset", world + "--set grid.across=3 -o " + samples), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("cannot be halved"));
 }

@@ -52,11 +52,14 @@ Samples read_all(const std::vector<std::filesystem::path>& files, const GridShap
   return samples;
 }
 
+GridShape grid_of(const Parameters& grid) {
+  return {static_cast<int>(grid.integer("across")), static_cast<int>(grid.integer("ahead")),
+          static_cast<int>(grid.integer("up")), static_cast<int>(grid.integer("levels"))};
+}
+
 NetworkShape shape_of(const Parameters& p) {
-  const Parameters& grid = p.table("grid");
   NetworkShape shape;
-  shape.grid = {static_cast<int>(grid.integer("across")), static_cast<int>(grid.integer("ahead")),
-                static_cast<int>(grid.integer("up")), static_cast<int>(grid.integer("levels"))};
+  shape.grid = grid_of(p.table("grid"));
   shape.blocks = static_cast<int>(p.integer("blocks"));
   shape.units = static_cast<int>(p.integer("units"));
   shape.growth = static_cast<int>(p.integer("growth"));
@@ -253,6 +256,16 @@ void Training::resume() {
   const Value& rho = model_.progress.at("best_rho");
   best_.rho = rho.is_null() ? std::nan("") : rho.as_number();
   seconds_ = model_.progress.at("seconds").as_number();
+  // The checkpoint has the last epoch's weights; the best one's are the model.
+  if (!std::filesystem::exists(request_.model))
+    throw InputError("--resume: the model '" + request_.model.string() + "' of epoch " +
+                     std::to_string(best_epoch_) + " is not there: train anew without --resume");
+  const Model best = read_model(request_.model);
+  const Value* kept = best.provenance.find("epoch");
+  if (!kept || !(*kept == Value(best_epoch_)))
+    throw InputError("--resume: '" + request_.model.string() +
+                     "' is not the model that its checkpoint goes with, of epoch " +
+                     std::to_string(best_epoch_));
 }
 
 // One pass over the samples in an order of its own; the mean loss. Of the last, smaller batch the
@@ -301,7 +314,7 @@ void Training::note(std::int64_t number, double training, const Judged& judged, 
 }
 
 Value Training::run() {
-  if (request_.resume)
+  if (request_.resume && std::filesystem::exists(request_.checkpoint))
     resume();
   else
     begin();
@@ -365,14 +378,17 @@ Value Training::run() {
 
 }  // namespace
 
-ParameterTable fit_parameters() {
+ParameterTable sample_parameters() {
   ParameterTable grid;
   grid.integer("across", 16, "points to the right and left", between(2, 64))
       .integer("ahead", 16, "points ahead and behind", between(2, 64))
       .integer("up", 8, "points up and down", between(2, 64))
       .integer("levels", 3, "scales", between(1, MapMeans::kMostLevels));
-  return ParameterTable()
-      .table("grid", grid, "what the network sees of the map")
+  return ParameterTable().table("grid", grid, "what the network sees of the map");
+}
+
+ParameterTable fit_parameters() {
+  return sample_parameters()
       .integer("blocks", 2, "N_c", between(1, 5))
       .integer("units", 4, "N_u, convolutions of each block", between(1, 16))
       .integer("growth", 8, "N_f, maps that every convolution adds", between(8, 1024))
@@ -396,8 +412,12 @@ ParameterTable fit_parameters() {
       .integer("validation_samples", 20000, "at most, evenly over all", between(2, 10000000));
 }
 
-GridShape fit_shape(const Parameters& parameters) {
-  return shape_of(parameters).grid;
+GridShape sample_shape(const Parameters& parameters) {
+  NetworkShape smallest;
+  smallest.grid = grid_of(parameters.table("grid"));
+  smallest.blocks = 1;
+  require_sense(smallest);
+  return smallest.grid;
 }
 
 Value fit(const Parameters& parameters, const FitRequest& request) {

@@ -5,8 +5,9 @@
 
 namespace lapwing::learned {
 
+ParameterTable sample_parameters();
+GridShape sample_shape(const Parameters& parameters);
 ParameterTable fit_parameters();
-GridShape fit_shape(const Parameters& parameters);
 Value fit(const Parameters& parameters, const FitRequest& request);
 Prediction predict(const std::filesystem::path& model, const SampleSet& samples, int threads);
 

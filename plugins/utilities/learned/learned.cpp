@@ -85,8 +85,8 @@ class Learned final : public ViewUtility {
         .boolean("blank", false, "the network sees nothing of the map: what it knows without");
   }
   static std::span<const Extension> extensions() {
-    static const Trainable trainable{&learned::fit_parameters, &learned::fit_shape, &learned::fit,
-                                     &learned::predict};
+    static const Trainable trainable{&learned::sample_parameters, &learned::sample_shape,
+                                     &learned::fit_parameters, &learned::fit, &learned::predict};
     static const Extension all[] = {{kTrainable, &trainable}};
     return all;
   }

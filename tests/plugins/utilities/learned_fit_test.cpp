@@ -149,6 +149,37 @@ TEST(LearnedFit, EndsWhereItIsAskedTo) {
   EXPECT_EQ(read_file(fixture.request.model), whole);
 }
 
+// The checkpoint holds the last weights; without the best ones there is nothing to go on with.
+TEST(LearnedFit, GoesOnWithItsModelAlone) {
+  FitFixture fixture;
+  fixture.given.set("epochs", 2);
+  fixture.request.resume = true;  // of nothing: it begins
+  fixture.run();
+  const auto& model = fixture.request.model;
+  const std::string whole = read_file(model);
+  fixture.given.set("epochs", 3);
+  const auto refusal = [&] {
+    try {
+      fixture.run();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  std::filesystem::remove(model);
+  EXPECT_NE(refusal().find("is not there: train anew"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(model));
+  Model other = [&] {
+    write_file_atomically(model, whole);
+    return read_model(model);
+  }();
+  other.provenance.set("epoch", 77);
+  write_model(other, model);
+  EXPECT_NE(refusal().find("is not the model that its checkpoint goes with"), std::string::npos);
+  write_file_atomically(model, whole);
+  EXPECT_EQ(refusal(), "");
+}
+
 TEST(LearnedFit, ResumedItIsAsIfNeverStopped) {
   FitFixture fixture;
   fixture.run();
