@@ -2,4 +2,4 @@
 --   --set utility=frontier (average_entropy, proximity_count, learned, oracle)
 local explore = require "mission.explore"
 
-return explore.of_scene { name = "explore city", scene = "downtown", scene_seed = 101 }
+return explore.of_scene { name = "explore city", scene = "downtown", scene_seed = 301 }

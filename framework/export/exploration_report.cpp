@@ -38,9 +38,9 @@ Facts summary(const ExplorationRecord& record) {
   add("ended", record.end);
   add("images", std::to_string(record.observed.size()));
   add("way", number_text(record.length), "m");
-  add("observed surface", number_text(observed),
-      "of " + number_text(record.surface, 6) + " voxels");
-  add("efficiency", number_text(record.efficiency, 6), "voxel images");
+  add("observed surface", std::to_string(std::lround(observed)),
+      "of " + std::to_string(std::lround(record.surface)) + " voxels");
+  add("efficiency", std::to_string(std::lround(record.efficiency)), "voxel images");
   if (record.oracle_efficiency > 0)
     add("relative to the oracle", number_text(record.efficiency / record.oracle_efficiency, 3));
   if (!record.oracle_end.empty())

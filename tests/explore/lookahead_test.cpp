@@ -78,7 +78,20 @@ double resident() {
   return 0;
 }
 
-// In a box the map and the viewpoints have an end; nothing else is kept.
+// Turns about, and asks for all that an episode keeps for utilities.
+class Turning final : public ViewUtility {
+ public:
+  void require_fit(const EpisodeView& known) const override { known.hidden->follow(5); }
+
+ protected:
+  void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
+                 std::span<double> values) const override {
+    known.means->refresh(3);
+    for (std::size_t k = 0; k < views.size(); ++k) values[k] = 2 + std::sin(5 * views[k].yaw);
+  }
+};
+
+// In a box the map and the viewpoints have an end, and so has all that is made of them.
 TEST(Episode, NeedsNoMoreMemoryAfterAThousandStepsThanAfterThreeHundred) {
   YardWorld world(1000);
   world.settings.sensor.pinhole = {24, 18, 12, 12, 11.5, 8.5};
@@ -88,11 +101,16 @@ TEST(Episode, NeedsNoMoreMemoryAfterAThousandStepsThanAfterThreeHundred) {
       Eigen::AlignedBox3d(world.start.position.array() - 2.6, world.start.position.array() + 2.6);
   world.start.pitch = 0;
   double early = 0, late = 0;
-  const Stated turning([](const Viewpoint& view) { return 2 + std::sin(5 * view.yaw); });
-  world.run(turning, [&](const EpisodeMoment& moment) {
-    if (moment.step == 300) early = resident();
-    if (moment.step == 999) late = resident();
+  std::size_t kept_early = 0, kept_late = 0;
+  const auto kept = [](const EpisodeView& known) {
+    return known.means->bytes() + known.hidden->bytes();
+  };
+  world.run(Turning(), [&](const EpisodeMoment& moment) {
+    if (moment.step == 300) early = resident(), kept_early = kept(moment.known);
+    if (moment.step == 999) late = resident(), kept_late = kept(moment.known);
   });
+  EXPECT_GT(kept_early, 100'000u);
+  EXPECT_LE(kept_late, kept_early + kept_early / 50);
   ASSERT_GT(early, 0);
   ASSERT_GT(late, 0);
   EXPECT_LT(late - early, 4000) << "kB";

@@ -1,4 +1,5 @@
 // What the readme of the learned utility says of it, on fewer and shorter episodes.
+#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -37,6 +38,9 @@ TEST_F(ExploringFigures, TheLearnedUtilityComesNextToTheOracle) {
   const auto relative = [](const Rows& rows, const char* world, const char* utility) {
     return rows.at({world, utility}).at("relative").as_number();
   };
+  const auto efficiency = [](const Rows& rows, const char* world, const char* utility) {
+    return rows.at({world, utility}).at("efficiency").as_number();
+  };
   double mean = 0;
   for (const char* world : {"suburb 1", "downtown 202"}) {
     const double learned = relative(seeing, world, "learned");
@@ -44,35 +48,40 @@ TEST_F(ExploringFigures, TheLearnedUtilityComesNextToTheOracle) {
       EXPECT_GT(learned, relative(seeing, world, other)) << world << " " << other;
     EXPECT_GT(learned, relative(blind, world, "learned") + 0.1) << world;
     EXPECT_GT(learned, 0.6) << world;
+    for (const char* other : {"learned", "frontier", "average_entropy", "proximity_count"})
+      EXPECT_LT(efficiency(seeing, world, other), efficiency(seeing, world, "oracle")) << other;
     mean += learned / 2;
   }
   EXPECT_GT(mean, 0.75);
 }
 
-// Over episodes with the same starts and true depth; few of them, so that chance has its share.
+// Over episodes with the same starts and true depth. What the readme says of a metre of noise,
+// 0.94, is below the 0.95 that holds for all cameras together.
 TEST_F(ExploringFigures, NoiseAndStereoCostLittle) {
   const std::string flown =
-      "--world suburb --world downtown:202 --utility learned --episodes 5 --steps 100 ";
+      "--world street --world suburb --world downtown:202 --utility learned --episodes 3 "
+      "--steps 100 ";
   evaluate(flown, "clear");
   const std::string against = "--against '" + (folder_ / "clear").string() + "'";
-  int k = 0;
-  for (const char* camera : {"--dropped 0.4 --sigma 0.1", "--dropped 0.4 --sigma 0.2",
-                             "--dropped 0.4 --sigma 0.5", "--stereo 0.3"}) {
-    const Rows rows = evaluate(flown + camera + " " + against, "noisy" + std::to_string(++k));
+  double mean = 0;
+  int cameras = 0;
+  for (const char* camera :
+       {"--dropped 0.4 --sigma 0.1", "--dropped 0.4 --sigma 0.2", "--dropped 0.4 --sigma 0.5",
+        "--dropped 0.4 --sigma 1", "--stereo 0.5"}) {
+    const Rows rows = evaluate(flown + camera + " " + against, "noisy" + std::to_string(++cameras));
     const Value& all = rows.at({"all", "learned"});
     const double kept = all.at("against").as_number();
     std::printf("%s: %.3f +- %.3f\n", camera, kept, all.at("against_interval").as_number());
-    EXPECT_GT(kept, 0.9) << camera;
-    EXPECT_LT(kept, 1.1) << camera;
+    EXPECT_GT(kept, 0.88) << camera;
+    mean += kept / 5;
   }
+  EXPECT_GT(mean, 0.95);
+  EXPECT_LT(mean, 1.05);
 }
 
-// One thread an episode, two at once.
+// One thread an episode, two at once; of the oracle everything, the camera and the world as well.
 TEST_F(ExploringFigures, StepsAreFast) {
-  evaluate(
-      "--world street --episodes 2 --threads 2 --utility learned --utility frontier "
-      "--utility oracle",
-      "timed");
+  evaluate("--world street --episodes 2 --threads 2 --utility learned --utility frontier", "timed");
   const std::string seconds = read_file(folder_ / "timed/seconds.csv");
   const auto step = [&](const std::string& utility) {
     const std::string row = "street 1," + utility + ",2,";
@@ -81,18 +90,27 @@ TEST_F(ExploringFigures, StepsAreFast) {
   };
   EXPECT_LT(step("learned"), 0.15) << seconds;
   EXPECT_LT(step("frontier"), 0.05) << seconds;
-  EXPECT_LT(200 * step("oracle"), 20) << seconds;
+  const auto begin = std::chrono::steady_clock::now();
+  evaluate("--world street --episodes 1 --utility oracle", "oracle");
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  EXPECT_LT(took.count(), 20);
 }
 
 // Spearman's rho of the network alone: in episodes that it was not trained on of worlds that it
 // was, and in worlds that it has never seen.
 TEST_F(ExploringFigures, ItRanksViews) {
-  const auto mean_rho = [&](const std::string& worlds, const std::string& name, double least) {
-    const std::string samples = "'" + (folder_ / name).string() + "'";
-    const std::string made = std::string(LAPWING_BUILD_DIR) +
-                             "/bin/lapwing train dataset --episodes 1 --quiet -o " + samples + " " +
-                             worlds;
-    EXPECT_EQ(std::system(made.c_str()), 0);
+  const auto mean_rho = [&](const std::string& worlds, const std::vector<int>& seeds,
+                            double least) {
+    std::string samples;
+    for (const int seed : seeds) {
+      const std::string folder =
+          "'" + (folder_ / ("samples" + std::to_string(seed))).string() + "' ";
+      const std::string made = std::string(LAPWING_BUILD_DIR) +
+                               "/bin/lapwing train dataset --episodes 1 --quiet --seed " +
+                               std::to_string(seed) + " -o " + folder + worlds;
+      EXPECT_EQ(std::system(made.c_str()), 0);
+      samples += folder;
+    }
     const Value answer =
         answer_of("train score " + samples +
                   " --model '" LAPWING_SOURCE_DIR "/plugins/utilities/learned/learned.model'");
@@ -104,12 +122,11 @@ TEST_F(ExploringFigures, ItRanksViews) {
     }
     return sum / static_cast<double>(answer.as_map().size());
   };
-  EXPECT_GT(mean_rho("--world downtown:1 --world downtown:5 --world district:3 --seed 99",
-                     "held_out", 0.75),
-            0.85);
-  EXPECT_GT(
-      mean_rho("--world street --world suburb --world church --steps 60 --seed 7", "unseen", 0.4),
-      0.6);
+  EXPECT_GT(mean_rho("--world downtown:1 --world downtown:5 --world district:3", {99}, 0.75), 0.85);
+  EXPECT_GT(mean_rho("--world street --world suburb --world church --world towers --world "
+                     "downtown:201 --steps 60",
+                     {1, 2}, 0.4),
+            0.6);
 }
 
 }  // namespace
