@@ -55,28 +55,24 @@ TEST_F(ExploringFigures, TheLearnedUtilityComesNextToTheOracle) {
   EXPECT_GT(mean, 0.75);
 }
 
-// Over episodes with the same starts and true depth. What the readme says of a metre of noise,
-// 0.94, is below the 0.95 that holds for all cameras together.
+// The readme's own episodes, from the same starts and with true depth: fewer or shorter ones tell
+// 5 % from chance no more. A metre of noise costs more than that, as the readme says.
 TEST_F(ExploringFigures, NoiseAndStereoCostLittle) {
   const std::string flown =
-      "--world street --world suburb --world downtown:202 --utility learned --episodes 3 "
-      "--steps 100 ";
+      "--world street --world suburb --world downtown:201 --utility learned --episodes 10 ";
   evaluate(flown, "clear");
   const std::string against = "--against '" + (folder_ / "clear").string() + "'";
-  double mean = 0;
-  int cameras = 0;
-  for (const char* camera :
-       {"--dropped 0.4 --sigma 0.1", "--dropped 0.4 --sigma 0.2", "--dropped 0.4 --sigma 0.5",
-        "--dropped 0.4 --sigma 1", "--stereo 0.5"}) {
-    const Rows rows = evaluate(flown + camera + " " + against, "noisy" + std::to_string(++cameras));
+  int count = 0;
+  for (const auto& [camera, least] : {std::pair{"--dropped 0.4 --sigma 0.2", 0.95},
+                                      {"--dropped 0.4 --sigma 1", 0.9},
+                                      {"--stereo 0.5", 0.95}}) {
+    const Rows rows = evaluate(flown + camera + " " + against, "noisy" + std::to_string(++count));
     const Value& all = rows.at({"all", "learned"});
     const double kept = all.at("against").as_number();
     std::printf("%s: %.3f +- %.3f\n", camera, kept, all.at("against_interval").as_number());
-    EXPECT_GT(kept, 0.88) << camera;
-    mean += kept / 5;
+    EXPECT_GT(kept, least) << camera;
+    EXPECT_LT(kept, 1.05) << camera;
   }
-  EXPECT_GT(mean, 0.95);
-  EXPECT_LT(mean, 1.05);
 }
 
 // One thread an episode, two at once; of the oracle everything, the camera and the world as well.
