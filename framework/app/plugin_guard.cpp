@@ -66,11 +66,12 @@ void on_exit() {
 }
 
 void handle_crashes() {
-  constexpr std::size_t kStack = 64 * 1024;  // of its own: the other may be what overflowed
+  // A stack of its own: the other may be what overflowed.
+  alignas(16) static std::byte own[64 * 1024];
   stack_t stack{};
-  stack.ss_sp = std::malloc(kStack);
-  stack.ss_size = kStack;
-  const bool own_stack = stack.ss_sp && ::sigaltstack(&stack, nullptr) == 0;
+  stack.ss_sp = own;
+  stack.ss_size = sizeof own;
+  const bool own_stack = ::sigaltstack(&stack, nullptr) == 0;
   struct sigaction action {};
   action.sa_handler = on_crash;
   action.sa_flags = (own_stack ? SA_ONSTACK : 0) | SA_NODEFER;

@@ -113,7 +113,9 @@ TEST(Episode, NeedsNoMoreMemoryAfterAThousandStepsThanAfterThreeHundred) {
   EXPECT_LE(kept_late, kept_early + kept_early / 50);
   ASSERT_GT(early, 0);
   ASSERT_GT(late, 0);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they keep what is freed
   EXPECT_LT(late - early, 4000) << "kB";
+#endif
 }
 
 TEST(Lookahead, HasAnEnd) {
