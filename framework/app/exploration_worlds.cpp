@@ -209,7 +209,7 @@ Value ExplorationSetup::set_mapping(const std::vector<std::string>& given) {
                   between(0.501, 0.999))
           .number("miss", 0.1, "", "that a voxel that a ray passed is occupied",
                   between(0.001, 0.499)),
-      mapping, "mapping");
+      mapping, "");
   const auto width = static_cast<int>(p.integer("width")),
              height = static_cast<int>(p.integer("height"));
   const double focal = width / 2.0 / std::tan(radians(p.number("view_deg")) / 2);
@@ -232,7 +232,7 @@ Value ExplorationSetup::set_moves(const std::vector<std::string>& given) {
                 .number("body", episode.body, "m", "edge of the box that must be free", above(0))
                 .number("clear", episode.clear, "m", "edge of the box that is free at the start",
                         above(0)),
-            moves, "moves");
+            moves, "");
   episode.step = p.number("step");
   episode.turn = p.number("turn_deg") * EIGEN_PI / 180;
   episode.body = p.number("body");
