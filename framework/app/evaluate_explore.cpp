@@ -218,7 +218,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
                        " episodes\n";
   });
   if (interruption.token().cancelled()) throw Cancelled();
-  write_settings();
+  std::call_once(stated_once, write_settings);  // nothing was missing, but worlds may have joined
   std::vector<std::string> worlds;
   for (const WorldName& name : names) worlds.push_back(name.text());
   const ExplorationTables tables =

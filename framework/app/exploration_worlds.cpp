@@ -210,10 +210,9 @@ Value ExplorationSetup::set_mapping(const std::vector<std::string>& given) {
           .number("miss", 0.1, "", "that a voxel that a ray passed is occupied",
                   between(0.001, 0.499)),
       mapping, "");
-  const auto width = static_cast<int>(p.integer("width")),
-             height = static_cast<int>(p.integer("height"));
-  const double focal = width / 2.0 / std::tan(radians(p.number("view_deg")) / 2);
-  episode.sensor.pinhole = {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
+  episode.sensor.pinhole =
+      centered_pinhole(static_cast<int>(p.integer("width")), static_cast<int>(p.integer("height")),
+                       radians(p.number("view_deg")));
   episode.sensor.range = p.number("range");
   pitch = radians(p.number("pitch_deg"));
   for (const char* key : {"resolution", "hit", "miss"}) map.set(key, p.number(key));

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "framework/app/stratified_sample.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 
@@ -16,14 +17,10 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 MeanOf mean_of(const std::vector<double>& values) {
   if (values.empty()) return {kNone, kNone};
-  MeanOf result;
-  const auto n = static_cast<double>(values.size());
-  for (const double value : values) result.mean += value / n;
-  if (values.size() < 2) return result;
-  double squares = 0;
-  for (const double value : values) squares += (value - result.mean) * (value - result.mean);
-  result.error = std::sqrt(squares / (n - 1) / n);
-  return result;
+  StratifiedSample sample;
+  for (const double value : values) sample.add(value);
+  if (values.size() < 2) return {sample.mean(), 0};
+  return {sample.mean(), sample.deviation() / std::sqrt(static_cast<double>(values.size()))};
 }
 
 template <class Get>

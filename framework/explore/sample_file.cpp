@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 #include "framework/core/checksum.h"
 #include "framework/core/error.h"
@@ -91,10 +92,10 @@ std::vector<std::filesystem::path> sample_files(const std::vector<std::filesyste
     return path.extension() == ".samples";
   };
   std::vector<std::filesystem::path> files;
+  std::set<std::filesystem::path> met;
   const auto add = [&](const std::filesystem::path& file) {
-    for (const std::filesystem::path& other : files)
-      if (std::filesystem::equivalent(file, other))
-        throw InputError("'" + file.string() + "' is named twice");
+    if (!met.insert(std::filesystem::canonical(file)).second)
+      throw InputError("'" + file.string() + "' is named twice");
     files.push_back(file);
   };
   for (const std::filesystem::path& path : given) {

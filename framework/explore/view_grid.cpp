@@ -83,15 +83,9 @@ std::string in_words(const std::string& key, const Value& value) {
 
 }  // namespace
 
-namespace {
-
-constexpr int kLeastPoints = 2, kMostPoints = 64;  // along an edge
-
-}  // namespace
-
 void require_sense(const GridShape& shape) {
   for (const int points : {shape.across, shape.ahead, shape.up})
-    if (points < kLeastPoints || points > kMostPoints)
+    if (points < GridShape::kLeastPoints || points > GridShape::kMostPoints)
       throw InputError("a grid of " + std::to_string(shape.across) + " x " +
                        std::to_string(shape.ahead) + " x " + std::to_string(shape.up) +
                        " points: expected 2 to 64 along each edge");
@@ -113,9 +107,9 @@ GridShape grid_shape_from(const Value& value) {
   Diagnostics errors;
   Fields fields(value, "grid", errors);
   GridShape shape;
-  shape.across = fields.integer("across", kLeastPoints, kMostPoints);
-  shape.ahead = fields.integer("ahead", kLeastPoints, kMostPoints);
-  shape.up = fields.integer("up", kLeastPoints, kMostPoints);
+  shape.across = fields.integer("across", GridShape::kLeastPoints, GridShape::kMostPoints);
+  shape.ahead = fields.integer("ahead", GridShape::kLeastPoints, GridShape::kMostPoints);
+  shape.up = fields.integer("up", GridShape::kLeastPoints, GridShape::kMostPoints);
   shape.levels = fields.integer("levels", 1, MapMeans::kMostLevels);
   fields.finish();
   errors.throw_if_any();

@@ -11,6 +11,8 @@ namespace lapwing {
 
 // Points of the grid at level l = 1, ..., levels are 2^l voxels apart, around the camera.
 struct GridShape {
+  static constexpr int kLeastPoints = 2, kMostPoints = 64;  // along an edge
+
   int across = 16, ahead = 16, up = 8;  // points along the camera's right, forward and up
   int levels = 3;
 
@@ -21,7 +23,7 @@ struct GridShape {
   }
   bool operator==(const GridShape&) const = default;
 };
-// InputError for fewer than 2 or more than 64 points along an edge, and for levels outside 1 to
+// InputError for another number of points along an edge, and for levels outside 1 to
 // MapMeans::kMostLevels.
 void require_sense(const GridShape& shape);
 Value to_value(const GridShape& shape);

@@ -25,11 +25,6 @@ std::string extent_text(const Eigen::AlignedBox3d& box) {
   return text;
 }
 
-Pinhole camera() {
-  const double focal = kWidth / 2.0 / std::tan(kViewAcross / 2);
-  return {kWidth, kHeight, focal, focal, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
-}
-
 // From far enough that all of the box is in the image.
 Pose view_of(const Eigen::AlignedBox3d& box, double yaw, double pitch) {
   const double radius = box.diagonal().norm() / 2;
@@ -116,12 +111,14 @@ Report scene_report(const MeshScene& scene, const SceneReport& given) {
   for (int k = 0; k < 4; ++k) {
     const double yaw = EIGEN_PI / 4 + k * EIGEN_PI / 2;
     const Picture picture =
-        surface_picture(seen, view_of(shown, yaw, -kLookDown), camera(), given.threads);
+        surface_picture(seen, view_of(shown, yaw, -kLookDown),
+                        centered_pinhole(kWidth, kHeight, kViewAcross), given.threads);
     views.blocks.push_back(
         Image{encode_png(picture), std::string("From the ") + sides[k] + without});
   }
-  const Picture above = surface_picture(seen, view_of(shown, EIGEN_PI / 2, -EIGEN_PI / 2 + 1e-6),
-                                        camera(), given.threads);
+  const Picture above =
+      surface_picture(seen, view_of(shown, EIGEN_PI / 2, -EIGEN_PI / 2 + 1e-6),
+                      centered_pinhole(kWidth, kHeight, kViewAcross), given.threads);
   views.blocks.push_back(Image{encode_png(above), "From above, north is up" + without});
   report.sections.push_back(std::move(views));
   return report;

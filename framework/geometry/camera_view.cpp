@@ -1,6 +1,7 @@
 #include "framework/geometry/camera_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace lapwing {
@@ -10,6 +11,11 @@ constexpr int kRimPoints = 32;
 constexpr double kNearest = 1e-6;  // m in front; nearer has no meaningful pixel
 
 }  // namespace
+
+Pinhole centered_pinhole(int width, int height, double across) {
+  const double focal = width / 2.0 / std::tan(across / 2);
+  return {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
+}
 
 Pinhole Pinhole::fitted(int most_across, int most_down) const {
   const double scale =

@@ -76,10 +76,9 @@ struct ExplorationObject {
 EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   EpisodeSettings s;
   const Parameters& camera = given.table("camera");
-  const int width = static_cast<int>(camera.integer("width"));
-  const int height = static_cast<int>(camera.integer("height"));
-  const double focal = width / 2.0 / std::tan(radians(camera.number("view_deg")) / 2);
-  s.sensor.pinhole = {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
+  s.sensor.pinhole = centered_pinhole(static_cast<int>(camera.integer("width")),
+                                      static_cast<int>(camera.integer("height")),
+                                      radians(camera.number("view_deg")));
   s.sensor.range = given.number("range");
   const Parameters& noise = given.table("noise");
   if (noise.number("dropped") > 0 || noise.number("sigma") > 0)

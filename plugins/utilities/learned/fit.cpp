@@ -13,6 +13,7 @@
 #include "framework/core/json.h"
 #include "framework/core/number_text.h"
 #include "framework/core/parallel.h"
+#include "plugins/utilities/learned/kernels.h"
 #include "plugins/utilities/learned/model_file.h"
 
 namespace lapwing::learned {
@@ -379,21 +380,23 @@ Value Training::run() {
 }  // namespace
 
 ParameterTable sample_parameters() {
+  const Range points = between(GridShape::kLeastPoints, GridShape::kMostPoints);
   ParameterTable grid;
-  grid.integer("across", 16, "points to the right and left", between(2, 64))
-      .integer("ahead", 16, "points ahead and behind", between(2, 64))
-      .integer("up", 8, "points up and down", between(2, 64))
+  grid.integer("across", 16, "points to the right and left", points)
+      .integer("ahead", 16, "points ahead and behind", points)
+      .integer("up", 8, "points up and down", points)
       .integer("levels", 3, "scales", between(1, MapMeans::kMostLevels));
   return ParameterTable().table("grid", grid, "what the network sees of the map");
 }
 
 ParameterTable fit_parameters() {
+  const Range widths = between(kLanes, NetworkShape::kMostWidth);
   return sample_parameters()
-      .integer("blocks", 2, "N_c", between(1, 5))
-      .integer("units", 4, "N_u, convolutions of each block", between(1, 16))
-      .integer("growth", 8, "N_f, maps that every convolution adds", between(8, 1024))
-      .integer("hidden1", 128, "N_h1", between(8, 1024))
-      .integer("hidden2", 32, "N_h2", between(8, 1024))
+      .integer("blocks", 2, "N_c", between(1, NetworkShape::kMostBlocks))
+      .integer("units", 4, "N_u, convolutions of each block", between(1, NetworkShape::kMostUnits))
+      .integer("growth", 8, "N_f, maps that every convolution adds", widths)
+      .integer("hidden1", 128, "N_h1", widths)
+      .integer("hidden2", 32, "N_h2", widths)
       .integer("batch", 128, "samples of a step", between(8, 4096))
       .integer("epochs", 30, "passes over the samples", between(1, 100000))
       .integer("until", 0, "the last epoch of this run, though epochs are more; 0: all of them",

@@ -9,15 +9,10 @@
 
 namespace lapwing::learned {
 
-namespace {
-
-constexpr int kMostBlocks = 5, kMostUnits = 16, kMostWidth = 1024;
-
-}  // namespace
-
 void require_sense(const NetworkShape& shape) {
   lapwing::require_sense(shape.grid);
-  if (shape.blocks < 1 || shape.blocks > kMostBlocks || shape.units < 1 || shape.units > kMostUnits)
+  if (shape.blocks < 1 || shape.blocks > NetworkShape::kMostBlocks || shape.units < 1 ||
+      shape.units > NetworkShape::kMostUnits)
     throw InputError("a network of " + std::to_string(shape.blocks) + " blocks of " +
                      std::to_string(shape.units) + " units: expected 1 to 5 and 1 to 16");
   for (const int edge : {shape.grid.across, shape.grid.ahead, shape.grid.up})
@@ -25,7 +20,7 @@ void require_sense(const NetworkShape& shape) {
       throw InputError("an edge of " + std::to_string(edge) + " points cannot be halved " +
                        std::to_string(shape.blocks) + " times");
   for (const int width : {shape.growth, shape.hidden1, shape.hidden2})
-    if (width < kLanes || width > kMostWidth || width % kLanes != 0)
+    if (width < kLanes || width > NetworkShape::kMostWidth || width % kLanes != 0)
       throw InputError("growth and hidden layers must be multiples of 8 up to 1024, not " +
                        std::to_string(width));
 }
@@ -46,11 +41,11 @@ NetworkShape network_shape_from(const Value& value) {
   Fields fields(value, "network", errors);
   NetworkShape shape;
   const Value grid = fields.opaque("grid");
-  shape.blocks = fields.integer("blocks", 1, kMostBlocks);
-  shape.units = fields.integer("units", 1, kMostUnits);
-  shape.growth = fields.integer("growth", kLanes, kMostWidth);
-  shape.hidden1 = fields.integer("hidden1", kLanes, kMostWidth);
-  shape.hidden2 = fields.integer("hidden2", kLanes, kMostWidth);
+  shape.blocks = fields.integer("blocks", 1, NetworkShape::kMostBlocks);
+  shape.units = fields.integer("units", 1, NetworkShape::kMostUnits);
+  shape.growth = fields.integer("growth", kLanes, NetworkShape::kMostWidth);
+  shape.hidden1 = fields.integer("hidden1", kLanes, NetworkShape::kMostWidth);
+  shape.hidden2 = fields.integer("hidden2", kLanes, NetworkShape::kMostWidth);
   fields.finish();
   errors.throw_if_any();
   shape.grid = grid_shape_from(grid);

@@ -17,6 +17,8 @@
 namespace lapwing::learned {
 
 struct NetworkShape {
+  static constexpr int kMostBlocks = 5, kMostUnits = 16, kMostWidth = 1024;
+
   GridShape grid;
   int blocks = 2, units = 4;        // units of each block
   int growth = 8;                   // maps that every convolution adds; a multiple of 8

@@ -67,6 +67,15 @@ struct FitFixture {
   }
   ~FitFixture() { std::filesystem::remove_all(folder); }
   Value run() { return fit(check(fit_parameters(), given), request); }
+  // What it says; empty where it does not refuse.
+  std::string refusal() {
+    try {
+      run();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
 };
 
 TEST(LearnedFit, LearnsWhatIsEasy) {
@@ -158,26 +167,17 @@ TEST(LearnedFit, GoesOnWithItsModelAlone) {
   const auto& model = fixture.request.model;
   const std::string whole = read_file(model);
   fixture.given.set("epochs", 3);
-  const auto refusal = [&] {
-    try {
-      fixture.run();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
   std::filesystem::remove(model);
-  EXPECT_NE(refusal().find("is not there: train anew"), std::string::npos);
+  EXPECT_NE(fixture.refusal().find("is not there: train anew"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(model));
-  Model other = [&] {
-    write_file_atomically(model, whole);
-    return read_model(model);
-  }();
+  write_file_atomically(model, whole);
+  Model other = read_model(model);
   other.provenance.set("epoch", 77);
   write_model(other, model);
-  EXPECT_NE(refusal().find("is not the model that its checkpoint goes with"), std::string::npos);
+  EXPECT_NE(fixture.refusal().find("is not the model that its checkpoint goes with"),
+            std::string::npos);
   write_file_atomically(model, whole);
-  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(fixture.refusal(), "");
 }
 
 TEST(LearnedFit, ResumedItIsAsIfNeverStopped) {
@@ -203,30 +203,25 @@ TEST(LearnedFit, GoesOnWithTheSameAlone) {
   fixture.given.set("epochs", 1);
   fixture.run();
   fixture.request.resume = true;
-  const auto refusal = [&] {
-    try {
-      fixture.run();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(fixture.refusal(), "");
   fixture.request.seed = 2;
-  EXPECT_NE(refusal().find("another seed: 1, not 2"), std::string::npos) << refusal();
+  EXPECT_NE(fixture.refusal().find("another seed: 1, not 2"), std::string::npos)
+      << fixture.refusal();
   fixture.request.seed = 1;
   fixture.given.set("rate", 0.02);
-  EXPECT_NE(refusal().find("another rate"), std::string::npos) << refusal();
+  EXPECT_NE(fixture.refusal().find("another rate"), std::string::npos) << fixture.refusal();
   fixture.given.set("rate", 0.01);
   write_easy_samples(fixture.folder / "validation", 1, 3);
   fixture.request.validation = sample_files({fixture.folder / "validation"});
-  EXPECT_NE(refusal().find("another validation samples"), std::string::npos) << refusal();
+  EXPECT_NE(fixture.refusal().find("another validation samples"), std::string::npos)
+      << fixture.refusal();
   fixture.request.resume = false;
   fixture.request.validation = fixture.request.training;
-  EXPECT_NE(refusal().find("must be apart"), std::string::npos) << refusal();
+  EXPECT_NE(fixture.refusal().find("must be apart"), std::string::npos) << fixture.refusal();
   fixture.request.training.push_back(fixture.folder / "training" / "copy.samples");
   std::filesystem::copy_file(fixture.request.training.front(), fixture.request.training.back());
-  EXPECT_NE(refusal().find("leave one of them out"), std::string::npos) << refusal();
+  EXPECT_NE(fixture.refusal().find("leave one of them out"), std::string::npos)
+      << fixture.refusal();
 }
 
 // What the shipped model is, header and weights; its figures in the readme are of this one.
