@@ -21,8 +21,8 @@ struct Pinhole {
   Pinhole fitted(int most_across, int most_down) const;
 };
 
-// Square pixels, the axis through the middle; `across` is the angle between the left and right edge,
-// rad, in (0, pi).
+// Square pixels, the axis through the middle; `across` is the angle between the left and the right
+// edge, rad, in (0, pi).
 Pinhole centered_pinhole(int width, int height, double across);
 
 // The smallest box of an image, in pixels, that holds a thing; it may reach beyond the image.
