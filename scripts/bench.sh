@@ -10,9 +10,7 @@ if [ -z "${LAPWING_DATA:-}" ] && [ -d ../shared/data ]; then
   LAPWING_DATA=$(cd ../shared/data && pwd)
   export LAPWING_DATA
 fi
-mkdir -p build
-cmake --preset release -DLAPWING_BENCH=ON >build/bench_configure.log 2>&1 ||
-  { tail -n 30 build/bench_configure.log >&2; exit 1; }
+lapwing_configure release -DLAPWING_BENCH=ON
 lapwing_build release lapwing_bench lapwing_all_plugins
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 exec build/release/bin/lapwing_bench "$@"

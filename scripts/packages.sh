@@ -1,15 +1,17 @@
 # Debian packages that Lapwing needs; sourced by the other scripts.
+# What building needs, and authors of plugins: CMake's own default calls make.
 lapwing_packages=(
-  g++ cmake ninja-build ccache pkg-config
+  g++ cmake ninja-build make ccache pkg-config
   libeigen3-dev libyaml-cpp-dev liblua5.4-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libcli11-dev libgeographiclib-dev libembree-dev libpng-dev libtbb-dev libassimp-dev
   libcgal-dev liboctomap-dev libopencv-calib3d-dev libompl-dev coinor-libipopt-dev libnlopt-dev
   coinor-libcbc-dev
 )
-lapwing_test_packages=(libgtest-dev chromium binutils)
+lapwing_test_packages=(libgtest-dev libgmock-dev chromium binutils)
 lapwing_bench_packages=(libbenchmark-dev)
-lapwing_fuzz_packages=(clang)
+lapwing_fuzz_packages=(clang libclang-rt-14-dev)
 lapwing_learn_packages=(libtorch-dev)
+lapwing_fresh_packages=(debootstrap)
 
 # Prints the packages among "$@" that are not installed.
 lapwing_missing() {

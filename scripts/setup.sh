@@ -1,22 +1,24 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that building, testing and benchmarking need.
-#   scripts/setup.sh [--yes] [--for build|test|bench|learn]...
+# Installs the Debian packages that building, testing, benchmarking and so on need.
+#   scripts/setup.sh [--yes] [--for build|test|bench|fuzz|learn|fresh]...
 # Prints what it would install; asks first on a terminal unless --yes. Default: build and test.
+# `fuzz` is for scripts/fuzz.sh, `learn` for the preset `learn`, `fresh` for tests/fresh_machine.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
 
+readonly kinds="build, test, bench, fuzz, learn or fresh"
 yes=false
 wanted=()
 while [ $# -gt 0 ]; do
   case "$1" in
     --yes) yes=true ;;
     --for)
-      [ $# -ge 2 ] || { echo "setup.sh: --for needs build, test, bench or learn" >&2; exit 2; }
+      [ $# -ge 2 ] || { echo "setup.sh: --for needs $kinds" >&2; exit 2; }
       wanted+=("$2")
       shift
       ;;
-    *) echo "setup.sh: unknown option '$1'; it knows --yes and --for build|test|bench|learn" >&2; exit 2 ;;
+    *) echo "setup.sh: unknown option '$1'; expected --yes or --for with $kinds" >&2; exit 2 ;;
   esac
   shift
 done
@@ -28,8 +30,10 @@ for what in "${wanted[@]}"; do
     build) packages+=("${lapwing_packages[@]}") ;;
     test) packages+=("${lapwing_test_packages[@]}") ;;
     bench) packages+=("${lapwing_bench_packages[@]}") ;;
+    fuzz) packages+=("${lapwing_fuzz_packages[@]}") ;;
     learn) packages+=("${lapwing_learn_packages[@]}") ;;
-    *) echo "setup.sh: --for knows build, test, bench and learn, not '$what'" >&2; exit 2 ;;
+    fresh) packages+=("${lapwing_fresh_packages[@]}") ;;
+    *) echo "setup.sh: unknown kind '$what'; --for needs $kinds" >&2; exit 2 ;;
   esac
 done
 

@@ -1,0 +1,117 @@
+// Tools of tests are found when a test runs (tests/tool.h): what CMake looked for is what was there
+// when the program was built, before the tests' packages were installed.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "framework/core/files.h"
+#include "tests/tool.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = LAPWING_SOURCE_DIR;
+
+// The files of CMake below a folder.
+std::vector<fs::path> cmake_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& item : fs::recursive_directory_iterator(folder)) {
+    const fs::path& path = item.path();
+    if (path.filename() == "CMakeLists.txt" || path.extension() == ".cmake") files.push_back(path);
+  }
+  return files;
+}
+
+TEST(TestTools, AreLookedForByNoListOfCMake) {
+  const std::vector<fs::path> files = cmake_files(kRoot / "tests");
+  ASSERT_GT(files.size(), 10u);
+  for (const fs::path& file : files)
+    EXPECT_EQ(read_file(file).find("find_program"), std::string::npos) << file;
+}
+
+TEST(TestTools, AreFoundOnThePathWhenAsked) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("lapwing_tool_" + std::to_string(::getpid()));
+  fs::create_directories(folder / "bin");
+  const std::string before = std::getenv("PATH");
+  ::setenv("PATH", ("/nowhere::" + (folder / "bin").string()).c_str(), 1);
+  const fs::path tool = folder / "bin" / "measure";
+  EXPECT_EQ(tool_on_path({"measure"}), "");
+  std::ofstream(tool) << "#!/bin/sh\n";
+  EXPECT_EQ(tool_on_path({"measure"}), "") << "a file that may not be run";
+  ::chmod(tool.c_str(), 0755);
+  EXPECT_EQ(tool_on_path({"another", "measure"}), tool.string());
+  ::setenv("PATH", before.c_str(), 1);
+  fs::remove_all(folder);
+}
+
+// The words of an array of scripts/packages.sh.
+std::set<std::string> packages_of(const std::string& name) {
+  const std::string text = read_file(kRoot / "scripts/packages.sh");
+  const std::size_t begin = text.find(name + "=(");
+  if (begin == std::string::npos) return {};
+  std::istringstream words(
+      text.substr(begin + name.size() + 2, text.find(')', begin) - begin - name.size() - 2));
+  std::set<std::string> found;
+  for (std::string word; words >> word;) found.insert(word);
+  return found;
+}
+
+// Each library that a list of the tests asks for, with the package that holds it: the program's
+// packages are there too.
+TEST(TestTools, TheListsOfPackagesHoldWhatTestsNeed) {
+  const std::set<std::string> build = packages_of("lapwing_packages");
+  const std::set<std::string> test = packages_of("lapwing_test_packages");
+  EXPECT_TRUE(build.contains("make")) << "the guide of plugins types `cmake -B build`";
+  for (const char* package : {"libgtest-dev", "libgmock-dev", "chromium", "binutils"})
+    EXPECT_TRUE(test.contains(package)) << package;
+  for (const char* package : {"libgtest-dev", "libgmock-dev", "chromium", "libbenchmark-dev"})
+    EXPECT_FALSE(build.contains(package)) << package << " is for tests";
+  EXPECT_TRUE(packages_of("lapwing_fresh_packages").contains("debootstrap"));
+}
+
+// What scripts/skipped_tests.sh makes of a log.
+std::string skipped(const std::string& log) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("lapwing_skip_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "log") << log;
+  const std::string command = "bash '" + (kRoot / "scripts/skipped_tests.sh").string() + "' '" +
+                              (folder / "log").string() + "' >'" + (folder / "said").string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  const std::string said = read_file(folder / "said");
+  fs::remove_all(folder);
+  return said;
+}
+
+TEST(SkippedTests, AreCountedAndNamedByReason) {
+  EXPECT_EQ(skipped("1/2 Testing: core\n[ RUN      ] A.B\n[       OK ] A.B (0 ms)\n"),
+            "No test was skipped\n");
+  EXPECT_EQ(skipped("1/2 Testing: core\n"
+                    "[ RUN      ] Maps.Real\n/x/a.cpp:3: Skipped\nno maps\nin the folder\n\n"
+                    "[  SKIPPED ] Maps.Real (0 ms)\n"
+                    "[ RUN      ] Maps.Wrong\n/x/a.cpp:4: Failure\nno maps\n\n"
+                    "[  FAILED  ] Maps.Wrong (0 ms)\n"
+                    "[ RUN      ] Meshes.Real\n/x/b.cpp:9: Skipped\nno meshes\n\n"
+                    "[  SKIPPED ] Meshes.Real (1 ms)\n"
+                    "[  PASSED  ] 0 tests.\n"
+                    "[  SKIPPED ] 2 tests, listed below:\n[  SKIPPED ] Maps.Real\n"
+                    "2/2 Testing: too\n"
+                    "[ RUN      ] Maps.Real\n/x/a.cpp:3: Skipped\nno maps\nin the folder\n\n"
+                    "[  SKIPPED ] Maps.Real (0 ms)\n"
+                    "[ RUN      ] Maps.Other\n/x/a.cpp:3: Skipped\nno maps\nin the folder\n\n"
+                    "[  SKIPPED ] Maps.Other (0 ms)\n"),
+            "3 tests were skipped:\n"
+            "  no maps in the folder\n    Maps.Real\n    Maps.Other\n"
+            "  no meshes\n    Meshes.Real\n");
+}
+
+}  // namespace
+}  // namespace lapwing
