@@ -104,18 +104,31 @@ std::optional<mode_t> mode_there(const fs::path& path, const fs::path& target) {
   return existing.st_mode & 07777;
 }
 
+// The lowest place above a file that can be seen. What lies in a folder that may not be entered
+// cannot be seen: then it is that folder.
+fs::path nearest_there(const fs::path& file) {
+  fs::path folder = folder_of(file);
+  std::error_code code;
+  while (!fs::exists(folder, code) && folder != folder_of(folder)) folder = folder_of(folder);
+  return folder;
+}
+
+void require_access(const fs::path& path, const fs::path& folder, int access) {
+  if (::faccessat(AT_FDCWD, folder.c_str(), access, AT_EACCESS) != 0)
+    cannot_write(path, "folder '" + folder.string() + "': " + reason(errno));
+}
+
 }  // namespace
 
 void require_writable(const fs::path& path) {
+  std::error_code code;
+  const fs::path nearest = nearest_there(path);
+  if (fs::is_directory(nearest, code)) require_access(path, nearest, X_OK);
   const fs::path target = target_of(path);
   mode_there(path, target);
-  fs::path folder = folder_of(target);
-  std::error_code code;
-  while (!fs::exists(folder, code) && folder != folder_of(folder)) folder = folder_of(folder);
-  if (!fs::is_directory(folder, code))
-    cannot_write(path, "'" + folder.string() + "' is no folder");
-  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
-    cannot_write(path, "folder '" + folder.string() + "': " + reason(errno));
+  const fs::path folder = nearest_there(target);
+  if (!fs::is_directory(folder, code)) cannot_write(path, "'" + folder.string() + "' is no folder");
+  require_access(path, folder, W_OK | X_OK);
 }
 
 void write_file_atomically(const fs::path& path, std::string_view contents) {

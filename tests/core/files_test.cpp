@@ -1,5 +1,6 @@
 #include "framework/core/files.h"
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -76,6 +77,16 @@ class Nobody {
   bool dropped_ = false;
 };
 
+// The first folder from the root down to `folder` that may not be entered; `folder` where all may.
+fs::path first_barred(const fs::path& folder) {
+  fs::path so_far;
+  for (const fs::path& part : folder) {
+    so_far /= part;
+    if (::faccessat(AT_FDCWD, so_far.c_str(), X_OK, AT_EACCESS) != 0) return so_far;
+  }
+  return folder;
+}
+
 TEST_F(FilesTest, WritesReplacesAndReadsBack) {
   const fs::path path = folder_ / "a" / "b" / "plan.json";
   write_file_atomically(path, "one");
@@ -139,23 +150,45 @@ TEST_F(FilesTest, WhatCannotBeWrittenIsKnownBefore) {
   EXPECT_EQ(refused(folder_ / "a/b/c.json"), "");
   EXPECT_EQ(refused("out_of_nowhere.json"), "");
   EXPECT_NE(refused(folder_).find("it is a folder"), std::string::npos);
-  EXPECT_EQ(refused(folder_ / "file/a/b.json"),
-            "cannot write '" + (folder_ / "file/a/b.json").string() + "': '" +
-                (folder_ / "file").string() + "' is no folder");
+  EXPECT_EQ(refused(folder_ / "file/a/b.json"), "cannot write '" +
+                                                    (folder_ / "file/a/b.json").string() + "': '" +
+                                                    (folder_ / "file").string() + "' is no folder");
   EXPECT_NE(refusal(folder_ / "file/a/b.json", "x").find("Not a directory"), std::string::npos);
   EXPECT_EQ(names(), std::vector<std::string>{"file"});
   fs::permissions(folder_, fs::perms::owner_write, fs::perm_options::remove);
-  fs::permissions(folder_, fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
-                               fs::perms::others_exec,
+  fs::permissions(folder_,
+                  fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
+                      fs::perms::others_exec,
                   fs::perm_options::add);
-  std::string message;
+  std::string message, barred;
   {
     const Nobody nobody;
     message = refused(folder_ / "a/b/c.json");
+    barred = first_barred(folder_).string();  // the system's own folder may be closed to others
   }
   fs::permissions(folder_, fs::perms::owner_all);
-  EXPECT_EQ(message, "cannot write '" + (folder_ / "a/b/c.json").string() + "': folder '" +
-                         folder_.string() + "': Permission denied");
+  EXPECT_EQ(message, "cannot write '" + (folder_ / "a/b/c.json").string() + "': folder '" + barred +
+                         "': Permission denied");
+}
+
+// Of several folders above a file, the one that may not be entered is named.
+TEST_F(FilesTest, AClosedFolderOnTheWayIsNamed) {
+  const fs::path closed = folder_ / "closed", path = closed / "a" / "c.json";
+  fs::create_directories(closed / "a");
+  fs::permissions(closed, fs::perms::none);
+  std::string message, barred;
+  {
+    const Nobody nobody;
+    try {
+      require_writable(path);
+    } catch (const InputError& error) {
+      message = error.what();
+    }
+    barred = first_barred(closed).string();
+  }
+  fs::permissions(closed, fs::perms::owner_all);
+  EXPECT_EQ(message,
+            "cannot write '" + path.string() + "': folder '" + barred + "': Permission denied");
 }
 
 TEST_F(FilesTest, RefusesWhatIsNoFile) {
