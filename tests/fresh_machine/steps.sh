@@ -1,0 +1,122 @@
+#!/usr/bin/env bash
+# The steps, in a name space of mounts and processes that run.sh made: $machine is the new machine's
+# folder, $root the checkout, $log where everything goes. Whatever is mounted here nobody else sees.
+set -euo pipefail
+. "$root/tests/fresh_machine/machine.sh"
+exec 3>&1 >>"$log" 2>&1 </dev/null
+mount --make-rprivate /
+
+readonly place=/srv/lapwing user=anna
+
+# step TEXT COMMAND...: runs it and prints how long it took.
+step() {
+  local text=$1 began=$SECONDS
+  shift
+  echo "=== $text"
+  if ! "$@"; then echo "  FAILED: $text" >&3; exit 1; fi
+  printf '  %4d s  %s\n' $((SECONDS - began)) "$text" >&3
+}
+
+# What this machine's apt and network are set to goes along; nothing of it is written elsewhere.
+proxies=()
+for name in http_proxy https_proxy ftp_proxy no_proxy HTTP_PROXY HTTPS_PROXY NO_PROXY; do
+  [ -z "${!name:-}" ] || proxies+=("$name=${!name}")
+done
+
+# in_machine USER HOME COMMAND: a line of bash there, in the checkout, with a bare environment.
+in_machine() {
+  chroot "$machine" /usr/sbin/runuser -u "$1" -- /usr/bin/env -i HOME="$2" USER="$1" \
+    PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb \
+    CCACHE_DIR=/var/cache/ccache "${proxies[@]}" bash -c "cd $place && $3"
+}
+as_root() { in_machine root /root "$1"; }
+as_user() { in_machine "$user" "/home/$user" "$1"; }
+
+bare_debian() {
+  # A machine that is thrown away need not sync.
+  debootstrap --variant=minbase --include=git,ca-certificates "$debian" "$machine" \
+    "$(mirror_of_apt)" || { cat "$machine/debootstrap/debootstrap.log"; return 1; }
+  rm -rf "$machine/etc/apt"
+  cp -a /etc/apt "$machine/etc/apt"
+  cp -an /usr/share/keyrings/. "$machine/usr/share/keyrings/"
+  echo force-unsafe-io >"$machine/etc/dpkg/dpkg.cfg.d/unsafe-io"
+  cp -L /etc/resolv.conf /etc/hosts "$machine/etc/"
+  local ca=/usr/local/share/ca-certificates
+  [ ! -d $ca ] || cp -a $ca/. "$machine$ca/"
+  chroot "$machine" update-ca-certificates
+}
+
+mounts() {
+  local device
+  mount -t proc proc "$machine/proc"
+  mount -t tmpfs -o mode=1777 tmpfs "$machine/tmp"
+  mount -t tmpfs -o mode=0755 tmpfs "$machine/dev"
+  for device in null zero full random urandom tty; do
+    : >"$machine/dev/$device"
+    mount --bind "/dev/$device" "$machine/dev/$device"
+  done
+  ln -s /proc/self/fd "$machine/dev/fd"
+  for device in 0:stdin 1:stdout 2:stderr; do
+    ln -s "/proc/self/fd/${device%:*}" "$machine/dev/${device#*:}"
+  done
+  mkdir "$machine/dev/shm" "$machine/dev/pts"
+  mount -t tmpfs -o mode=1777 tmpfs "$machine/dev/shm"
+  mount -t devpts -o newinstance,ptmxmode=0666 devpts "$machine/dev/pts"
+  ln -s pts/ptmx "$machine/dev/ptmx"
+}
+
+# A copy of the files that git knows or would take, as they are now.
+checkout() {
+  rm -rf "$machine$place"
+  mkdir -p "$machine$place"
+  git -C "$root" ls-files -z --cached --others --exclude-standard |
+    (cd "$root" && while IFS= read -r -d '' file; do
+       [ ! -e "$file" ] && [ ! -L "$file" ] || printf '%s\0' "$file"
+     done) |
+    tar -C "$root" -c --null -T - | tar -C "$machine$place" -x --no-same-owner
+  chroot "$machine" chown -R "$1:" "$place"
+}
+
+a_user_with_sudo() {
+  as_root "apt-get install -y -q --no-install-recommends sudo" &&
+    chroot "$machine" useradd -m -s /bin/bash "$user" &&
+    echo "$user ALL=(ALL) NOPASSWD: ALL" >"$machine/etc/sudoers.d/$user" &&
+    chroot "$machine" chown -R "$user:" /var/cache/ccache
+}
+
+readonly first='bash scripts/run.sh examples/filming/castle_flyover.lua'
+readonly second='bash scripts/test.sh'
+
+# The plugin in ten minutes, against what was installed, as plugins/README.md says.
+plugin() {
+  as_user '
+    set -e
+    cmake --install build/release --prefix ~/.local
+    export PATH=~/.local/bin:$PATH
+    mkdir ~/work && cd ~/work
+    lapwing new plugin cost_term keep_low
+    cmake -S keep_low -B keep_low/build -DCMAKE_PREFIX_PATH=~/.local
+    cmake --build keep_low/build
+    ctest --test-dir keep_low/build --output-on-failure
+    lapwing plugins check keep_low/build/lib/plugins/cost_terms/keep_low.so
+    cmake --install keep_low/build
+    lapwing plugins show keep_low
+    printf "%s\n" "local film = require \"mission.film\"" "return film.shot {" \
+      "  name = \"low\"," \
+      "  keyframes = { { position = {0, 0, 2} }, { position = {8, 0, 12} } }," \
+      "  costs = { { type = \"keep_low\", height = 6, weight = 5 } }," "}" >low.lua
+    lapwing run low.lua'
+}
+
+echo "A bare Debian 12 in $machine" >&3
+step "a bare Debian 12, with git" bare_debian
+mounts
+mkdir -p "$machine/var/cache/ccache"
+checkout root
+step "as root: $first" as_root "$first"
+step "as root: $second" as_root "$second"
+step "a user with sudo" a_user_with_sudo
+checkout "$user"
+step "as a user: $first" as_user "$first"
+step "as a user: $second" as_user "$second"
+step "cmake --install, and a plugin against it" plugin
