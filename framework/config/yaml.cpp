@@ -112,6 +112,10 @@ class Builder final : public YAML::EventHandler {
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
     refuse(mark, "an alias ('*name') is not supported; write the value out");
+    if (expects_key()) {
+      stack_.back().key = "";
+      return;
+    }
     put(Value(), mark);
   }
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {

@@ -80,6 +80,7 @@ class Words {
     while (at_ < text_.size() && !blank(text_[at_])) ++at_;
     return text_.substr(begin, at_ - begin);
   }
+  std::size_t left() const { return text_.size() - at_; }  // bytes
   // What is left of this line, without blanks around it.
   std::string rest() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
@@ -177,6 +178,11 @@ class TsplibReader {
   void weights() {
     const std::string format = fields_["EDGE_WEIGHT_FORMAT"];
     const std::size_t n = n_;
+    // The smallest of the formats has a number, and a blank, for every two nodes.
+    if (n * (n - 1) > words_.left() + 1) {
+      words_.fail("the file ends before the distances between " + std::to_string(n) +
+                  " nodes (DIMENSION) could");
+    }
     legs_.assign(n * n, 0);
     const auto take = [&](std::size_t a, std::size_t b) {
       legs_[a * n + b] = words_.number("a distance");

@@ -2,41 +2,47 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <ostream>
+#include <string>
 
 #include "framework/core/files.h"
-
-// Each fuzzer's entry, renamed by the build.
-extern "C" {
-int fuzz_map_reader(const std::uint8_t* data, std::size_t size);
-int fuzz_mesh_reader(const std::uint8_t* data, std::size_t size);
-int fuzz_depth_reader(const std::uint8_t* data, std::size_t size);
-}
+#include "tests/fuzz/reader_list.h"
 
 namespace lapwing {
+
+void PrintTo(const FuzzedReader& reader, std::ostream* out) {
+  *out << reader.name;
+}
+
 namespace {
 
-void replay(int (*fuzzer)(const std::uint8_t*, std::size_t), const char* name, int least) {
+class FuzzCorpus : public testing::TestWithParam<FuzzedReader> {};
+
+TEST_P(FuzzCorpus, EveryInputIsTakenOrRefused) {
+  const std::string folder = std::string(LAPWING_SOURCE_DIR "/tests/fuzz/") + GetParam().name;
   int count = 0;
-  for (const auto& item :
-       std::filesystem::directory_iterator(std::string(LAPWING_SOURCE_DIR "/tests/fuzz/") + name)) {
+  for (const auto& item : std::filesystem::directory_iterator(folder)) {
     const std::string bytes = read_file(item.path());
-    EXPECT_EQ(fuzzer(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), 0)
-        << item.path();
+    SCOPED_TRACE(item.path());
+    EXPECT_EQ(GetParam().fuzz(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()),
+              0);
     ++count;
   }
-  EXPECT_GE(count, least);
+  EXPECT_GE(count, 5) << "too few inputs to start from";
 }
 
-TEST(FuzzCorpus, MapReaderTakesOrRefusesEveryInput) {
-  replay(fuzz_map_reader, "map_reader", 8);
-}
+INSTANTIATE_TEST_SUITE_P(Readers, FuzzCorpus, testing::ValuesIn(fuzzed_readers()),
+                         [](const auto& info) { return std::string(info.param.name); });
 
-TEST(FuzzCorpus, MeshReaderTakesOrRefusesEveryInput) {
-  replay(fuzz_mesh_reader, "mesh_reader", 15);
-}
-
-TEST(FuzzCorpus, DepthReaderTakesOrRefusesEveryInput) {
-  replay(fuzz_depth_reader, "depth_reader", 10);
+// A fuzzer that is in no line of CMakeLists.txt would be replayed and never run.
+TEST(FuzzList, HoldsEveryFuzzer) {
+  const std::string list = read_file(LAPWING_SOURCE_DIR "/tests/fuzz/CMakeLists.txt");
+  for (const FuzzedReader& reader : fuzzed_readers()) {
+    const std::string line = std::string("\nlapwing_add_fuzzer(") + reader.name;
+    const std::size_t at = list.find(line);
+    ASSERT_NE(at, std::string::npos) << reader.name;
+    EXPECT_TRUE(list[at + line.size()] == ' ' || list[at + line.size()] == ')') << reader.name;
+  }
 }
 
 }  // namespace
