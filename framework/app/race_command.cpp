@@ -62,7 +62,7 @@ ExitStatus race_plan(const std::filesystem::path& file, const std::vector<std::s
   if (!(rules.deviation_price >= 0 && rules.gate_price >= 0))
     throw InputError("race: prices must be at least 0 s");
   const Plan plan = read_plan(file);
-  const Certificate certificate = verify(plan);
+  const Certificate certificate = verify(plan, file.parent_path());
   if (const Check* document = certificate.find("document"); !document->pass)
     throw InputError("the plan does not hold together: " + document->detail);
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);

@@ -34,13 +34,14 @@ struct RunOutcome {
   double seconds = 0;                        // wall clock, all of it
   std::optional<std::string> long_exposure;  // PNG
   std::vector<RacedPilot> raced;
+  std::string not_raced;  // why players did not fly; empty: they did, or there are none
 };
 
 std::string status_of(const MissionResult& result, const Certificate& certificate, bool cancelled) {
   if (cancelled || result.report.status == SolveStatus::cancelled) return "cancelled";
   // Who stays where it is breaks no rule, but has done nothing of what was asked.
-  const bool idle = result.report.status == SolveStatus::infeasible &&
-                    !(result.plan.trajectory.duration() > 0);
+  const bool idle =
+      result.report.status == SolveStatus::infeasible && !(result.plan.trajectory.duration() > 0);
   if (certificate.feasible() && !idle) return "ok";
   switch (result.report.status) {
     case SolveStatus::infeasible:
@@ -90,6 +91,8 @@ Value json_of(const RunOutcome& outcome, const Invocation& invocation) {
   if (result.block.is_map())
     object.set(result.block_name.empty() ? result.plan.kind : result.block_name, result.block);
   if (!outcome.raced.empty()) object.set("game", to_value(outcome.raced));
+  if (!outcome.not_raced.empty())
+    object.set("game", Value::map()).set("not_flown", outcome.not_raced);
   return object;
 }
 
@@ -114,6 +117,10 @@ std::string in_words(const RunOutcome& outcome) {
   return words;
 }
 
+std::string not_raced_words(const RunOutcome& outcome) {
+  return "the players did not fly: " + outcome.not_raced;
+}
+
 void print_summary(const RunOutcome& outcome) {
   const MissionResult& result = outcome.result;
   char line[160];
@@ -129,6 +136,7 @@ void print_summary(const RunOutcome& outcome) {
                  "flight may exist\n";
   for (const std::string& note : result.notes) std::cout << "  " << note << "\n";
   std::cout << race_result(outcome.raced);
+  if (!outcome.not_raced.empty()) std::cout << "  " << not_raced_words(outcome) << "\n";
   std::cout << "  report: " << (outcome.folder / "report.html").string() << std::endl;
 }
 
@@ -155,6 +163,9 @@ std::string report_page(const RunOutcome& outcome) {
   }
   report.sections.insert(report.sections.begin() + 1, outcome.result.sections.begin(),
                          outcome.result.sections.end());
+  if (!outcome.not_raced.empty())
+    report.sections.insert(report.sections.begin() + 1,
+                           Section{"Game", {TextBlock{not_raced_words(outcome)}}});
   if (!outcome.raced.empty()) {
     std::vector<Section> race = race_sections(outcome.result.plan, outcome.raced, {});
     report.sections.insert(report.sections.begin() + 1, race.begin(), race.end());
@@ -172,6 +183,7 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
   files.report = report_page(outcome);
   logging::info("status " + outcome.status);
   for (const std::string& note : outcome.result.notes) logging::info(note);
+  if (!outcome.not_raced.empty()) logging::info(not_raced_words(outcome));
   for (const Check& check : outcome.certificate.failures())
     logging::info("fails: " + to_line(check));
   files.log = capture.text();
@@ -193,11 +205,10 @@ std::string photograph(const Plan& plan) {
   return encode_png(long_exposure(plan, flown, kWidth));
 }
 
-std::vector<RacedPilot> fly_pilots(const RunOutcome& outcome, const CancellationToken& token) {
+std::vector<RacedPilot> flown_by_pilots(const RunOutcome& outcome, const CancellationToken& token) {
   const Plan& plan = outcome.result.plan;
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   std::vector<RacedPilot> raced;
-  if (token.cancelled()) return raced;
   const RaceFlightLimits limits = race_limits(plan.trajectory, plan.task.gates);
   for (const Pilot& pilot : outcome.result.pilots) {
     RaceFlight flight = fly_race(plan.trajectory, vehicle, pilot, limits, &token);
@@ -205,6 +216,23 @@ std::vector<RacedPilot> fly_pilots(const RunOutcome& outcome, const Cancellation
     raced.push_back({pilot, std::move(flight), std::move(score)});
   }
   return raced;
+}
+
+// Whatever comes of the game, the plan was computed and is kept.
+void fly_pilots(RunOutcome& outcome, const CancellationToken& token) {
+  if (outcome.result.pilots.empty()) return;
+  const Check* document = outcome.certificate.find("document");
+  try {
+    if (token.cancelled()) throw Cancelled();
+    if (document && !document->pass)
+      outcome.not_raced = "the plan does not hold together: " + document->detail;
+    else
+      outcome.raced = flown_by_pilots(outcome, token);
+  } catch (const Cancelled&) {
+    outcome.not_raced = "interrupted; fly them with lapwing race PLAN --pilot LOG";
+  } catch (const Error& error) {
+    outcome.not_raced = error.what();
+  }
 }
 
 void complete_plan(RunOutcome& outcome) {
@@ -246,7 +274,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome);
   if (!outcome.result.plan.lights.empty()) outcome.long_exposure = photograph(outcome.result.plan);
-  if (!outcome.result.pilots.empty()) outcome.raced = fly_pilots(outcome, interruption.token());
+  fly_pilots(outcome, interruption.token());
   write_files(outcome, registry, capture);
   outcome.seconds = steady_seconds() - begin;
   if (invocation.json) {
@@ -257,6 +285,9 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
     const std::string& message = outcome.result.report.message;
     std::cerr << "lapwing: " << outcome.result.plan.mission << ": " << in_words(outcome)
               << (outcome.status == "cancelled" || message.empty() ? "" : "\n  " + message)
+              << std::endl;
+  } else if (!outcome.not_raced.empty()) {
+    std::cerr << "lapwing: " << outcome.result.plan.mission << ": " << not_raced_words(outcome)
               << std::endl;
   }
   return exit_status_of(outcome.status);

@@ -1,6 +1,8 @@
 #include "framework/vehicle/reference_motion.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "framework/core/error.h"
 #include "framework/core/units.h"
@@ -13,13 +15,41 @@ namespace {
 constexpr double kLongestRamp = 0.2;  // s
 }
 
+Trajectory forces_of(const Trajectory& rotors, const Vehicle& vehicle) {
+  Trajectory forces = rotors;
+  forces.model = MotionModel::force;
+  double before = 0;
+  for (Sample& s : forces.samples) {
+    const Eigen::Quaterniond attitude = s.orientation.normalized();
+    // m r'' - m g: the thrust less the drag, which the controller adds again.
+    s.force = attitude * Vector3d(0, 0, s.rotor_thrusts.sum()) - vehicle.drag * s.velocity;
+    // The heading at right angles to the y axis (reading 3.7): with it the controller asks for the
+    // planned attitude itself. Where the nose points differs by the product of two tilts.
+    const Vector3d y = attitude * Vector3d::UnitY();
+    const double yaw = std::atan2(-y.x(), y.y());
+    const double turns = std::round((before - yaw) / (2 * std::numbers::pi));
+    s.yaw = before = yaw + 2 * std::numbers::pi * turns;
+    s.yaw_torque = 0;
+  }
+  for (std::size_t i = 0; i + 1 < forces.samples.size(); ++i)
+    forces.samples[i].yaw_rate = (forces.samples[i + 1].yaw - forces.samples[i].yaw) /
+                                 (forces.samples[i + 1].time - forces.samples[i].time);
+  return forces;
+}
+
 ReferenceMotion::ReferenceMotion(const Trajectory& trajectory, const Vehicle& vehicle)
-    : trajectory_(trajectory),
+    : forces_(trajectory.model == MotionModel::rotors
+                  ? std::optional<Trajectory>(forces_of(trajectory, vehicle))
+                  : std::nullopt),
+      trajectory_(forces_ ? *forces_ : trajectory),
       mass_(vehicle.mass),
       drag_(vehicle.drag),
       yaw_inertia_(vehicle.inertia.z()) {
-  if (trajectory.model != MotionModel::force)
-    throw InputError({}, "only plans of the motion model 'force' can be flown by the controller");
+  if (trajectory.model == MotionModel::path)
+    throw InputError({},
+                     "this plan is an exploration: straight lines without forces that a controller "
+                     "could follow. Films, races, light paintings and scans can be flown; a scan "
+                     "may begin with an exploration (examples/explore/explore_then_scan.lua)");
   if (trajectory.samples.size() < 2) throw InputError({}, "a flight needs two samples at least");
 }
 

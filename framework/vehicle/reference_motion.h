@@ -1,6 +1,8 @@
 // What a trajectory asks of the controller at any time.
 #pragma once
 
+#include <optional>
+
 #include "framework/trajectory/trajectory.h"
 #include "framework/vehicle/vehicle.h"
 
@@ -13,14 +15,20 @@ struct ReferencePoint {
   double yaw = 0, yaw_rate = 0;                            // rad, rad/s
 };
 
+// A trajectory of rotors as places, headings and the forces that they need, which is what the
+// controller follows. The rest of the plan's attitude and its rotor thrusts are left to it.
+Trajectory forces_of(const Trajectory& rotors, const Vehicle& vehicle);
+
 // Of a trajectory of the motion model `force`: from each sample on by its inputs, held or linear.
 // Held accelerations jump from sample to sample; as feed-forward, which no body follows in jumps,
 // they change along a ramp around the jump, as long as the shorter interval and 0.2 s at most.
-// Before the start and after the end the vehicle hovers.
+// Before the start and after the end the vehicle hovers. Of the model `rotors`: of its forces_of.
 class ReferenceMotion {
  public:
   // Keeps a reference. Throws InputError for another motion model or fewer than two samples.
   ReferenceMotion(const Trajectory& trajectory, const Vehicle& vehicle);
+  ReferenceMotion(const ReferenceMotion&) = delete;
+  ReferenceMotion& operator=(const ReferenceMotion&) = delete;
 
   ReferencePoint at(double time) const;
   // Thrust that the acceleration needs, N, world: m (a - g) and the drag of the velocity.
@@ -33,7 +41,8 @@ class ReferenceMotion {
   Eigen::Vector3d acceleration(std::size_t sample) const;
   Eigen::Vector3d smoothed_acceleration(std::size_t interval, double time) const;
 
-  const Trajectory& trajectory_;
+  const std::optional<Trajectory> forces_;  // of a trajectory of rotors
+  const Trajectory& trajectory_;            // that, or the one that was given
   double mass_, drag_, yaw_inertia_;
 };
 

@@ -3,32 +3,7 @@
 
 #include "framework/verify/checks.h"
 
-#include "framework/core/units.h"
-
 namespace lapwing {
-namespace {
-
-// A plan of rotors as what the controller follows: places and the forces that they need.
-Trajectory as_forces(const Flight& flight) {
-  Trajectory forces = flight.plan.trajectory;
-  forces.model = MotionModel::force;
-  double before = 0;
-  for (std::size_t i = 0; i < forces.samples.size(); ++i) {
-    Sample& s = forces.samples[i];
-    const MotionPoint stated = flight.motion.stated(i);
-    s.force = flight.vehicle.mass * (stated.acceleration + Eigen::Vector3d(0, 0, kGravity));
-    const double turns = std::round((before - stated.yaw) / (2 * std::numbers::pi));
-    s.yaw = before = stated.yaw + 2 * std::numbers::pi * turns;
-    s.yaw_torque = 0;
-  }
-  for (std::size_t i = 0; i + 1 < forces.samples.size(); ++i)
-    forces.samples[i].yaw_rate = (forces.samples[i + 1].yaw - forces.samples[i].yaw) /
-                                 (forces.samples[i + 1].time - forces.samples[i].time);
-  return forces;
-}
-
-}  // namespace
-
 std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& certificate) {
   constexpr std::array kNames = {"closed_loop", "closed_loop_yaw", "rotors_saturated"};
   const Trajectory& trajectory = flight.plan.trajectory;
@@ -41,8 +16,7 @@ std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& ce
     for (const char* name : kNames) certificate.checks.push_back(skipped_check(name, reason));
     return std::nullopt;
   }
-  const bool rotors = trajectory.model == MotionModel::rotors;
-  FlownPath path = fly(rotors ? as_forces(flight) : trajectory, flight.vehicle);
+  FlownPath path = fly(trajectory, flight.vehicle);
   const double infinite = std::numeric_limits<double>::infinity();
   Check tracking =
       judged(make_check("closed_loop"), path.lost ? infinite : path.position_error_worst,
