@@ -1,7 +1,6 @@
 // The table `lapwing`: what a script needs before there is a run.
 #include <lua.hpp>
 
-#include "framework/config/yaml.h"
 #include "framework/geometry/geodetic.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -11,34 +10,6 @@
 namespace lapwing {
 
 namespace {
-
-// lapwing.read_json(name [, folder]): a table from a JSON file below the script's folder, the data
-// folders or the shipped ones; `folder` is a sub-folder of these that is asked as well.
-int read_json(lua_State* state) {
-  const std::string name = text_argument(state, 1, "lapwing.read_json");
-  const std::string folder =
-      lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, "lapwing.read_json");
-  push_value(state, run_of(state).files.read_json(name, folder));
-  return 1;
-}
-
-// lapwing.read_text(name [, folder]): the text of a file, found as read_json finds it.
-int read_text(lua_State* state) {
-  const std::string name = text_argument(state, 1, "lapwing.read_text");
-  const std::string folder =
-      lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, "lapwing.read_text");
-  push_text(state, run_of(state).files.read_text(name, folder));
-  return 1;
-}
-
-// lapwing.read_yaml(name [, folder]): a table from a YAML file, found as read_json finds it.
-int read_yaml_data(lua_State* state) {
-  const std::string name = text_argument(state, 1, "lapwing.read_yaml");
-  const std::string folder =
-      lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, "lapwing.read_yaml");
-  push_value(state, from_yaml(run_of(state).files.read_text(name, folder), name));
-  return 1;
-}
 
 ParameterTable geodetic_table() {
   ParameterTable table;
@@ -114,12 +85,6 @@ void open_lapwing_library(lua_State* state, MissionRun& run) {
       {"options", &guarded<options>,
        "(declarations: lapwing.option[], given: table): lapwing.options",
        "a mission's options: what may be set, and what the script sets"},
-      {"read_json", &guarded<read_json>, "(name: string, folder?: string): any",
-       "a table, from a file in the script's folder, a --data folder or configs/"},
-      {"read_yaml", &guarded<read_yaml_data>, "(name: string, folder?: string): any",
-       "the same from a YAML file"},
-      {"read_text", &guarded<read_text>, "(name: string, folder?: string): string",
-       "the text of such a file"},
       {"local_from_geodetic", &guarded<local_from_geodetic>,
        "(origin: lapwing.geodetic, point: lapwing.geodetic): number[]",
        "{east, north, up} of the point from the origin, m"},
@@ -129,6 +94,7 @@ void open_lapwing_library(lua_State* state, MissionRun& run) {
   bind_functions(state, "lapwing", functions);
   note_tables(state, "lapwing", tables);
   lua_setglobal(state, "lapwing");
+  open_data_library(state);
 }
 
 }  // namespace lapwing

@@ -74,12 +74,12 @@ struct PlanObject {
   Plan plan;
   SolveReport report;
   std::string solver;
-  std::vector<std::string> notes;  // sentences for the user
-  Value block;                     // the kind's own figures; null or a map
-  std::string block_name;          // of them in the answer; "": the kind
-  std::vector<Pilot> pilots;       // who fly it by hand
+  std::vector<std::string> notes;          // sentences for the user
+  Value block;                             // the kind's own figures; null or a map
+  std::string block_name;                  // of them in the answer; "": the kind
+  std::vector<Pilot> pilots;               // who fly it by hand
   std::shared_ptr<const ScanRecord> scan;  // of a scan: what its report shows
-  std::vector<Section> sections = {};  // of the report, beside those of every flight
+  std::vector<Section> sections = {};      // of the report, beside those of every flight
 };
 
 struct MissionRun {
@@ -101,6 +101,7 @@ inline constexpr const char* kProblemType = "problem";
 inline constexpr const char* kSolutionType = "solution";
 inline constexpr const char* kPlanType = "plan";
 inline constexpr const char* kOptionsType = "lapwing.options";
+inline constexpr const char* kDataFileType = "data_file";
 
 // What a mission script returns.
 inline constexpr BoundField kMissionParts[] = {
@@ -113,7 +114,8 @@ inline constexpr BoundField kMissionParts[] = {
 // All that scripts are given.
 void open_script_libraries(lua_State* state, MissionRun& run);
 // Each adds its part: the table `lapwing`, and the types above.
-void open_lapwing_library(lua_State* state, MissionRun& run);
+void open_lapwing_library(lua_State* state, MissionRun& run);  // calls the next one
+void open_data_library(lua_State* state);
 void open_problem_library(lua_State* state);
 void open_plan_library(lua_State* state);
 void open_run_library(lua_State* state);

@@ -5,8 +5,10 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
+#include "framework/mission/players.h"
 #include "framework/mission/run.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/mission/value_path.h"
 
 namespace lapwing {
 namespace {
@@ -25,35 +27,12 @@ int progress(lua_State* state) {
   return 0;
 }
 
-const Value* at_path(const Value& root, std::string_view path) {
-  const Value* at = &root;
-  while (!path.empty() && at) {
-    const std::size_t end = path.find_first_of(".[]");
-    const std::string_view part = path.substr(0, end);
-    const bool number = !part.empty() && part.find_first_not_of("0123456789") == part.npos;
-    if (number && at->is_list()) {
-      const std::size_t place = std::stoul(std::string(part));
-      at = place >= 1 && place <= at->as_list().size() ? &at->as_list()[place - 1] : nullptr;
-    } else if (!part.empty()) {
-      at = at->find(part);
-    }
-    path = end == path.npos ? std::string_view() : path.substr(end + 1);
-  }
-  return at;
-}
-
 // run:fail("keyframes[2].time", "message"): an error where that option was written.
 int fail(lua_State* state) {
   const std::string path = text_argument(state, 2, "fail");
   const std::string message = text_argument(state, 3, "fail");
   const Value& options = run_of(state).configuration;
-  std::string_view known = path;
-  const Value* value = at_path(options, known);
-  while (!value && known.find_last_of(".[") != known.npos) {
-    known = known.substr(0, known.find_last_of(".["));
-    value = at_path(options, known);
-  }
-  Origin origin = value ? value->origin() : options.origin();
+  Origin origin = innermost_at(options, path).origin();
   if (origin.source.empty() || origin.source == "default") {
     origin = Sandbox::of(state).script_position(state);
   }
@@ -69,6 +48,20 @@ int expect_plugin(lua_State* state) {
   if (!value || value->is_null()) return 0;
   if (!value->is_text()) throw InputError(value->origin(), path + ": expected a plugin's name");
   run_of(state).settings.registry->find(kind, value->as_text(), value->origin());
+  return 0;
+}
+
+// run:expect_players("players"): an error where that option names a log that cannot be read, before
+// anything is computed that the error would lose.
+int expect_players(lua_State* state) {
+  const std::string path = text_argument(state, 2, "expect_players");
+  const MissionRun& run = run_of(state);
+  const Value* value = at_path(run.configuration, path);
+  if (!value || !value->is_list()) return 0;
+  for (std::size_t i = 0; i < value->as_list().size(); ++i)
+    pilots_of(
+        {check(player_table(), value->as_list()[i], path + "[" + std::to_string(i + 1) + "]")},
+        run.files);
   return 0;
 }
 
@@ -90,6 +83,8 @@ std::span<const Binding> told_methods() {
        "an error where that option was written"},
       {"expect_plugin", &guarded<expect_plugin>, "(option: string, kind: string)",
        "an error where that option is given and names no plugin of the kind"},
+      {"expect_players", &guarded<expect_players>, "(option: string)",
+       "an error where that option names a log of sticks that cannot be read"},
       {"stated", &guarded<stated>, "(option: string): boolean",
        "whether that option was written, or is its default"}};
   return methods;

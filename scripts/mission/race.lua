@@ -9,6 +9,7 @@
 -- leg are too coarse for the motion they stand for, it gets twice as many and is solved again.
 local courses = require "mission.race_course"
 local problem = require "mission.race_problem"
+local search = require "mission.race_search"
 
 local M = {}
 
@@ -18,23 +19,8 @@ local function number(name, default, unit, summary, more)
   return entry
 end
 
-local GATE = {
-  { name = "name", type = "text", summary = "in messages" },
-  { name = "shape", type = "text", required = true,
-    summary = "ball, rectangle, triangle, pentagon or hexagon" },
-  { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-    summary = "middle, world" },
-  number("normal_yaw", nil, "", "direction of flight, degrees; a ball has none"),
-  number("normal_pitch", nil, "", "the same, degrees upwards"),
-  number("width", nil, "m", "of a rectangle or a triangle"),
-  number("height", nil, "m", "of a rectangle or a triangle"),
-  number("radius", nil, "m", "of a ball; of a pentagon or hexagon to its corners"),
-  number("side", nil, "m", "of a pentagon or hexagon"),
-  number("tunnel_length", nil, "m", "half before, half behind the gate"),
-}
-
 local DECLARATIONS = {
-  { name = "gates", type = "tables", table = GATE, summary = "in the order of flight" },
+  { name = "gates", type = "tables", table = courses.GATE, summary = "in the order of flight" },
   { name = "keyframes", type = "tables", summary = "places to pass, as balls of `tolerance`",
     table = { { name = "position", type = "numbers", size = 3, unit = "m", required = true,
                 summary = "world" } } },
@@ -62,6 +48,8 @@ local DECLARATIONS = {
   number("margin", 0.02, "m", "kept from rims and floor", { minimum = 0, maximum = 10 }),
   { name = "closed_loop", type = "choice", default = "required",
     choices = { "required", "reported" }, summary = "whether tracking under control must hold" },
+  { name = "advise", type = "boolean", default = true,
+    summary = "where tracking fails: find and say the share of thrust that can be followed" },
   number("step", 0.06, "s", "between stages of the first guess", { above = 0, maximum = 1 }),
   { name = "refinements", type = "integer", default = 4, minimum = 0, maximum = 10,
     summary = "times that coarse legs get twice the stages" },
@@ -174,46 +162,68 @@ local function finishing(solver)
   return copy
 end
 
-local function flown(run)
-  local o = run.options
-  if o.timing == "profile" and o.model == "quadrotor_full" then
-    run:fail("timing", "'profile' is for the model 'quadrotor'; 'quadrotor_full' needs 'optimal'")
-  end
-  local vehicle = run:vehicle(o.vehicle)
-  local most = o.model == "quadrotor_full" and 4 * vehicle.rotor_thrust_max or vehicle.thrust_max
-  if o.thrust * most <= 9.80665 * vehicle.mass then
-    run:fail("thrust", string.format("%.3g of the thrust does not carry vehicle '%s'", o.thrust,
-                                     vehicle.name))
-  end
-  local course = courses.read(run)
+-- A flight of the course as these options ask for it, refined until it is certified: the plan, the
+-- last solution, and the certificate of the plan where there is a solution. `say` tells progress.
+local function flight(run, course, vehicle, o, say)
   local made = problem.legs(course, vehicle, o)
   check_battery(run, made, vehicle)
   made.softer = o.closed_loop == "required" and FOLLOWED or 1
-  course.task = task_of(course)
-  local solution, plan
+  local solution, plan, certificate
   if o.model == "quadrotor_full" then
     -- A point mass finds the way and the times from straight lines in a few iterations; the whole
     -- quadrotor begins from there.
-    local point = run:solve(problem.make(run, course, vehicle, made, "quadrotor"), o.solver)
+    local point = run:solve(problem.make(run, course, vehicle, made, o, "quadrotor"), o.solver)
     if solved(point) then
       problem.take_times(made, point, o)
       solution = point
     end
   end
   for round = 0, o.refinements do
-    run:progress(round / (o.refinements + 1), "solving")
-    local p = problem.make(run, course, vehicle, made, o.model, solution)
+    say(round / (o.refinements + 1), "solving")
+    local p = problem.make(run, course, vehicle, made, o, o.model, solution)
     local finer = run:solve(p, plan and finishing(o.solver) or o.solver)
     if plan and not solved(finer) then break end  -- the coarser one stands
     solution = finer
     plan = plan_of(run, course, solution)
-    if not solved(solution) or run:cancelled() or o.timing == "profile" then break end
-    local certificate = run:certify(plan)
+    if not solved(solution) then break end
+    certificate = run:certify(plan)
+    if run:cancelled() or o.timing == "profile" then break end
     if certificate.feasible or not refine(made, solution, certificate) then break end
   end
-  if solved(solution) then return plan end
-  return plan_of(run, course, solution, { string.format("the solver ended %s: %s",
-                                                        solution.status, solution.message) })
+  return plan, solution, certificate
+end
+
+local function check_options(run, vehicle)
+  local o = run.options
+  if o.timing == "profile" and o.model == "quadrotor_full" then
+    run:fail("timing", "'profile' is for the model 'quadrotor'; 'quadrotor_full' needs 'optimal'")
+  end
+  if o.thrust <= search.least(vehicle, o) then
+    run:fail("thrust", string.format("%.3g of the thrust does not carry vehicle '%s'", o.thrust,
+                                     vehicle.name))
+  end
+  run:expect_players("players")  -- before anything is computed
+end
+
+local function flown(run)
+  local o = run.options
+  local vehicle = run:vehicle(o.vehicle)
+  check_options(run, vehicle)
+  local course = courses.read(run)
+  course.task = task_of(course)
+  local plan, solution, certificate = flight(run, course, vehicle, o, function(share, words)
+    run:progress(share, words)
+  end)
+  local notes = {}
+  if not solved(solution) then
+    notes[1] = string.format("the solver ended %s: %s", solution.status, solution.message)
+  elseif strays(certificate) and o.advise and not run:cancelled() then
+    notes = search.advice(run, vehicle, solution.duration, function(tried, say)
+      local _, found, judged = flight(run, course, vehicle, tried, say)
+      return solved(found) and judged.feasible, found.duration
+    end)
+  end
+  return #notes > 0 and plan_of(run, course, solution, notes) or plan
 end
 
 ---@param given lapwing.race.course

@@ -15,67 +15,80 @@ course.distance = distance
 
 local function finite(x) return math.type(x) ~= nil and x == x and math.abs(x) < 1e6 end
 
-local function point(fail, what, value)
+local function number(name, unit, summary)
+  return { name = name, type = "number", unit = unit, summary = summary }
+end
+
+-- A gate, in a script or in a file.
+course.GATE = {
+  { name = "name", type = "text", summary = "in messages" },
+  { name = "shape", type = "choice", required = true, summary = "of the opening",
+    choices = { "ball", "rectangle", "triangle", "pentagon", "hexagon" } },
+  { name = "position", type = "numbers", size = 3, unit = "m", required = true,
+    summary = "middle, world" },
+  number("normal_yaw", "", "direction of flight, degrees; a ball has none"),
+  number("normal_pitch", "", "the same, degrees upwards"),
+  number("width", "m", "of a rectangle or a triangle"),
+  number("height", "m", "of a rectangle or a triangle"),
+  number("radius", "m", "of a ball; of a pentagon or hexagon to its corners"),
+  number("side", "m", "of a pentagon or hexagon"),
+  number("tunnel_length", "m", "half before, half behind the gate"),
+}
+
+local function point(fail, path, value)
   local fits = type(value) == "table" and #value == 3
   for i = 1, fits and 3 or 0 do fits = fits and finite(value[i]) end
-  if not fits then fail(what .. ": expected three finite numbers, x, y and z in m") end
+  if not fits then fail(path, "expected three finite numbers, x, y and z in m") end
   return value
 end
 
--- A gate of a file or a script as the constraint and the certificate want it.
-local function gate_of(fail, given, what)
-  if type(given) ~= "table" then
-    fail(string.format("%s: expected a gate {shape, position, ...}, got %s", what,
-                       tostring(given)))
-  end
-  local shape = given.shape
+local function add_sizes(fail, path, given, gate)
+  local shape = gate.shape
   local sizes = SHAPES[shape]
-  if type(shape) ~= "string" then
-    fail(what .. ".shape: expected ball, hexagon, pentagon, rectangle or triangle")
-  end
-  if not sizes then
-    fail(string.format("%s: no gate has the shape '%s'; there are ball, hexagon, pentagon, "
-                       .. "rectangle and triangle", what, tostring(shape)))
-  end
-  local gate = { name = given.name or what, shape = shape,
-                 position = point(fail, what .. ".position", given.position) }
-  local known = { name = true, shape = true, position = true, normal_yaw = true,
-                  normal_pitch = true, tunnel_length = true }
+  local has = { name = true, shape = true, position = true, normal_yaw = true,
+                normal_pitch = true, tunnel_length = true }
   local either, count = sizes[2] == "side", 0
   for _, size in ipairs(sizes) do
-    known[size] = true
+    has[size] = true
     local value = given[size]
     if value ~= nil then
-      if not finite(value) or value <= 0 then
-        fail(string.format("%s: a %s cannot be entered with a %s of %s; expected metres above 0",
-                           what, shape, size, tostring(value)))
+      if value <= 0 then
+        fail(path .. "." .. size, string.format("a %s cannot be entered with a %s of %s; expected "
+                                                .. "metres above 0", shape, size, tostring(value)))
       end
       gate[size], count = value, count + 1
     elseif not either then
-      fail(string.format("%s: a %s needs its %s", what, shape, table.concat(sizes, " and ")))
+      fail(path, string.format("a %s needs its %s", shape, table.concat(sizes, " and ")))
     end
   end
-  if either and count ~= 1 then fail(what .. ": expected either a radius or a side") end
+  if either and count ~= 1 then fail(path, "expected either a radius or a side") end
   for key in pairs(given) do
-    if not known[key] then fail(string.format("%s: a %s has no '%s'", what, shape, key)) end
+    if not has[key] then fail(path .. "." .. key, string.format("a %s has none", shape)) end
   end
-  if shape == "ball" then return gate end
+end
+
+-- A gate, checked against GATE, as the constraint and the certificate want it.
+local function gate_of(fail, path, given)
+  local gate = { name = given.name or path, shape = given.shape,
+                 position = point(fail, path .. ".position", given.position) }
+  add_sizes(fail, path, given, gate)
+  if gate.shape == "ball" then return gate end
   local yaw, pitch = given.normal_yaw, given.normal_pitch or 0
-  if not finite(yaw) or not finite(pitch) or math.abs(pitch) > 89 then
-    fail(what .. ": expected the direction of flight, normal_yaw in degrees (and normal_pitch, "
-         .. "within 89)")
+  if not yaw then
+    fail(path .. ".normal_yaw", "missing; expected the direction of flight in degrees")
+  end
+  if math.abs(pitch) > 89 then
+    fail(path .. ".normal_pitch", "expected degrees upwards, between -89 and 89")
   end
   yaw, pitch = math.rad(yaw), math.rad(pitch)
   gate.direction = { math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch),
                      math.sin(pitch) }
   gate.tunnel_length = given.tunnel_length or 0
-  if not finite(gate.tunnel_length) or gate.tunnel_length < 0 then
-    fail(what .. ".tunnel_length: expected metres, 0 or more")
-  end
+  if gate.tunnel_length < 0 then fail(path .. ".tunnel_length", "expected metres, 0 or more") end
   return gate
 end
 
--- The place at a share of the tunnel: -0.5 where it begins, 0.5 where it ends.
+-- The place at a share of the tunnel, from -0.5 to 0.5.
 function course.place(gate, share)
   local p = {}
   for i = 1, 3 do
@@ -85,51 +98,47 @@ function course.place(gate, share)
   return p
 end
 
-local function end_of(fail, given, what)
+local function end_of(fail, given, path)
   if given == nil then return nil end
   if type(given) ~= "table" then
-    fail(what .. ": expected {x, y, z}, or a position and a velocity, got " .. tostring(given))
+    fail(path, "expected {x, y, z}, or a position and a velocity, got " .. tostring(given))
   end
-  if #given == 3 then given = { position = given } end
-  point(fail, what .. ".position", given.position)
-  for key in pairs(given) do
-    if key ~= "position" and key ~= "velocity" then
-      fail(string.format("%s: there is no '%s'; it has position and velocity", what, key))
-    end
-  end
-  if given.velocity ~= nil then point(fail, what .. ".velocity", given.velocity) end
+  if #given > 0 then return point(fail, path, given) end
+  point(fail, path .. ".position", given.position)
+  if given.velocity ~= nil then point(fail, path .. ".velocity", given.velocity) end
   for _, v in ipairs(given.velocity or {}) do
-    if v ~= 0 then fail(what .. ".velocity: a course begins and ends at rest, or freely") end
+    if v ~= 0 then fail(path .. ".velocity", "a course begins and ends at rest, or freely") end
   end
   return given.position
 end
 
--- Gates inside each other could only be flown through at once.
-local function check_apart(fail, gates)
+-- Gates inside each other could only be flown through at once. `each`: how many a lap has.
+local function check_apart(fail, gates, each)
   for i = 2, #gates do
     local a, b = gates[i - 1], gates[i]
     if a.direction and b.direction and distance(a.position, b.position) < SAME then
-      fail(string.format("gates '%s' and '%s' stand inside each other, at %g %g %g", a.name, b.name,
-                         a.position[1], a.position[2], a.position[3]))
+      fail(string.format("gates[%d]", (i - 1) % each + 1), string.format(
+        "gates '%s' and '%s' stand inside each other, at %g %g %g", a.name, b.name,
+        a.position[1], a.position[2], a.position[3]))
     end
   end
 end
 
--- Start, finish and part of every gate must be above the floor.
 local function check_floor(fail, made, gates, floor)
   if not floor then return end
   for _, name in ipairs { "start", "finish" } do
     local place = made[name]
     if place and place[3] <= floor then
-      fail(string.format("%s: %g m above the ground, and the flight stays above %g m", name,
-                         place[3], floor))
+      fail(name, string.format("%g m above the ground, and the flight stays above %g m", place[3],
+                               floor))
     end
   end
-  for _, gate in ipairs(gates) do
+  for i, gate in ipairs(gates) do
     local up = gate.height and gate.height / 2 or gate.radius or gate.side
     if gate.position[3] + up <= floor then
-      fail(string.format("gate '%s' cannot be entered: it ends %.3g m above the ground, and the "
-                         .. "flight stays above %g m", gate.name, gate.position[3] + up, floor))
+      fail(string.format("gates[%d]", i), string.format(
+        "gate '%s' cannot be entered: it ends %.3g m above the ground, and the flight stays above "
+        .. "%g m", gate.name, gate.position[3] + up, floor))
     end
   end
 end
@@ -153,6 +162,33 @@ local function free_form(o)
   return points
 end
 
+-- The course of a file: {start =, finish =, gates =, keyframes =}, and what fails on its lines.
+local function read_file(name)
+  local given, file
+  if name:match("%.json$") then given, file = lapwing.read_json(name, "tracks")
+  else given, file = lapwing.read_yaml(name, "tracks") end
+  file:expect_keys("", { "start", "end", "gates", "waypoints" })
+  for _, key in ipairs { "start", "end" } do
+    if type(given[key]) == "table" and #given[key] == 0 then
+      file:expect_keys(key, { "position", "velocity" })
+    end
+  end
+  for _, key in ipairs { "gates", "waypoints" } do
+    if given[key] ~= nil and (type(given[key]) ~= "table" or #given[key] == 0) then
+      file:fail(key, "expected a list")
+    end
+  end
+  local gates = given.gates and {}
+  for i in ipairs(given.gates or {}) do
+    gates[i] = file:check(string.format("gates[%d]", i), course.GATE)
+  end
+  local names = { keyframes = "waypoints", finish = "end" }  -- as the file has them
+  local function fail(path, text) file:fail(path:gsub("^%a+", names), text) end
+  return { start = given.start, finish = given["end"], gates = gates,
+           keyframes = given.waypoints }, fail
+end
+
+-- The course as it is given, and a function that fails where a part of it was written.
 local function read(run)
   local o = run.options
   local ways = {}
@@ -166,35 +202,24 @@ local function read(run)
   if o.laps > 1 and not o.closed then
     run:fail("laps", "laps are flown on a closed course: set closed = true")
   end
-  if not o.input then return o end
-  local file = o.input:match("%.json$") and lapwing.read_json(o.input, "tracks")
-               or lapwing.read_yaml(o.input, "tracks")
-  for key, value in pairs(file) do
-    if (key == "gates" or key == "waypoints") and (type(value) ~= "table" or #value == 0) then
-      run:fail("input", string.format("%s: %s: expected a list", o.input, key))
-    end
-    if key ~= "start" and key ~= "end" and key ~= "gates" and key ~= "waypoints" then
-      run:fail("input", string.format("%s: a course has no '%s'; it has start, end, gates and "
-                                      .. "waypoints", o.input, key))
-    end
-  end
-  return { start = file.start, finish = file["end"], gates = file.gates,
-           keyframes = file.waypoints, closed = o.closed, laps = o.laps }
+  if not o.input then return o, function(path, text) run:fail(path, text) end end
+  local made, fail = read_file(o.input)
+  made.closed, made.laps = o.closed, o.laps
+  return made, fail
 end
 
 -- {gates =, start = {x, y, z} or nil, finish = likewise, closed =}
 function course.read(run)
   local o = run.options
-  local given = read(run)
-  local function fail(text) run:fail(o.input and "input" or "gates", text) end
+  local given, fail = read(run)
   local list = {}
   for i, gate in ipairs(given.gates or {}) do
-    list[#list + 1] = gate_of(fail, gate, string.format("gates[%d]", i))
+    list[#list + 1] = gate_of(fail, string.format("gates[%d]", i), gate)
   end
   for i, k in ipairs(given.keyframes or {}) do
+    local place = type(k) == "table" and k.position or k
     list[#list + 1] = { name = "keyframe " .. i, shape = "ball", radius = o.tolerance,
-                        position = point(fail, string.format("keyframes[%d]", i),
-                                         type(k) == "table" and k.position or k) }
+                        position = point(fail, string.format("keyframes[%d]", i), place) }
   end
   if o.free_form.length then
     for i, gate in ipairs(free_form(o)) do
@@ -205,16 +230,19 @@ function course.read(run)
   local made = { gates = {}, closed = given.closed, start = end_of(fail, given.start, "start"),
                  finish = end_of(fail, given.finish, "finish") }
   if #list == 0 then
-    fail("a course needs gates, keyframes, a free_form length, or --set input=FILE")
+    fail("gates", "a course needs gates, keyframes, a free_form length, or --set input=FILE")
   end
   if made.closed and (made.start or made.finish) then
-    fail("a closed course has neither start nor end: it is flown round and round")
+    fail(made.start and "start" or "finish",
+         "a closed course has neither start nor end: it is flown round and round")
   end
-  if #list * o.laps > MOST then fail(string.format("more than %d gates in all laps", MOST)) end
+  if #list * o.laps > MOST then
+    run:fail("laps", string.format("more than %d gates in all laps", MOST))
+  end
   for _ = 1, o.laps do
     for _, gate in ipairs(list) do made.gates[#made.gates + 1] = gate end
   end
-  check_apart(fail, made.gates)
+  check_apart(fail, made.gates, #list)
   check_floor(fail, made, list, o.floor)
   return made
 end

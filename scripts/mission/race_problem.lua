@@ -191,10 +191,9 @@ local function ends_of(course, made, o, model)
   return state
 end
 
--- The problem of these legs; `coarse` is the solution to begin from, on fewer stages or of another
--- model.
-function problem.make(run, course, vehicle, made, model, coarse)
-  local o = run.options
+-- The problem of these legs by the options o; `coarse` is the solution to begin from, on fewer
+-- stages or of another model.
+function problem.make(run, course, vehicle, made, o, model, coarse)
   local legs = {}
   local free = o.timing == "optimal" and not made.hovers
   for i, time in ipairs(made.durations) do

@@ -6,32 +6,41 @@
 -- between; a vehicle without a gimbal turns its yaw towards them instead.
 local shot_file = {}
 
+-- Of a keyframe, as far as they are read; files hold others beside them.
+local KEYS = { "cameraPose", "lookAt", "lookAtNED", "lookFromNED" }
 local STEEP = 1e-3  -- m, horizontal distance below which a look has no heading
 
-local function number(run, value, what)
-  if math.type(value) == nil then run:fail("input", what .. ": expected a number") end
+local function number(file, value, path)
+  if math.type(value) == nil then file:fail(path, "expected a number") end
   return value
 end
 
-local function table_of(run, value, what)
-  if type(value) ~= "table" then run:fail("input", what .. " is missing") end
+local function table_of(file, value, path)
+  if type(value) ~= "table" then file:fail(path, "expected a table or a list") end
   return value
 end
 
-local function geodetic(run, value, what)
-  table_of(run, value, what)
-  return { lat = number(run, value.lat, what .. ".lat"),
-           lon = number(run, value.lng, what .. ".lng"),
-           alt = number(run, value.altitude, what .. ".altitude") }
+local function geodetic(file, value, path)
+  table_of(file, value, path)
+  return { lat = number(file, value.lat, path .. ".lat"),
+           lon = number(file, value.lng, path .. ".lng"),
+           alt = number(file, value.altitude, path .. ".altitude") }
 end
 
--- World position of one point of a keyframe: from north, east, down, or from geodetic figures.
-local function place(run, origin, ned, pose, what)
-  if ned then
-    return { number(run, ned.e, what .. ".e"), number(run, ned.n, what .. ".n"),
-             -number(run, ned.d, what .. ".d") }
+-- World position of one point of a keyframe, whose keys are ned and pose: from north, east, down,
+-- or from geodetic figures.
+local function place(file, origin, entry, path, ned, pose)
+  local given = entry[ned]
+  if given ~= nil then
+    path = path .. "." .. ned
+    table_of(file, given, path)
+    return { number(file, given.e, path .. ".e"), number(file, given.n, path .. ".n"),
+             -number(file, given.d, path .. ".d") }
   end
-  return lapwing.local_from_geodetic(origin, geodetic(run, pose, what))
+  if entry[pose] == nil then
+    file:fail(path .. "." .. ned, string.format("missing; expected {n, e, d}, or %s", pose))
+  end
+  return lapwing.local_from_geodetic(origin, geodetic(file, entry[pose], path .. "." .. pose))
 end
 
 -- The points looked at as the track of a subject, at rest before the first and after the last.
@@ -51,27 +60,31 @@ end
 function shot_file.read(run)
   local name = run.options.input
   if not name then lapwing.fail("give the shot to fly: --set input=PATH") end
-  local shot = lapwing.read_json(name, "shots")
-  local list = table_of(run, shot.keyFrameList, name .. ": keyFrameList")
-  local times = table_of(run, shot.keyframeTimes, name .. ": keyframeTimes")
+  local shot, file = lapwing.read_json(name, "shots")
+  file:expect_keys("", { "keyFrameList", "keyframeTimes", "refLLH" }, true)
+  local list = table_of(file, shot.keyFrameList, "keyFrameList")
+  local times = table_of(file, shot.keyframeTimes, "keyframeTimes")
   if #list == 0 or #list ~= #times then
-    run:fail("input", string.format("%s: %d keyframes, but %d times", name, #list, #times))
+    file:fail("keyframeTimes", string.format("%d keyframes, but %d times", #list, #times))
   end
   local origin
   if shot.refLLH then
-    origin = geodetic(run, shot.refLLH, name .. ": refLLH")
+    origin = geodetic(file, shot.refLLH, "refLLH")
   else
-    origin = geodetic(run, table_of(run, list[1], name .. ": keyframe 1").cameraPose,
-                      name .. ": keyframe 1: cameraPose")
+    local first = table_of(file, list[1], "keyFrameList[1]")
+    origin = geodetic(file, first.cameraPose, "keyFrameList[1].cameraPose")
   end
   local keyframes, track = {}, {}
   local gimbal = run:vehicle(run.options.vehicle).gimbal
   for i, entry in ipairs(list) do
-    local what = string.format("%s: keyframe %d", name, i)
-    local from = place(run, origin, entry.lookFromNED, entry.cameraPose, what .. ": lookFrom")
-    local keyframe = { time = number(run, times[i], what .. ": time"), position = from }
+    local path = string.format("keyFrameList[%d]", i)
+    table_of(file, entry, path)
+    file:expect_keys(path, KEYS, true)
+    local from = place(file, origin, entry, path, "lookFromNED", "cameraPose")
+    local time = number(file, times[i], string.format("keyframeTimes[%d]", i))
+    local keyframe = { time = time, position = from }
     if entry.lookAtNED or entry.lookAt then
-      local at = place(run, origin, entry.lookAtNED, entry.lookAt, what .. ": lookAt")
+      local at = place(file, origin, entry, path, "lookAtNED", "lookAt")
       track[#track + 1] = { time = keyframe.time, position = at }
       local east, north = at[1] - from[1], at[2] - from[2]
       if not gimbal and east ^ 2 + north ^ 2 > STEEP ^ 2 then

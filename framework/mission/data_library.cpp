@@ -1,0 +1,153 @@
+// What scripts read from data files, and errors that name the line of the file.
+#include <algorithm>
+
+#include <lua.hpp>
+
+#include "framework/config/yaml.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/run.h"
+#include "framework/mission/value_path.h"
+
+namespace lapwing {
+namespace {
+
+// A file that was read, whose values know their lines; Lua's tables do not.
+struct DataFile {
+  Value content;
+};
+
+std::string folder_argument(lua_State* state, const char* what) {
+  return lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, what);
+}
+
+int push_file(lua_State* state, Value content) {
+  push_value(state, content);
+  new_object(state, kDataFileType, DataFile{std::move(content)});
+  return 2;
+}
+
+// lapwing.read_json(name [, folder]): a table from a JSON file below the script's folder, the data
+// folders or the shipped ones, and the file; `folder` is a sub-folder of these that is asked as
+// well.
+int read_json(lua_State* state) {
+  const std::string name = text_argument(state, 1, "lapwing.read_json");
+  return push_file(
+      state, run_of(state).files.read_json(name, folder_argument(state, "lapwing.read_json")));
+}
+
+// lapwing.read_yaml(name [, folder]): the same from a YAML file.
+int read_yaml_data(lua_State* state) {
+  const std::string name = text_argument(state, 1, "lapwing.read_yaml");
+  const std::string folder = folder_argument(state, "lapwing.read_yaml");
+  return push_file(state, from_yaml(run_of(state).files.read_text(name, folder), name));
+}
+
+// lapwing.read_text(name [, folder]): the text of a file, found as read_json finds it.
+int read_text(lua_State* state) {
+  const std::string name = text_argument(state, 1, "lapwing.read_text");
+  push_text(state,
+            run_of(state).files.read_text(name, folder_argument(state, "lapwing.read_text")));
+  return 1;
+}
+
+const Value& content_of(lua_State* state) {
+  return object_argument<DataFile>(state, 1, kDataFileType).content;
+}
+
+// Where the last key of the path is not there, but one that is written nearly so.
+std::string slip_near(const Value& content, const std::string& path) {
+  constexpr std::size_t kShortest = 3;  // of a key: any two letters are near each other
+  const std::size_t mark = path.find_last_of('.');
+  const std::string key = mark == path.npos ? path : path.substr(mark + 1);
+  const Value* around = at_path(content, mark == path.npos ? "" : path.substr(0, mark));
+  if (key.size() < kShortest || key.back() == ']') return "";
+  if (!around || !around->is_map() || around->find(key)) return "";
+  std::vector<std::string> written;
+  for (const auto& [name, value] : around->as_map()) written.push_back(name);
+  const std::string nearest = nearest_name(key, written);
+  if (nearest.empty()) return "";
+  return "; did you mean '" + key + "' by '" + nearest + "' on line " +
+         std::to_string(around->find(nearest)->origin().line) + "?";
+}
+
+// file:fail("gates[2].radius", "message"): an error on that line of the file.
+int fail_in_file(lua_State* state) {
+  const Value& content = content_of(state);
+  const std::string path = text_argument(state, 2, "fail");
+  const std::string message = text_argument(state, 3, "fail");
+  throw InputError(innermost_at(content, path).origin(),
+                   (path.empty() ? "" : path + ": ") + message + slip_near(content, path));
+}
+
+// file:check("gates[2]", declarations): the table there, checked as options are, with defaults.
+int check_part(lua_State* state) {
+  const Value& content = content_of(state);
+  const std::string path = text_argument(state, 2, "check");
+  const Origin origin = Sandbox::of(state).script_position(state);
+  const ParameterTable table =
+      ParameterTable::from_value(value_from_lua(state, 3, origin, "declarations"));
+  const Value* part = at_path(content, path);
+  if (!part)
+    throw InputError(innermost_at(content, path).origin(),
+                     path + ": missing; expected a table" + slip_near(content, path));
+  push_value(state, check(table, *part, path).value());
+  return 1;
+}
+
+// file:expect_keys("gates[2]", {"name", "shape"} [, slips]): an error for any other key of the
+// table there; with `slips` for those alone that are nearly one of these.
+int expect_keys(lua_State* state) {
+  const Value& content = content_of(state);
+  const std::string path = text_argument(state, 2, "expect_keys");
+  const Origin origin = Sandbox::of(state).script_position(state);
+  std::vector<std::string> known;
+  std::string all;
+  const Value names = value_from_lua(state, 3, origin, "expect_keys");
+  for (const Value& name : names.as_list()) {
+    known.push_back(name.as_text());
+    all += (all.empty() ? "" : ", ") + known.back();
+  }
+  const Value& part = innermost_at(content, path);
+  if (!part.is_map())
+    throw InputError(part.origin(), (path.empty() ? "" : path + ": ") +
+                                        "expected a table with the keys " + all + ", got " +
+                                        part.describe_type());
+  const bool slips = lua_toboolean(state, 4);
+  Diagnostics errors;
+  for (const auto& [key, value] : part.as_map()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const std::string nearest = nearest_name(key, known);
+    if (slips && nearest.empty()) continue;
+    errors.add(value.origin(), path.empty() ? key : path + "." + key,
+               nearest.empty() ? "unknown key; known: " + all
+                               : "unknown key; did you mean '" + nearest + "'?");
+  }
+  errors.throw_if_any();
+  return 0;
+}
+
+}  // namespace
+
+void open_data_library(lua_State* state) {
+  static const Binding methods[] = {
+      {"fail", &guarded<fail_in_file>, "(path: string, message: string)",
+       "an error on the line of that value: \"gates[2].radius\""},
+      {"check", &guarded<check_part>, "(path: string, declarations: lapwing.option[]): table",
+       "the table there, checked as options are, with defaults"},
+      {"expect_keys", &guarded<expect_keys>, "(path: string, known: string[], slips?: boolean)",
+       "an error for any other key of the table there; slips: for those nearly known alone"}};
+  static const Binding functions[] = {
+      {"read_json", &guarded<read_json>, "(name: string, folder?: string): any, lapwing.data_file",
+       "a table, from a file in the script's folder, a --data folder or configs/, and the file"},
+      {"read_yaml", &guarded<read_yaml_data>,
+       "(name: string, folder?: string): any, lapwing.data_file", "the same from a YAML file"},
+      {"read_text", &guarded<read_text>, "(name: string, folder?: string): string",
+       "the text of such a file"}};
+  define_type<DataFile>(state, kDataFileType, {methods});
+  lua_getglobal(state, "lapwing");
+  bind_functions(state, "lapwing", functions);
+  lua_pop(state, 1);
+}
+
+}  // namespace lapwing

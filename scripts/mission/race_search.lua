@@ -1,0 +1,92 @@
+-- What would fly, where the controller cannot follow the fastest flight: the largest share of the
+-- thrust at which the whole quadrotor stays on the course, found by trying. Every try is the flight
+-- that a run with the printed settings makes.
+local M = {}
+
+local GRAVITY = 9.80665
+local ABOVE = 1.15       -- times the share that carries the vehicle: the least one that is tried
+local STEP = 0.01        -- between shares
+local CLOSE = 0.03       -- no nearer to a share that fails
+local MOST_TRIES = 5
+local SLOW_TURNS = 0.3   -- share of the body rates, where no share of the thrust is enough
+
+-- The share of the thrust that carries the vehicle.
+function M.least(vehicle, o)
+  local most = o.model == "quadrotor_full" and 4 * vehicle.rotor_thrust_max or vehicle.thrust_max
+  return GRAVITY * vehicle.mass / most
+end
+
+local function with(options, more)
+  local all = {}
+  for key, value in pairs(options) do all[key] = value end
+  for key, value in pairs(more) do all[key] = value end
+  return all
+end
+
+-- The largest share that is followed: halving towards the least until one is, then between that one
+-- and the smallest that is not. nil where none of the tries is followed.
+local function largest(run, follows, low, high)
+  local good, time
+  for try = 1, MOST_TRIES do
+    if run:cancelled() or high - (good or low) < (good and CLOSE or STEP) then break end
+    local share = STEP * math.floor(((good or low) + high) / 2 / STEP + 0.5)
+    if try == MOST_TRIES and not good then share = STEP * math.ceil(low / STEP) end
+    local followed, seconds = follows(share, try)
+    if followed then good, time = share, seconds else high = share end
+  end
+  return good, time
+end
+
+local function seconds_text(o, time, before)
+  if o.time then return "" end
+  return string.format(" (%.3g s instead of %.3g s)", time, before)
+end
+
+-- Sentences. `follows(options, say)`: whether the flight by these options is certified, and its
+-- duration; `before`: that of the flight that cannot be followed.
+function M.advice(run, vehicle, before, follows)
+  local o = run.options
+  local low = ABOVE * M.least(vehicle, o)
+  local notes = {}
+  local function try(more, words)
+    local text = "closed loop: trying " .. words
+    run:progress(-1, text)
+    return follows(with(o, more), function() run:progress(-1, text) end)
+  end
+  local function shares(more)
+    return largest(run, function(share, k)
+      local words = string.format("thrust = %.2f, try %d of at most %d", share, k, MOST_TRIES)
+      return try(with(more, { thrust = share }), words)
+    end, low, o.thrust)
+  end
+  local share, time = shares {}
+  local turns = ""
+  if not share and o.model == "quadrotor_full" and o.rate_share > SLOW_TURNS then
+    share, time = shares { rate_share = SLOW_TURNS }
+    turns = string.format(" --set rate_share=%g", SLOW_TURNS)
+  end
+  if share then
+    notes[1] = string.format("the closed loop follows this course at thrust = %.2f%s: "
+                             .. "--set thrust=%.2f%s", share, seconds_text(o, time, before), share,
+                             turns)
+  end
+  if o.model == "quadrotor_full" and not run:cancelled() then
+    local followed, seconds = try({ model = "quadrotor" }, "model = quadrotor")
+    if followed then
+      notes[#notes + 1] = string.format("the closed loop follows the course as a point mass flies "
+        .. "it%s: --set model=quadrotor", seconds_text(o, seconds, before))
+    end
+  end
+  if run:cancelled() and #notes == 0 then
+    notes[1] = "interrupted before a thrust was found at which the closed loop follows this course"
+  elseif #notes == 0 then
+    notes[1] = string.format(
+      "no thrust tried from %.2f to %.2f gives a flight that the closed loop follows: gates ask "
+      .. "for turns that vehicle '%s' cannot make; give it wider gates (tolerance of keyframes), "
+      .. "more time (time) or weights.smoothness, or set closed_loop=reported", low, o.thrust,
+      vehicle.name)
+  end
+  return notes
+end
+
+return M

@@ -1,0 +1,124 @@
+// Races that the controller cannot follow, and what a user is told of them.
+#include <gmock/gmock.h>
+
+#include "framework/core/error.h"
+#include "tests/missions/race_fixture.h"
+
+namespace lapwing {
+namespace {
+
+using testing::HasSubstr;
+
+class RaceAdvice : public Race {
+ protected:
+  // Stands between two gates that ask the whole quadrotor for more than its controller can follow.
+  static std::string turns(const std::string& more) {
+    return "model = 'quadrotor_full', thrust = 1, refinements = 1, start = {0, 0, 2}, finish = "
+           "{12, 4, 2}, gates = { { shape = 'ball', position = {6, 0, 2}, radius = 0.3 }, { shape "
+           "= 'ball', position = {6, 6, 3}, radius = 0.3 } }, " +
+           more;
+  }
+  static std::vector<std::string> notes(const Flown& flown) {
+    std::vector<std::string> list;
+    if (const Value* notes = flown.result.find("notes"))
+      for (const Value& note : notes->as_list()) list.push_back(note.as_text());
+    return list;
+  }
+  // "--set thrust=0.5 --set rate_share=0.3" at the end of a note.
+  static std::string settings(const std::string& note) { return note.substr(note.find("--set ")); }
+};
+
+TEST_F(RaceAdvice, TheThrustThatIsNamedIsFollowed) {
+  const Flown flown = race(turns(""));
+  ASSERT_EQ(flown.status, 1) << to_json(flown.result);
+  const std::vector<std::string> said = notes(flown);
+  ASSERT_FALSE(said.empty());
+  EXPECT_THAT(said[0], HasSubstr("the closed loop follows this course at thrust = 0."));
+  EXPECT_THAT(said[0], HasSubstr(" s instead of "));
+  const Flown followed = race(turns(""), settings(said[0]));
+  expect_certified(followed);
+  EXPECT_GT(time_of(followed), time_of(flown));
+}
+
+TEST_F(RaceAdvice, NothingIsTriedWhereNobodyAsks) {
+  EXPECT_TRUE(notes(race(turns("advise = false"))).empty());
+  const Flown reported = race(turns("closed_loop = 'reported'"));
+  EXPECT_EQ(reported.status, 0);
+  EXPECT_TRUE(notes(reported).empty());
+}
+
+TEST_F(RaceAdvice, WhatNoThrustMendsIsSaid) {
+  // Rotors that answer half a second late: no flight of this course is followed.
+  const Flown flown = race(
+      "vehicle = { mass = 0.85, inertia = {0.001, 0.001, 0.0017}, yaw_share = 0.1, flight_time = "
+      "240, rotors = { thrust = {0, 6.879}, torque_coefficient = 0.05, arm_length = 0.15, lag = "
+      "0.5 }, limits = { speed_across = 25, climb_speed = 15, descent_speed = 15, "
+      "acceleration_across = 40, yaw_rate_deg = 171 }, camera = 'cameras/racing' }, refinements = "
+      "0, start = {0, 0, 2}, finish = {6, 0, 2}, gates = { { shape = 'ball', position = {3, 3, 2}, "
+      "radius = 0.3 } }");
+  ASSERT_EQ(flown.status, 1);
+  ASSERT_EQ(notes(flown).size(), 1u);
+  EXPECT_THAT(notes(flown)[0], HasSubstr("no thrust tried from "));
+}
+
+TEST_F(RaceAdvice, PlansOfRotorsAreFlownAndRaced) {
+  const std::string log = "time,forward,left\n0,0,0\n0.9,0,0\n";
+  write_file_atomically(folder_ / "still.csv", log);
+  const Flown flown =
+      race(turns("closed_loop = 'reported', players = { { log = 'still.csv', "
+                 "weight = 0.1 } }"));
+  ASSERT_EQ(flown.status, 0) << to_json(flown.result);
+  EXPECT_EQ(flown.result.at("game").at("pilots").as_list().size(), 1u);
+  const std::string plan = (flown.folder / "plan.json").string();
+  const auto status = [&](const std::string& arguments) {
+    return WEXITSTATUS(std::system((std::string(LAPWING_BUILD_DIR) + "/bin/lapwing " + arguments +
+                                    " > '" + (folder_ / "out.txt").string() + "' 2>&1")
+                                       .c_str()));
+  };
+  EXPECT_LE(status("simulate '" + plan + "'"), 1) << read_file(folder_ / "out.txt");
+  EXPECT_LE(status("race '" + plan + "' --pilot '" + (folder_ / "still.csv").string() + "'"), 1)
+      << read_file(folder_ / "out.txt");
+}
+
+TEST_F(RaceAdvice, NothingComputedIsLostToAGameThatCannotBeFlown) {
+  write_file_atomically(folder_ / "still.csv", "time,forward,left\n0,0,0\n0.9,0,0\n");
+  // nlopt leaves such a problem unsolved: what there is of a plan does not fly.
+  const Flown flown = race(turns("solver = 'nlopt', players = { { log = 'still.csv' } }"));
+  EXPECT_EQ(flown.status, 1);
+  EXPECT_TRUE(fs::exists(flown.folder / "plan.json"));
+  EXPECT_TRUE(fs::exists(flown.folder / "report.html"));
+  ASSERT_NE(flown.result.find("game"), nullptr) << to_json(flown.result);
+}
+
+TEST_F(RaceAdvice, AnUnreadableLogIsSaidBeforeAnythingIsComputed) {
+  write_file_atomically(folder_ / "broken.csv", "time,forward,left\n0,0,0\n0.5,zero,0\n");
+  const std::string said = refused(turns("players = { { log = 'broken.csv' } }"));
+  EXPECT_THAT(said, HasSubstr("broken.csv:3:"));
+  EXPECT_THAT(said, Not(HasSubstr("interior-point")));
+}
+
+TEST_F(RaceAdvice, ATypoInACourseNamesFileLineAndKey) {
+  const auto said = [&](const std::string& text) {
+    write_file_atomically(folder_ / "course.yaml", text);
+    return refused("input = 'course.yaml'");
+  };
+  const std::string gate = "  - {shape: ball, position: [3, 3, 2], radius: 0.3}\n";
+  const std::string begin = "start: [0, 0, 2]\nend: {position: [6, 0, 2]}\n";
+  EXPECT_THAT(said(begin + "gatse:\n" + gate),
+              HasSubstr("course.yaml:3: gatse: unknown key; did you mean 'gates'?"));
+  EXPECT_THAT(said(begin + "gates:\n" + gate + "  - {shape: ball, positoin: [3, 3, 2]}\n"),
+              HasSubstr("course.yaml:5: gates[2].positoin: unknown key; did you mean 'position'?"));
+  EXPECT_THAT(said(begin + "gates:\n  - {shape: bal, position: [3, 3, 2], radius: 1}\n"),
+              HasSubstr("did you mean 'ball'?"));
+  EXPECT_THAT(
+      said(begin + "gates:\n" + gate + "  - {shape: ball, position: [3, 3, 2], radius: 0}\n"),
+      HasSubstr("course.yaml:5: gates[2].radius: a ball cannot be entered"));
+  EXPECT_THAT(said("start: {positoin: [0, 0, 2]}\ngates:\n" + gate),
+              HasSubstr("course.yaml:1: start.positoin: unknown key; did you mean 'position'?"));
+  EXPECT_THAT(said(begin + "waypoints: [[1, 2, 3], [1, 2]]\n"),
+              HasSubstr("course.yaml:3: waypoints[2]: expected three finite numbers"));
+  EXPECT_THAT(said("- 1\n"), HasSubstr("course.yaml:1: expected a table with the keys start"));
+}
+
+}  // namespace
+}  // namespace lapwing
