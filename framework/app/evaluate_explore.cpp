@@ -22,8 +22,6 @@ bool run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
                const ExplorationSetup& setup, const Registry& registry, const Value& parameters,
                std::uint64_t seed, const fs::path& folder) {
   Random random = Random(seed).split(static_cast<std::uint64_t>(trial.episode));
-  const Viewpoint start =
-      random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2, setup.pitch, random);
   EpisodeSettings settings = setup.episode;
   settings.show_truth = needs_truth(registry, trial.utility);
   settings.seed = seed + static_cast<std::uint64_t>(trial.episode) * 1'000'003;
@@ -33,7 +31,14 @@ bool run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
       registry.create<ViewUtility>(trial.utility, given ? *given : Value::map(), trial.utility);
   ObservedSurface observed(truth, settings.sensor, new_map);
   const auto map = new_map();
-  EpisodeResult result = explore(settings, start, truth, observed, *utility, *map);
+  EpisodeResult result;
+  try {
+    const Viewpoint start =
+        random_start(truth, settings.clear, settings.sensor.range / 2, setup.pitch, random);
+    result = explore(settings, start, truth, observed, *utility, *map);
+  } catch (const StartError& error) {
+    throw setup.with_options(error, world.name);
+  }
   if (result.end == EpisodeEnd::cancelled) return false;
   std::vector<double> curve;
   double seconds = 0;
@@ -88,6 +93,11 @@ Value settings_for(const ExploreEvaluation& request, Value stated) {
     } else if (const Value* files = there.find("files")) {
       for (const auto& [name, sum] : files->as_map())
         if (!stated.at("files").find(name)) stated.find("files")->set(name, sum);
+      if (const Value* own = there.find("world_moves"))
+        for (const auto& [world, moves] : own->as_map()) {
+          if (!stated.find("world_moves")) stated.set("world_moves", Value::map());
+          if (!stated.at("world_moves").find(world)) stated.find("world_moves")->set(world, moves);
+        }
     }
   } else if (!fs::exists(settings) ||
              !of_an_evaluation(from_json(read_file(settings), settings.string()))) {
@@ -118,6 +128,7 @@ void require_same_starts(const ExploreEvaluation& request, const Value& stated,
     Value kept = Value::map();
     for (const char* key : {"program", "steps", "seed", "moves", "mapping", "up"})
       if (const Value* value = of.find(key)) kept.set(key, *value);
+    if (const Value* moves = of.find("world_moves")) kept.set("world_moves", *moves);
     Value& files = kept.set("files", Value::map());
     if (const Value* sums = of.find("files"))
       for (const WorldName& world : worlds)
@@ -186,7 +197,10 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   stated.set("moves", moves);
   stated.set("mapping", mapping);
   stated.set("up", request.up);
-  stated.set("files", checksums_of(names, utilities, parameters, registry, invocation));
+  const WorldRecords records =
+      records_of(names, utilities, parameters, setup, registry, invocation);
+  if (!records.moves.as_map().empty()) stated.set("world_moves", records.moves);
+  stated.set("files", records.files);
   if (!request.against.empty()) require_same_starts(request, stated, names, utilities);
   const Value settings = settings_for(request, std::move(stated));
 
@@ -209,8 +223,8 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     const auto& [name, trial] = trials[k];
     const auto used = in_use.begin(*name);
     std::call_once(stated_once, write_settings);  // not for a world that cannot be loaded
-    if (!run_trial(trial, used->world, used->truth, setup, registry, parameters, invocation.seed,
-                   request.folder))
+    if (!run_trial(trial, used->world, used->truth, setup_of(setup, records, name->text()),
+                   registry, parameters, invocation.seed, request.folder))
       return;
     const auto [ended, expected] = in_use.end(*name);
     if (!invocation.quiet)
@@ -229,10 +243,18 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     Value object = Value::map();
     object.set("status", "ok");
     object.set("report", report);
+    object.set("moves", moves);
+    if (!records.moves.as_map().empty()) object.set("world_moves", records.moves);
     object.set("rows", tables.rows);
     print_json(object);
   } else if (!invocation.quiet) {
-    std::cout << tables.text << "\nreport: " << report << std::endl;
+    std::cout << tables.text;
+    for (const auto& [world, own] : records.moves.as_map())
+      std::cout << "\n"
+                << world
+                << " was explored by the moves that its scene recommends: " << settings_text(own)
+                << " (--moves KEY=VALUE sets others)";
+    std::cout << "\nreport: " << report << std::endl;
   }
   return ExitStatus::done;
 }

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-#include "framework/app/exploration_worlds.h"
+#include "framework/app/exploration_settings.h"
 #include "framework/app/stratified_sample.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
@@ -364,11 +364,12 @@ Facts settings_facts(const ExplorationFigures& asked) {
   if (settings.at("lookahead").as_integer() > 1)
     add("looking ahead", std::to_string(settings.at("lookahead").as_integer()), "views");
   for (const char* key : {"moves", "mapping", "parameters"}) {
-    std::string text;
-    for (const auto& [name, value] : settings.at(key).as_map())
-      text += (text.empty() ? "" : ", ") + name + " " + to_json(value, -1);
+    const std::string text = settings_text(settings.at(key));
     if (!text.empty()) add(key, text);
   }
+  if (const Value* own = settings.find("world_moves"))
+    for (const auto& [world, moves] : own->as_map())
+      add(("moves in " + world).c_str(), settings_text(moves));
   return facts;
 }
 

@@ -8,19 +8,28 @@ namespace lapwing {
 
 namespace fs = std::filesystem;
 
-Value checksums_of(const std::vector<WorldName>& worlds, const std::vector<std::string>& utilities,
-                   const Value& parameters, const Registry& registry,
-                   const Invocation& invocation) {
+WorldRecords records_of(const std::vector<WorldName>& worlds,
+                        const std::vector<std::string>& utilities, const Value& parameters,
+                        const ExplorationSetup& setup, const Registry& registry,
+                        const Invocation& invocation) {
   constexpr std::size_t kMost = std::size_t{4} << 30;
-  Value files = Value::map();
+  WorldRecords records;
+  Value& files = records.files;
   const auto keep = [&](const std::string& name, const fs::path& path) {
     if (fs::is_regular_file(path)) files.set(name, sha256(read_file(path, kMost)));
   };
-  for (const WorldName& world : worlds)
-    if (world.is_mesh())
+  ExplorationSetup own = setup;
+  const Value standard = own.recommend_moves(Value::map());
+  for (const WorldName& world : worlds) {
+    if (world.is_mesh()) {
       keep(world.text(), world.file());
-    else
-      files.set(world.text(), checksum(made_world(world, registry, invocation)));
+      continue;
+    }
+    const GeneratedScene made = made_world(world, registry, invocation);
+    files.set(world.text(), checksum(made));
+    Value moves = own.recommend_moves(made.moves);
+    if (!(moves == standard)) records.moves.set(world.text(), std::move(moves));
+  }
   for (const std::string& utility : utilities) {
     const fs::path library = registry.find("utility", utility).library;
     keep(utility + ".library", library);
@@ -30,19 +39,54 @@ Value checksums_of(const std::vector<WorldName>& worlds, const std::vector<std::
     for (const auto& [key, value] : given->as_map())
       if (value.is_text()) keep(utility + "." + key, value.as_text());
   }
-  return files;
+  return records;
+}
+
+ExplorationSetup setup_of(const ExplorationSetup& setup, const WorldRecords& records,
+                          const std::string& world) {
+  ExplorationSetup own = setup;
+  if (const Value* moves = records.moves.find(world)) own.recommend_moves(*moves);
+  return own;
+}
+
+namespace {
+
+// The moves of a world of this evaluation; null where it has none of that name.
+const Value* moves_of(const Value& settings, const std::string& world) {
+  const Value* files = settings.find("files");
+  if (!files || !files->find(world)) return nullptr;
+  const Value* own = settings.find("world_moves");
+  if (const Value* moves = own ? own->find(world) : nullptr) return moves;
+  return settings.find("moves");
+}
+
+}  // namespace
+
+std::string settings_text(const Value& settings) {
+  std::string text;
+  for (const auto& [name, value] : settings.as_map())
+    text += (text.empty() ? "" : ", ") + name + " " + to_json(value, -1);
+  return text;
 }
 
 std::string settings_difference(const Value& there, const Value& here) {
   if (!there.is_map()) return "nothing there says how";
   for (const Value* one : {&here, &there})
     for (const auto& [key, ignored] : one->as_map()) {
-      if (key == "files") continue;
+      if (key == "files" || key == "world_moves") continue;
       const Value *a = there.find(key), *b = here.find(key);
       if (!a || !b || !(*a == *b))
         return key + " is " + (a ? to_json(*a, -1) : "not said") + " there, " +
                (b ? to_json(*b, -1) : "not said") + " here";
     }
+  for (const Value* one : {&here, &there})
+    if (const Value* own = one->find("world_moves"))
+      for (const auto& [world, ignored] : own->as_map()) {
+        const Value *a = moves_of(there, world), *b = moves_of(here, world);
+        if (a && b && !(*a == *b))
+          return "the moves in " + world + " are " + settings_text(*a) + " there, " +
+                 settings_text(*b) + " here";
+      }
   const Value* files = there.find("files");
   for (const auto& [name, sum] : here.at("files").as_map())
     if (const Value* before = files ? files->find(name) : nullptr; before && !(*before == sum))

@@ -5,14 +5,30 @@
 
 namespace lapwing {
 
+// The moves of worlds whose scenes recommend others than the rest is explored by, by world.
+struct WorldRecords {
+  Value files = Value::map();
+  Value moves = Value::map();  // by world: step, turn_deg, body, clear
+};
+
 // SHA-256 of what an exploration depends on: by world of its mesh file, or of the surface that its
 // script makes; by utility of its library and its model (a parameter that names a file, else
 // NAME.model beside it). `parameters` are by utility. InputError for a script that fails.
-Value checksums_of(const std::vector<WorldName>& worlds, const std::vector<std::string>& utilities,
-                   const Value& parameters, const Registry& registry, const Invocation& invocation);
+WorldRecords records_of(const std::vector<WorldName>& worlds,
+                        const std::vector<std::string>& utilities, const Value& parameters,
+                        const ExplorationSetup& setup, const Registry& registry,
+                        const Invocation& invocation);
+
+// The setup of one of the worlds.
+ExplorationSetup setup_of(const ExplorationSetup& setup, const WorldRecords& records,
+                          const std::string& world);
+
+// "step 0.7, clear 2": a map of settings on one line.
+std::string settings_text(const Value& settings);
 
 // The first setting that differs, in words; empty where all agree. Of "files" only those that both
-// name: other worlds and utilities may join.
+// name: other worlds and utilities may join. `moves` are those of every world that `world_moves`
+// does not name.
 std::string settings_difference(const Value& there, const Value& here);
 
 }  // namespace lapwing

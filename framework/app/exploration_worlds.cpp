@@ -10,6 +10,7 @@
 #include "framework/config/overrides.h"
 #include "framework/config/shipped.h"
 #include "framework/core/checksum.h"
+#include "framework/core/number_text.h"
 #include "framework/core/units.h"
 
 namespace lapwing {
@@ -221,22 +222,38 @@ Value ExplorationSetup::set_mapping(const std::vector<std::string>& given) {
 }
 
 Value ExplorationSetup::set_moves(const std::vector<std::string>& given) {
-  Value moves = Value::map();
-  for (const std::string& text : given) apply_override(moves, text, "--moves");
+  stated_moves = Value::map();
+  for (const std::string& text : given) apply_override(stated_moves, text, "--moves");
+  return recommend_moves(Value::map());
+}
+
+Value ExplorationSetup::recommend_moves(const Value& moves) {
+  Value laid = Value::map();
+  for (const char* key : {"step", "turn_deg", "body", "clear"})  // a study has no other moves
+    if (const Value* value = moves.find(key)) laid.set(key, *value);
+  merge(laid, stated_moves);
+  const EpisodeSettings standard;
   const Parameters p =
       check(ParameterTable()
-                .number("step", episode.step, "m", "to a neighbour", above(0))
-                .number("turn_deg", episode.turn * 180 / EIGEN_PI, "deg", "to a neighbour",
+                .number("step", standard.step, "m", "to a neighbour", above(0))
+                .number("turn_deg", standard.turn * 180 / EIGEN_PI, "deg", "to a neighbour",
                         between(1, 180))
-                .number("body", episode.body, "m", "edge of the box that must be free", above(0))
-                .number("clear", episode.clear, "m", "edge of the box that is free at the start",
+                .number("body", standard.body, "m", "edge of the box that must be free", above(0))
+                .number("clear", standard.clear, "m", "edge of the box that is free at the start",
                         above(0)),
-            moves, "");
+            laid, "");
   episode.step = p.number("step");
   episode.turn = p.number("turn_deg") * EIGEN_PI / 180;
   episode.body = p.number("body");
   episode.clear = p.number("clear");
   return p.value();
+}
+
+InputError ExplorationSetup::with_options(const StartError& error, const std::string& world) const {
+  return InputError("world '" + world + "': " + error.what() +
+                    "; smaller moves may help: --moves " +
+                    "clear=" + plain_number(std::max(episode.body, episode.clear / 2)) +
+                    " --moves step=" + plain_number(episode.step / 2));
 }
 
 ObservedSurface::NewMap ExplorationSetup::new_map(const Registry& registry) const {

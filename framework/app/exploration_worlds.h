@@ -55,15 +55,20 @@ struct ExplorationSetup {
   EpisodeSettings episode;
   double pitch = 0;
   std::string backend = "brick";
-  Value map;  // parameters of the backend
+  Value map;                          // parameters of the backend
+  Value stated_moves = Value::map();  // what set_moves was given
 
   ExplorationSetup();
   // "clear=2": how the camera moves, by the names of the mission's `moves`; all of them come
   // back as a map. InputError for others and for what makes no sense.
   Value set_moves(const std::vector<std::string>& given);
+  // The moves that a scene recommends, where set_moves was not told otherwise; likewise.
+  Value recommend_moves(const Value& moves);
   // "resolution=0.2": camera and map that a learned utility is good for, by the mission's names;
   // likewise.
   Value set_mapping(const std::vector<std::string>& given);
+  // What an episode at its start cannot do in a world of this name, and the options that help.
+  InputError with_options(const StartError& error, const std::string& world) const;
   GroundTruth truth_of(const World& world) const;
   ObservedSurface::NewMap new_map(const Registry& registry) const;
 };

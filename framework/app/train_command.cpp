@@ -49,19 +49,24 @@ SampleSet sampled_episode(const World& world, const GroundTruth& truth,
   const auto utility = registry.create<ViewUtility>(explorer, parameters, explorer);
   const auto new_map = setup.new_map(registry);
   Random random = Random(seed).split(static_cast<std::uint64_t>(episode));
-  const Viewpoint start =
-      random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2, setup.pitch, random);
   ObservedSurface observed(truth, setup.episode.sensor, new_map);
   const std::unique_ptr<Map> map = new_map();
   std::vector<float> grid(shape.size());
-  explore(setup.episode, start, truth, observed, *utility, *map, [&](const EpisodeMoment& moment) {
+  const auto keep = [&](const EpisodeMoment& moment) {
     if (samples.mapping.is_null()) samples.mapping = mapping_of(moment.known);
     moment.known.means->refresh(shape.levels);
     for (const Viewpoint& view : moment.neighbours) {
       sample_grid(moment.known, view, shape, grid);
       samples.add(grid, observed.gain(view));
     }
-  });
+  };
+  try {
+    const Viewpoint start = random_start(truth, setup.episode.clear, setup.episode.sensor.range / 2,
+                                         setup.pitch, random);
+    explore(setup.episode, start, truth, observed, *utility, *map, keep);
+  } catch (const StartError& error) {
+    throw setup.with_options(error, world.name);
+  }
   return samples;
 }
 
@@ -118,19 +123,24 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
   Value parameters = Value::map();
   parameters.set(request.explorer, explorer);
   std::vector<Value> made_by;
+  std::vector<ExplorationSetup> setups;
   std::vector<std::vector<std::int64_t>> missing;
   for (const WorldName& name : names) {
+    const WorldRecords records =
+        records_of({name}, {request.explorer}, parameters, setup, registry, invocation);
+    setups.push_back(setup_of(setup, records, name.text()));
+    const Value* own = records.moves.find(name.text());
     Value made = Value::map();
     made.set("program", std::string("lapwing ") + program_version());
     made.set("explorer", request.explorer);
     made.set("parameters", explorer);
     made.set("seed", static_cast<std::int64_t>(invocation.seed));
     made.set("steps", request.steps);
-    made.set("moves", moves);
+    made.set("moves", own ? *own : moves);
     made.set("mapping", mapping);
     made.set("up", request.up);
     made.set("grid", to_value(shape));
-    made.set("files", checksums_of({name}, {request.explorer}, parameters, registry, invocation));
+    made.set("files", records.files);
     missing.push_back(missing_episodes(request, name.text(), made));
     made_by.push_back(std::move(made));
   }
@@ -146,7 +156,7 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
     const auto [w, episode] = tasks[k];
     const auto used = in_use.begin(names[w]);
     const SampleSet set =
-        sampled_episode(used->world, used->truth, setup, registry, request.explorer, explorer,
+        sampled_episode(used->world, used->truth, setups[w], registry, request.explorer, explorer,
                         made_by[w], shape, episode, invocation.seed);
     if (interruption.token().cancelled()) return;
     write_samples(set, request.target / file_name(names[w].text(), episode));

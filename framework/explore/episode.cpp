@@ -164,7 +164,7 @@ void Explorer::begin(const Viewpoint& start) {
     throw InputError("the start lies outside the bounds that the explorer stays in");
   const Eigen::AlignedBox3d cleared = cleared_box(map_.grid(), start.position, settings_.clear);
   if (truth_.box_blocked(cleared))
-    throw InputError("the start at (" + plain_number(start.position.x()) + ", " +
+    throw StartError("the start at (" + plain_number(start.position.x()) + ", " +
                      plain_number(start.position.y()) + ", " + plain_number(start.position.z()) +
                      ") lies in an obstacle: a box of " + plain_number(settings_.clear) +
                      " m about it must be free");
@@ -173,7 +173,7 @@ void Explorer::begin(const Viewpoint& start) {
   for (const Viewpoint& next : neighbours_of(start, settings_.step, settings_.turn))
     ways += next.position != start.position && within_bounds(next) && graph_.free(start, next);
   if (ways == 0)
-    throw InputError("no neighbour of the start could be reached: a step of " +
+    throw StartError("no neighbour of the start could be reached: a step of " +
                      plain_number(settings_.step) + " m leaves the box of " +
                      plain_number(settings_.clear) + " m that is known to be free, or the bounds");
   at_ = graph_.add(start);

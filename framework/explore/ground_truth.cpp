@@ -100,8 +100,8 @@ void GroundTruth::find_space(std::span<const VoxelKey> all,
                              const std::optional<Eigen::Vector3d>& inside) {
   // A place beyond these voxels is taken for the nearest one within, but not from anywhere.
   const auto text = [](const Eigen::Vector3d& p) {
-    return "(" + plain_number(p.x()) + ", " + plain_number(p.y()) + ", " +
-           plain_number(p.z()) + ")";
+    return "(" + plain_number(p.x()) + ", " + plain_number(p.y()) + ", " + plain_number(p.z()) +
+           ")";
   };
   Eigen::AlignedBox3d near = scene_->mesh().bounds();
   near.min().array() -= kFarthest;
@@ -309,8 +309,7 @@ Viewpoint random_start(const GroundTruth& truth, double clear, double reach, dou
                        Random& random, const std::optional<Eigen::AlignedBox3d>& bounds) {
   constexpr int kDraws = 100'000;
   int outside = 0, blocked = 0, far = 0;
-  const Eigen::AlignedBox3d box =
-      bounds ? truth.region().intersection(*bounds) : truth.region();
+  const Eigen::AlignedBox3d box = bounds ? truth.region().intersection(*bounds) : truth.region();
   if (box.isEmpty())
     throw InputError("found no place to start from: the bounds have nothing of the region");
   const Eigen::Vector3d low = box.min(), high = box.max();
@@ -329,10 +328,13 @@ Viewpoint random_start(const GroundTruth& truth, double clear, double reach, dou
     }
   }
   const auto share = [&](int count) { return plain_number(100.0 * count / kDraws) + " %"; };
-  throw InputError("found no place to start from: of 100,000 drawn in the region " +
-                   share(outside) + " lie in no free space, " + share(blocked) +
-                   " have something within the box that is cleared, " + share(far) +
-                   " have no surface within " + plain_number(reach) + " m");
+  const std::string why = "found no place to start from: of 100,000 drawn in the region " +
+                          share(outside) + " lie in no free space, " + share(blocked) +
+                          " have something within the box of " + plain_number(clear) +
+                          " m that is cleared, " + share(far) + " have no surface within " +
+                          plain_number(reach) + " m";
+  if (blocked > 0) throw StartError(why);
+  throw InputError(why);
 }
 
 }  // namespace lapwing

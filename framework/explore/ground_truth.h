@@ -139,9 +139,16 @@ class ObservedSurface final : public TrueGain {
   mutable std::vector<std::shared_ptr<const Sight>> sights_;  // by place in the index
 };
 
+// No place to begin at, or none that could be left, where smaller moves may find one.
+class StartError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 // A viewpoint for an exploration to begin at: where the cleared box is truly free, in the space,
 // the region and the bounds, with a surface within `reach` metres. InputError for bounds that have
-// nothing of the region, and after 100,000 failed draws, saying what was in the way.
+// nothing of the region, and after 100,000 failed draws, saying what was in the way; StartError
+// where it was the cleared box.
 Viewpoint random_start(const GroundTruth& truth, double clear, double reach, double pitch,
                        Random& random,
                        const std::optional<Eigen::AlignedBox3d>& bounds = std::nullopt);

@@ -13,6 +13,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
+#include "framework/mission/value_path.h"
 #include "framework/mission/vectors.h"
 
 namespace lapwing {
@@ -213,7 +214,8 @@ Trajectory trajectory_of(const Exploration& e, bool gimbal) {
 
 ParameterTable explored_plan_table() {
   ParameterTable table;
-  table.number("margin", 0.4, "m", "that the certificate asks for", at_least(0));
+  table.number("margin", 0.4, "m", "that the certificate asks for", at_least(0))
+      .text("note", "", "a sentence for the user");
   return table;
 }
 
@@ -238,6 +240,7 @@ int plan_exploration(lua_State* state) {
   made.report.message =
       (e.result.steps.empty() ? "no image was taken: " : "") + explain(e.result.end);
   made.notes.push_back(std::to_string(e.result.steps.size()) + " images: " + explain(e.result.end));
+  if (!given.text("note").empty()) made.notes.push_back(given.text("note"));
   made.block_name = "exploration";
   made.block = Value::map();
   made.block.set("efficiency", e.record.efficiency);
@@ -381,6 +384,14 @@ Viewpoint start_in(const GroundTruth& truth, const Parameters& given,
                       settings.bounds);
 }
 
+// With the options to set, as the mission calls them.
+[[noreturn]] void fail_at_start(const StartError& error, const MissionRun& run) {
+  const bool scan = at_path(run.configuration, "exploration") != nullptr;
+  throw InputError(std::string(error.what()) + "; smaller moves may help: " +
+                   (scan ? "--set exploration.clear=METRES"
+                         : "--set moves.clear=METRES --set moves.step=METRES"));
+}
+
 void record_flight(Exploration& e) {
   ExplorationRecord& record = e.record;
   for (const EpisodeStep& step : e.result.steps) {
@@ -396,7 +407,7 @@ void record_flight(Exploration& e) {
 
 }  // namespace
 
-int explore_surface(lua_State* state) {
+int explore_surface(lua_State* state) try {
   MissionRun& run = run_of(state);
   const Parameters given = table_argument(state, 2, explore_table(), "explore", kExploreObjects);
   lua_getfield(state, 2, "surface");
@@ -432,6 +443,8 @@ int explore_surface(lua_State* state) {
   if (given.boolean("compare") && !stopped) compare_with_oracle(*e, truth, new_map, registry);
   new_object(state, kExplorationType, ExplorationObject{std::move(e)});
   return 1;
+} catch (const StartError& error) {
+  fail_at_start(error, run_of(state));
 }
 
 std::vector<Section> sections_of_exploration(lua_State* state, int index) {

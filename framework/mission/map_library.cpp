@@ -36,8 +36,8 @@ Eigen::Vector3d point_argument(lua_State* state, int index, const char* what) {
 // -- surfaces ------------------------------------------------------------------------------------
 
 int push_surface(lua_State* state, std::string name, TriangleMesh mesh,
-                 const Eigen::AlignedBox3d& region) {
-  SurfaceObject surface{name, nullptr, region};
+                 const Eigen::AlignedBox3d& region, Value moves = Value::map()) {
+  SurfaceObject surface{name, nullptr, region, std::move(moves)};
   surface.scene = std::make_shared<MeshScene>(std::move(mesh), name);
   new_object(state, kSurfaceType, std::move(surface));
   return 1;
@@ -46,7 +46,7 @@ int push_surface(lua_State* state, std::string name, TriangleMesh mesh,
 // run:surface(scene): of a scene that a script has made (lapwing.scene).
 int surface(lua_State* state) {
   GeneratedScene made = finished_scene(object_argument<SceneObject>(state, 2, kSceneType));
-  return push_surface(state, made.name, std::move(made.mesh), made.region);
+  return push_surface(state, made.name, std::move(made.mesh), made.region, std::move(made.moves));
 }
 
 ParameterTable mesh_file_table() {
@@ -122,11 +122,13 @@ int discard(lua_State* state) {
   return 0;
 }
 
-constexpr BoundField kSurfaceFields[] = {{"name", "string", "of its scene or file"},
-                                         {"triangles", "integer", "how many there are"},
-                                         {"lower", "number[]", "lowest corner of its bounds, m"},
-                                         {"upper", "number[]", "highest corner of its bounds, m"},
-                                         {"region", "table", "of interest: {lower, upper}, m"}};
+constexpr BoundField kSurfaceFields[] = {
+    {"name", "string", "of its scene or file"},
+    {"triangles", "integer", "how many there are"},
+    {"lower", "number[]", "lowest corner of its bounds, m"},
+    {"upper", "number[]", "highest corner of its bounds, m"},
+    {"region", "table", "of interest: {lower, upper}, m"},
+    {"moves", "table", "that its scene recommends for explorations"}};
 
 int surface_field(lua_State* state) {
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
@@ -143,6 +145,7 @@ int surface_field(lua_State* state) {
     fields.set("upper", list_of(bounds.max()));
   }
   fields.set("region", std::move(region));
+  fields.set("moves", surface.moves);
   return push_field(state, "a surface", field, fields, kSurfaceFields);
 }
 

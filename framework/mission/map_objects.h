@@ -18,6 +18,7 @@ struct SurfaceObject {
   std::string name;
   std::shared_ptr<MeshScene> scene;
   Eigen::AlignedBox3d region;  // of interest, m
+  Value moves = Value::map();  // that its scene recommends for explorations
 };
 
 inline constexpr const char* kMapType = "map";

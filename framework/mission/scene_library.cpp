@@ -189,6 +189,12 @@ int region(lua_State* state) {
   return 0;
 }
 
+// scene:moves{step = 0.7, clear = 2}: how explorations of it should move
+int moves(lua_State* state) {
+  parts(state).moves = table_argument(state, 2, scene_moves_table(), "moves").value();
+  return 0;
+}
+
 // scene:uniform(low, high), scene:integer(low, high): the scene's own random numbers
 int uniform(lua_State* state) {
   const double low = number_argument(state, 2, "uniform");
@@ -214,6 +220,15 @@ int triangles(lua_State* state) {
 
 }  // namespace
 
+ParameterTable scene_moves_table() {
+  return ParameterTable()
+      .optional_number("step", "m", "to a neighbour", above(0))
+      .optional_number("turn_deg", "deg", "to a neighbour", between(1, 180))
+      .optional_number("body", "m", "edge of the box that must be free", above(0))
+      .optional_number("clear", "m", "edge of the box that is free at the start", above(0))
+      .optional_number("speed", "m/s", "between viewpoints", above(0));
+}
+
 void open_scene_library(lua_State* state) {
   static const Binding methods[] = {
       {"color", &guarded<color>, "(red: number, green: number, blue: number)",
@@ -237,6 +252,9 @@ void open_scene_library(lua_State* state) {
        "a surface over a grid"},
       {"region", &guarded<region>, "(lower: number[], upper: number[])",
        "the region of interest, which a scene must name"},
+      {"moves", &guarded<moves>, "(moves: @)",
+       "how explorations of it should move where the user does not say: indoors in smaller steps",
+       &scene_moves_table},
       {"uniform", &guarded<uniform>, "(low: number, high: number): number",
        "a random number of the scene's seed"},
       {"integer", &guarded<integer>, "(low: integer, high: integer): integer",

@@ -12,7 +12,7 @@ GeneratedScene finished_scene(const SceneObject& object) {
   const std::string what = "scene '" + parts.name + "'";
   if (parts.builder.depth() > 1) throw InputError(what + ": a push lacks its pop");
   if (parts.region.isEmpty()) throw InputError(what + " names no region of interest: call region");
-  GeneratedScene scene{parts.name, parts.region, parts.builder.mesh()};
+  GeneratedScene scene{parts.name, parts.region, parts.builder.mesh(), parts.moves};
   check_mesh(scene.mesh, what);
   return scene;
 }

@@ -23,6 +23,7 @@ struct GeneratedScene {
   std::string name;
   Eigen::AlignedBox3d region;  // of interest, m
   TriangleMesh mesh;           // with colours
+  Value moves = Value::map();  // of explorations, that the scene recommends; scene_moves_table
 };
 
 // A scene being built; Lua holds references to it.
@@ -31,6 +32,7 @@ struct SceneObject {
     explicit Parts(std::uint64_t seed) : builder(seed), random(Random(seed).split(1)) {}
     std::string name;
     Eigen::AlignedBox3d region;  // empty until stated
+    Value moves = Value::map();
     MeshBuilder builder;
     Random random;
   };
@@ -38,6 +40,10 @@ struct SceneObject {
 };
 
 inline constexpr const char* kSceneType = "scene";
+
+// How an exploration of the scene may move: step, turn_deg, body, clear, speed, as the mission's
+// `moves` has them; what is left out is as everywhere.
+ParameterTable scene_moves_table();
 
 // Adds lapwing.scene and the type above; after open_lapwing_library.
 void open_scene_library(lua_State* state);

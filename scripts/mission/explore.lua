@@ -31,19 +31,23 @@ local CAMERA = {
     summary = "depth by a pair of cameras so far apart; absent: as a depth camera has it" },
 }
 
+-- Where neither the user nor the scene says otherwise.
+local STANDARD = { step = 2.5, turn_deg = 25, body = 1, clear = 6, speed = 2 }
+local MARGIN = 0.4  -- times the body's edge
+
 local MOVES = {
-  { name = "step", type = "number", unit = "m", default = 2.5, above = 0,
-    summary = "to a neighbour, along the camera's axes" },
-  { name = "turn_deg", type = "number", unit = "deg", default = 25, minimum = 1, maximum = 180,
-    summary = "to a neighbour" },
-  { name = "body", type = "number", unit = "m", default = 1, above = 0,
-    summary = "edge of the box that must be free" },
-  { name = "clear", type = "number", unit = "m", default = 6, above = 0,
-    summary = "edge of the box that is taken to be free at the start" },
+  { name = "step", type = "number", unit = "m", above = 0,
+    summary = "to a neighbour, along the camera's axes; absent: the scene's, else 2.5" },
+  { name = "turn_deg", type = "number", unit = "deg", minimum = 1, maximum = 180,
+    summary = "to a neighbour; absent: the scene's, else 25" },
+  { name = "body", type = "number", unit = "m", above = 0,
+    summary = "edge of the box that must be free; absent: the scene's, else 1" },
+  { name = "clear", type = "number", unit = "m", above = 0,
+    summary = "edge of the box taken to be free at the start; absent: the scene's, else 6" },
   { name = "visits", type = "integer", default = 2, minimum = 1, maximum = 100,
     summary = "images from a viewpoint, then it is left out" },
-  { name = "speed", type = "number", unit = "m/s", default = 2, above = 0,
-    summary = "between viewpoints" },
+  { name = "speed", type = "number", unit = "m/s", above = 0,
+    summary = "between viewpoints; absent: the scene's, else 2" },
   { name = "turn_rate_deg", type = "number", unit = "deg/s", default = 60, above = 0,
     summary = "on the spot" },
   { name = "pause", type = "number", unit = "s", default = 0.5, minimum = 0,
@@ -71,8 +75,8 @@ local OPTIONS = {
     summary = "images at most" },
   { name = "lookahead", type = "integer", default = 1, minimum = 1, maximum = 4,
     summary = "views of the ways that are valued: 1 looks at the next view alone" },
-  { name = "margin", type = "number", unit = "m", default = 0.4, minimum = 0,
-    summary = "kept from what the map holds at the end, as the certificate judges it" },
+  { name = "margin", type = "number", unit = "m", minimum = 0,
+    summary = "kept from the map at the end, by the certificate; absent: 0.4 of moves.body" },
   { name = "budget", type = "number", unit = "s", above = 0,
     summary = "of flight; absent: one battery" },
   { name = "wall_clock_guard", type = "number", unit = "s", above = 0,
@@ -103,11 +107,29 @@ local function map_of(o)
   return made
 end
 
+-- How it moves: as the user says, else as the scene recommends; and a sentence where that is so.
+local function moves_of(run, surface)
+  local moves, own, said = {}, surface.moves, {}
+  for key, value in pairs(run.options.moves) do moves[key] = value end
+  for _, key in ipairs { "step", "turn_deg", "body", "clear", "speed" } do
+    if moves[key] == nil then
+      moves[key] = own[key] or STANDARD[key]
+      if own[key] then said[#said + 1] = string.format("%s = %.4g", key, own[key]) end
+    end
+  end
+  if #said == 0 then return moves end
+  return moves, string.format("moves that the scene '%s' recommends: %s (--set moves.KEY=VALUE "
+                              .. "sets others)", surface.name, table.concat(said, ", "))
+end
+
 -- Explores the surface, and what came of it as a plan.
 function M.explore(run, surface)
   local o = run.options
-  if o.margin > o.moves.body / 2 then
-    run:fail("margin", "at most half of moves.body: a ball within the box that is kept free")
+  local m, note = moves_of(run, surface)
+  local margin = o.margin or MARGIN * m.body
+  if margin > m.body / 2 then
+    run:fail("margin", string.format("at most half of moves.body, %.4g m: a ball within the box "
+                                     .. "that is kept free", m.body / 2))
   end
   if (o.lower == nil) ~= (o.upper == nil) then
     run:fail(o.lower and "lower" or "upper", "lower and upper belong together")
@@ -120,7 +142,7 @@ function M.explore(run, surface)
     run:fail("budget", string.format("%.6g s are more than one battery, %.6g s", o.budget,
                                      vehicle.flight_time))
   end
-  local c, m = o.camera, o.moves
+  local c = o.camera
   local done = run:explore {
     surface = surface, map = map_of(o), utility = o.utility,
     camera = { width = c.width, height = c.height, view_deg = c.view_deg,
@@ -135,7 +157,7 @@ function M.explore(run, surface)
     bounds = o.lower and { { lower = o.lower, upper = o.upper } } or {},
     start = o.start and { { position = o.start, yaw = math.rad(o.start_yaw_deg or 0) } } or {},
   }
-  return done:plan { vehicle = vehicle, margin = o.margin }
+  return done:plan { vehicle = vehicle, margin = margin, note = note }
 end
 
 local function mission(given, more, surface_of)

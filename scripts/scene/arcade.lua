@@ -194,5 +194,6 @@ return function(options)
     end
   end
   scene:region({0, 0, 0}, {long, wide, plan.high})
+  scene:moves { step = 0.7, body = 0.6, clear = 2, speed = 0.7 }
   return scene
 end

@@ -190,5 +190,6 @@ return function(options)
     scene:pop()
   end
   scene:region({0, -deep, 0}, {long, deep, high})
+  scene:moves { step = 0.7, body = 0.6, clear = 2, speed = 0.7 }  -- through doorways of 0.95 m
   return scene
 end
