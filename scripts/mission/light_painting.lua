@@ -14,6 +14,10 @@ local function weight(name, default, summary)
   return { name = name, type = "number", default = default, minimum = 0, summary = summary }
 end
 
+local STEP = 0.05           -- s, unless `step` says otherwise or the flight is long
+local LONGEST_STEP = 0.2    -- s; coarser stages round off what is drawn
+local MOST_STAGES = 3000
+
 local DECLARATIONS = {
   { name = "text", type = "text", summary = "what to write" },
   { name = "font", type = "text", summary = "a Hershey font, .jhf; absent: our own capitals" },
@@ -40,8 +44,8 @@ local DECLARATIONS = {
     summary = "mean distance between light and any stroke; absent: 1 % of the height" },
   { name = "slowest", type = "number", default = 0.1, minimum = 0.01, maximum = 1,
     summary = "share of the speed below which no slower flight is tried" },
-  { name = "step", type = "number", unit = "s", default = 0.05, minimum = 0.005, maximum = 0.2,
-    summary = "between stages" },
+  { name = "step", type = "number", unit = "s", minimum = 0.005, maximum = LONGEST_STEP,
+    summary = "between stages; absent: 0.05, more where 3000 stages are too few" },
   { name = "weights", type = "table", summary = "of the cost", table = {
     weight("drawing", 1e4, "places along the strokes"),
     weight("smoothness", 1e-4, "snap: more rounds the strokes (fig. 3.8 B)"),
@@ -52,7 +56,6 @@ local DECLARATIONS = {
 
 local SPACING = 0.01     -- m, between points of the timed path
 local SLOWER = 0.8       -- speed of the next try
-local MOST_STAGES = 3000
 
 local function at_share(times, share)
   local place = 1 + share * (#times - 1)
@@ -78,14 +81,26 @@ local function places_of(timed, count, duration)
   return places
 end
 
+-- How many stages a flight has; nil and why where they would be too many.
+local function stages_of(o, duration)
+  local step = o.step or math.max(STEP, duration / (MOST_STAGES - 1))
+  local count = math.max(5, math.ceil(duration / step - 1e-9) + 1)
+  if count <= MOST_STAGES and step <= LONGEST_STEP then return count end
+  local needed = duration / (MOST_STAGES - 1)
+  local text = string.format("%.4g s of flight are more than %d stages %.3g s apart", duration,
+                             MOST_STAGES, math.min(step, LONGEST_STEP))
+  if needed <= LONGEST_STEP then
+    return nil, string.format("%s; leave step out, or set %.3g s or more", text,
+                              math.ceil(1000 * needed) / 1000)
+  end
+  return nil, text .. "; draw smaller (height), less, or faster (speed, acceleration)"
+end
+
 local function solved(run, timed, vehicle)
   local o = run.options
   local duration = timed.times[#timed.times]
-  local count = math.max(5, math.ceil(duration / o.step) + 1)
-  if count > MOST_STAGES then
-    return nil, string.format("%.4g s of flight are more than %d stages; draw faster, less, or "
-                              .. "with a longer step", duration, MOST_STAGES)
-  end
+  local count, too_long = stages_of(o, duration)
+  if not count then return nil, too_long end
   local places = places_of(timed, count, duration)
   local p = run:problem { vehicle = vehicle, duration = duration, step = duration / (count - 1),
                           environment = {} }
@@ -104,7 +119,7 @@ local function solved(run, timed, vehicle)
   for i, place in ipairs(places) do times[i], positions[i], yaws[i] = place.time, place.value, 0 end
   p:guess_path { times = times, positions = positions, yaws = yaws }
   p:finish()
-  return run:solve(p, o.solver)
+  return run:solve(p, o.solver), nil, duration / (count - 1)
 end
 
 local function tolerance_of(o) return o.tolerance or 0.01 * o.height end
@@ -121,8 +136,13 @@ end
 -- What a user should know of a flight that is not as asked.
 local function notes_of(best, o)
   local notes = {}
+  if not o.step and best.step > STEP + 1e-9 then
+    notes[1] = string.format("stages are %.3g s apart, not %.3g s: more than %d make a flight of "
+                             .. "%.4g s slow to solve (step)", best.step, STEP, MOST_STAGES,
+                             best.solution.duration)
+  end
   if best.solution.status ~= "optimal" and best.solution.status ~= "feasible" then
-    notes[1] = "the solver ended " .. best.solution.status .. ": " .. best.solution.message
+    notes[#notes + 1] = "the solver ended " .. best.solution.status .. ": " .. best.solution.message
   end
   if not best.kept then
     notes[#notes + 1] = string.format(
@@ -159,13 +179,13 @@ local function painted(run)
       if before and light.start <= before.finish then before.finish = light.finish
       else lights[#lights + 1] = light end
     end
-    local solution, too_long = solved(run, timed, vehicle)
-    if not solution and not best then run:fail("step", too_long) end
+    local solution, too_long, step = solved(run, timed, vehicle)
+    if not solution and not best then run:fail(o.step and "step" or "speed", too_long) end
     if solution then
       local plan = plan_of(run, strokes, lights, solution)
       local flown = run:fly(plan)
       local certificate = run:certify(plan)
-      best = { lights = lights, solution = solution, share = share, flown = flown }
+      best = { lights = lights, solution = solution, share = share, flown = flown, step = step }
       best.kept = certificate.feasible
                   and (solution.status == "optimal" or solution.status == "feasible")
     end
