@@ -70,6 +70,9 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
     write_file_atomically(target,
                           in_plugin(*exporter, "write", [&] { return exporter->write(plan); }));
   }
+  for (const std::string& remark :
+       in_plugin(*exporter, "remarks", [&] { return exporter->remarks(plan); }))
+    std::cerr << "lapwing: warning: " << remark << "\n";
   return ExitStatus::done;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "framework/core/folders.h"
 #include "framework/core/plugin_object.h"
@@ -26,6 +27,9 @@ class Exporter : public PluginObject {
   // Of a format of several files: those, for one folder, and `write` is the first of them. Errors
   // likewise.
   virtual NamedContents write_folder(const Plan&) const { return {}; }
+
+  // Sentences for the user on what the file is not good for, though it can be written.
+  virtual std::vector<std::string> remarks(const Plan&) const { return {}; }
 };
 
 }  // namespace lapwing

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "framework/export/exporter.h"
+#include "framework/export/small_camera.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/plugin/plugin.h"
 
@@ -45,6 +46,12 @@ class Colmap final : public Exporter {
     return {{"cameras.txt", cameras(scan.camera)},
             {"images.txt", images(scan.views)},
             {"points3D.txt", "# POINT3D_ID X Y Z R G B ERROR TRACK[]: none yet\n"}};
+  }
+
+  std::vector<std::string> remarks(const Plan& plan) const override {
+    if (!plan.task.scan) return {};
+    const std::string warning = warning_of_small_camera(plan.task.scan->camera);
+    return warning.empty() ? std::vector<std::string>() : std::vector<std::string>{warning};
   }
 
  private:

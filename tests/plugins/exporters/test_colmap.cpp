@@ -70,6 +70,19 @@ Eigen::Vector2d projected(const std::string& camera, const std::string& image,
   return {fx * c.x() / c.z() + cx, fy * c.y() / c.z() + cy};
 }
 
+// 120 x 90 is a camera to plan quickly with; nothing can be made of its images.
+TEST(ColmapExporter, SaysThatImagesAreTooSmallAndWhichOptionsMendIt) {
+  Plan plan = scan_plan(3);
+  EXPECT_TRUE(colmap()->remarks(plan).empty());
+  plan.task.scan->camera = {120, 90, 69, 69, 59.5, 44.5};
+  const std::vector<std::string> remarks = colmap()->remarks(plan);
+  ASSERT_EQ(remarks.size(), 1u);
+  for (const char* said : {"120 x 90", "camera.width", "camera.height", "camera.focal"})
+    EXPECT_NE(remarks[0].find(said), std::string::npos) << remarks[0];
+  plan.task.scan.reset();
+  EXPECT_TRUE(colmap()->remarks(plan).empty());
+}
+
 TEST(ColmapExporter, PointsFallWhereTheCameraModelPutsThem) {
   const Plan plan = scan_plan(8);
   const NamedContents files = colmap()->write_folder(plan);
