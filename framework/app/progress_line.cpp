@@ -12,10 +12,8 @@
 namespace lapwing {
 namespace {
 
-constexpr double kRedrawInterval = 0.1;     // s
-constexpr double kPlainInterval = 2.0;      // s
-constexpr double kEstimateAfter = 1.0;      // s; before, an estimate says more than is known
-constexpr double kEstimateFraction = 0.02;  // likewise
+constexpr double kRedrawInterval = 0.1;  // s
+constexpr double kPlainInterval = 2.0;   // s
 constexpr const char* kWipe = "\r\x1b[K";
 
 // "0:07", "12:40", "1:02:03".
@@ -66,10 +64,11 @@ void ProgressLine::report(double fraction, const std::string& what) {
   if (style_ == ProgressStyle::silent) return;
   const std::lock_guard lock(mutex_);
   const double now = clock_();
+  times_.report(fraction, now - begin_);
   const bool redrawn = style_ == ProgressStyle::redrawn;
   if (now - last_ < (redrawn ? kRedrawInterval : kPlainInterval)) return;
   last_ = now;
-  const std::string text = line(fraction, what, now - begin_);
+  const std::string text = line(what, now - begin_);
   if (redrawn) {
     // The last column stays free: writing it makes some terminals begin a new line.
     out_ << kWipe << shortened(text, columns_ - 1);
@@ -80,24 +79,57 @@ void ProgressLine::report(double fraction, const std::string& what) {
   out_.flush();
 }
 
+void ProgressLine::expect(std::vector<Phase> phases) {
+  const std::lock_guard lock(mutex_);
+  times_.expect(std::move(phases));
+}
+
+void ProgressLine::begin(const std::string& phase) {
+  const std::lock_guard lock(mutex_);
+  const double now = clock_() - begin_;
+  const PhaseTimes::Standing before = times_.standing(now);
+  const auto ended = times_.begin(phase, now);
+  if (!ended || style_ == ProgressStyle::silent || ended->second < kPlainInterval) return;
+  wipe();
+  out_ << printable(label_) << "  ";
+  if (before.number > 0) out_ << before.number << '/' << before.count << ' ';
+  out_ << printable(ended->first) << ": " << clock_text(ended->second) << '\n';
+  out_.flush();
+}
+
 void ProgressLine::clear() {
   const std::lock_guard lock(mutex_);
+  wipe();
+}
+
+void ProgressLine::wipe() {
   if (!drawn_) return;
   out_ << kWipe;
   out_.flush();
   drawn_ = false;
 }
 
-std::string ProgressLine::line(double fraction, const std::string& what, double elapsed) const {
+std::string ProgressLine::line(const std::string& what, double elapsed) {
+  const PhaseTimes::Standing standing = times_.standing(elapsed);
+  const auto percent = [](double share) {
+    return std::to_string(static_cast<int>(share * 100)) + " %";
+  };
   std::string text = printable(label_);
   const std::string words = printable(what);
-  if (!words.empty()) text += "  " + words;
-  const bool known = fraction >= 0 && fraction <= 1;  // false for NaN
-  if (known) text += "  " + std::to_string(static_cast<int>(fraction * 100)) + " %";
-  text += "  " + clock_text(elapsed);
-  if (known && fraction < 1 && fraction >= kEstimateFraction && elapsed >= kEstimateAfter) {
-    text += ", about " + clock_text(elapsed * (1 - fraction) / fraction) + " left";
+  if (standing.phase.empty()) {
+    if (!words.empty()) text += "  " + words;
+    if (standing.whole) text += "  " + percent(*standing.whole);
+  } else {
+    text += "  ";
+    if (standing.number > 0)
+      text += std::to_string(standing.number) + '/' + std::to_string(standing.count) + ' ';
+    text += printable(standing.phase);
+    if (!words.empty() && what != standing.phase) text += "  " + words;
+    if (standing.fraction) text += ", " + percent(*standing.fraction);
+    if (standing.whole) text += ";  all " + percent(*standing.whole);
   }
+  text += "  " + clock_text(elapsed);
+  if (standing.left) text += ", about " + clock_text(*standing.left) + " left";
   return text;
 }
 

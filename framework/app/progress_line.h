@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "framework/core/progress.h"
+#include "framework/core/phases.h"
 
 namespace lapwing {
 
@@ -21,7 +21,11 @@ enum class ProgressStyle {
 // exception takes it; call `clear` before writing anything else to the same stream.
 //
 //   solve  iteration 4  37 %  0:12, about 0:20 left
-class ProgressLine : public Progress {
+//   plan  3/7 views  view 640 of 2000, 32 %;  all 41 %  2:12, about 3:10 left
+//
+// Of work with phases, one that took two seconds or more leaves a line behind; shares never fall,
+// and where no honest estimate can be made there is none (see PhaseTimes).
+class ProgressLine : public PhasedProgress {
  public:
   // Seconds from any fixed moment, never going back.
   using Clock = std::function<double()>;
@@ -33,12 +37,15 @@ class ProgressLine : public Progress {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void report(double fraction, const std::string& what) override;
+  void expect(std::vector<Phase> phases) override;
+  void begin(const std::string& phase) override;
 
   // Wipes the line; the next report draws it again.
   void clear();
 
  private:
-  std::string line(double fraction, const std::string& what, double elapsed) const;
+  std::string line(const std::string& what, double elapsed);
+  void wipe();
 
   std::mutex mutex_;
   std::string label_;
@@ -49,6 +56,7 @@ class ProgressLine : public Progress {
   double begin_;
   double last_;
   bool drawn_ = false;
+  PhaseTimes times_;
 };
 
 // The style that standard error asks for: silent if `quiet`, redrawn on a terminal that can move

@@ -268,14 +268,17 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
     outcome.seconds = steady_seconds() - begin;
     return finish_mapping({outcome.result, outcome.folder, outcome.seconds}, invocation, capture);
   }
-  progress.report(-1, "certificate");
+  progress.begin("certificate");
+  progress.report(-1, "");
   outcome.certificate = verify(outcome.result.plan, outcome.result.obstacle_folder);
-  progress.clear();
+  progress.begin("files");
+  progress.report(-1, "");
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome);
   if (!outcome.result.plan.lights.empty()) outcome.long_exposure = photograph(outcome.result.plan);
   fly_pilots(outcome, interruption.token());
   write_files(outcome, registry, capture);
+  progress.clear();
   outcome.seconds = steady_seconds() - begin;
   if (invocation.json) {
     print_json(json_of(outcome, invocation));

@@ -130,6 +130,7 @@ class Explorer {
   void list_what_is_left();
   // The neighbours that a way could go on to.
   std::vector<Viewpoint> worth_looking_from(const Viewpoint& view) const;
+  double share_done() const;
   // Why it must not go on.
   std::optional<EpisodeEnd> stopped() const;
   bool within_bounds(const Viewpoint& view) const {
@@ -323,6 +324,13 @@ void Explorer::add_neighbours(int place, std::vector<Viewpoint>& reachable) {
   score(fresh);
 }
 
+// Of the images or of the budget, whichever ends first.
+double Explorer::share_done() const {
+  const double images = static_cast<double>(step_) / settings_.steps;
+  if (!settings_.budget || result_.steps.empty()) return images;
+  return std::min(1.0, std::max(images, result_.steps.back().time / *settings_.budget));
+}
+
 std::optional<EpisodeEnd> Explorer::stopped() const {
   if (settings_.cancellation && settings_.cancellation->cancelled()) return EpisodeEnd::cancelled;
   if (settings_.wall_clock_guard && wall_seconds() - began_ > *settings_.wall_clock_guard)
@@ -343,9 +351,8 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
       break;
     }
     if (settings_.progress)
-      settings_.progress->report(static_cast<double>(step_) / settings_.steps,
-                                 settings_.progress_label + "view " + std::to_string(step_ + 1) +
-                                     " of " + std::to_string(settings_.steps));
+      settings_.progress->report(share_done(), "view " + std::to_string(step_ + 1) + " of " +
+                                                   std::to_string(settings_.steps));
     EpisodeStep taken;
     if (!result_.steps.empty()) {
       taken.length = result_.steps.back().length;

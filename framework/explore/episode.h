@@ -42,7 +42,6 @@ struct EpisodeSettings {
   int threads = 1;                            // results are the same for any number
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
-  std::string progress_label;  // before "view 3 of 200"; empty: none
 };
 
 enum class EpisodeEnd {

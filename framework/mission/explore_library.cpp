@@ -5,6 +5,7 @@
 #include <lua.hpp>
 
 #include "framework/core/number_text.h"
+#include "framework/core/phases.h"
 #include "framework/core/units.h"
 #include "framework/explore/episode.h"
 #include "framework/export/exploration_report.h"
@@ -346,7 +347,7 @@ void compare_with_oracle(Exploration& e, const GroundTruth& truth,
   settings.show_truth = true;
   settings.list_candidates = false;
   settings.wall_clock_guard.reset();  // of the mission's own exploration
-  settings.progress_label = "oracle, ";
+  begin_phase(settings.progress, "oracle");
   const auto oracle = registry.create<ViewUtility>("oracle");
   ObservedSurface observed(truth, settings.sensor, new_map);
   const auto map = new_map();

@@ -1,6 +1,7 @@
 // `run`, which a mission's `plan` gets: the methods of all libraries, and what the user is told.
 #include <lua.hpp>
 
+#include "framework/core/phases.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -24,6 +25,28 @@ int progress(lua_State* state) {
   const double fraction = luaL_checknumber(state, 2);
   const std::string what = text_argument(state, 3, "progress");
   if (progress) progress->report(fraction, what);
+  return 0;
+}
+
+// run:phases { {name = "search", weight = 3}, ... }: before the first one begins.
+int phases(lua_State* state) {
+  const Value given = value_from_lua(state, 2, Sandbox::of(state).script_position(state), "phases");
+  if (!given.is_list()) throw InputError(given.origin(), "phases: expected a list of phases");
+  std::vector<Phase> phases;
+  for (const Value& entry : given.as_list()) {
+    const Value* name = entry.is_map() ? entry.find("name") : nullptr;
+    const Value* weight = entry.is_map() ? entry.find("weight") : nullptr;
+    if (!name || !name->is_text() || (weight && !weight->is_number()))
+      throw InputError(given.origin(), "phases: expected {name = text, weight = number} each");
+    phases.push_back({name->as_text(), weight ? std::max(0.0, weight->as_number()) : 0});
+  }
+  expect_phases(run_of(state).settings.progress, std::move(phases));
+  return 0;
+}
+
+// run:phase("search"): the one before has ended.
+int phase(lua_State* state) {
+  begin_phase(run_of(state).settings.progress, text_argument(state, 2, "phase"));
   return 0;
 }
 
@@ -77,6 +100,9 @@ int stated(lua_State* state) {
 std::span<const Binding> told_methods() {
   static const Binding methods[] = {
       {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user asked to end"},
+      {"phases", &guarded<phases>, "(phases: table[])",
+       "what the work consists of: {name, weight}, the weight in any unit or none"},
+      {"phase", &guarded<phase>, "(name: string)", "that begins; the one before has ended"},
       {"progress", &guarded<progress>, "(fraction: number, words: string)",
        "how far the work is, 0 to 1, and with what"},
       {"fail", &guarded<fail>, "(option: string, message: string)",

@@ -143,6 +143,7 @@ function M.explore(run, surface)
                                      vehicle.flight_time))
   end
   local c = o.camera
+  run:phase("exploration")
   local done = run:explore {
     surface = surface, map = map_of(o), utility = o.utility,
     camera = { width = c.width, height = c.height, view_deg = c.view_deg,

@@ -16,6 +16,7 @@ local STRETCH_ACCURACY = 1.01   -- the smallest certified stretch is found to 1 
 
 -- `only`: "unlimited", as if the vehicle could do anything; "flight", without the camera.
 local function attempt(run, shot, stretch, only)
+  run:phase(stretch == 1 and "film" or string.format("film %.4g times as long", stretch))
   local stated, task, camera = problem.state(run, shot, stretch, only)
   local cuts = camera and camera.cuts or {}
   local result = { stretch = stretch, task = task, camera = camera, cuts = cuts }

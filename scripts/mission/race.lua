@@ -163,7 +163,8 @@ local function finishing(solver)
 end
 
 -- A flight of the course as these options ask for it, refined until it is certified: the plan, the
--- last solution, and the certificate of the plan where there is a solution. `say` tells progress.
+-- last solution, and the certificate of the plan where there is a solution. `say(round)` is told
+-- before each round.
 local function flight(run, course, vehicle, o, say)
   local made = problem.legs(course, vehicle, o)
   check_battery(run, made, vehicle)
@@ -179,7 +180,7 @@ local function flight(run, course, vehicle, o, say)
     end
   end
   for round = 0, o.refinements do
-    say(round / (o.refinements + 1), "solving")
+    say(round)
     local p = problem.make(run, course, vehicle, made, o, o.model, solution)
     local finer = run:solve(p, plan and finishing(o.solver) or o.solver)
     if plan and not solved(finer) then break end  -- the coarser one stands
@@ -211,15 +212,15 @@ local function flown(run)
   check_options(run, vehicle)
   local course = courses.read(run)
   course.task = task_of(course)
-  local plan, solution, certificate = flight(run, course, vehicle, o, function(share, words)
-    run:progress(share, words)
+  local plan, solution, certificate = flight(run, course, vehicle, o, function(round)
+    run:phase(round == 0 and "race" or string.format("finer race %d", round))
   end)
   local notes = {}
   if not solved(solution) then
     notes[1] = string.format("the solver ended %s: %s", solution.status, solution.message)
   elseif strays(certificate) and o.advise and not run:cancelled() then
-    notes = search.advice(run, vehicle, solution.duration, function(tried, say)
-      local _, found, judged = flight(run, course, vehicle, tried, say)
+    notes = search.advice(run, vehicle, solution.duration, function(tried)
+      local _, found, judged = flight(run, course, vehicle, tried, function() end)
       return solved(found) and judged.feasible, found.duration
     end)
   end

@@ -42,16 +42,15 @@ local function seconds_text(o, time, before)
   return string.format(" (%.3g s instead of %.3g s)", time, before)
 end
 
--- Sentences. `follows(options, say)`: whether the flight by these options is certified, and its
+-- Sentences. `follows(options)`: whether the flight by these options is certified, and its
 -- duration; `before`: that of the flight that cannot be followed.
 function M.advice(run, vehicle, before, follows)
   local o = run.options
   local low = ABOVE * M.least(vehicle, o)
   local notes = {}
   local function try(more, words)
-    local text = "closed loop: trying " .. words
-    run:progress(-1, text)
-    return follows(with(o, more), function() run:progress(-1, text) end)
+    run:phase("closed loop: trying " .. words)
+    return follows(with(o, more))
   end
   local function shares(more)
     return largest(run, function(share, k)

@@ -114,6 +114,41 @@ TEST_F(ProgressLineTest, ControlCharactersStayOut) {
   EXPECT_EQ(taken(), "\r\x1b[Ksolve  a b [2Jc  0:00");
 }
 
+TEST_F(ProgressLineTest, PhasesLeaveALineEachAndSharesOfTheirOwn) {
+  {
+    ProgressLine line = make(ProgressStyle::redrawn);
+    line.expect({{"look", 10}, {"views", 30}, {"files", 1}});
+    line.begin("look");
+    line.report(0.5, "image 5 of 10");
+    EXPECT_EQ(taken(), "\r\x1b[Ksolve  1/3 look  image 5 of 10, 50 %  0:00");
+    now += 10;
+    line.begin("views");
+    EXPECT_EQ(taken(), "\r\x1b[Ksolve  1/3 look: 0:10\n");
+    now += 15;
+    line.report(0.5, "view 50 of 100");
+    EXPECT_EQ(taken(),
+              "\r\x1b[Ksolve  2/3 views  view 50 of 100, 50 %;  all 60 %  0:25, about 0:16 left");
+    now += 15;
+    line.begin("files");
+    taken();
+    now += 1;
+    line.report(-1, "");
+    EXPECT_EQ(taken(), "\r\x1b[Ksolve  3/3 files;  all 100 %  0:41");
+  }
+  EXPECT_EQ(taken(), "\r\x1b[K");
+}
+
+TEST_F(ProgressLineTest, PlainPhasesAreLinesWithoutEscapes) {
+  ProgressLine line = make(ProgressStyle::plain);
+  line.begin("look\x1b[2J");
+  now += 1;
+  line.begin("short");
+  now += 3;
+  line.begin("last");
+  const std::string text = taken();
+  EXPECT_EQ(text, "solve  short: 0:03\n");
+}
+
 TEST(ProgressStyleOfStderr, QuietIsSilent) {
   EXPECT_EQ(progress_style_of_stderr(true), ProgressStyle::silent);
 }
