@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 #include "framework/export/map_pictures.h"
 #include "framework/geometry/depth_camera.h"
@@ -20,6 +19,8 @@ using Eigen::Vector3d;
 constexpr Pinhole kOverview{720, 450, 720, 720, 359.5, 224.5};
 constexpr int kMostMapPixels = 700, kMostMotions = 2500, kMostCubes = 60'000;
 constexpr Rgb kPlainSurface = {176, 174, 168}, kCameraLines = {214, 60, 40};
+constexpr Rgb kNotSeen = {196, 70, 60}, kNeverSeen = {70, 70, 74};
+constexpr double kMuchUnknown = 0.1;  // of what is known
 const Vector3d kGap = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 // From dark violet over green to yellow (viridis, a few stops of it).
@@ -133,53 +134,60 @@ Section view_section(const ScanRecord& record, const ScanTask& scan) {
                           "know of a voxel (yellow); grey is the prior mesh")}};
 }
 
-struct KeyHash {
-  std::size_t operator()(const VoxelKey& key) const {
-    return static_cast<std::size_t>(key.morton() * 0x9e3779b97f4a7c15ull >> 16);
-  }
-};
-
-// The prior mesh, every triangle by the best known voxel about its middle.
+// The prior mesh, every triangle by what the tour tells of it.
 MeshScene colored_surface(const ScanRecord& record) {
-  std::unordered_map<VoxelKey, float, KeyHash> shares;
-  for (const VoxelShare& v : record.coverage) shares[v.voxel] = v.share;
   TriangleMesh mesh = record.prior->mesh();
   mesh.colors.assign(mesh.triangles.size(), kPlainSurface);
-  const VoxelGrid& grid = record.map->grid();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vector3d middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
-    if (!grid.contains(middle)) continue;
-    const VoxelKey at = grid.key(middle);
-    float best = -1;
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z) {
-          const VoxelKey near{static_cast<std::uint16_t>(at.x + x),
-                              static_cast<std::uint16_t>(at.y + y),
-                              static_cast<std::uint16_t>(at.z + z)};
-          if (const auto found = shares.find(near); found != shares.end())
-            best = std::max(best, found->second);
-        }
-    if (best >= 0) mesh.colors[t] = color_of_share(best);
+    const float share = record.shares[t];
+    if (share > 0) mesh.colors[t] = color_of_share(0.2 + 0.8 * share);
+    if (share == 0) mesh.colors[t] = kNotSeen;
+    if (share == kNeverVisible) mesh.colors[t] = kNeverSeen;
   }
   return MeshScene(std::move(mesh));
 }
 
+std::string square_metres(double area) {
+  return number_text(area, 4);
+}
+std::string percent(double part, double whole) {
+  return number_text(whole > 0 ? 100 * part / whole : 0, 3);
+}
+
 Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   double sum = 0;
-  std::size_t seen = 0;
-  for (const VoxelShare& v : record.coverage) sum += v.share, seen += v.share > 0;
+  for (const VoxelShare& v : record.coverage) sum += v.share;
   const auto all = static_cast<double>(std::max<std::size_t>(record.coverage.size(), 1));
-  Facts facts{
-      {{"voxels that any candidate tells of", std::to_string(record.coverage.size()), ""},
-       {"of them the tour tells of", number_text(100 * static_cast<double>(seen) / all, 3), "%"},
-       {"on average it tells", number_text(100 * sum / all, 3), "% of what there is"}}};
+  const SurfaceAreas& areas = record.areas;
+  Facts facts{{
+      {"surface of the region, as far as it is known", square_metres(areas.known), "m^2"},
+      {"of it seen by the tour", square_metres(areas.seen),
+       "m^2, " + percent(areas.seen, areas.known) + " %"},
+      {"of it visible from some free place", square_metres(areas.visible),
+       "m^2, " + percent(areas.visible, areas.known) + " %"},
+      {"unknown, not counted: edge of what was ever measured", square_metres(record.unknown),
+       "m^2"},
+      {"on average the tour tells", number_text(100 * sum / all, 3),
+       "% of what there is to know of a voxel that some candidate sees"},
+  }};
+  if (record.truth) {
+    const TrueAreas& truth = *record.truth;
+    facts.facts.push_back(
+        {"true surface that could be seen (simulation)", square_metres(truth.open), "m^2"});
+    facts.facts.push_back({"of it seen by the first flight", square_metres(truth.first),
+                           "m^2, " + percent(truth.first, truth.open) + " %"});
+    facts.facts.push_back({"of it seen by the tour", square_metres(truth.seen),
+                           "m^2, " + percent(truth.seen, truth.open) + " %"});
+  }
   const MeshScene scene = colored_surface(record);
   const std::string caption =
-      "What the tour tells of the surface, from nothing (violet) to all (yellow); of grey no "
-      "candidate tells anything";
+      "What the tour tells of the known surface, from little (violet) to all (yellow). Red: seen "
+      "from a candidate, not by the tour. Dark: no candidate sees it. Light grey: outside the "
+      "region. Where there is no surface, none is known";
+  TextBlock words;
+  words.text = areas_in_words(record);
   return {"Coverage",
-          {std::move(facts), overview_image(scene, scan.region, 1.05, caption),
+          {std::move(words), std::move(facts), overview_image(scene, scan.region, 1.05, caption),
            overview_image(scene, scan.region, 1.05 + 3.14159, "The same from the other side")}};
 }
 
@@ -229,6 +237,48 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
 }
 
 }  // namespace
+
+std::string areas_in_words(const ScanRecord& record) {
+  const SurfaceAreas& areas = record.areas;
+  std::string text = "surface: the tour sees " + percent(areas.seen, areas.known) + " % of the " +
+                     square_metres(areas.known) + " m^2 that are known; " +
+                     percent(areas.visible, areas.known) +
+                     " % are visible from some free place; about " + square_metres(record.unknown) +
+                     " m^2 are unknown and not counted";
+  if (record.unknown > kMuchUnknown * areas.known)
+    text +=
+        ". That is much: the first flight never saw behind it. Fly it lower, more obliquely or "
+        "wider (flights), or plan once more on what this tour sees (rounds = 2)";
+  return text;
+}
+
+std::string truth_in_words(const ScanRecord& record) {
+  if (!record.truth) return "";
+  const TrueAreas& truth = *record.truth;
+  return "true surface (simulation): of the " + square_metres(truth.open) +
+         " m^2 that could be seen, the first flight sees " + percent(truth.first, truth.open) +
+         " %, the tour " + percent(truth.seen, truth.open) + " %";
+}
+
+Value areas_as_value(const ScanRecord& record) {
+  const SurfaceAreas& areas = record.areas;
+  const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };
+  Value value = Value::map();
+  value.set("known", areas.known);
+  value.set("visible", areas.visible);
+  value.set("seen", areas.seen);
+  value.set("unknown", record.unknown);
+  value.set("visible_share", share(areas.visible, areas.known));
+  value.set("seen_share", share(areas.seen, areas.known));
+  if (!record.truth) return value;
+  Value& truth = value.set("true", Value::map());
+  truth.set("open", record.truth->open);
+  truth.set("first_flight", record.truth->first);
+  truth.set("tour", record.truth->seen);
+  truth.set("first_flight_share", share(record.truth->first, record.truth->open));
+  truth.set("tour_share", share(record.truth->seen, record.truth->open));
+  return value;
+}
 
 std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record) {
   const ScanTask& scan = *plan.task.scan;

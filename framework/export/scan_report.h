@@ -3,20 +3,23 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "framework/core/value.h"
 #include "framework/export/report.h"
 #include "framework/geometry/mesh_scene.h"
 #include "framework/geometry/render.h"
-#include "framework/map/map.h"
+#include "framework/map/known_surface.h"
 #include "framework/trajectory/plan.h"
 
 namespace lapwing {
 
-// What a voxel of the map has, from 0 to 1.
-struct VoxelShare {
-  VoxelKey voxel;
-  float share = 0;
+// m^2 of the surface that was flown in, in simulation alone.
+struct TrueAreas {
+  double open = 0;   // that who flies could see from somewhere
+  double first = 0;  // of it, seen before the tour
+  double seen = 0;   // of it, seen by the tour
 };
 
 // What a scan was planned on, beside what its plan holds. Shared, not copied.
@@ -30,10 +33,22 @@ struct ScanRecord {
   PlannedView shown;                         // one view of the tour
   std::vector<VoxelShare> told;              // what it tells of each voxel, 1 at most
   std::vector<VoxelShare> coverage;          // of all voxels that any candidate tells of
-  std::vector<double> seconds, score;        // after every view of the tour
-  double reachable = 0;                      // score of all views within the budget
-  double upper_bound = 0;                    // no tour scores more
+  std::vector<float> shares;                 // of the prior's triangles, see shares_of_triangles
+  SurfaceAreas areas;                        // of those
+  double unknown = 0;                        // m^2, see unknown_edge
+  std::optional<TrueAreas> truth;
+  std::vector<double> seconds, score;  // after every view of the tour
+  double reachable = 0;                // score of all views within the budget
+  double upper_bound = 0;              // no tour scores more
 };
+
+// The areas in words: what is known, visible and seen, and what is not known and so not counted; a
+// second sentence where that is much.
+std::string areas_in_words(const ScanRecord& record);
+// The same of the true surface; "" where there is none.
+std::string truth_in_words(const ScanRecord& record);
+// For --json: m^2 and shares.
+Value areas_as_value(const ScanRecord& record);
 
 // Sections on the scene, map and prior; candidates; one view's rays; the tour; coverage; score over
 // budget. The plan is that of a scan.

@@ -5,6 +5,7 @@
 #include <lua.hpp>
 
 #include "framework/core/log.h"
+#include "framework/export/scan_report.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -364,10 +365,12 @@ int plan(lua_State* state) {
 
 constexpr BoundField kPlanFields[] = {
     {"duration", "number", "s"},
+    {"truth", "string", "of a scan: how much of the surface that it simulates is seen, or nothing"},
     {"views", "table[]", "of a scan: {position, yaw, pitch}, m and rad"}};
 
 int plan_field(lua_State* state) {
-  const Plan& plan = object_argument<PlanObject>(state, 1, kPlanType).plan;
+  const PlanObject& made = object_argument<PlanObject>(state, 1, kPlanType);
+  const Plan& plan = made.plan;
   Value views = Value::list(), fields = Value::map();
   if (plan.task.scan)
     for (const PlannedView& view : plan.task.scan->views) {
@@ -380,6 +383,7 @@ int plan_field(lua_State* state) {
     }
   fields.set("views", std::move(views));
   fields.set("duration", plan.trajectory.duration());
+  fields.set("truth", made.scan ? truth_in_words(*made.scan) : "");
   const std::string field = text_argument(state, 2, "plan");
   return push_field(state, "a plan", field, fields, kPlanFields);
 }

@@ -96,6 +96,7 @@ int look(lua_State* state) {
   if (run.settings.observe_surface) run.settings.observe_surface(surface.scene);
   const Sandbox::ClockPause pause(Sandbox::of(state));
   prior.mapping.map->set_threads(run.settings.threads);
+  prior.truth = surface.scene;
   if (!prior.scene)
     prior.scene = mesh_picture(
         *surface.scene,

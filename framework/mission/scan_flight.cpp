@@ -6,6 +6,7 @@
 #include <lua.hpp>
 
 #include "framework/core/parallel.h"
+#include "framework/export/small_camera.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/map/map_file.h"
 #include "framework/mission/explore_library.h"
@@ -263,7 +264,12 @@ int scan_plan_of_run(lua_State* state) {
     plan.environment.meshes.push_back(std::move(mesh));
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
-    made.scan = record_of_scan(tour);
+    made.scan = record_of_scan(tour, run.settings.threads);
+    if (!made.block.is_map()) made.block = Value::map();
+    made.block.set("surface", areas_as_value(*made.scan));
+    made.notes.push_back(areas_in_words(*made.scan));
+    const std::string small = warning_of_small_camera(plan.task.scan->camera);
+    if (!small.empty()) made.notes.push_back(small);
   }
   new_object(state, kPlanType, std::move(made));
   return 1;

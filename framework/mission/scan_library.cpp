@@ -18,10 +18,9 @@ std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, co
                                   const Viewpoint& to, const Vehicle& vehicle) {
   constexpr double kTiltShare = 0.9;  // of the gimbal's rate
   const double turn = std::remainder(to.yaw - from.yaw, 2 * EIGEN_PI);
-  const double tilt_seconds =
-      vehicle.gimbal
-          ? std::abs(to.pitch - from.pitch) / (kTiltShare * vehicle.gimbal->pitch_rate_max)
-          : 0;
+  const double tilt_seconds = vehicle.gimbal ? std::abs(to.pitch - from.pitch) /
+                                                   (kTiltShare * vehicle.gimbal->pitch_rate_max)
+                                             : 0;
   const double length = path_length(points);
   std::vector<PursuitView> stops;
   double along = 0, before = 0;
@@ -70,8 +69,7 @@ ParameterTable motions_table() {
   const MotionSettings standard;
   ParameterTable table;
   table
-      .integer("neighbours", standard.neighbours, "that each view is joined with",
-               between(1, 1000))
+      .integer("neighbours", standard.neighbours, "that each view is joined with", between(1, 1000))
       .integer("among", standard.among, "nearest views, of those whose images match",
                between(1, 100000))
       .number("alpha", standard.alpha, "", "of (4.8): share of what two matchable views both see",
@@ -108,6 +106,8 @@ ParameterTable graph_table() {
       .table("candidates", candidates_table(), "views worth considering")
       .table("motions", motions_table(), "ways between them")
       .table("camera", pinhole_table(), "of the images")
+      .integer("across", 0, "pixels a row of the images that candidates are weighed by; 0: all",
+               between(0, 10000))
       .number("range", 60, "m", "of a ray through a pixel", above(0))
       .table("flight", flight_table(), "speeds along a tour");
   return table;
@@ -159,8 +159,8 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
     std::snprintf(text, sizeof text,
                   "no free %s: at (%.4g, %.4g, %.4g) the map does not show that there is room "
                   "for a box of %.3g x %.3g x %.3g m%s",
-                  starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(),
-                  2 * settings.half.x(), 2 * settings.half.y(), 2 * settings.half.z(),
+                  starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
+                  2 * settings.half.y(), 2 * settings.half.z(),
                   settings.allowed.contains(p) ? "" : ", and it lies where none may be");
     throw InputError(entry.origin(), text);
   }
@@ -267,10 +267,14 @@ int scan_graph_of_run(lua_State* state) {
                      "it, neither from the first flight nor from files");
   const auto space = space_of(*work->prior, given.number("mesh_room"));
   const std::vector<Viewpoint> starts =
-      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
-                  *space, settings.candidates);
-  work->graph = make_scan_graph(*space, *work->visible, *work->information, starts, settings,
-                                run.settings.cancellation, run.settings.progress);
+      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")), *space,
+                  settings.candidates);
+  work->allowed = settings.candidates.allowed;
+  sight.across = static_cast<int>(given.integer("across"));
+  const VisibleVoxels coarser(work->prior->mapping.map, work->prior->mesh, sight);
+  work->graph =
+      make_scan_graph(*space, sight.across > 0 ? coarser : *work->visible, *work->information,
+                      starts, settings, run.settings.cancellation, run.settings.progress);
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
   work->island = islands_of(work->graph);
   const ScanGraph& graph = work->graph;

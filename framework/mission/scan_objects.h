@@ -23,10 +23,11 @@ struct Prior {
   Mapping mapping;
   FusionOptions fusion_options;
   std::optional<PointFusion> fusion;
-  std::vector<FusedPoint> earlier;        // of the mesh of an earlier flight
-  std::shared_ptr<const MeshScene> mesh;  // null until it is made or read
-  std::vector<Viewpoint> views;           // from which depth images were taken
-  std::optional<Picture> scene;           // of the scene flown in, for the report alone
+  std::vector<FusedPoint> earlier;         // of the mesh of an earlier flight
+  std::shared_ptr<const MeshScene> mesh;   // null until it is made or read
+  std::vector<Viewpoint> views;            // from which depth images were taken
+  std::optional<Picture> scene;            // of the scene flown in, for the report alone
+  std::shared_ptr<const MeshScene> truth;  // that scene, for the report's figures alone
 };
 
 struct PriorObject {
@@ -48,11 +49,12 @@ struct LegFlight {
 // A graph, and what its tours take in seconds.
 struct ScanWork : LegFlight {
   std::shared_ptr<Prior> prior;
-  std::shared_ptr<const VisibleVoxels> visible;
+  std::shared_ptr<const VisibleVoxels> visible;  // through every pixel of the camera
   std::shared_ptr<const ViewInformation> information;
   ScanGraph graph;
   std::vector<double> seconds;  // of each motion, a view's own included
   std::vector<int> island;      // of the views that are joined by motions, per view
+  Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
 
   // The place of the motion between two views; Error where there is none.
   std::size_t motion_between(int a, int b) const;
@@ -100,8 +102,7 @@ Value legs_of(const TourObject& tour);
 // The flight that the solutions of a tour's legs make, with a rest in every view; one stop per view
 // of its walk. InputError where a solution is not from view to view.
 struct SolutionObject;
-Pursuit joined_flight(const TourObject& tour,
-                      const std::vector<const SolutionObject*>& solutions);
+Pursuit joined_flight(const TourObject& tour, const std::vector<const SolutionObject*>& solutions);
 
 // The stops of a way from view to view: its corners, each with a heading on the way from the first
 // one's to the last one's, and with the time that the gimbal needs for its share of the tilt.

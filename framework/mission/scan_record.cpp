@@ -1,28 +1,64 @@
 #include "framework/mission/scan_record.h"
 
+#include <algorithm>
+
+#include "framework/core/parallel.h"
+#include "framework/view/true_surface.h"
+
 namespace lapwing {
 namespace {
 
-// What all views of a tour tell of each voxel.
-std::vector<VoxelShare> coverage_of(const ScanGraph& graph, const std::vector<int>& walk) {
-  const ViewScore& score = *graph.score;
-  std::vector<std::int64_t> sums(score.voxels(), 0);
-  std::vector<char> counted(static_cast<std::size_t>(score.views()), 0);
-  for (const int view : walk) {
-    char& done = counted[static_cast<std::size_t>(view)];
-    if (done) continue;
-    done = 1;
-    const auto voxels = score.voxels_of(view);
-    const auto amounts = score.amounts_of(view);
-    for (std::size_t i = 0; i < voxels.size(); ++i) sums[voxels[i]] += amounts[i];
-  }
+// What all views of a tour tell of each voxel, through every pixel of the camera; voxels that only
+// candidates see have nothing.
+std::vector<VoxelShare> coverage_of(const ScanWork& work, const std::vector<int>& views,
+                                    int threads) {
+  std::vector<std::vector<VoxelShare>> told(views.size());
+  parallel_for(views.size(), threads, [&](std::size_t i) {
+    const auto& viewpoints = work.graph.candidates.viewpoints;
+    const std::vector<SeenVoxel> seen =
+        work.visible->seen_from(viewpoints[static_cast<std::size_t>(views[i])]);
+    const std::vector<float> amounts = contributions_of(seen, *work.information);
+    for (std::size_t k = 0; k < seen.size(); ++k)
+      if (amounts[k] > 0) told[i].push_back({seen[k].voxel, amounts[k]});
+  });
+  std::vector<VoxelShare> all;
+  for (const VoxelKey& voxel : work.graph.voxels) all.push_back({voxel, 0});
+  for (const auto& one : told) all.insert(all.end(), one.begin(), one.end());
+  // Stable: amounts are added in the tour's order.
+  std::stable_sort(all.begin(), all.end(),
+                   [](const VoxelShare& a, const VoxelShare& b) { return a.voxel < b.voxel; });
   std::vector<VoxelShare> coverage;
-  for (std::size_t v = 0; v < sums.size(); ++v)
-    coverage.push_back(
-        {graph.voxels[v],
-         static_cast<float>(std::min(
-             1.0, static_cast<double>(sums[v]) / static_cast<double>(score.capacities()[v])))});
+  for (const VoxelShare& v : all) {
+    if (coverage.empty() || coverage.back().voxel != v.voxel) coverage.push_back({v.voxel, 0});
+    coverage.back().share = std::min(1.0f, coverage.back().share + v.share);
+  }
   return coverage;
+}
+
+// The views of a walk, each once, in its order.
+std::vector<int> views_of_walk(const std::vector<int>& walk) {
+  std::vector<int> views;
+  for (const int view : walk)
+    if (std::find(views.begin(), views.end(), view) == views.end()) views.push_back(view);
+  return views;
+}
+
+std::optional<TrueAreas> true_areas(const ScanWork& work, const std::vector<int>& views,
+                                    int threads) {
+  if (!work.prior->truth) return std::nullopt;
+  const SightSettings& sight = work.visible->settings();
+  std::optional<TrueSurface> surface;
+  try {
+    surface.emplace(work.prior->truth, sight.region, work.allowed, threads);
+  } catch (const InputError&) {
+    return std::nullopt;  // a region without true surface: there is nothing to be told
+  }
+  std::vector<Viewpoint> tour;
+  for (const int view : views)
+    tour.push_back(work.graph.candidates.viewpoints[static_cast<std::size_t>(view)]);
+  return TrueAreas{surface->area(),
+                   surface->seen(work.prior->views, sight.pinhole, sight.range, threads),
+                   surface->seen(tour, sight.pinhole, sight.range, threads)};
 }
 
 // The view of the tour that tells most by itself.
@@ -35,7 +71,7 @@ int most_telling(const ScanGraph& graph, const std::vector<int>& walk) {
 
 }  // namespace
 
-std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour) {
+std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int threads) {
   const ScanWork& work = *tour.work;
   const ScanGraph& graph = work.graph;
   auto record = std::make_shared<ScanRecord>();
@@ -52,7 +88,14 @@ std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour) {
   const std::vector<float> amounts = contributions_of(seen, *work.information);
   for (std::size_t i = 0; i < seen.size(); ++i)
     record->told.push_back({seen[i].voxel, std::min(amounts[i], 1.0f)});
-  record->coverage = coverage_of(graph, tour.walk);
+  const std::vector<int> views = views_of_walk(tour.walk);
+  record->coverage = coverage_of(work, views, threads);
+  const SightSettings& sight = work.visible->settings();
+  record->shares = shares_of_triangles(record->prior->mesh(), sight.region, record->map->grid(),
+                                       record->coverage);
+  record->areas = areas_of(record->prior->mesh(), record->shares);
+  record->unknown = unknown_edge(*record->map, record->prior.get(), sight.region, threads);
+  record->truth = true_areas(work, views, threads);
   ScoreState state(*graph.score);
   double clock = 0;
   for (std::size_t i = 0; i < tour.walk.size(); ++i) {

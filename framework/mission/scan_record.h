@@ -6,6 +6,6 @@
 
 namespace lapwing {
 
-std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour);
+std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int threads);
 
 }  // namespace lapwing

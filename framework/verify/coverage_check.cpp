@@ -304,7 +304,7 @@ void check_coverage(const Flight& flight, Certificate& certificate) {
       judged(make_check("coverage"), static_cast<double>(count) / static_cast<double>(scan->seen),
              scan->seen_share, 0, scan->views.back().time, true);
   const std::string said = std::to_string(count) + " of the " + std::to_string(scan->seen) +
-                           " voxels that the plan says its views see";
+                           " voxels that the plan says its views see (no share of the region)";
   check.detail = check.detail.empty() ? said : check.detail + "; " + said;
   certificate.checks.push_back(check);
 }

@@ -58,7 +58,9 @@ VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<con
   // Wider by a voxel: rays are only to be spared what cannot count.
   const Vector3d margin = Vector3d::Constant(map_->grid().resolution());
   reach_ = {settings_.region.min() - margin, settings_.region.max() + margin};
-  rays_ = tiled_pixel_rays(settings_.pinhole);
+  const bool fewer = settings_.across > 0 && settings_.across < settings_.pinhole.width;
+  rays_ =
+      tiled_pixel_rays(fewer ? coarser(settings_.pinhole, settings_.across) : settings_.pinhole);
 }
 
 double VisibleVoxels::leaves_region_after(const Vector3d& origin, const Vector3d& direction) const {

@@ -19,6 +19,8 @@ struct SightSettings {
   // m: where camera to surface and camera to voxel differ by as much or more, the surface that the
   // ray meets is not the voxel's, and its normal is not known (reading 4.3).
   double normal_tolerance = 0.5;
+  // Pixels a row of the smaller image that rays are cast through; 0: every pixel of the camera.
+  int across = 0;
 };
 
 struct SeenVoxel {
@@ -54,7 +56,7 @@ class VisibleVoxels {
   std::shared_ptr<const MeshScene> prior_;
   SightSettings settings_;
   VoxelBox region_;
-  Eigen::AlignedBox3d reach_;           // around it
+  Eigen::AlignedBox3d reach_;          // around it
   std::vector<Eigen::Vector3d> rays_;  // unit vectors of the camera, tile by tile
 };
 

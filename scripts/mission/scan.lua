@@ -10,7 +10,9 @@
 -- the budget and flown from view to view.
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
+local phases = require "mission.scan_phases"
 local smooth = require "mission.scan_smooth"
+local space = require "mission.scan_space"
 local DECLARATIONS = require "mission.scan_options"
 
 local M = {}
@@ -63,12 +65,12 @@ end
 
 local function graph_of(run, known, vehicle, starts, finish)
   local o = run.options
-  local region = first.region_of(run)
+  local region = space.region_of(run)
   local gimbal = vehicle.gimbal
   local c = o.candidates
   return run:scan_graph {
     prior = known, vehicle = vehicle, region = region,
-    allowed = first.room(run, starts),
+    allowed = space.room(run, starts),
     starts = starts, needed = finish, body = o.body, mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
@@ -76,7 +78,8 @@ local function graph_of(run, known, vehicle, starts, finish)
       distance_apart = c.distance_apart, angle_apart_deg = c.angle_apart_deg,
       pitch_min_deg = gimbal and math.max(-90, math.deg(gimbal.pitch_min)) or -90,
       pitch_max_deg = gimbal and math.min(0, math.deg(gimbal.pitch_max)) or 0 },
-    motions = o.motions, camera = o.camera, range = o.range, flight = o.flight,
+    motions = o.motions, camera = o.camera, across = o.effort.pixels, range = o.range,
+    flight = o.flight,
     information = o.information, planner = o.planner,
   }
 end
@@ -128,8 +131,9 @@ local function notes_of(run, graph, known, explored)
 end
 
 -- By pure pursuit, or by the solver, leg by leg; what of it is to be said.
-local function flown(run, vehicle, tour, notes)
+local function flown(run, vehicle, tour, notes, begin)
   if not run.options.flight.smooth then return nil end
+  begin("smooth legs")
   local legs, stray = smooth.legs(run, vehicle, tour)
   notes[#notes + 1] = legs
     and string.format("smooth legs by %s, at most %.2g m from their ways", legs[1].solver, stray)
@@ -151,19 +155,23 @@ local function little_used(run, graph, tour, budget)
     .. "would join more"
 end
 
-local function plan_of(run, graph, vehicle, finish, known, explored)
+-- `begin` tells which phase begins.
+local function plan_of(run, graph, vehicle, finish, known, explored, begin)
   local o = run.options
   local asked = budget_of(run)
   -- Smooth legs take what was counted; the rest in the first view comes on top.
   local budget = asked - (o.flight.smooth and o.flight.pause or 0)
   for round = 1, TIGHTER do
+    begin("tour")
     local tour, evaluations = solved(run, graph, finish, budget)
     local notes = notes_of(run, graph, known, explored)
     notes[#notes + 1] = first.warning(run)
     local little = little_used(run, graph, tour, budget)
     notes[#notes + 1] = little
+    local legs = flown(run, vehicle, tour, notes, begin)
+    begin("flight")
     local plan = run:scan_plan {
-      tour = tour, legs = flown(run, vehicle, tour, notes), margin = o.margin, budget = asked,
+      tour = tour, legs = legs, margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
       notes = notes, explored = explored,
       figures = { score = tour.score, upper_bound = tour.upper_bound, gap = tour.gap,
@@ -176,6 +184,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored)
     local over = plan.duration - asked
     if over <= 0 or round == TIGHTER then
       if little then print("warning: " .. little) end
+      if plan.truth ~= "" then print(plan.truth) end
       return plan, tour
     end
     budget = budget - 1.5 * over
@@ -188,17 +197,22 @@ local function planned(run)
   local vehicle = run:vehicle(o.vehicle)
   exploration.check(run)
   local seconds = exploration.seconds(run, vehicle, budget_of(run))
+  phases.expect(run, budget_of(run))
   local known, poses, surface, explored = first.knowledge(run, seconds, vehicle)
   local starts, finish = first.starts(run, poses)
   local plan
   for round = 1, o.rounds do
+    local function begin(phase) run:phase(phases.named(run, phase, round)) end
+    begin("views")
     local graph = graph_of(run, known, vehicle, starts, finish)
-    plan = plan_of(run, graph, vehicle, finish, known, explored)
+    plan = plan_of(run, graph, vehicle, finish, known, explored, begin)
     if round < o.rounds and not run:cancelled() then
       -- The tour is flown, and what it sees is known from then on; candidates grow from where it
       -- was as well (thesis 4.4.4).
+      begin("look")
       first.look(run, known, surface, plan.views)
       for _, view in ipairs(plan.views) do starts[#starts + 1] = view end
+      begin("mesh")
       known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
     end
   end

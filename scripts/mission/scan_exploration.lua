@@ -95,6 +95,7 @@ end
 function M.knowledge(run, surface, region, room, seconds, vehicle)
   local o = run.options
   local e = o.exploration
+  run:phase("exploration")
   local own = map_of(o, e.range)
   own.observations = true
   local body = 2 * math.max(table.unpack(o.body))

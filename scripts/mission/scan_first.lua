@@ -1,110 +1,12 @@
 -- The first flight of a scan, and what is known after it (thesis 4.3): a map, a mesh, places that
 -- are free. What was flown in is asked by the simulator alone.
-local named_scene = require "mission.named_scene"
 local exploration = require "mission.scan_exploration"
 local patterns = require "mission.scan_patterns"
+local space = require "mission.scan_space"
 
 local M = {}
 
-local SAFE_ABOVE = 4      -- m of a region, unless said otherwise
-local FLIGHT_ABOVE = 15   -- m of the safe height, likewise
-local OVERHEAD = 2        -- m of free air above the highest first flight
-
-local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
-local warnings = setmetatable({}, { __mode = "k" })  -- likewise, what the user should know
-
--- What the first flight is flown in, or nothing with files of an earlier one.
-local function surface_of(run)
-  if surfaces[run] then return surfaces[run] end
-  local o = run.options
-  local surface
-  if o.input then
-    surface = run:read_surface { file = o.input, unit = o.unit, up = o.up }
-    if o.ground then surface:add_ground() end
-  elseif o.scene then
-    surface = run:surface(named_scene(run))
-  end
-  surfaces[run] = surface
-  return surface
-end
-
-local function prior_files(run)
-  local files = run.options.prior
-  if not files.map and not files.mesh then return nil end
-  if not (files.map and files.mesh) then
-    run:fail("prior", "expected both a map and a mesh of an earlier flight")
-  end
-  return files
-end
-
--- The box of interest: as given, or the scene's own.
-function M.region_of(run)
-  local given = run.options.region
-  if given.lower and given.upper then return given end
-  if given.lower or given.upper then run:fail("region", "expected both lower and upper") end
-  local surface = surface_of(run)
-  if not surface then
-    run:fail("region", "files of an earlier flight do not say which region is of interest: give "
-                       .. "region = { lower = {x, y, z}, upper = {x, y, z} }")
-  end
-  return surface.region
-end
-
-local function safe_height(run)
-  return run.options.safe_height or M.region_of(run).upper[3] + SAFE_ABOVE
-end
-
-local function flights_of(run)
-  local o = run.options
-  if #o.flights > 0 then return o.flights end
-  return { { pattern = "meander", views = 30, pitch_deg = -60, reach = 5 } }
-end
-
-local function height_of(run, flight)
-  local height = flight.height or safe_height(run) + FLIGHT_ABOVE
-  if height < safe_height(run) then
-    run:fail("flights", string.format("a first flight at %.4g m is below safe_height, %.4g m",
-                                      height, safe_height(run)))
-  end
-  return height
-end
-
--- The highest that anything flies.
-local function ceiling_of(run)
-  local given = run.options.ceiling
-  local flown = not prior_files(run) and not exploration.wanted(run)  -- over the safe height
-  if given and flown and given < safe_height(run) then
-    run:fail("ceiling", string.format("%.4g m is below safe_height, %.4g m, over which the first "
-                                      .. "flight goes", given, safe_height(run)))
-  end
-  if given then return given end
-  local ceiling = safe_height(run) + OVERHEAD
-  if flown then
-    for _, flight in ipairs(flights_of(run)) do
-      ceiling = math.max(ceiling, height_of(run, flight) + OVERHEAD)
-    end
-  end
-  return ceiling
-end
-
--- Where the tour may go: round the region and the poses of the first flight.
-function M.room(run, poses)
-  local o, region = run.options, M.region_of(run)
-  local lower, upper = {}, {}
-  for axis = 1, 2 do
-    lower[axis], upper[axis] = region.lower[axis] - o.reach, region.upper[axis] + o.reach
-    for _, pose in ipairs(poses) do
-      lower[axis] = math.min(lower[axis], pose.position[axis])
-      upper[axis] = math.max(upper[axis], pose.position[axis])
-    end
-  end
-  lower[3], upper[3] = region.lower[3] + o.floor, ceiling_of(run)
-  if lower[3] >= upper[3] then
-    run:fail("region", string.format("the tour would have to fly over %.4g m (region and floor) "
-                                     .. "and below %.4g m (ceiling)", lower[3], upper[3]))
-  end
-  return { lower = lower, upper = upper }
-end
+local warnings = setmetatable({}, { __mode = "k" })  -- of runs: what the user should know
 
 -- What is wrong before anything is flown.
 function M.check(run)
@@ -134,14 +36,14 @@ end
 -- steepest of its images; where none sees the floor that is said, for nothing down there will be
 -- known.
 local function check_range(run)
-  local o, region = run.options, M.region_of(run)
+  local o, region = run.options, space.region_of(run)
   local half = math.atan(o.camera.height / 2, o.camera.focal)
   local function nearest(z)
     local least = math.huge
-    for _, flight in ipairs(flights_of(run)) do
-      local steepest = math.min(math.pi / 2, half - math.rad(flight.pitch_deg))
+    for _, flight in ipairs(space.flights_of(run)) do
+      local steepest = math.min(math.pi / 2, half - math.rad(space.pitch_of(flight)))
       if steepest > 0 then
-        least = math.min(least, (height_of(run, flight) - z) / math.sin(steepest))
+        least = math.min(least, (space.height_of(run, flight) - z) / math.sin(steepest))
       end
     end
     return least
@@ -164,10 +66,20 @@ end
 -- What the user should know of the first flight, or nothing.
 function M.warning(run) return warnings[run] end
 
+-- The camera of depth images that are taken in simulation: the plan's, with fewer pixels where
+-- less effort is asked for.
+local function depth_camera(run)
+  local camera, across = run.options.camera, run.options.effort.pixels
+  if across == 0 or across >= camera.width then return camera end
+  local share = across / camera.width
+  return { width = across, height = math.max(1, math.floor(camera.height * share + 0.5)),
+           focal = camera.focal * share }
+end
+
 -- Depth images from the poses, into the map and the surface.
 function M.look(run, known, surface, poses)
   local o = run.options
-  known:look { surface = surface, poses = poses, camera = o.camera, range = o.range,
+  known:look { surface = surface, poses = poses, camera = depth_camera(run), range = o.range,
                noise = o.noise }
 end
 
@@ -181,10 +93,10 @@ end
 
 -- The air that the user says is free: from the safe height up, round the region and the patterns.
 local function open_air(run, known, surface, poses)
-  local o, region = run.options, M.region_of(run)
+  local o, region = run.options, space.region_of(run)
   local margin = o.body[1] + 1
-  local lower = { region.lower[1] - o.reach, region.lower[2] - o.reach, safe_height(run) }
-  local upper = { region.upper[1] + o.reach, region.upper[2] + o.reach, ceiling_of(run) }
+  local lower = { region.lower[1] - o.reach, region.lower[2] - o.reach, space.safe_height(run) }
+  local upper = { region.upper[1] + o.reach, region.upper[2] + o.reach, space.ceiling_of(run) }
   for _, pose in ipairs(poses) do
     for axis = 1, 2 do
       lower[axis] = math.min(lower[axis], pose.position[axis])
@@ -200,27 +112,27 @@ end
 -- if anything, and the vehicle's exploration, if there was one, which has so many seconds.
 function M.knowledge(run, seconds, vehicle)
   local o = run.options
-  local files, surface = prior_files(run), surface_of(run)
+  local files, surface = space.prior_files(run), space.surface_of(run)
   if not surface and not files then
     lapwing.fail("nothing to scan: name a scene, a mesh with --set input=PATH (.obj, .ply, .dae, "
                  .. "...), or the files of an earlier flight with prior = { map =, mesh = }")
   end
   if exploration.wanted(run) then
-    local known, poses, done = exploration.knowledge(run, surface, M.region_of(run),
-                                                     M.room(run, {}), seconds, vehicle)
+    local known, poses, done = exploration.knowledge(run, surface, space.region_of(run),
+                                                     space.room(run, {}), seconds, vehicle)
     return known, poses, surface, done
   end
   local known, poses = new_prior(run), {}
   if files then known:load { map = files.map, mesh = files.mesh } end
   if surface and not (files and #o.flights == 0) then
     if not files then warnings[run] = check_range(run) end
-    for _, flight in ipairs(flights_of(run)) do
-      local made = patterns.over(M.region_of(run), flight.pattern, height_of(run, flight),
-                                 flight.views, math.rad(flight.pitch_deg), flight.reach)
-      for _, pose in ipairs(made) do poses[#poses + 1] = pose end
+    for _, flight in ipairs(space.flights_of(run)) do
+      for _, pose in ipairs(space.poses_of(run, flight)) do poses[#poses + 1] = pose end
     end
+    run:phase("first flight")
     open_air(run, known, surface, poses)
     M.look(run, known, surface, poses)
+    run:phase("prior mesh")
     known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
   end
   return known, poses, surface
@@ -232,7 +144,7 @@ function M.starts(run, poses)
   local o = run.options
   local starts = {}
   local function looking_in(position)
-    return patterns.looking_in(position, M.region_of(run), 0)
+    return patterns.looking_in(position, space.region_of(run), 0)
   end
   if o.start then starts[1] = looking_in(o.start) end
   for _, pose in ipairs(poses) do starts[#starts + 1] = pose end

@@ -24,13 +24,16 @@ local CAMERA = {
 }
 
 local PATTERN = {
-  { name = "pattern", type = "choice", choices = { "circle", "ellipse", "meander" },
+  { name = "pattern", type = "choice", choices = { "circle", "crosshatch", "ellipse", "meander" },
     default = "meander", summary = "over the region" },
-  number("height", nil, "m", "of flight, world; absent: 15 m above safe_height", { maximum = 1e5 }),
-  integer("views", 30, 1, 10000, "depth images"),
-  number("pitch_deg", -60, "deg", "of the camera; a circle's looks in, no higher than this",
-         { minimum = -90, maximum = 0 }),
-  number("reach", 5, "m", "beyond the region", NOT_NEGATIVE),
+  number("height", nil, "m", "of flight, world; absent: 15 m above safe_height, a crosshatch 5 m",
+         { maximum = 1e5 }),
+  integer("views", nil, 1, 10000,
+          "depth images; absent: 30, of a crosshatch as many as overlap wants"),
+  number("pitch_deg", nil, "deg", "of the camera; a circle's looks in, no higher than this; "
+         .. "absent: -60, a crosshatch's -45", { minimum = -90, maximum = 0 }),
+  number("reach", nil, "m", "beyond the region; absent: 5 m, a crosshatch half its height over "
+         .. "the region's floor, within the mission's reach", NOT_NEGATIVE),
 }
 
 local DECLARATIONS = {
@@ -45,7 +48,8 @@ local DECLARATIONS = {
   { name = "prior", type = "table", summary = "files of an earlier flight", table = {
     { name = "map", type = "text", summary = "a map, .ot or .bt" },
     { name = "mesh", type = "text", summary = "a mesh in the map's frame" } } },
-  { name = "region", type = "table", summary = "of interest; absent: the scene's", table = {
+  { name = "region", type = "table", summary = "of interest; absent: the "
+    .. "scene's, or a mesh's bounds and so much round them as body and a view take", table = {
     place("lower", "lowest corner, world"), place("upper", "highest corner, world") } },
   place("start", "where the tour begins; absent: the first flight's first view"),
   place("finish", "where it ends; absent: where it begins"),
@@ -60,7 +64,7 @@ local DECLARATIONS = {
     summary = "half edges of the box that must be free" },
   number("mesh_room", 1, "m", "more that is kept from the prior mesh", NOT_NEGATIVE),
   { name = "flights", type = "tables", table = PATTERN,
-    summary = "first flights, into one map; absent: one meander" },
+    summary = "first flights, into one map; absent: one crosshatch" },
   exploration.DECLARATION,
   { name = "utility", type = "plugin", kind = "utility", default = "learned",
     summary = "of an exploration: how useful a view is" },
@@ -69,6 +73,9 @@ local DECLARATIONS = {
     number("dropped", 0, "", "share of pixels without a measurement", { minimum = 0, maximum = 1 }),
     number("sigma", 0, "m", "deviation", { minimum = 0, maximum = 100 }) } },
   number("range", 60, "m", "of depth and of rays", POSITIVE),
+  { name = "effort", type = "table", summary = "of computing; the plan's camera stays", table = {
+    integer("pixels", 0, 0, 10000, "a row, of the smaller images that the first flight takes and "
+            .. "views are weighed by; 0: the camera's") } },
   number("resolution", 0.2, "m", "edge of a voxel", { minimum = 0.01, maximum = 10 }),
   { name = "surface", type = "table", summary = "the prior mesh", table = {
     number("spacing", 0.4, "m", "between fused points", POSITIVE),

@@ -54,9 +54,83 @@ local function meander(box, height, views, pitch, reach)
   return poses
 end
 
--- Poses of `pattern` (circle, ellipse, meander) over the box `region` at `height` (m, world), the
--- camera at `pitch` (rad, a circle's and an ellipse's at most), `reach` metres beyond the region.
+local SIDE, UP = math.rad(35), math.rad(30)  -- what an image surely holds round its middle
+
+-- Whether the image of a pose holds a place of the box: of nine by nine on its floor and its top.
+local function sees(pose, box)
+  for i = 0, 8 do
+    for j = 0, 8 do
+      local x = box.lower[1] + i / 8 * (box.upper[1] - box.lower[1]) - pose.position[1]
+      local y = box.lower[2] + j / 8 * (box.upper[2] - box.lower[2]) - pose.position[2]
+      local aside = math.abs(math.atan(y, x) - pose.yaw)
+      for _, z in ipairs { box.lower[3], box.upper[3] } do
+        local up = math.atan(z - pose.position[3], math.sqrt(x * x + y * y)) - pose.pitch
+        if math.min(aside, 2 * math.pi - aside) <= SIDE and math.abs(up) <= UP then return true end
+      end
+    end
+  end
+  return false
+end
+
+-- Stops on a grid over the box, rows along one axis, `spacing` metres apart at most. At each the
+-- camera looks forth and back along the rows, first the way that is flown; never past the box.
+local function oblique_grid(box, along, height, spacing, pitch, reach, poses)
+  local across = 3 - along
+  local counts, lengths = {}, {}
+  for axis = 1, 2 do
+    lengths[axis] = box.upper[axis] - box.lower[axis] + 2 * reach
+    counts[axis] = math.max(1, math.ceil(lengths[axis] / spacing))
+  end
+  for row = 0, counts[across] do
+    for k = 0, counts[along] do
+      local forth = row % 2 == 0
+      local share = (forth and k or counts[along] - k) / counts[along]
+      local place = { [3] = height }
+      place[along] = box.lower[along] - reach + lengths[along] * share
+      place[across] = box.lower[across] - reach + lengths[across] * row / counts[across]
+      local ahead = (along == 2 and math.pi / 2 or 0) + (forth and 0 or math.pi)
+      for _, yaw in ipairs { ahead, ahead + math.pi } do
+        local pose = { position = { place[1], place[2], place[3] },
+                       yaw = math.atan(math.sin(yaw), math.cos(yaw)), pitch = pitch }
+        if sees(pose, box) then poses[#poses + 1] = pose end
+      end
+    end
+  end
+end
+
+-- The pose nearest to the middle of the box comes first: from there most can be reached.
+local function from_the_middle(poses, box)
+  if #poses == 0 then return poses end
+  local nearest, least = 1, math.huge
+  for i, pose in ipairs(poses) do
+    local x = pose.position[1] - (box.lower[1] + box.upper[1]) / 2
+    local y = pose.position[2] - (box.lower[2] + box.upper[2]) / 2
+    if x * x + y * y < least - 1e-9 then nearest, least = i, x * x + y * y end
+  end
+  table.insert(poses, 1, table.remove(poses, nearest))
+  return poses
+end
+
+-- Two oblique grids in crossing directions, as surveyors fly where walls count: every place is seen
+-- from four sides. Stops are `OVERLAP` times the height over the region's floor apart, or as much
+-- farther as a smaller number of views asks for.
+local OVERLAP = 0.75
+local function crosshatch(box, height, views, pitch, reach)
+  local spacing, poses = OVERLAP * (height - box.lower[3]), nil
+  for _ = 1, 100 do
+    poses = {}
+    for along = 1, 2 do oblique_grid(box, along, height, spacing, pitch, reach, poses) end
+    if not views or #poses <= views then break end
+    spacing = 1.05 * spacing
+  end
+  return from_the_middle(poses, box)
+end
+
+-- Poses of `pattern` (circle, crosshatch, ellipse, meander) over the box `region` at `height` (m,
+-- world), the camera at `pitch` (rad, a circle's and an ellipse's at most), `reach` metres beyond
+-- the region. A crosshatch without `views` has as many as it wants, else at most so many.
 function M.over(region, pattern, height, views, pitch, reach)
+  if pattern == "crosshatch" then return crosshatch(region, height, views, pitch, reach) end
   if pattern == "meander" then return meander(region, height, views, pitch, reach) end
   return ellipse(region, height, views, pitch, reach, pattern == "circle")
 end

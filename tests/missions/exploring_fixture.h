@@ -32,7 +32,9 @@ class Exploring : public Filming {
   std::string few(const std::string& more) {
     const fs::path mesh = folder_ / "yard.obj";
     write_file_atomically(mesh, kYard);
-    return "--config explore/small --set start=[0,0,4] --set input='" + mesh.string() + "' " + more;
+    return "--config explore/small --set compare=true --set utility=frontier "
+           "--set camera.width=80 --set camera.height=60 --set start=[0,0,4] --set input='" +
+           mesh.string() + "' " + more;
   }
   Flown explore(const std::string& more, const char* out) {
     return fly("../explore/own_mesh.lua", few(more), out);

@@ -63,7 +63,8 @@ TEST_F(Filming, MeshesOfOthersAreScanned) {
   if (data_folder().empty()) GTEST_SKIP() << "LAPWING_DATA names no folder with meshes";
   for (const char* name : {"delft_block.obj", "gz_powerplant.dae"})
     expect_scan(fly("../scan/own_mesh.lua",
-                    "--config scan/small --set candidates.most=400 --set ground=true --data '" +
+                    "--config scan/small --set tour.budget=120 --set range=100 "
+                    "--set candidates.most=400 --set ground=true --data '" +
                         data_folder() + "' --set input=" + name),
                 name);
 }

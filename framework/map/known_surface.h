@@ -1,0 +1,47 @@
+// How much surface a region has, as far as a map and a mesh know it, and how much is not known.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "framework/geometry/mesh_scene.h"
+#include "framework/map/map.h"
+
+namespace lapwing {
+
+// What views tell of a voxel, from 0 (nothing) to 1 (all).
+struct VoxelShare {
+  VoxelKey voxel;
+  float share = 0;
+};
+
+// What views tell of a triangle, from 0 to 1, or why there is nothing to tell.
+inline constexpr float kOutsideRegion = -2, kNeverVisible = -1;
+
+// For each triangle of the mesh: kOutsideRegion where its middle is not in the region;
+// kNeverVisible where none of the voxels is listed through which a short line along its normal
+// passes, two voxels to either side; else the largest share of those that are. `voxels`
+// in any order, each key once.
+std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const Eigen::AlignedBox3d& region,
+                                       const VoxelGrid& grid, std::vector<VoxelShare> voxels);
+
+struct SurfaceAreas {
+  double known = 0;    // m^2 of the mesh in the region
+  double visible = 0;  // m^2 of it that some listed voxel belongs to
+  double seen = 0;     // m^2 of it of which more than nothing is told
+};
+
+// Of what shares_of_triangles says.
+SurfaceAreas areas_of(const TriangleMesh& mesh, std::span<const float> shares);
+
+// m^2 of the edge of what was ever measured: where air of the region meets voxels that no ray came
+// to, not beside a voxel with a surface in it nor within one and a half voxels of `mesh`, which may
+// be null. Surface that nobody saw hides behind it. A plane over a corner that was not looked into
+// has at most the area of the corner's sides. Faces of voxels are added as vectors in cubes of 8 x
+// 8 x 8 voxels, so that a slope counts as a slope and not as stairs, and specks do not count. The
+// same for any number of threads. InputError for a region of more than 2^28 voxels.
+double unknown_edge(const Map& map, const MeshScene* mesh, const Eigen::AlignedBox3d& region,
+                    int threads);
+
+}  // namespace lapwing

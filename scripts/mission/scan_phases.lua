@@ -1,0 +1,56 @@
+-- What a scan consists of, for whoever waits: each phase with what it takes in s, as measured on one
+-- machine. Only their shares count, and what a run measures itself corrects them.
+local exploration = require "mission.scan_exploration"
+local space = require "mission.scan_space"
+
+local M = {}
+
+local LOOK, MESH, WEIGH, TELL = 1.6e-6, 1.9e-6, 1.4e-7, 4e-7  -- s a pixel
+local EXPLORE, TOUR, LEG = 0.5, 0.008, 0.3                    -- s an image, a candidate, a leg
+local VIEW = 8             -- s of flight that a view takes
+local CERTIFICATE = 0.05   -- s for a second of flight
+local FILES = 3            -- s
+
+local function pixels_of(camera, across)
+  local share = across > 0 and math.min(1, across / camera.width) or 1
+  return share * share * camera.width * camera.height
+end
+
+-- Tells what is to come, before the first phase begins; the tour has `seconds`.
+function M.expect(run, seconds)
+  local o = run.options
+  local few, all = pixels_of(o.camera, o.effort.pixels), pixels_of(o.camera, 0)
+  local phases = {}
+  local function add(name, weight) phases[#phases + 1] = { name = name, weight = weight } end
+  if exploration.wanted(run) then
+    add("exploration", EXPLORE * o.exploration.images)
+  elseif space.surface_of(run) and not (space.prior_files(run) and #o.flights == 0) then
+    local images = 0
+    for _, flight in ipairs(space.flights_of(run)) do
+      images = images + #space.poses_of(run, flight)
+    end
+    add("first flight", LOOK * few * images)
+    add("prior mesh", MESH * few * images)
+  end
+  for round = 1, o.rounds do
+    local of = o.rounds > 1 and " of round " .. round or ""
+    add("views" .. of, WEIGH * few * o.candidates.most)
+    add("tour" .. of, TOUR * o.candidates.most)
+    if o.flight.smooth then add("smooth legs" .. of, LEG * seconds / VIEW) end
+    add("flight" .. of, TELL * all * seconds / VIEW)
+    if round < o.rounds then
+      add("look" .. of, LOOK * few * seconds / VIEW)
+      add("mesh" .. of, MESH * few * seconds / VIEW)
+    end
+  end
+  add("certificate", CERTIFICATE * seconds)
+  add("files", FILES)
+  run:phases(phases)
+end
+
+-- What phases are called in a round of several.
+function M.named(run, name, round)
+  return run.options.rounds > 1 and name .. " of round " .. round or name
+end
+
+return M

@@ -1,0 +1,147 @@
+-- Where a scan goes on: the surface that is flown in, the region of interest, and the heights and
+-- places of its first flights.
+local exploration = require "mission.scan_exploration"
+local named_scene = require "mission.named_scene"
+local patterns = require "mission.scan_patterns"
+
+local M = {}
+
+local SAFE_ABOVE = 4      -- m of a region, unless said otherwise
+local FLIGHT_ABOVE = { crosshatch = 5 }  -- m of the safe height, likewise
+local FLIGHT_ABOVE_ELSE = 15
+local VIEW = 4            -- m from a wall, to look along it: beside the body, round a mesh's bounds
+local OVERHEAD = 2        -- m of free air above the highest first flight
+
+local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
+
+-- What the first flight is flown in, or nothing with files of an earlier one.
+function M.surface_of(run)
+  if surfaces[run] then return surfaces[run] end
+  local o = run.options
+  local surface
+  if o.input then
+    surface = run:read_surface { file = o.input, unit = o.unit, up = o.up }
+    if o.ground then surface:add_ground() end
+  elseif o.scene then
+    surface = run:surface(named_scene(run))
+  end
+  surfaces[run] = surface
+  return surface
+end
+
+function M.prior_files(run)
+  local files = run.options.prior
+  if not files.map and not files.mesh then return nil end
+  if not (files.map and files.mesh) then
+    run:fail("prior", "expected both a map and a mesh of an earlier flight")
+  end
+  return files
+end
+
+-- Round the bounds of a mesh of the user's, so that its outermost walls belong to it and are seen
+-- from outside.
+local function around(run, bounds)
+  local o, lower, upper = run.options, {}, {}
+  for axis = 1, 3 do
+    local more = axis == 3 and o.resolution or math.max(o.body[1], o.body[2]) + o.mesh_room + VIEW
+    lower[axis], upper[axis] = bounds.lower[axis] - more, bounds.upper[axis] + more
+  end
+  return { lower = lower, upper = upper }
+end
+
+-- The box of interest: as given, or the scene's own, or round the mesh.
+function M.region_of(run)
+  local given = run.options.region
+  if given.lower and given.upper then return given end
+  if given.lower or given.upper then run:fail("region", "expected both lower and upper") end
+  local surface = M.surface_of(run)
+  if not surface then
+    run:fail("region", "files of an earlier flight do not say which region is of interest: give "
+                       .. "region = { lower = {x, y, z}, upper = {x, y, z} }")
+  end
+  return run.options.input and around(run, surface.region) or surface.region
+end
+
+function M.safe_height(run)
+  return run.options.safe_height or M.region_of(run).upper[3] + SAFE_ABOVE
+end
+
+function M.flights_of(run)
+  local o = run.options
+  return #o.flights > 0 and o.flights or { { pattern = "crosshatch" } }
+end
+
+function M.height_of(run, flight)
+  local height = flight.height
+    or M.safe_height(run) + (FLIGHT_ABOVE[flight.pattern] or FLIGHT_ABOVE_ELSE)
+  if height < M.safe_height(run) then
+    run:fail("flights", string.format("a first flight at %.4g m is below safe_height, %.4g m",
+                                      height, M.safe_height(run)))
+  end
+  return height
+end
+
+function M.pitch_of(flight)
+  return flight.pitch_deg or (flight.pattern == "crosshatch" and -45 or -60)
+end
+
+-- Where a first flight takes its images.
+function M.poses_of(run, flight)
+  local region, height = M.region_of(run), M.height_of(run, flight)
+  local hatched = flight.pattern == "crosshatch"
+  local reach = flight.reach
+    or (hatched and math.min(run.options.reach, (height - region.lower[3]) / 2) or 5)
+  local views = flight.views or (not hatched and 30 or nil)
+  local poses = patterns.over(region, flight.pattern, height, views, math.rad(M.pitch_of(flight)),
+                              reach)
+  if #poses == 0 then
+    run:fail("flights", string.format(
+      "no image of the %s would hold anything of the region: at a pitch of %.4g degrees and %.4g m "
+      .. "over its floor it needs more reach", flight.pattern, M.pitch_of(flight),
+      height - region.lower[3]))
+  end
+  if views and #poses > views then
+    run:fail("flights", string.format("a crosshatch here has %d views at least, and %d are asked "
+                                      .. "for", #poses, views))
+  end
+  return poses
+end
+
+-- The highest that anything flies.
+function M.ceiling_of(run)
+  local given = run.options.ceiling
+  local flown = not M.prior_files(run) and not exploration.wanted(run)  -- over the safe height
+  if given and flown and given < M.safe_height(run) then
+    run:fail("ceiling", string.format("%.4g m is below safe_height, %.4g m, over which the first "
+                                      .. "flight goes", given, M.safe_height(run)))
+  end
+  if given then return given end
+  local ceiling = M.safe_height(run) + OVERHEAD
+  if flown then
+    for _, flight in ipairs(M.flights_of(run)) do
+      ceiling = math.max(ceiling, M.height_of(run, flight) + OVERHEAD)
+    end
+  end
+  return ceiling
+end
+
+-- Where the tour may go: round the region and the poses of the first flight.
+function M.room(run, poses)
+  local o, region = run.options, M.region_of(run)
+  local lower, upper = {}, {}
+  for axis = 1, 2 do
+    lower[axis], upper[axis] = region.lower[axis] - o.reach, region.upper[axis] + o.reach
+    for _, pose in ipairs(poses) do
+      lower[axis] = math.min(lower[axis], pose.position[axis])
+      upper[axis] = math.max(upper[axis], pose.position[axis])
+    end
+  end
+  lower[3], upper[3] = region.lower[3] + o.floor, M.ceiling_of(run)
+  if lower[3] >= upper[3] then
+    run:fail("region", string.format("the tour would have to fly over %.4g m (region and floor) "
+                                     .. "and below %.4g m (ceiling)", lower[3], upper[3]))
+  end
+  return { lower = lower, upper = upper }
+end
+
+return M

@@ -1,0 +1,140 @@
+// What a scan says of its coverage, held against the true surface and against what was not seen.
+#include "tests/missions/scan_hut.h"
+
+namespace lapwing {
+namespace {
+
+// Two houses in a yard, of which the walls are the edge of the mesh.
+constexpr const char* kHouses = R"(v -6 -5 0
+v 6 -5 0
+v 6 5 0
+v -6 5 0
+v -6 -5 7
+v 6 -5 7
+v 6 5 7
+v -6 5 7
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+)";
+
+class Covering : public Scanning {
+ protected:
+  void SetUp() override {
+    Scanning::SetUp();
+    write_file_atomically(folder_ / "house.obj", kHouses);
+    write_file_atomically(folder_ / "house.lua", R"(
+return require("mission.scan").of_mesh {
+  name = "house", resolution = 0.4, tour = { budget = 150, iterations = 200 },
+  camera = { width = 80, height = 60, focal = 46 }, surface = { spacing = 0.8, cell = 1, trim = 2 },
+  candidates = { most = 150, step = 2.5, distance_apart = 2 },
+  motions = { alpha = 0.3, coarse = 40 },
+}
+)");
+  }
+  // With the mesh in place of a scene, and all defaults of flights and region.
+  Value of_house(const std::string& more, const std::string& out = "out") {
+    EXPECT_EQ(
+        run("--set input=house.obj --set ground=true --data '" + folder_.string() + "' " + more,
+            "house.lua", out),
+        0)
+        << error();
+    return answer();
+  }
+  static double number(const Value& surface, const char* name) {
+    return surface.at(name).as_number();
+  }
+};
+
+// 264 m^2 of walls stand at the edge of the mesh's bounds, and the ground round them.
+TEST_F(Covering, DefaultsSeeTheOutermostWallsOfAMesh) {
+  const Value answer = of_house("");
+  const Value& surface = answer.at("tour").at("surface");
+  const Value& truth = surface.at("true");
+  EXPECT_GT(number(truth, "first_flight_share"), 0.95) << to_json(surface);
+  EXPECT_GT(number(truth, "tour_share"), 0.95) << to_json(surface);
+  // The region is wider than the bounds: walls, roof and 7 m of ground on every side.
+  EXPECT_GT(number(truth, "open"), 12 * 10 + 2 * 7 * (12 + 10) + 5 * (2 * (12 + 10) + 20));
+  // No more is claimed than is true.
+  EXPECT_LT(number(surface, "seen_share"), number(truth, "tour_share") + 0.03);
+  EXPECT_LT(number(surface, "unknown"), 0.05 * number(surface, "known"));
+  EXPECT_LE(number(surface, "seen"), number(surface, "visible"));
+  EXPECT_LE(number(surface, "visible"), number(surface, "known"));
+}
+
+// One low look from the south: the other sides are no surface that is known, but unknown.
+TEST_F(Covering, WhatTheFirstFlightNeverSawIsUnknownAndSaidInWords) {
+  const Value answer = of_house(
+      "--set 'flights=[{pattern: ellipse, views: 1, reach: 8, height: 15, pitch_deg: -20}]' "
+      "--set safe_height=11 --set motions.alpha=0.05");
+  const Value& surface = answer.at("tour").at("surface");
+  EXPECT_LT(number(surface.at("true"), "first_flight_share"), 0.7) << to_json(surface);
+  EXPECT_GT(number(surface, "unknown"), 60) << to_json(surface);
+  std::string notes;
+  for (const Value& note : answer.at("notes").as_list()) notes += note.as_text() + "\n";
+  EXPECT_THAT(notes, HasSubstr("unknown and not counted. That is much"));
+  EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr("unknown, not counted"));
+}
+
+TEST_F(Covering, TheTerminalThePlanAndTheReportSayTheSame) {
+  const Value answer = of_house("");
+  std::string sentence;
+  for (const Value& note : answer.at("notes").as_list())
+    if (note.as_text().starts_with("surface: the tour sees")) sentence = note.as_text();
+  ASSERT_FALSE(sentence.empty());
+  for (const char* said : {"visible from some free place", "unknown and not counted"})
+    EXPECT_THAT(sentence, HasSubstr(said));
+  EXPECT_THAT(plan(), HasSubstr(sentence));
+  EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr(sentence));
+  // What only a simulator knows is no part of the plan.
+  EXPECT_EQ(plan().find("true surface"), std::string::npos);
+  // 80 x 60 pixels are for planning.
+  EXPECT_THAT(plan(), HasSubstr("camera.focal"));
+}
+
+TEST_F(Covering, ACrosshatchLooksFourWaysAndTakesNoMoreThanIsAsked) {
+  const Value all = of_house("--set 'flights=[{pattern: crosshatch}]'", "all");
+  const Value fewer = of_house("--set 'flights=[{pattern: crosshatch, views: 24}]'", "fewer");
+  const auto images = [](const Value& answer) {
+    return std::stoi(answer.at("notes").as_list().front().as_text());
+  };
+  EXPECT_GT(images(all), 24);
+  EXPECT_LE(images(fewer), 24);
+  EXPECT_GT(images(fewer), 8);
+  EXPECT_EQ(run("--set input=house.obj --set ground=true --data '" + folder_.string() +
+                    "' --set 'flights=[{pattern: crosshatch, views: 2}]'",
+                "house.lua", "two"),
+            2);
+  EXPECT_THAT(error(), HasSubstr("a crosshatch here has"));
+}
+
+// Quick looks change effort, never the task.
+TEST_F(Covering, ASmallScanKeepsBudgetRegionCameraAndRange) {
+  const auto options = [&](const std::string& more) {
+    const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing config '" +
+                             (folder_ / "house.lua").string() + "' --json --data '" +
+                             folder_.string() + "' --set input=house.obj " + more + " > '" +
+                             (folder_ / "options.json").string() + "'";
+    EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0);
+    return from_json(read_file(folder_ / "options.json"), "options");
+  };
+  const Value stated = options(""), small = options("--config scan/small");
+  for (const char* task : {"tour", "camera", "range", "region", "flights", "vehicle", "reach"})
+    EXPECT_EQ(to_json(small.at(task)), to_json(stated.at(task))) << task;
+  EXPECT_NE(to_json(small.at("effort")), to_json(stated.at("effort")));
+}
+
+// The images that are planned are those of the camera, whatever effort is made.
+TEST_F(Covering, LessEffortLeavesTheCameraOfThePlan) {
+  of_house(
+      "--set camera.width=160 --set camera.height=120 --set camera.focal=92 "
+      "--set effort.pixels=80");
+  const Plan made = read_plan(folder_ / "out/plan.json");
+  EXPECT_EQ(made.task.scan->camera.width, 160);
+  EXPECT_EQ(made.task.scan->camera.focal_x, 92);
+}
+
+}  // namespace
+}  // namespace lapwing
