@@ -1,16 +1,17 @@
 #include "framework/core/files.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <optional>
 
 #include "framework/core/error.h"
+#include "framework/core/temporary_names.h"
 
 namespace lapwing {
 
@@ -118,6 +119,16 @@ void require_access(const fs::path& path, const fs::path& folder, int access) {
     cannot_write(path, "folder '" + folder.string() + "': " + reason(errno));
 }
 
+// A pipe may have nobody at its other end, and would be waited for without end.
+void wait_for_a_writer(const fs::path& path, int descriptor) {
+  constexpr int kPatience = 5000;  // ms
+  pollfd waiting{descriptor, POLLIN, 0};
+  int ready = 0;
+  while ((ready = ::poll(&waiting, 1, kPatience)) < 0 && errno == EINTR) {
+  }
+  if (ready == 0) cannot_read(path, "nobody has written into it for 5 s");
+}
+
 }  // namespace
 
 void require_writable(const fs::path& path) {
@@ -138,9 +149,8 @@ void write_file_atomically(const fs::path& path, std::string_view contents) {
   if (code) cannot_write(path, "cannot create folder '" + folder.string() + "': " + code.message());
   const std::optional<mode_t> mode = mode_there(path, target);
 
-  static std::atomic<unsigned> counter{0};
-  TemporaryFile temporary(folder / ("." + target.filename().string() + ".tmp-" +
-                                    std::to_string(::getpid()) + "-" + std::to_string(counter++)));
+  clear_dead_temporaries(folder);
+  TemporaryFile temporary(folder / temporary_name(target.filename().string()));
   if (!temporary.opened()) cannot_write(path, reason(errno));
   if (mode && !temporary.keep_mode(*mode)) cannot_write(path, reason(errno));
   if (!temporary.write(contents)) cannot_write(path, reason(errno));
@@ -149,7 +159,8 @@ void write_file_atomically(const fs::path& path, std::string_view contents) {
 }
 
 std::string read_file(const fs::path& path, std::size_t limit_bytes) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // Opening a pipe would wait for whoever writes into it.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) cannot_read(path, reason(errno));
   struct Closer {
     int descriptor;
@@ -165,6 +176,7 @@ std::string read_file(const fs::path& path, std::size_t limit_bytes) {
   }
   char buffer[1 << 16];
   for (;;) {
+    if (!S_ISREG(info.st_mode)) wait_for_a_writer(path, descriptor);
     const ssize_t count = ::read(descriptor, buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) cannot_read(path, reason(errno));

@@ -10,6 +10,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/core/temporary_names.h"
 
 namespace lapwing {
 namespace {
@@ -61,8 +62,8 @@ void write_folder_atomically(const fs::path& folder, const NamedContents& files)
   const fs::path parent = target.parent_path().empty() ? "." : target.parent_path();
   fs::create_directories(parent, code);
   if (code) refuse_folder(folder, code.message());
-  const NewFolder made(parent /
-                       ("." + target.filename().string() + ".tmp-" + std::to_string(::getpid())));
+  clear_dead_temporaries(parent);
+  const NewFolder made(parent / temporary_name(target.filename().string()));
   fs::create_directory(made.path(), code);
   if (code) refuse_folder(folder, code.message());
   for (const auto& [name, contents] : files) {

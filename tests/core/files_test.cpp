@@ -202,6 +202,25 @@ TEST_F(FilesTest, RefusesWhatIsNoFile) {
   EXPECT_NE(refusal(folder_ / "file" / "below", "x").find("Not a directory"), std::string::npos);
 }
 
+TEST_F(FilesTest, APipeIsReadButNotWaitedForWithoutEnd) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string message;
+  try {
+    read_file(pipe);
+  } catch (const InputError& error) {
+    message = error.what();
+  }
+  EXPECT_EQ(message, "cannot read '" + pipe.string() + "': nobody has written into it for 5 s");
+  std::thread writer([&] {
+    std::FILE* file = std::fopen(pipe.c_str(), "w");
+    std::fputs(std::string(100000, 'x').c_str(), file);
+    std::fclose(file);
+  });
+  EXPECT_EQ(read_file(pipe).size(), 100000u);
+  writer.join();
+}
+
 TEST_F(FilesTest, ReadersSeeOldOrNewNeverHalf) {
   const fs::path path = folder_ / "plan.json";
   const std::string a(1 << 16, 'a'), b(1 << 16, 'b');
