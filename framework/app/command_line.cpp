@@ -5,6 +5,7 @@
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
 #include "framework/app/plugin_guard.h"
+#include "framework/app/provenance.h"
 #include "framework/app/sweep_command.h"
 #include "framework/app/train_command.h"
 #include "framework/app/version.h"
@@ -34,8 +35,10 @@ void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& scrip
   add_configuration(*run, invocation);
   add_text(*run, "-o,--out", "DIR", "folder of the results; else out/<mission>",
            [&](const std::string& path) { invocation.out = path; });
+  run->add_flag("--keep", invocation.keep, "keep an older run in the folder as DIR.1, DIR.2, ...");
   add_threads(*run, invocation, "threads to use; else one per core");
   run->add_flag("--quiet", invocation.quiet, "no progress, no summary");
+  run->add_flag("--verbose", invocation.verbose, "say what was tried and came to nothing, too");
   add_json(*run, invocation);
   run->callback([&] { command = [&] { return run_mission(script, invocation); }; });
 
@@ -76,11 +79,18 @@ void read_wind(const std::string& text, FlightConditions& conditions) {
 
 void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
                        FlightConditions& conditions, std::string& format,
-                       std::filesystem::path& target, Command& command) {
+                       std::filesystem::path& target, Judges& judges, bool& uncertified,
+                       Command& command) {
   CLI::App* verify = app.add_subcommand("verify", "judge a plan from its numbers alone");
   add_plan(*verify, plan);
+  add_text(*verify, "--vehicle", "FILE",
+           "judge by this vehicle file, or its name in configs/, in place of the plan's vehicle",
+           [&](const std::string& path) { judges.vehicle = path; });
+  add_text(*verify, "--environment", "FILE",
+           "judge by the obstacles of this YAML file in place of the plan's",
+           [&](const std::string& path) { judges.environment = path; });
   add_json(*verify, invocation);
-  verify->callback([&] { command = [&] { return verify_plan(plan, invocation); }; });
+  verify->callback([&] { command = [&] { return verify_plan(plan, judges, invocation); }; });
 
   CLI::App* simulate =
       app.add_subcommand("simulate", "fly a plan by the whole quadrotor under control");
@@ -106,8 +116,10 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
   add_text(*exported, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
     target = path;
   })->required();
-  exported->callback(
-      [&] { command = [&] { return export_plan(plan, format, target, invocation); }; });
+  exported->add_flag("--uncertified", uncertified, "export a plan that is not certified, too");
+  exported->callback([&] {
+    command = [&] { return export_plan(plan, format, target, uncertified, invocation); };
+  });
 }
 
 void add_map_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& file,
@@ -233,6 +245,8 @@ int run_command_line(int argc, const char* const* argv) {
   Invocation invocation;
   std::filesystem::path script, plan, target;
   std::string format, name;
+  Judges judges;
+  bool uncertified = false;
   FlightConditions conditions;
   SceneStatement stated;
   std::vector<std::string> pilots;
@@ -250,7 +264,8 @@ int run_command_line(int argc, const char* const* argv) {
   app.fallthrough();
   add_run(app, invocation, script, command);
   add_sweep(app, invocation, sweep, command);
-  add_plan_commands(app, invocation, plan, conditions, format, target, command);
+  add_plan_commands(app, invocation, plan, conditions, format, target, judges, uncertified,
+                    command);
   add_map_commands(app, invocation, plan, target, command);
   add_scene_commands(app, invocation, plan, stated, target, command);
   add_race_command(app, invocation, plan, pilots, rules, target, command);

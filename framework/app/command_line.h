@@ -18,7 +18,7 @@ enum class ExitStatus {
   done = 0,           // and certified, where there is something to certify
   not_certified = 1,  // finished, but infeasible or not certified
   bad_input = 2,
-  defect = 3,
+  defect = 3,  // an internal error, or output that could not be written
   interrupted = 130,
 };
 
@@ -33,6 +33,8 @@ struct Invocation {
   int threads = 0;  // 0: as many as there are cores
   bool json = false;
   bool quiet = false;
+  bool verbose = false;  // what was tried and came to nothing is said, too
+  bool keep = false;     // an older run in the folder is kept under another name
 
   // Whoever has one may call plugins: from now on they are guarded (app/plugin_guard.h).
   Registry registry() const;
@@ -48,13 +50,17 @@ const char* program_version();
 
 ExitStatus run_mission(const std::filesystem::path& script, const Invocation& invocation);
 ExitStatus show_configuration(const std::filesystem::path& script, const Invocation& invocation);
-ExitStatus verify_plan(const std::filesystem::path& plan, const Invocation& invocation);
+struct Judges;  // app/provenance.h
+ExitStatus verify_plan(const std::filesystem::path& plan, const Judges& judges,
+                       const Invocation& invocation);
 // Flies a plan by the whole quadrotor; writes a report page to `target` unless that is empty.
 struct FlightConditions;
 ExitStatus simulate_plan(const std::filesystem::path& plan, const FlightConditions& conditions,
                          const std::filesystem::path& target, const Invocation& invocation);
+// A plan that is not certified is refused unless `uncertified` asks for it.
 ExitStatus export_plan(const std::filesystem::path& plan, const std::string& format,
-                       const std::filesystem::path& target, const Invocation& invocation);
+                       const std::filesystem::path& target, bool uncertified,
+                       const Invocation& invocation);
 ExitStatus show_map(const std::filesystem::path& file, const Invocation& invocation);
 // By the ending of the target: .ot, .bt or .ply.
 ExitStatus convert_map(const std::filesystem::path& file, const std::filesystem::path& target,
@@ -98,5 +104,9 @@ ExitStatus show_plugin_path(const Invocation& invocation);
 
 // Writes one object and a line end to standard output.
 void print_json(const Value& value);
+
+// `status`, or `defect` with a message on standard error when something that was written to
+// standard output did not arrive. To be called last.
+int finish_output(int status);
 
 }  // namespace lapwing

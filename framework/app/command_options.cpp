@@ -27,8 +27,12 @@ void add_json(CLI::App& command, Invocation& invocation) {
 
 CLI::Option* add_text(CLI::App& command, const std::string& name, const std::string& value_name,
                       const std::string& help, std::function<void(const std::string&)> take) {
-  const auto callback = [take = std::move(take)](const CLI::results_t& values) {
-    for (const std::string& value : values) take(value);
+  const auto callback = [take = std::move(take), name, value_name](const CLI::results_t& values) {
+    for (const std::string& value : values) {
+      if (value.empty())
+        throw CLI::ValidationError(name, "expected " + value_name + ", not an empty text");
+      take(value);
+    }
     return true;
   };
   return command.add_option(name, callback, help)->type_name(value_name)->expected(1);
@@ -87,8 +91,7 @@ void add_threads(CLI::App& command, Invocation& invocation, const std::string& h
 }
 
 void add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {
-  add_count(command, "--seed", 0, kLargestSeed, help,
-            [&](std::uint64_t given) { seed = given; });
+  add_count(command, "--seed", 0, kLargestSeed, help, [&](std::uint64_t given) { seed = given; });
 }
 
 void add_plan(CLI::App& command, std::filesystem::path& plan) {

@@ -12,6 +12,7 @@
 #include "framework/app/version.h"
 #include "framework/config/shipped.h"
 #include "framework/core/checksum.h"
+#include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/parallel.h"
 #include "framework/mission/data_files.h"
@@ -177,16 +178,18 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
   };
   const fs::path folder =
       invocation.out.empty() ? fs::path("out") / "evaluate_scan" : invocation.out;
+  const FolderClaim claim(folder);
   const std::vector<ScanRow> rows =
       run_study(study, folder, asked.resume, registry, &interruption.token(), say);
   const std::vector<ScanSummary> summaries = summarise(rows);
   const std::string tables = tables_text(summaries);
-  write_file_atomically(folder / "rows.csv", rows_csv(rows));
-  write_file_atomically(folder / "tables.csv", tables_csv(summaries));
-  write_file_atomically(folder / "tables.txt", tables);
-  write_file_atomically(folder / "times.txt", times_text(folder / "times"));
-  if (asked.photos) write_file_atomically(folder / "photos.txt", photos_text(folder / "photos"));
-  write_file_atomically(folder / "report.html", render_html(study_report(summaries, rows)));
+  FileSet results{{{"rows.csv", rows_csv(rows)},
+                   {"tables.csv", tables_csv(summaries)},
+                   {"tables.txt", tables},
+                   {"times.txt", times_text(folder / "times")},
+                   {"report.html", render_html(study_report(summaries, rows))}}};
+  if (asked.photos) results.files.emplace_back("photos.txt", photos_text(folder / "photos"));
+  write_files_together(folder, results);
   if (invocation.json) {
     Value object = Value::map();
     object.set("status", "ok");

@@ -7,6 +7,7 @@
 #include "framework/app/exploration_settings.h"
 #include "framework/app/interruption.h"
 #include "framework/config/overrides.h"
+#include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/parallel.h"
@@ -204,6 +205,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   if (!request.against.empty()) require_same_starts(request, stated, names, utilities);
   const Value settings = settings_for(request, std::move(stated));
 
+  const FolderClaim claim(request.folder);
   std::vector<std::pair<const WorldName*, Trial>> trials;
   WorldsInUse in_use(setup, request.up, registry, invocation);
   for (const WorldName& name : names)

@@ -8,6 +8,7 @@
 #include "framework/app/exploration_settings.h"
 #include "framework/app/stratified_sample.h"
 #include "framework/core/error.h"
+#include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/number_text.h"
@@ -390,10 +391,10 @@ ExplorationTables write_exploration_figures(const ExplorationFigures& asked) {
       {"Table", {shown_table(figures.rows, columns, asked, oracle), settings_facts(asked)}});
   for (Section& section : figures.charts) report.sections.push_back(std::move(section));
   Value rows = rows_value(figures.rows);
-  write_file_atomically(asked.folder / "table.csv", table_file(rows));
-  write_file_atomically(asked.folder / "seconds.csv", seconds_file(figures.rows));
-  write_file_atomically(asked.folder / "curves.csv", figures.curves);
-  write_file_atomically(asked.folder / "report.html", render_html(report));
+  write_files_together(asked.folder, {{{"table.csv", table_file(rows)},
+                                       {"seconds.csv", seconds_file(figures.rows)},
+                                       {"curves.csv", figures.curves},
+                                       {"report.html", render_html(report)}}});
   return {in_columns(figures.rows, columns, asked, oracle), std::move(rows)};
 }
 

@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "framework/export/map_report.h"
-#include "framework/export/run_folder.h"
 #include "framework/map/map_file.h"
 
 namespace lapwing {
@@ -17,13 +16,14 @@ Value json_of(const MappingOutcome& outcome, const Invocation& invocation,
   object.set("mission", outcome.result.plan.mission);
   object.set("kind", outcome.result.plan.kind);
   object.set("status", status);
+  outcome.target.add_to(object);
   object.set("seed", static_cast<std::int64_t>(invocation.seed));
   Value& seconds = object.set("seconds", Value::map());
   seconds.set("total", outcome.seconds);
   seconds.set("integrate", mapping.seconds);
   object.set("reproducible", !mapping.cancelled);
   Value& map = object.set("map", Value::map());
-  map.set("path", (outcome.folder / "map.ot").string());
+  map.set("path", (outcome.target.folder() / "map.ot").string());
   map.set("backend", mapping.plugin);
   map.set("scans", static_cast<std::int64_t>(mapping.scans));
   map.set("resolution", mapping.map->grid().resolution());
@@ -52,7 +52,9 @@ void print_summary(const MappingOutcome& outcome, const std::string& status) {
                 1e3 * mapping.seconds / static_cast<double>(mapping.scans));
   if (counts.free + counts.occupied == 0)
     std::printf("  nothing was measured often enough to be free or occupied\n");
-  std::printf("  report: %s\n", (outcome.folder / "report.html").c_str());
+  std::printf("  report: %s\n", (outcome.target.folder() / "report.html").c_str());
+  if (const std::string old = outcome.target.old_run_in_words(); !old.empty())
+    std::printf("  %s\n", old.c_str());
 }
 
 }  // namespace
@@ -74,7 +76,7 @@ ExitStatus finish_mapping(const MappingOutcome& outcome, const Invocation& invoc
                                          .cancelled = mapping.cancelled}));
   logging::info("status " + status);
   files.log = capture.text();
-  write_run_folder(outcome.folder, files);
+  outcome.target.write(files);
   if (invocation.json)
     print_json(json_of(outcome, invocation, status));
   else if (!invocation.quiet)

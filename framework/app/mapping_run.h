@@ -1,9 +1,8 @@
 // How a run of a mapping mission ends: there is a map instead of a plan.
 #pragma once
 
-#include <filesystem>
-
 #include "framework/app/command_line.h"
+#include "framework/app/run_target.h"
 #include "framework/core/log.h"
 #include "framework/mission/mission.h"
 
@@ -11,7 +10,7 @@ namespace lapwing {
 
 struct MappingOutcome {
   const MissionResult& result;  // with a mapping
-  std::filesystem::path folder;
+  RunTarget& target;
   double seconds = 0;  // wall clock, all of it
 };
 

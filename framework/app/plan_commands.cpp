@@ -4,10 +4,10 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/mission_loading.h"
+#include "framework/app/provenance.h"
 #include "framework/config/annotated.h"
 #include "framework/core/files.h"
 #include "framework/export/exporter.h"
-#include "framework/verify/verify.h"
 
 namespace lapwing {
 
@@ -15,52 +15,65 @@ namespace {
 
 void print_check(const Check& check) {
   const char* verdict = !check.skipped.empty() ? "skipped" : check.pass ? "pass" : "FAIL";
-  std::string words;
-  if (!check.skipped.empty()) {
-    words = check.skipped;
-  } else {
-    words = to_line(check);
-  }
-  std::printf("  %-7s  %-22s %s%s\n", verdict, check.name.c_str(), words.c_str(),
+  const bool above = check.name == "provenance" && check.pass;  // in the lines before the checks
+  const std::string result = above ? "as its sources say, see above" : result_of(check);
+  std::printf("  %-7s  %-22s %s%s\n", verdict, check.name.c_str(), result.c_str(),
               check.required || !check.skipped.empty() ? "" : " (reported only)");
+}
+
+// A plan carries the verdict of its run; a plan changed since may no longer deserve it.
+void warn_of_changes(const JudgedPlan& judged, const Judges& judges) {
+  const Value* stored = judged.plan.certificate.find("feasible");
+  const bool own = judges.vehicle.empty() && judges.environment.empty();
+  const bool now = judged.certificate.feasible();
+  if (own && stored && stored->type() == Value::Type::boolean && stored->as_boolean() != now)
+    std::fprintf(stderr,
+                 "lapwing: the plan says of itself that it is %scertified; its numbers say that "
+                 "it is %scertified: it was changed after it was planned\n",
+                 stored->as_boolean() ? "" : "not ", now ? "" : "not ");
+  for (const std::string& change : judged.changes)
+    std::fprintf(stderr, "lapwing: %s\n", change.c_str());
 }
 
 }  // namespace
 
-// A plan carries the verdict of its run; a plan changed since may no longer deserve it.
-void warn_of_another_verdict(const Plan& plan, const Certificate& now) {
-  const Value* stored = plan.certificate.find("feasible");
-  if (!stored || stored->type() != Value::Type::boolean) return;
-  if (stored->as_boolean() != now.feasible())
-    std::fprintf(stderr,
-                 "lapwing: the plan says of itself that it is %scertified; its numbers say that "
-                 "it is %scertified: it was changed after it was planned\n",
-                 stored->as_boolean() ? "" : "not ", now.feasible() ? "" : "not ");
-}
-
-ExitStatus verify_plan(const std::filesystem::path& file, const Invocation& invocation) {
-  const Plan plan = read_plan(file);
-  const Certificate certificate = verify(plan, file.parent_path());
-  warn_of_another_verdict(plan, certificate);
+ExitStatus verify_plan(const std::filesystem::path& file, const Judges& judges,
+                       const Invocation& invocation) {
+  const JudgedPlan judged = judge_file(file, judges);
+  const Certificate& certificate = judged.certificate;
+  warn_of_changes(judged, judges);
   if (invocation.json) {
     Value object = Value::map();
     object.set("plan", file.string());
-    object.set("mission", plan.mission);
+    object.set("mission", judged.plan.mission);
+    object.set("provenance", judged.provenance);
     object.set("certificate", certificate.to_value());
     print_json(object);
   } else {
-    std::printf("%s: %s\n", plan.mission.c_str(),
-                certificate.feasible() ? "certified" : "not certified");
+    std::printf("%s: %s\n%s", judged.plan.mission.c_str(),
+                certificate.feasible() ? "certified" : "not certified", judged.lines.c_str());
     for (const Check& check : certificate.checks) print_check(check);
   }
   return certificate.feasible() ? ExitStatus::done : ExitStatus::not_certified;
 }
 
 ExitStatus export_plan(const std::filesystem::path& file, const std::string& format,
-                       const std::filesystem::path& target, const Invocation& invocation) {
+                       const std::filesystem::path& target, bool uncertified,
+                       const Invocation& invocation) {
   const Registry registry = invocation.registry();
-  const Plan plan = read_plan(file);
   const auto exporter = registry.create<Exporter>(format);
+  const JudgedPlan judged = judge_file(file);
+  if (!judged.certificate.feasible()) {
+    std::string failures;
+    for (const Check& check : judged.certificate.failures()) failures += "\n  " + to_line(check);
+    std::fprintf(stderr, "lapwing: '%s' is not certified%s%s\n", file.c_str(),
+                 uncertified ? ", and exported all the same:" : ":", failures.c_str());
+    if (!uncertified) {
+      std::fprintf(stderr, "  nothing was written; --uncertified exports it all the same\n");
+      return ExitStatus::not_certified;
+    }
+  }
+  const Plan& plan = judged.plan;
   const bool folder =
       in_plugin(*exporter, "file_extension", [&] { return exporter->file_extension().empty(); });
   if (folder) {

@@ -8,6 +8,8 @@
 #include "framework/app/mapping_run.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
+#include "framework/app/provenance.h"
+#include "framework/app/run_target.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/log.h"
@@ -15,10 +17,8 @@
 #include "framework/export/flight_report.h"
 #include "framework/export/light_painting.h"
 #include "framework/export/race_report.h"
-#include "framework/export/run_folder.h"
 #include "framework/export/scan_report.h"
 #include "framework/geometry/png.h"
-#include "framework/verify/verify.h"
 
 namespace lapwing {
 
@@ -27,15 +27,23 @@ namespace {
 constexpr std::size_t kLargestObstacle = std::size_t{1} << 30;  // bytes, as the verifier reads
 
 struct RunOutcome {
-  MissionResult result;
-  Certificate certificate;
-  std::string status;  // ok, not_certified, infeasible, failed, cancelled
-  std::filesystem::path folder;
-  double seconds = 0;                        // wall clock, all of it
-  std::optional<std::string> long_exposure;  // PNG
-  std::vector<RacedPilot> raced;
-  std::string not_raced;  // why players did not fly; empty: they did, or there are none
+  MissionResult result = {};
+  Certificate certificate = {};
+  std::string status = {};  // ok, not_certified, infeasible, failed, cancelled
+  RunTarget& target;
+  Value provenance = {};                          // what the certificate is about
+  double seconds = 0;                             // wall clock, all of it
+  std::optional<std::string> long_exposure = {};  // PNG
+  std::vector<RacedPilot> raced = {};
+  std::string not_raced = {};  // why players did not fly; empty: they did, or there are none
 };
+
+// With what was tried on the way: for the report, the log and --json.
+std::vector<std::string> all_notes(const MissionResult& result) {
+  std::vector<std::string> all = result.notes;
+  all.insert(all.end(), result.details.begin(), result.details.end());
+  return all;
+}
 
 std::string status_of(const MissionResult& result, const Certificate& certificate, bool cancelled) {
   if (cancelled || result.report.status == SolveStatus::cancelled) return "cancelled";
@@ -69,7 +77,8 @@ Value json_of(const RunOutcome& outcome, const Invocation& invocation) {
   object.set("mission", result.plan.mission);
   object.set("kind", result.plan.kind);
   object.set("status", outcome.status);
-  object.set("plan", (outcome.folder / "plan.json").string());
+  object.set("plan", (outcome.target.folder() / "plan.json").string());
+  outcome.target.add_to(object);
   object.set("seed", static_cast<std::int64_t>(invocation.seed));
   Value& seconds = object.set("seconds", Value::map());
   seconds.set("total", outcome.seconds);
@@ -83,11 +92,10 @@ Value json_of(const RunOutcome& outcome, const Invocation& invocation) {
   solver.set("cost", finite(result.report.cost));
   Value& terms = solver.set("terms", Value::map());
   for (const TermCost& term : result.report.terms) terms.set(term.name, finite(term.cost));
+  object.set("provenance", outcome.provenance);
   object.set("certificate", outcome.certificate.to_value());
-  if (!result.notes.empty()) {
-    Value& notes = object.set("notes", Value::list());
-    for (const std::string& note : result.notes) notes.push_back(note);
-  }
+  if (const auto all = all_notes(result); !all.empty())
+    object.set("notes", Value(Value::List(all.begin(), all.end())));
   if (result.block.is_map())
     object.set(result.block_name.empty() ? result.plan.kind : result.block_name, result.block);
   if (!outcome.raced.empty()) object.set("game", to_value(outcome.raced));
@@ -121,7 +129,7 @@ std::string not_raced_words(const RunOutcome& outcome) {
   return "the players did not fly: " + outcome.not_raced;
 }
 
-void print_summary(const RunOutcome& outcome) {
+void print_summary(const RunOutcome& outcome, bool verbose) {
   const MissionResult& result = outcome.result;
   char line[160];
   std::snprintf(line, sizeof line, "  %.4g s of flight, solved by %s (%s) in %.3g s",
@@ -134,10 +142,15 @@ void print_summary(const RunOutcome& outcome) {
   if (outcome.status == "ok" && result.report.status == SolveStatus::iteration_limit)
     std::cout << "  the solver came to its iteration limit: every check holds, a slightly better "
                  "flight may exist\n";
-  for (const std::string& note : result.notes) std::cout << "  " << note << "\n";
+  const bool details = verbose || outcome.status != "ok";
+  for (const std::string& note : details ? all_notes(result) : result.notes)
+    std::cout << "  " << note << "\n";
   std::cout << race_result(outcome.raced);
   if (!outcome.not_raced.empty()) std::cout << "  " << not_raced_words(outcome) << "\n";
-  std::cout << "  report: " << (outcome.folder / "report.html").string() << std::endl;
+  std::cout << "  report: " << (outcome.target.folder() / "report.html").string() << "\n";
+  if (const std::string old = outcome.target.old_run_in_words(); !old.empty())
+    std::cout << "  " << old << "\n";
+  std::cout.flush();
 }
 
 std::string report_page(const RunOutcome& outcome) {
@@ -146,9 +159,9 @@ std::string report_page(const RunOutcome& outcome) {
     report.status = "cancelled";
     report.status_mark = Mark::fail;
   }
-  if (!outcome.result.notes.empty()) {
+  if (const auto all = all_notes(outcome.result); !all.empty()) {
     std::string text;
-    for (const std::string& note : outcome.result.notes) text += note + "\n\n";
+    for (const std::string& note : all) text += note + "\n\n";
     TextBlock findings;
     findings.text = text;
     report.sections.insert(report.sections.begin(), Section{"Findings", {findings}});
@@ -177,12 +190,12 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
                  const logging::Capture& capture) {
   const Plan& plan = outcome.result.plan;
   RunFiles files;
-  files.plan = to_json(to_value(plan)) + "\n";
+  files.plan = plan_text(plan);
   const auto exporter = registry.create<Exporter>("csv");
   files.trajectory = in_plugin(*exporter, "write", [&] { return exporter->write(plan); });
   files.report = report_page(outcome);
   logging::info("status " + outcome.status);
-  for (const std::string& note : outcome.result.notes) logging::info(note);
+  for (const std::string& note : all_notes(outcome.result)) logging::info(note);
   if (!outcome.not_raced.empty()) logging::info(not_raced_words(outcome));
   for (const Check& check : outcome.certificate.failures())
     logging::info("fails: " + to_line(check));
@@ -195,7 +208,7 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
     else
       files.obstacles.emplace_back(name, std::move(bytes));
   }
-  write_run_folder(outcome.folder, files);
+  outcome.target.write(files);
 }
 
 // Of the flight under control.
@@ -238,11 +251,8 @@ void fly_pilots(RunOutcome& outcome, const CancellationToken& token) {
 void complete_plan(RunOutcome& outcome) {
   Plan& plan = outcome.result.plan;
   plan.certificate = outcome.certificate.to_value();
-  if (!outcome.result.notes.empty()) {
-    Value notes = Value::list();
-    for (const std::string& note : outcome.result.notes) notes.push_back(note);
-    plan.solver.set("notes", std::move(notes));
-  }
+  if (const auto all = all_notes(outcome.result); !all.empty())
+    plan.solver.set("notes", Value(Value::List(all.begin(), all.end())));
   if (outcome.status == "cancelled") plan.solver.set("cancelled", true);
 }
 
@@ -258,19 +268,20 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   const auto mission = load_mission(script, invocation, registry, &interruption.token(), &progress,
                                     [&progress] { progress.clear(); });
   registry.find("exporter", "csv");
-  RunOutcome outcome;
-  outcome.folder = invocation.out.empty() ? run_folder(mission->name()) : invocation.out;
-  require_writable(outcome.folder / "plan.json");
+  RunTarget target(mission->name(), invocation);
+  RunOutcome outcome{.target = target};
   logging::info("mission " + mission->name() + ", seed " + std::to_string(invocation.seed));
   outcome.result = mission->plan();
   if (outcome.result.mapping) {
     progress.clear();
     outcome.seconds = steady_seconds() - begin;
-    return finish_mapping({outcome.result, outcome.folder, outcome.seconds}, invocation, capture);
+    return finish_mapping({outcome.result, target, outcome.seconds}, invocation, capture);
   }
   progress.begin("certificate");
   progress.report(-1, "");
-  outcome.certificate = verify(outcome.result.plan, outcome.result.obstacle_folder);
+  JudgedPlan judged = judge(outcome.result.plan, outcome.result.obstacle_folder, nullptr);
+  outcome.certificate = std::move(judged.certificate);
+  outcome.provenance = std::move(judged.provenance);
   progress.begin("files");
   progress.report(-1, "");
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
@@ -283,7 +294,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   if (invocation.json) {
     print_json(json_of(outcome, invocation));
   } else if (!invocation.quiet) {
-    print_summary(outcome);
+    print_summary(outcome, invocation.verbose);
   } else if (outcome.status != "ok") {
     const std::string& message = outcome.result.report.message;
     std::cerr << "lapwing: " << outcome.result.plan.mission << ": " << in_words(outcome)

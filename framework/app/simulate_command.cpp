@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "framework/app/command_line.h"
+#include "framework/app/provenance.h"
 #include "framework/core/files.h"
 #include "framework/core/units.h"
 #include "framework/export/light_painting.h"
@@ -64,7 +65,7 @@ void require_a_sound_plan(const Plan& plan, const std::filesystem::path& folder)
 
 ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditions& conditions,
                          const std::filesystem::path& target, const Invocation& invocation) {
-  const Plan plan = read_plan(file);
+  const Plan plan = read_plan_file(file);
   require_a_sound_plan(plan, file.parent_path());
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   const FlownPath path = fly(plan.trajectory, vehicle, conditions);

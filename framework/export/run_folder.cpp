@@ -4,31 +4,108 @@
 #include <system_error>
 
 #include "framework/core/error.h"
+#include "framework/core/file_set.h"
 #include "framework/core/files.h"
+#include "framework/core/temporary_names.h"
 
 namespace lapwing {
 namespace {
 
-constexpr std::size_t kLongestName = 200;  // most file systems allow 255 bytes
+namespace fs = std::filesystem;
 
-void remove_old(const std::filesystem::path& path) {
-  std::error_code code;
-  std::filesystem::remove(path, code);
-  if (code) throw InputError(path.string() + ": cannot remove: " + code.message());
+constexpr std::size_t kLongestName = 200;  // most file systems allow 255 bytes
+constexpr int kMostKept = 10000;           // older runs beside one folder
+
+// run.log first: a folder with it is known for a run's. The plan last.
+constexpr const char* kRunFiles[] = {"run.log",     "map.ot",         "long_exposure.png",
+                                     "report.html", "trajectory.csv", "plan.json"};
+constexpr std::string_view kMissionLine = "info: mission ";
+constexpr std::string_view kSeed = ", seed ";
+
+// obstacle_12.ply, obstacle_1.ot, prior.ply
+bool names_obstacle(const std::string& name) {
+  constexpr std::string_view kStem = "obstacle_";
+  if (name == "prior.ply") return true;
+  if (!name.starts_with(kStem)) return false;
+  const std::size_t end = name.find_first_not_of("0123456789", kStem.size());
+  return end != std::string::npos && end > kStem.size() &&
+         (name.substr(end) == ".ply" || name.substr(end) == ".ot");
 }
 
-// obstacle_N.ply, obstacle_N.ot and prior.ply of an earlier run.
-void remove_old_obstacles(const std::filesystem::path& folder) {
+// What of the folder bears names that runs give their files.
+std::vector<std::string> run_files_in(const fs::path& folder) {
+  std::vector<std::string> found;
   std::error_code code;
-  std::vector<std::filesystem::path> old;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
-    const std::string name = entry.path().filename().string();
-    const std::string ending = entry.path().extension().string();
-    if ((name.starts_with("obstacle_") && (ending == ".ply" || ending == ".ot")) ||
-        name == "prior.ply")
-      old.push_back(entry.path());
+  for (fs::directory_iterator item(folder, code); !code && item != fs::directory_iterator();
+       item.increment(code)) {
+    const std::string name = item->path().filename().string();
+    if (names_obstacle(name) || std::count(std::begin(kRunFiles), std::end(kRunFiles), name))
+      found.push_back(name);
   }
-  for (const auto& path : old) remove_old(path);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+FileSet set_of(const fs::path& folder, const RunFiles& files) {
+  FileSet set{files.obstacles, run_files_in(folder)};
+  const std::optional<std::string>* contents[] = {
+      &files.log, &files.map, &files.long_exposure, &files.report, &files.trajectory, &files.plan};
+  for (std::size_t i = 0; i < std::size(kRunFiles); ++i) {
+    const bool listed =
+        std::any_of(files.obstacles.begin(), files.obstacles.end(),
+                    [&](const auto& written) { return written.first == kRunFiles[i]; });
+    if (*contents[i] && !listed) set.files.emplace_back(kRunFiles[i], **contents[i]);
+  }
+  return set;
+}
+
+fs::path with_name(const fs::path& folder) {
+  fs::path named = folder.lexically_normal();
+  if (named.filename().empty()) named = named.parent_path();
+  const std::string name = named.filename().string();
+  if (name.empty() || name == "." || name == "..")
+    throw InputError("'" + folder.string() +
+                     "' cannot be kept under another name: it is named by its place alone");
+  return named;
+}
+
+fs::path free_name_beside(const fs::path& folder) {
+  for (int k = 1; k <= kMostKept; ++k) {
+    fs::path kept = folder;
+    kept += "." + std::to_string(k);
+    std::error_code code;
+    if (!fs::exists(fs::symlink_status(kept, code))) return kept;
+  }
+  throw InputError("'" + folder.string() + "': too many older runs are kept beside it");
+}
+
+void rename_folder(const fs::path& from, const fs::path& to) {
+  std::error_code code;
+  fs::rename(from, to, code);
+  if (code)
+    throw InputError("cannot rename '" + from.string() + "' to '" + to.string() +
+                     "': " + code.message());
+}
+
+// The new files are written before the old folder is touched.
+fs::path write_beside_old(const fs::path& given, const RunFiles& files) {
+  const fs::path folder = with_name(given), kept = free_name_beside(folder);
+  const fs::path made = folder.parent_path() / temporary_name(folder.filename().string());
+  try {
+    write_files_together(made, set_of(made, files));
+    rename_folder(folder, kept);
+    try {
+      rename_folder(made, folder);
+    } catch (...) {
+      rename_folder(kept, folder);
+      throw;
+    }
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(made, ignored);
+    throw;
+  }
+  return kept;
 }
 
 }  // namespace
@@ -54,30 +131,34 @@ std::filesystem::path run_folder(std::string_view mission, const std::filesystem
   return base / run_folder_name(mission);
 }
 
-void write_run_folder(const std::filesystem::path& folder, const RunFiles& files) {
-  const std::pair<const char*, const std::optional<std::string>&> all[] = {
-      {"run.log", files.log},
-      {"map.ot", files.map},
-      {"long_exposure.png", files.long_exposure},
-      {"report.html", files.report},
-      {"trajectory.csv", files.trajectory},
-      {"plan.json", files.plan}};
-  // The old plan goes first: were the run to end here, no plan would vouch for files of another.
-  remove_old(folder / "plan.json");
-  remove_old_obstacles(folder);
-  for (const auto& [name, contents] : files.obstacles)
-    write_file_atomically(folder / name, contents);
-  for (const auto& [name, contents] : all) {
-    const bool just_written =
-        std::any_of(files.obstacles.begin(), files.obstacles.end(),
-                    [&name = name](const auto& written) { return written.first == name; });
-    if (just_written) continue;
-    if (contents) {
-      write_file_atomically(folder / name, *contents);
-    } else {
-      remove_old(folder / name);
-    }
-  }
+std::optional<std::string> mission_in(const std::filesystem::path& folder) {
+  std::error_code code;
+  const fs::path log = folder / "run.log";
+  if (!fs::is_regular_file(log, code)) return std::nullopt;
+  const std::string text = "\n" + read_file(log);
+  const std::size_t line = text.find("\n" + std::string(kMissionLine));
+  if (line == std::string::npos) return std::nullopt;
+  const std::size_t from = line + 1 + kMissionLine.size();
+  const std::string rest = text.substr(from, text.find('\n', from) - from);
+  return rest.substr(0, rest.rfind(kSeed));
+}
+
+void require_run_folder(const std::filesystem::path& folder) {
+  std::error_code code;
+  if (!fs::exists(folder, code)) return;
+  finish_exchange(folder);
+  if (mission_in(folder)) return;
+  const std::vector<std::string> found = run_files_in(folder);
+  if (!found.empty())
+    throw InputError("'" + folder.string() + "' holds '" + found.front() +
+                     "', which no run wrote and which would be lost; choose another folder");
+}
+
+std::filesystem::path write_run_folder(const std::filesystem::path& folder, const RunFiles& files,
+                                       bool keep_old) {
+  if (keep_old && !run_files_in(folder).empty()) return write_beside_old(folder, files);
+  write_files_together(folder, set_of(folder, files));
+  return {};
 }
 
 }  // namespace lapwing

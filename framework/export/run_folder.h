@@ -32,9 +32,18 @@ struct RunFiles {
   std::vector<std::pair<std::string, std::string>> obstacles = {};
 };
 
-// Creates the folder and writes each file whole or not at all; plan.json last, so that a folder
-// with a plan has everything else of the same run. Throws InputError naming the path and the
-// reason.
-void write_run_folder(const std::filesystem::path& folder, const RunFiles& files);
+// The mission whose run a folder holds, as its run.log says; none where it holds no run.
+std::optional<std::string> mission_in(const std::filesystem::path& folder);
+
+// InputError where a folder holds files of a run's names that no run wrote: a run would replace
+// them. Completes the files of a run that was ended over them (core/file_set.h).
+void require_run_folder(const std::filesystem::path& folder);
+
+// Creates the folder and puts all files of a run into it at once, in place of an older run's: on
+// any error, and after a kill, all of the old or all of the new ones are there. Other files stay.
+// With `keep_old` an older run's folder is renamed to NAME.1, or the first number that is free, and
+// that path returned; else an empty one. Throws InputError naming the path and the reason.
+std::filesystem::path write_run_folder(const std::filesystem::path& folder, const RunFiles& files,
+                                       bool keep_old = false);
 
 }  // namespace lapwing

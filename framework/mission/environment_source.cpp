@@ -61,7 +61,7 @@ MapObstacle map_of(const Parameters& given, double margin, MissionRun& run) {
 
 }  // namespace
 
-ParameterTable environment_table() {
+ParameterTable shapes_table() {
   const Range far = between(-1e6, 1e6);
   ParameterTable sphere;
   sphere.text("name", "", "for messages")
@@ -76,10 +76,24 @@ ParameterTable environment_table() {
       .required_numbers("corners", 0, "m", "x and y of each corner in turn, world", far)
       .optional_number("floor", "m", "lowest height that is closed; absent: the ground and below")
       .optional_number("ceiling", "m", "highest height that is closed; absent: all above");
+  ParameterTable table;
+  table.tables("spheres", sphere, "to keep out of")
+      .tables("boxes", box, "to keep out of, parallel to the axes")
+      .tables("zones", zone, "not to be flown over")
+      .tables("flight_zones", zone, "not to be left, every one of them");
+  return table;
+}
+
+ParameterTable environment_table() {
+  const Range far = between(-1e6, 1e6);
   ParameterTable mesh;
   mesh.text("name", "", "for messages").required_text("file", "a mesh, in metres with z up");
-  ParameterTable map = box;
-  map.required_text("file", "a map, .ot or .bt").text("type", "brick", "plugin that holds it");
+  ParameterTable map;
+  map.text("name", "", "for messages")
+      .required_numbers("lower", 3, "m", "lowest corner, world", far)
+      .required_numbers("upper", 3, "m", "highest corner, world", far)
+      .required_text("file", "a map, .ot or .bt")
+      .text("type", "brick", "plugin that holds it");
   ParameterTable point;
   point.required_number("time", "s", "from the start of the flight")
       .required_numbers("position", 3, "m", "of its middle, world", far);
@@ -90,21 +104,16 @@ ParameterTable environment_table() {
       .number("distance", 0, "m", "kept from its middle, judged by the certificate",
               between(0, 1e5))
       .tables("track", point, "where it is, straight in between", true);
-  ParameterTable table;
-  table.tables("spheres", sphere, "to keep out of")
-      .tables("boxes", box, "to keep out of, parallel to the axes")
-      .tables("zones", zone, "not to be flown over")
-      .tables("flight_zones", zone, "not to be left, every one of them")
-      .tables("meshes", mesh, "to keep away from")
+  ParameterTable table = shapes_table();
+  table.tables("meshes", mesh, "to keep away from")
       .tables("maps", map, "occupied or unknown: to keep away from; known to within a box")
       .tables("subjects", subject, "what is filmed")
       .number("margin", 0, "m", "kept from every surface", at_least(0));
   return table;
 }
 
-Environment environment_of(const Parameters& given, MissionRun& run) {
+Environment shapes_of(const Parameters& given) {
   Environment environment;
-  environment.margin = given.number("margin");
   for (const Parameters& sphere : given.tables("spheres"))
     environment.spheres.push_back(
         {sphere.text("name"), vector_of(sphere.numbers("center")), sphere.number("radius")});
@@ -113,6 +122,12 @@ Environment environment_of(const Parameters& given, MissionRun& run) {
     environment.zones.push_back(zone_of(zone, "zone"));
   for (const Parameters& zone : given.tables("flight_zones"))
     environment.flight_zones.push_back(zone_of(zone, "flight zone"));
+  return environment;
+}
+
+Environment environment_of(const Parameters& given, MissionRun& run) {
+  Environment environment = shapes_of(given);
+  environment.margin = given.number("margin");
   for (const Parameters& mesh : given.tables("meshes"))
     environment.meshes.push_back(run.obstacles.mesh(run.files.find(mesh.text("file"), "meshes"),
                                                     mesh.text("name"), environment.margin,

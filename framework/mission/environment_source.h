@@ -13,6 +13,11 @@ namespace lapwing {
 //  subjects = {{name, height, width, track = {{time, position}}}}, margin}
 ParameterTable environment_table();
 
+// What of it needs no file: spheres, boxes, zones, flight_zones.
+ParameterTable shapes_table();
+// Of parameters that were checked against a table with these. InputError as environment_of has it.
+Environment shapes_of(const Parameters& given);
+
 // Throws InputError for what contradicts itself: a box or zone without inside, corners that are no
 // pairs, a track whose times do not rise, two subjects of one name; and for files of meshes and
 // maps that the script may not read or that hold something else. The run keeps copies of them.

@@ -3,8 +3,8 @@
 #include <lua.hpp>
 
 #include "framework/config/overrides.h"
-#include "framework/mission/guard.h"
 #include "framework/mission/explore_library.h"
+#include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
 #include "framework/mission/options.h"
@@ -179,6 +179,7 @@ MissionResult Mission::plan() {
     result.report = planned->report;
     result.solver = planned->solver;
     result.notes = planned->notes;
+    result.details = planned->details;
     result.pilots = planned->pilots;
     result.block = planned->block;
     result.block_name = planned->block_name;

@@ -25,13 +25,14 @@ struct MissionResult {
   Plan plan;  // without certificate
   SolveReport report;
   std::string solver;
-  double solve_seconds = 0;        // wall clock, all solves together
-  std::vector<std::string> notes;  // sentences for the user
-  Value block;                     // the kind's own figures, null or a map
-  std::string block_name = {};     // of them in the answer; "": the kind
-  std::vector<Pilot> pilots;       // who fly it by hand, in simulation
+  double solve_seconds = 0;               // wall clock, all solves together
+  std::vector<std::string> notes;         // sentences for the user
+  std::vector<std::string> details = {};  // likewise, of what was tried and came to nothing
+  Value block;                            // the kind's own figures, null or a map
+  std::string block_name = {};            // of them in the answer; "": the kind
+  std::vector<Pilot> pilots;              // who fly it by hand, in simulation
   std::shared_ptr<const ScanRecord> scan = nullptr;  // of a scan: what its report shows
-  std::vector<Section> sections = {};  // of the report, beside those of every flight
+  std::vector<Section> sections = {};                // of the report, beside those of every flight
   // Where the files lie that the plan's environment names, as long as the mission lives; and their
   // names.
   std::filesystem::path obstacle_folder = {};

@@ -312,10 +312,11 @@ ParameterTable plan_table() {
   return table;
 }
 
-std::vector<std::string> notes_argument(lua_State* state, int index, const Origin& origin) {
+std::vector<std::string> notes_argument(lua_State* state, int index, const char* key,
+                                        const Origin& origin) {
   std::vector<std::string> notes;
-  lua_getfield(state, index, "notes");
-  const Value given = value_from_lua(state, -1, origin, "plan.notes");
+  lua_getfield(state, index, key);
+  const Value given = value_from_lua(state, -1, origin, std::string("plan.") + key);
   lua_pop(state, 1);
   if (given.is_null()) return notes;
   for (const Value& note : given.as_list()) notes.push_back(note.as_text());
@@ -324,6 +325,9 @@ std::vector<std::string> notes_argument(lua_State* state, int index, const Origi
 
 constexpr BoundField kPlanObjects[] = {{"solution", "lapwing.solution", "whose motion it is"},
                                        {"notes?", "string[]", "sentences for the user"},
+                                       {"details?", "string[]",
+                                        "sentences on what was tried and came to nothing: shown "
+                                        "where the plan is not certified, or asked for"},
                                        {"figures?", "table", "the kind's own figures, for --json"}};
 
 int plan(lua_State* state) {
@@ -335,7 +339,8 @@ int plan(lua_State* state) {
   PlanObject made;
   made.report = solution.result.report;
   made.solver = solution.solver;
-  made.notes = notes_argument(state, 2, origin);
+  made.notes = notes_argument(state, 2, "notes", origin);
+  made.details = notes_argument(state, 2, "details", origin);
   lua_getfield(state, 2, "figures");
   made.block = value_from_lua(state, -1, origin, "plan.figures");
   made.pilots = pilots_of(given.tables("players"), run.files);

@@ -75,6 +75,7 @@ struct PlanObject {
   SolveReport report;
   std::string solver;
   std::vector<std::string> notes;          // sentences for the user
+  std::vector<std::string> details = {};   // likewise, of what was tried and came to nothing
   Value block;                             // the kind's own figures; null or a map
   std::string block_name;                  // of them in the answer; "": the kind
   std::vector<Pilot> pilots;               // who fly it by hand

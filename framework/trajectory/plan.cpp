@@ -3,6 +3,7 @@
 #include "framework/core/fields.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/trajectory/plan_digest.h"
 #include "framework/trajectory/plan_sections.h"
 
 namespace lapwing {
@@ -181,13 +182,16 @@ Plan plan_from_value(const Value& value) {
   plan.configuration = fields.opaque("configuration");
   plan.solver = fields.opaque("solver");
   plan.certificate = fields.opaque("certificate");
+  fields.opaque("digest");  // of what was written; see plan_digest.h
   fields.finish();
   errors.throw_if_any();
   return plan;
 }
 
 std::string plan_text(const Plan& plan) {
-  return to_json(to_value(plan)) + "\n";
+  Value document = to_value(plan);
+  document.set("digest", digest_of(document));
+  return to_json(document) + "\n";
 }
 
 void write_plan(const Plan& plan, const std::filesystem::path& path) {

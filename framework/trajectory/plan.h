@@ -70,12 +70,12 @@ struct Plan {
 // are absent (no origin, no budget, null values) have no key.
 Value to_value(const Plan& plan);
 // Throws InputError listing every missing, misspelt, mistyped or non-finite field, and another
-// format number. It judges form alone: times out of order or a vehicle that contradicts itself are
-// for the verifier to report.
+// format number; a digest is not compared (plan_digest.h). It judges form alone: times out of order
+// or a vehicle that contradicts itself are for the verifier to report.
 Plan plan_from_value(const Value& value);
 
-// The bytes of plan.json; equal plans give equal bytes. Throws Error naming the key of a number
-// that is not finite, which JSON cannot hold.
+// The bytes of plan.json, with its digest last; equal plans give equal bytes. Throws Error naming
+// the key of a number that is not finite, which JSON cannot hold.
 std::string plan_text(const Plan& plan);
 void write_plan(const Plan& plan, const std::filesystem::path& path);  // whole or not at all
 Plan read_plan(const std::filesystem::path& path);

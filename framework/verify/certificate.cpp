@@ -113,15 +113,26 @@ Certificate Certificate::from_value(const Value& value) {
   return certificate;
 }
 
+std::string result_of(const Check& check) {
+  if (!check.skipped.empty()) return check.skipped;
+  if (check.name == "document" && check.detail.empty()) return "holds together";
+  const bool in_words =
+      (check.name == "document" || check.name == "provenance") && !check.detail.empty();
+  if (!check.worst || in_words) return check.detail;
+  const std::string worst = quantity(*check.worst, check.unit);
+  const std::string limit = quantity(check.limit, check.unit);
+  const std::string at = " at " + quantity(check.at, "s");
+  std::string text = check.pass
+                         ? worst + at + (check.at_least ? ", at least " : ", at most ") + limit
+                         : worst + (check.at_least ? " falls below " : " exceeds ") + limit + at;
+  if (!check.detail.empty()) text += " (" + check.detail + ")";
+  return text;
+}
+
 std::string to_line(const Check& check) {
   if (!check.skipped.empty()) return check.name + " skipped: " + check.skipped;
-  const bool in_words = check.name == "document" && !check.detail.empty();
-  if (!check.worst || in_words) return check.name + ": " + check.detail;
-  std::string line = check.name + " " + quantity(*check.worst, check.unit);
-  line += check.pass ? " within " : check.at_least ? " falls below " : " exceeds ";
-  line += quantity(check.limit, check.unit) + " at " + quantity(check.at, "s");
-  if (!check.detail.empty()) line += " (" + check.detail + ")";
-  return line;
+  const bool in_words = check.name == "document" || check.name == "provenance" || !check.worst;
+  return check.name + (in_words ? ": " : " ") + result_of(check);
 }
 
 }  // namespace lapwing

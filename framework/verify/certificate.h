@@ -44,7 +44,10 @@ struct Certificate {
   static Certificate from_value(const Value& value);
 };
 
-// "speed_across 10.8 m/s exceeds 10 m/s at 3.4 s"; angles in degrees.
+// "speed_across 10.8 m/s exceeds 10 m/s at 3.4 s", "thrust_min 5 N at 2 s, at least 4 N"; angles in
+// degrees.
 std::string to_line(const Check& check);
+// The same without the check's name; of one that was skipped, the reason.
+std::string result_of(const Check& check);
 
 }  // namespace lapwing

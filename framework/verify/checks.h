@@ -29,6 +29,7 @@ struct CheckKind {
 // Every certificate lists all of these, in this order.
 inline constexpr std::array kCheckKinds{
     CheckKind{"document", CheckGroup::safety, true, ""},
+    CheckKind{"provenance", CheckGroup::safety, true, ""},
     CheckKind{"defect_position", CheckGroup::safety, true, "m"},
     CheckKind{"defect_velocity", CheckGroup::safety, true, "m/s"},
     CheckKind{"defect_yaw", CheckGroup::safety, true, "rad"},

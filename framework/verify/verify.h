@@ -16,7 +16,7 @@ namespace lapwing {
 // fails the check `document`, and everything else is then skipped. The certificate inside the plan
 // is not looked at. Meshes that the plan names are read from `folder`, where the plan is; one that
 // is not there, or not as it was, fails `document`. Deterministic; const access only, so plans may
-// be shared between threads.
+// be shared between threads. The check `provenance` is skipped: see provenance.h.
 Certificate verify(const Plan& plan, const std::filesystem::path& folder = ".");
 
 }  // namespace lapwing

@@ -73,12 +73,13 @@ local function smallest_stretch(run, shot, failing, least)
   end
 end
 
-local function finished(run, shot, chosen, notes, certified, figures)
+-- `details`: sentences on passages that failed, where another one held.
+local function finished(run, shot, chosen, notes, certified, figures, details)
   figures = figures or {}
   figures.stretch, figures.certified_stretch = chosen.stretch, certified
   figures.passages = shot.passages
   return run:plan { solution = chosen.solution, task = chosen.task, cuts = chosen.cuts,
-                    notes = notes, geodetic_origin = shot.origin, budget = run.options.battery,
+                    notes = notes, details = details or {}, geodetic_origin = shot.origin, budget = run.options.battery,
                     figures = figures }
 end
 
@@ -116,7 +117,7 @@ local function at_given_times(run, shot)
   if not why and o.passages > 0 and (blocked(first) or passages.matter(shot))
      and not out_of_sight(first) then
     first, notes = passages.search(run, shot, first, attempt, holds)
-    if holds(first) then return finished(run, shot, first, notes, first.stretch) end
+    if holds(first) then return finished(run, shot, first, {}, first.stretch, nil, notes) end
   end
   if not why and blocked(first) then return finished(run, shot, first, notes) end
   local hopeless = not why and out_of_sight(first)
@@ -129,9 +130,9 @@ local function at_given_times(run, shot)
   local note = good and string.format("%s; certified from a stretch of %.2f", why, good.stretch)
     or string.format("%s; no stretch up to %g is certified", why, LARGEST_STRETCH)
   if run:cancelled() then note = why .. "; the search for a stretch was cancelled" end
-  local chosen = auto and good or first
+  if auto and good then return finished(run, shot, good, { note }, good.stretch, nil, notes) end
   notes[#notes + 1] = note
-  return finished(run, shot, chosen, notes, good and good.stretch or nil)
+  return finished(run, shot, first, notes, good and good.stretch or nil)
 end
 
 function M.fly(run, shot)

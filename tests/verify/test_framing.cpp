@@ -36,7 +36,7 @@ TEST(Framing, SubjectAheadIsSeenAllTheTime) {
   EXPECT_EQ(*check.worst, 1);
   EXPECT_TRUE(check.pass);
   EXPECT_EQ(check.limit, 0.95);
-  EXPECT_EQ(to_line(check), "framing 1 within 0.95 at 0 s");
+  EXPECT_EQ(to_line(check), "framing 1 at 0 s, at least 0.95");
 }
 
 TEST(Framing, SubjectLeavesTheImageWhenItsPixelDoes) {

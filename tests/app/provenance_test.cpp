@@ -1,0 +1,224 @@
+// Whose limits and obstacles a certificate is about, and what an edited plan is told.
+#include <gmock/gmock.h>
+
+#include "framework/core/json.h"
+#include "framework/trajectory/plan_digest.h"
+#include "tests/app/program_fixture.h"
+
+namespace lapwing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class ProvenanceTest : public CommandLine {
+ protected:
+  void SetUp() override {
+    write("shot.lua", film("obstacles = { { type = 'sphere', name = 'tree', center = {2, 4, 2}, "
+                           "radius = 1 } }, name = 'shot'"));
+    const Finished made = run({"run", "shot.lua"});
+    ASSERT_EQ(made.status, 0) << made.err << made.out;
+    plan_ = folder_ / "out" / "shot" / "plan.json";
+  }
+
+  Value document() const { return from_json(read_file(plan_), "plan.json"); }
+
+  // As somebody would who knows of the digest, or who does not.
+  void save(Value document, bool with_a_new_digest) {
+    if (with_a_new_digest) document.set("digest", digest_of(document));
+    write_file_atomically(plan_, to_json(document) + "\n");
+  }
+
+  Value answer(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"verify", plan_.string(), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return from_json(run(words).out, "answer");
+  }
+
+  static std::vector<std::string> failures_in(const Value& answer) {
+    std::vector<std::string> names;
+    for (const Value& check : answer.at("certificate").at("checks").as_list())
+      if (const Value* pass = check.find("pass");
+          pass && !pass->as_boolean() && check.at("required").as_boolean())
+        names.push_back(check.at("name").as_text());
+    return names;
+  }
+  static std::string detail_of(const Value& answer) {
+    return answer.at("certificate").at("checks").as_list()[1].at("detail").as_text();
+  }
+
+  fs::path plan_;
+};
+
+const std::vector<std::string> kProvenanceAlone{"provenance"};
+
+TEST_F(ProvenanceTest, RunAndVerifySayTheSame) {
+  const Value now = answer();
+  EXPECT_EQ(now.at("certificate"), document().at("certificate"));
+  EXPECT_THAT(detail_of(now), HasSubstr("compared with configs/vehicles/solo.yaml"));
+  EXPECT_THAT(detail_of(now), HasSubstr("1 sphere, margin 0.5 m"));
+  EXPECT_THAT(detail_of(now), HasSubstr("film: 2 keyframes"));
+  EXPECT_EQ(now.at("provenance").at("vehicle").at("name").as_text(), "vehicles/solo");
+  EXPECT_EQ(now.at("provenance").at("environment").at("spheres").as_integer(), 1);
+  EXPECT_EQ(now.at("provenance").at("tolerances").at("keyframe").as_number(), 0.5);
+  const Finished shown = run({"verify", plan_.string()});
+  for (const char* line :
+       {"  vehicle     vehicles/solo, compared with configs/vehicles/solo.yaml",
+        "  obstacles   1 sphere, margin 0.5 m", "  task        film: 2 keyframes",
+        "  tolerances  keyframes 0.5 m, 0.1 s, 10 deg", "as it was written"})
+    EXPECT_THAT(shown.out, HasSubstr(line));
+}
+
+TEST_F(ProvenanceTest, PlansStayByteIdentical) {
+  const std::string before = read_file(plan_);
+  EXPECT_EQ(run({"run", "shot.lua"}).status, 0);
+  EXPECT_EQ(read_file(plan_), before);
+}
+
+// Each was certified before; with a digest made anew, too, where a source can be compared.
+TEST_F(ProvenanceTest, EveryEditIsToldAndNamed) {
+  struct Edit {
+    const char* section;  // that is named
+    std::function<void(Value&)> change;
+    bool compared;  // told even with a new digest
+  };
+  const auto limits = [](Value& d) -> Value& { return *d.find("vehicle")->find("limits"); };
+  const Edit edits[] = {
+      {"vehicle.limits", [&](Value& d) { limits(d).set("speed_across", 20.0); }, true},
+      {"vehicle.flight_time", [](Value& d) { d.find("vehicle")->set("flight_time", 9e3); }, true},
+      {"environment.margin", [](Value& d) { d.find("environment")->set("margin", 0.1); }, true},
+      {"environment.spheres",
+       [](Value& d) { d.find("environment")->set("spheres", Value::list()); }, true},
+      {"environment.spheres",
+       [](Value& d) { d.find("environment")->find("spheres")->as_list()[0].set("radius", 0.5); },
+       true},
+      {"task.keyframes",
+       [](Value& d) { d.find("task")->find("keyframes")->as_list()[0].set("tolerance", 0.7); },
+       false},
+      {"task.keyframes", [](Value& d) { d.find("task")->find("keyframes")->as_list().pop_back(); },
+       true},
+      {"task.closed_loop_required (added)",
+       [](Value& d) { d.find("task")->set("closed_loop_required", false); }, false},
+      {"mission", [](Value& d) { d.set("mission", "another"); }, false},
+      {"configuration.margin", [](Value& d) { d.find("configuration")->set("margin", 0.2); },
+       false},
+      {"certificate.feasible", [](Value& d) { d.find("certificate")->set("feasible", false); },
+       false},
+  };
+  const Value whole = document();
+  for (const Edit& edit : edits) {
+    Value changed = whole;
+    edit.change(changed);
+    save(changed, false);
+    Value judged = answer();
+    EXPECT_EQ(failures_in(judged), kProvenanceAlone) << edit.section;
+    EXPECT_THAT(detail_of(judged), HasSubstr(edit.section));
+    EXPECT_THAT(detail_of(judged), HasSubstr("changed after it was written"));
+    save(changed, true);
+    judged = answer();
+    EXPECT_EQ(failures_in(judged), edit.compared ? kProvenanceAlone : std::vector<std::string>{})
+        << edit.section << ": " << detail_of(judged);
+  }
+}
+
+TEST_F(ProvenanceTest, LayoutIsNoChange) {
+  write_file_atomically(plan_, to_json(document(), -1));
+  EXPECT_TRUE(failures_in(answer()).empty());
+}
+
+TEST_F(ProvenanceTest, ADocumentWithoutDigestIsNotTrusted) {
+  Value bare = Value::map();
+  const Value whole = document();
+  for (const auto& [key, value] : whole.as_map())
+    if (key != "digest") bare.set(key, value);
+  save(bare, false);
+  EXPECT_EQ(failures_in(answer()), kProvenanceAlone);
+  EXPECT_THAT(detail_of(answer()), HasSubstr("states no digest"));
+}
+
+TEST_F(ProvenanceTest, AStrongerVehicleUnderTheNameOfAnotherIsTold) {
+  const Finished made = run({"run", "shot.lua", "--set", "vehicle=vehicles/racer", "-o", "racer"});
+  plan_ = folder_ / "racer" / "plan.json";
+  Value renamed = document();
+  renamed.find("vehicle")->set("name", "vehicles/solo");
+  renamed.find("configuration")->set("vehicle", "vehicles/solo");
+  save(renamed, true);
+  const Value judged = answer();
+  const std::vector<std::string> failures = failures_in(judged);
+  EXPECT_EQ(std::count(failures.begin(), failures.end(), "provenance"), 1) << made.out;
+  EXPECT_THAT(detail_of(judged), HasSubstr("in the plan and"));
+  EXPECT_THAT(detail_of(judged), HasSubstr("in configs/vehicles/solo.yaml"));
+  EXPECT_EQ(run({"verify", plan_.string()}).status, 1);
+}
+
+TEST_F(ProvenanceTest, AVehicleOfTheScriptsOwnSaysSo) {
+  const std::string solo = read_file(fs::path(LAPWING_SOURCE_DIR) / "configs/vehicles/solo.yaml");
+  write("mine.yaml", solo);
+  write("own.lua", film("name = 'own', vehicle = 'mine'"));
+  const Finished made = run({"run", "own.lua"});
+  ASSERT_EQ(made.status, 0) << made.err << made.out;
+  plan_ = folder_ / "out" / "own" / "plan.json";
+  EXPECT_EQ(answer().at("certificate"), document().at("certificate"));
+  EXPECT_THAT(detail_of(answer()), HasSubstr("mine, stated by the script, compared with no file"));
+  // The same vehicle has the same digest under any name.
+  const Value own = answer().at("provenance").at("vehicle");
+  plan_ = folder_ / "out" / "shot" / "plan.json";
+  EXPECT_EQ(own.at("sha256"), answer().at("provenance").at("vehicle").at("sha256"));
+}
+
+TEST_F(ProvenanceTest, OnesOwnVehicleAndObstaclesJudge) {
+  std::string slow = read_file(fs::path(LAPWING_SOURCE_DIR) / "configs/vehicles/solo.yaml");
+  const std::size_t at = slow.find("speed_across:");
+  slow.replace(at, slow.find('\n', at) - at, "speed_across: 1");
+  write("slow.yaml", slow);
+  Value judged = answer({"--vehicle", (folder_ / "slow.yaml").string()});
+  EXPECT_EQ(failures_in(judged), std::vector<std::string>{"speed_across"});
+  EXPECT_THAT(to_json(judged.at("provenance").at("remarks")),
+              HasSubstr("vehicle.limits.speed_across is 10 in the plan and 1 in"));
+
+  write("own.yaml", "boxes: [{name: wall, lower: [2, -1, 0], upper: [3, 1, 5]}]\n");
+  judged = answer({"--environment", "own.yaml"});
+  EXPECT_EQ(failures_in(judged), std::vector<std::string>{"clearance"});
+  write("own.yaml", "spheres: [{center: [2, 4, 2], radius: 1}]\nmargin: 0.25\n");
+  EXPECT_TRUE(failures_in(answer({"--environment", "own.yaml"})).empty());
+  write("own.yaml", "spheres: [{center: [2, 4, 2], radus: 1}]\n");
+  const Finished wrong = run({"verify", plan_.string(), "--environment", "own.yaml"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean 'radius'"));
+  EXPECT_EQ(run({"verify", plan_.string(), "--vehicle", "nobody"}).status, 2);
+}
+
+TEST_F(ProvenanceTest, WhatAnotherCertificateSaidIsToldWhereTheVerdictStays) {
+  Value changed = document();
+  changed.find("task")->find("keyframes")->as_list()[0].set("tolerance", 0.7);
+  changed.find("task")->find("keyframes")->as_list()[1].set("tolerance", 0.7);
+  save(changed, true);
+  const Finished judged = run({"verify", plan_.string()});
+  EXPECT_EQ(judged.status, 0);
+  EXPECT_THAT(judged.err, HasSubstr("keyframe_miss was judged by a limit of 0.5 when it was "
+                                    "planned, and is now by 0.7 m"));
+}
+
+TEST_F(ProvenanceTest, AnUncertifiedPlanIsExportedOnlyWhenAskedFor) {
+  const std::vector<std::string> words{"export", plan_.string(), "--format", "csv", "-o", "x.csv"};
+  EXPECT_EQ(run(words).status, 0);
+  fs::remove(folder_ / "x.csv");
+  Value changed = document();
+  changed.find("vehicle")->find("limits")->set("speed_across", 1.0);
+  save(changed, true);
+  Finished refused = run(words);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, HasSubstr("is not certified"));
+  EXPECT_THAT(refused.err, HasSubstr("speed_across"));
+  EXPECT_THAT(refused.err, HasSubstr("--uncertified"));
+  EXPECT_FALSE(fs::exists(folder_ / "x.csv"));
+  std::vector<std::string> all_the_same = words;
+  all_the_same.push_back("--uncertified");
+  refused = run(all_the_same);
+  EXPECT_EQ(refused.status, 0);
+  EXPECT_THAT(refused.err, HasSubstr("is not certified, and exported all the same"));
+  EXPECT_TRUE(fs::exists(folder_ / "x.csv"));
+}
+
+}  // namespace
+}  // namespace lapwing
