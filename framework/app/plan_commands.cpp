@@ -26,10 +26,16 @@ void warn_of_changes(const JudgedPlan& judged, const Judges& judges) {
   const Value* stored = judged.plan.certificate.find("feasible");
   const bool own = judges.vehicle.empty() && judges.environment.empty();
   const bool now = judged.certificate.feasible();
-  if (own && stored && stored->type() == Value::Type::boolean && stored->as_boolean() != now)
+  std::string sections;
+  for (const Value& section : judged.provenance.at("document").at("changed").as_list())
+    sections += (sections.empty() ? "" : ", ") + section.as_text();
+  if (!sections.empty())
+    std::fprintf(stderr, "lapwing: the plan was changed after it was planned: %s\n",
+                 sections.c_str());
+  else if (own && stored && stored->type() == Value::Type::boolean && stored->as_boolean() != now)
     std::fprintf(stderr,
                  "lapwing: the plan says of itself that it is %scertified; its numbers say that "
-                 "it is %scertified: it was changed after it was planned\n",
+                 "it is %scertified\n",
                  stored->as_boolean() ? "" : "not ", now ? "" : "not ");
   for (const std::string& change : judged.changes)
     std::fprintf(stderr, "lapwing: %s\n", change.c_str());

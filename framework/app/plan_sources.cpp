@@ -249,41 +249,64 @@ std::vector<Obstacle> files_from(const Parameters& given, const char* list, cons
   return obstacles;
 }
 
+bool is_in(const fs::path& configs, const std::string& name) {
+  ConfigSearch search;
+  search.folders = {configs};
+  search.any_path = false;
+  try {
+    find_config(name, search);
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
+}
+
+VehicleSource loaded(const std::string& source, const Value& stated, const fs::path& configs) {
+  try {
+    return {source, load_vehicle(stated, {configs})};
+  } catch (const InputError&) {
+    return {source, std::nullopt, "what " + source + " holds is no vehicle"};
+  }
+}
+
 }  // namespace
 
 VehicleSource vehicle_source_of(const Plan& plan, const fs::path& configs) {
   const Value* stated = plan.configuration.find("vehicle");
   const std::string flown = stated_text(plan.vehicle, "name");
-  if (stated && stated->is_map()) {
-    try {
-      return {kOwnTable, load_vehicle(*stated, {configs})};
-    } catch (const InputError&) {  // its camera's file lies beside the script
-      return {kOwnTable, std::nullopt};
-    }
-  }
-  VehicleSource source{"the script", std::nullopt, ""};
-  if (stated && stated->is_text() && stated->as_text() != flown)
-    source.problem = "the vehicle is '" + flown + "' in the plan and '" + stated->as_text() +
-                     "' in its configuration";
-  try {
-    ConfigSearch search;
-    search.folders = {configs};
-    search.any_path = false;
-    find_config(flown, search);
-  } catch (const InputError&) {
+  // Whoever bears the name of a shipped file is compared with it, whatever else is stated.
+  if (is_in(configs, flown)) {
+    VehicleSource source = loaded("configs/" + flown + (flown.ends_with(".yaml") ? "" : ".yaml"),
+                                  Value(flown), configs);
+    if (stated && *stated != Value(flown))
+      source.problem = "the vehicle is '" + flown + "' in the plan and " +
+                       (stated->is_text() ? "'" + stated->as_text() + "'" : "a table") +
+                       " in its configuration";
     return source;
   }
-  source.name = "configs/" + flown + (flown.ends_with(".yaml") ? "" : ".yaml");
-  source.vehicle = load_vehicle(Value(flown), {configs});
-  return source;
+  if (!stated || stated->is_null()) return {"the script", std::nullopt};
+  if (stated->is_map()) {
+    // Its camera's file may lie beside the script.
+    const std::string camera = stated_text(*stated, "camera");
+    if (!camera.empty() && !is_in(configs, camera)) return {kOwnTable, std::nullopt};
+    return loaded(kOwnTable, *stated, configs);
+  }
+  if (*stated == Value(flown)) return {"the script", std::nullopt};
+  return {"the script", std::nullopt,
+          "the vehicle is '" + flown + "' in the plan and " + to_json(*stated, -1) +
+              " in its configuration"};
 }
 
 VehicleSource read_vehicle_file(const fs::path& file, const fs::path& configs) {
   ConfigSearch search;
   search.folders = {configs};
-  Value given = read_config(file.string(), search);
-  const fs::path found = find_config(file.string(), search);
-  return {file.string(), load_vehicle(given, {found.parent_path(), configs})};
+  try {
+    const Value given = read_config(file.string(), search);
+    const fs::path found = find_config(file.string(), search);
+    return {file.string(), load_vehicle(given, {found.parent_path(), configs})};
+  } catch (const InputError& error) {
+    throw InputError(std::string("--vehicle: ") + error.what());
+  }
 }
 
 Plan with_environment(Plan plan, const fs::path& file) {

@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kShownDigits = 12;  // of a digest, in a line
+constexpr std::size_t kSectionsListed = 8;
 
 // Equal vehicles have equal digests, whatever they are called.
 std::string vehicle_digest(const Value& vehicle) {
@@ -222,8 +223,11 @@ class Examination {
     }
     if (digest_->changed.empty()) return;
     std::string changed;
-    for (const std::string& section : digest_->changed)
-      changed += (changed.empty() ? "" : ", ") + section;
+    const std::size_t count = digest_->changed.size();
+    for (std::size_t i = 0; i < std::min(count, kSectionsListed); ++i)
+      changed += (i ? ", " : "") + digest_->changed[i];
+    if (count > kSectionsListed)
+      changed += " and " + std::to_string(count - kSectionsListed) + " more";
     faults_.push_back("the document was changed after it was written: " + changed);
   }
 

@@ -10,6 +10,7 @@ RunTarget::RunTarget(const std::string& mission, const Invocation& invocation)
   const bool named = !invocation.out.empty();
   folder_ = named ? invocation.out : run_folder(mission);
   require_writable(folder_ / "plan.json");
+  if (keep_) require_keepable(folder_);
   claim_.emplace(folder_);
   require_run_folder(folder_);
   old_ = mission_in(folder_);

@@ -154,6 +154,10 @@ void require_run_folder(const std::filesystem::path& folder) {
                      "', which no run wrote and which would be lost; choose another folder");
 }
 
+void require_keepable(const std::filesystem::path& folder) {
+  require_writable(with_name(folder).parent_path() / temporary_name("kept"));
+}
+
 std::filesystem::path write_run_folder(const std::filesystem::path& folder, const RunFiles& files,
                                        bool keep_old) {
   if (keep_old && !run_files_in(folder).empty()) return write_beside_old(folder, files);

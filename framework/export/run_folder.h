@@ -39,6 +39,10 @@ std::optional<std::string> mission_in(const std::filesystem::path& folder);
 // them. Completes the files of a run that was ended over them (core/file_set.h).
 void require_run_folder(const std::filesystem::path& folder);
 
+// InputError where an older run's folder could not be renamed: it is named by its place alone
+// ("."), or the folder that it lies in cannot be written.
+void require_keepable(const std::filesystem::path& folder);
+
 // Creates the folder and puts all files of a run into it at once, in place of an older run's: on
 // any error, and after a kill, all of the old or all of the new ones are there. Other files stay.
 // With `keep_old` an older run's folder is renamed to NAME.1, or the first number that is free, and

@@ -79,8 +79,8 @@ local function finished(run, shot, chosen, notes, certified, figures, details)
   figures.stretch, figures.certified_stretch = chosen.stretch, certified
   figures.passages = shot.passages
   return run:plan { solution = chosen.solution, task = chosen.task, cuts = chosen.cuts,
-                    notes = notes, details = details or {}, geodetic_origin = shot.origin, budget = run.options.battery,
-                    figures = figures }
+                    notes = notes, details = details or {}, geodetic_origin = shot.origin,
+                    budget = run.options.battery, figures = figures }
 end
 
 -- Subjects and looks ask for a camera that turns by itself.

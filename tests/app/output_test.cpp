@@ -86,7 +86,7 @@ TEST_F(OutputTest, ThatCannotBeWrittenIsAnError) {
 TEST_F(OutputTest, AnEmptyNameIsRefused) {
   write("shot.lua", film("name = 'shot'"));
   refused({"run", "shot.lua", "-o", ""}, {"-o,--out", "expected DIR, not an empty text"});
-  refused({"run", "shot.lua", "--out="}, {"expected"});
+  refused({"run", "shot.lua", "--out="}, {"DIR missing"});
   refused({"run", ""}, {"mission", "expected MISSION.lua"});
   refused({"verify", ""}, {"expected PLAN.json"});
   refused({"schema", "film", "-o", ""}, {"not an empty text"});
@@ -135,6 +135,7 @@ TEST_F(OutputTest, ARunSaysWhatItReplacesOrKeepsIt) {
   EXPECT_EQ(names_in("out"), (std::vector<std::string>{"shot", "shot.1", "shot.2"}));
   EXPECT_EQ(names_in("out/shot"), kRunFiles);
   EXPECT_EQ(mission_of("out/shot.1"), "shot");
+  refused({"run", "shot.lua", "-o", ".", "--keep"}, {"'.' cannot be kept under another name"});
 }
 
 TEST_F(OutputTest, WhatNoRunWroteIsNotLost) {
@@ -168,6 +169,30 @@ TEST_F(OutputTest, TwoRunsIntoOneNewFolder) {
   int status = 0;
   ::waitpid(first, &status, 0);
   EXPECT_EQ(run({"run", "shot.lua", "-o", "new"}).status, 0) << "a dead run holds nothing";
+}
+
+// "certified" is not followed by what failed on the way, unless that is asked for.
+TEST_F(OutputTest, DetailsAreShownWhenAskedForOrNotCertified) {
+  const auto hover = [](const std::string& budget) {
+    return "return { kind = 'test', name = 'hover', options = {}, plan = function(run)\n"
+           "  local p = run:problem { vehicle = run:vehicle('vehicles/solo'), duration = 1 }\n"
+           "  p:add_model { type = 'quadrotor' }\n  p:add_cost { type = 'input_effort' }\n"
+           "  p:finish()\n  return run:plan { solution = run:solve(p, 'iqp'), budget = " +
+           budget + ",\n    notes = {'a note'}, details = {'passage 1 came to nothing'} }\nend }\n";
+  };
+  write("shot.lua", hover("5"));
+  Finished shown = run({"run", "shot.lua"});
+  EXPECT_EQ(shown.status, 0) << shown.out << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("a note"));
+  EXPECT_THAT(shown.out, Not(HasSubstr("passage 1")));
+  EXPECT_THAT(run({"run", "shot.lua", "--verbose"}).out, HasSubstr("passage 1 came to nothing"));
+  EXPECT_THAT(read_file(folder_ / "out/hover/run.log"), HasSubstr("passage 1 came to nothing"));
+  EXPECT_THAT(read_file(folder_ / "out/hover/report.html"), HasSubstr("passage 1 came"));
+  EXPECT_EQ(from_json(run({"run", "shot.lua", "--json"}).out, "").at("notes").as_list().size(), 2u);
+  write("shot.lua", hover("0.5"));
+  shown = run({"run", "shot.lua"});
+  EXPECT_EQ(shown.status, 1);
+  EXPECT_THAT(shown.out, HasSubstr("passage 1 came to nothing"));
 }
 
 // A file may not grow beyond 20 kB: the report does not fit, the plan hardly.

@@ -151,6 +151,47 @@ TEST_F(ProvenanceTest, AStrongerVehicleUnderTheNameOfAnotherIsTold) {
   EXPECT_EQ(run({"verify", plan_.string()}).status, 1);
 }
 
+// With a digest made anew, and what the plan says of its source made vague.
+TEST_F(ProvenanceTest, TheNameOfAShippedVehicleBindsWhateverElseIsStated) {
+  Value stronger = document();
+  stronger.find("vehicle")->find("limits")->set("speed_across", 20.0);
+  Value table = Value::map();
+  table.set("mass", 1.5);
+  for (const Value& stated : {table, Value(), Value("mine"), Value(3)}) {
+    stronger.find("configuration")->set("vehicle", stated);
+    save(stronger, true);
+    EXPECT_EQ(failures_in(answer()), kProvenanceAlone) << to_json(stated);
+    EXPECT_THAT(detail_of(answer()), HasSubstr("speed_across is 20 in the plan and 10 in configs"));
+  }
+  // A table that is no vehicle, and a shipped file that is none.
+  stronger.find("vehicle")->set("name", "vehicle");
+  stronger.find("configuration")->set("vehicle", table);
+  save(stronger, true);
+  EXPECT_EQ(failures_in(answer()), kProvenanceAlone);
+  for (const char* name : {"cameras/action", "../vehicles/solo", "/etc/passwd"}) {
+    stronger.find("vehicle")->set("name", name);
+    save(stronger, true);
+    EXPECT_EQ(failures_in(answer()), kProvenanceAlone) << name;
+  }
+}
+
+TEST_F(ProvenanceTest, ATableInTheScriptIsComparedWithTheConfiguration) {
+  write("own.lua", film("name = 'own', vehicle = { mass = 1.5, inertia = {0.015, 0.015, 0.025}, "
+                        "rotors = { thrust = {0.2, 8}, torque_coefficient = 0.016, "
+                        "arm_length = 0.23 }, limits = { speed_across = 10, climb_speed = 2.5, "
+                        "descent_speed = 2, acceleration_across = 4, yaw_rate_deg = 90 }, "
+                        "flight_time = 1200, camera = 'cameras/action' }"));
+  const Finished made = run({"run", "own.lua"});
+  ASSERT_EQ(made.status, 0) << made.err << made.out;
+  plan_ = folder_ / "out" / "own" / "plan.json";
+  EXPECT_EQ(answer().at("certificate"), document().at("certificate"));
+  EXPECT_THAT(detail_of(answer()), HasSubstr("compared with the plan's configuration"));
+  Value stronger = document();
+  stronger.find("vehicle")->find("limits")->set("speed_across", 20.0);
+  save(stronger, true);
+  EXPECT_EQ(failures_in(answer()), kProvenanceAlone);
+}
+
 TEST_F(ProvenanceTest, AVehicleOfTheScriptsOwnSaysSo) {
   const std::string solo = read_file(fs::path(LAPWING_SOURCE_DIR) / "configs/vehicles/solo.yaml");
   write("mine.yaml", solo);
