@@ -164,6 +164,7 @@ class AnnotationWriter {
     if (type == "choice") return quoted_alternatives(entry.at("choices"));
     if (type == "vehicle") return "string|lapwing.vehicle_file";
     if (type == "plugin") return plugin_type(entry, nested);
+    if (type == "plugins") return choice_alias(text_of(entry, "kind")) + "[]";
     if (type == "table" || type == "tables") {
       pending_.emplace_back(nested, entry.at("table"));
       return type == "table" ? nested : nested + "[]";
@@ -245,7 +246,8 @@ class AnnotationWriter {
       const bool term = kind == "cost_term" || kind == "constraint" || kind == "vehicle_model";
       const std::string name = "lapwing." + kind + "." + entry.name;
       text_ += "--- " + entry.summary + "\n";
-      begin_class(name, kind == "cost_term" ? "lapwing.cost_frame"
+      begin_class(name, kind == "cost_term"    ? "lapwing.cost_frame"
+                        : kind == "constraint" ? "lapwing.constraint_frame"
                         : term              ? "lapwing.plugin_frame"
                                             : "");
       text_ += "---@field type \"" + entry.name + "\"\n";

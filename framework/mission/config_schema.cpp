@@ -82,6 +82,7 @@ class SchemaWriter {
     if (type == "text") return typed("string");
     if (type == "choice") return list_of_texts(entry.at("choices"));
     if (type == "plugin") return plugin_schema_of(entry);
+    if (type == "plugins") return plugins_schema_of(entry);
     if (type == "numbers") {
       Value schema = typed("array");
       schema.set("items", number_of(entry, "number"));
@@ -157,6 +158,26 @@ class SchemaWriter {
       table.set("allOf", std::move(branches));
     }
     return any_of({list_of_texts(names), std::move(table)});
+  }
+
+  // A list of tables: by its `type` of one plugin, or without one the mission's own entries.
+  Value plugins_schema_of(const Value& entry) {
+    const std::string kind = text_at(entry, "kind");
+    Value::List forms{object_of(properties_of(entry.at("table")))};
+    for (const PluginEntry& plugin : registry_.entries()) {
+      if (plugin.kind != kind) continue;
+      Value properties = properties_of(plugin.parameters.to_value()), constant = Value::map();
+      const Value own = properties_of(entry.at("table"));
+      for (const auto& [name, schema] : own.as_map()) properties.set(name, schema);
+      constant.set("const", plugin.name);
+      properties.set("type", std::move(constant));
+      Value form = object_of(std::move(properties), Value(Value::List{"type"}));
+      form.set("description", plugin.summary);
+      forms.push_back(std::move(form));
+    }
+    Value schema = typed("array");
+    schema.set("items", any_of(std::move(forms)));
+    return schema;
   }
 
   Value branch_of(const PluginEntry& plugin) {

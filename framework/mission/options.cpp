@@ -93,9 +93,11 @@ OptionDeclarations OptionDeclarations::from_value(const Value& list) {
     Option option;
     option.name = declaration.at("name").as_text();
     const std::string type = declaration.at("type").as_text();
-    if (type == "plugin") option.plugin_kind = declaration.at("kind").as_text();
+    option.plugins = type == "plugins";
+    if (type == "plugin" || option.plugins)
+      option.plugin_kind = declaration.at("kind").as_text();
     option.vehicle = type == "vehicle";
-    if (type == "plugin" || type == "vehicle") declaration.set("type", "text");
+    if (type == "plugin" || type == "vehicle" || option.plugins) declaration.set("type", "text");
     if (const Value* words = declaration.find("words")) {
       for (const Value& word : words->as_list()) option.words.push_back(word.as_text());
     }
@@ -120,9 +122,9 @@ Value OptionDeclarations::to_value() const {
   for (const Option& option : options_) {
     Value entry = option.declaration;
     if (!option.plugin_kind.empty()) {
-      entry.set("type", "plugin");
+      entry.set("type", option.plugins ? "plugins" : "plugin");
       entry.set("kind", option.plugin_kind);
-      entry.set("under", option.under);
+      if (!option.plugins) entry.set("under", option.under);
       if (option.settled.is_map()) entry.set("settled", option.settled);
       if (option.own.is_list()) entry.set("table", option.own);
     }
@@ -209,7 +211,7 @@ Value OptionDeclarations::plain_entry(const Option& option, const Value* value) 
 
 Value OptionDeclarations::spelled_out(Value layer) const {
   for (const Option& option : options_) {
-    if (!option.own.is_list()) continue;
+    if (!option.own.is_list() || option.plugins) continue;
     const Value* given = layer.find(option.name);
     if (!given || !given->is_text()) continue;
     Value chosen = Value::map();
@@ -222,7 +224,7 @@ Value OptionDeclarations::spelled_out(Value layer) const {
 
 std::string OptionDeclarations::spelled_out(const std::string& override_text) const {
   for (const Option& option : options_) {
-    if (!option.own.is_list() || !override_text.starts_with(option.name + "=")) continue;
+    if (!option.own.is_list() || option.plugins || !override_text.starts_with(option.name + "=")) continue;
     Value given = Value::map();
     apply_override(given, override_text);
     if (given.at(option.name).is_text())
@@ -231,10 +233,45 @@ std::string OptionDeclarations::spelled_out(const std::string& override_text) co
   return override_text;
 }
 
+// Each entry against the table of the plugin that it names.
+Value OptionDeclarations::checked_plugins(const Option& option, const Value* given,
+                                          const Registry& registry, Diagnostics& errors) {
+  Value all = Value::list();
+  all.with_origin(given ? given->origin() : Origin{"default", 0});
+  if (!given || given->is_null() || *given == Value::map()) return all;
+  if (!given->is_list()) {
+    errors.add(given->origin(), option.name,
+               "expected a list of tables, got " + given->describe_type());
+    return all;
+  }
+  for (const Value& entry : given->as_list()) {
+    const std::string what =
+        option.name + "[" + std::to_string(all.as_list().size() + 1) + "]";
+    Value table = option.own;
+    const Value* type = entry.find("type");
+    if (type) {
+      const PluginEntry& plugin =
+          registry.find(option.plugin_kind, type->as_text(), type->origin());
+      ParameterTable own = ParameterTable::from_value(option.own);
+      Value parameters = ParameterTable{}
+                             .required_text("type", "which plugin (" + option.plugin_kind + ")")
+                             .to_value();
+      for (const Value& one : option.own.as_list()) parameters.push_back(one);
+      const Value of_plugin = plugin.parameters.to_value();
+      for (const Value& one : of_plugin.as_list())
+        if (!own.find(one.at("name").as_text())) parameters.push_back(one);
+      table = std::move(parameters);
+    }
+    all.push_back(lapwing::check(ParameterTable::from_value(table), entry, what, errors).value());
+  }
+  return all;
+}
+
 // The table depends on the values: on the plugins chosen, and on the forms used.
 ParameterTable OptionDeclarations::table_for(Value& given, const Registry& registry) const {
   Value list = Value::list();
   for (const Option& option : options_) {
+    if (option.plugins) continue;
     list.push_back(option.plugin_kind.empty() ? plain_entry(option, given.find(option.name))
                                               : plugin_entry(option, given, registry));
   }
@@ -244,8 +281,27 @@ ParameterTable OptionDeclarations::table_for(Value& given, const Registry& regis
 Value OptionDeclarations::check(const Value& given, const Registry& registry) const {
   Value values = given.is_map() ? given : Value::map();
   values.with_origin(given.origin());
-  const ParameterTable table = table_for(values, registry);
-  return lapwing::check(table, values).value();
+  Value plain = Value::map(), lists = Value::map(), result = Value::map();
+  plain.with_origin(values.origin());
+  Diagnostics errors;
+  for (const auto& [key, value] : values.as_map()) {
+    const auto of_plugins = [&, &key = key](const Option& option) {
+      return option.plugins && option.name == key;
+    };
+    (std::any_of(options_.begin(), options_.end(), of_plugins) ? lists : plain).set(key, value);
+  }
+  const ParameterTable table = table_for(plain, registry);
+  const Parameters checked = lapwing::check(table, plain, "", errors);
+  result.with_origin(checked.value().origin());
+  for (const Option& option : options_) {
+    if (option.plugins)
+      result.set(option.name,
+                 checked_plugins(option, lists.find(option.name), registry, errors));
+    else if (const Value* value = checked.value().find(option.name))
+      result.set(option.name, *value);
+  }
+  errors.throw_if_any();
+  return result;
 }
 
 }  // namespace lapwing

@@ -1,13 +1,16 @@
 // The options of a mission: what its script declares, and the values that they come to have.
 //
 // A declaration is an entry of a parameter table as data (core/parameters.h: name, type, summary,
-// unit, default, required, minimum, above, maximum, choices, size, table), with three more forms:
+// unit, default, required, minimum, above, maximum, choices, size, table), with four more forms:
 //   type = "plugin", kind = "trajectory_solver", default = "iqp"
 //       a plugin's name, or a table with `type` and the plugin's own parameters
 //       settled = { name = "why" }: parameters that the mission itself settles; who sets one is
 //       told why not
 //       under = "solver": the key that names the plugin, in place of `type`
 //       table = {...}: entries of the mission's own beside the plugin's parameters
+//   type = "plugins", kind = "cost_term", table = {...}
+//       a list of tables, each with a plugin's `type`, its parameters and the mission's own entries;
+//       one without `type` has the mission's own entries alone
 //   type = "vehicle"               a vehicle file's name, or a table as in such a file
 //   words = {"auto"}               on a number: these texts are allowed as well
 //   also = "string"                a short form that the kind itself writes out, for annotations
@@ -26,7 +29,7 @@ namespace lapwing {
 inline constexpr BoundField kDeclarationKeys[] = {
     {"name", "string", "of the option"},
     {"type", "string",
-     "boolean, integer, number, numbers, text, choice, table, tables, plugin, vehicle"},
+     "boolean, integer, number, numbers, text, choice, table, tables, plugin, plugins, vehicle"},
     {"summary?", "string", "one line"},
     {"unit?", "string", "of a number or of numbers: m, s, m/s, deg, ..."},
     {"default?", "any", "what it is where nobody sets it"},
@@ -72,11 +75,15 @@ class OptionDeclarations {
     Value own;                   // of a plugin: entries of the mission's own; null or a list
     std::string also;            // a short form, for annotations
     bool vehicle = false;
+    bool plugins = false;        // a list of them
     std::vector<std::string> words;
   };
   // Each gives the entry of a parameter table that fits `given`.
   static Value plugin_entry(const Option& option, Value& given, const Registry& registry);
   static Value plain_entry(const Option& option, const Value* value);
+  static Value checked_plugins(const Option& option, const Value* given, const Registry& registry,
+                               Diagnostics& errors);
+  // Without lists of plugins, whose entries differ.
   ParameterTable table_for(Value& given, const Registry& registry) const;
   std::vector<Option> options_;
 };

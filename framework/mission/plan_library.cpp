@@ -13,6 +13,7 @@
 #include "framework/mission/players.h"
 #include "framework/mission/run.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/mission/script_terms.h"
 #include "framework/mission/vectors.h"
 #include "framework/verify/verify.h"
 
@@ -57,6 +58,20 @@ std::optional<WarmStart> warm_start_argument(lua_State* state, int index,
   return start;
 }
 
+// What a plan says of the problem's constraints; those of plugins may share a name.
+std::vector<StatedConstraint> constraints_of(const ProblemObject& object) {
+  std::vector<StatedConstraint> all;
+  if (object.terms) all = stated_constraints(*object.terms);
+  for (StatedConstraint listed : object.listed) {
+    const std::string name = listed.name;
+    const auto taken = [&](const StatedConstraint& other) { return other.name == listed.name; };
+    for (int k = 2; std::any_of(all.begin(), all.end(), taken); ++k)
+      listed.name = name + " " + std::to_string(k);
+    all.push_back(std::move(listed));
+  }
+  return all;
+}
+
 // run:solve(problem, solver [, {warm_start = solution}]): a solution, whatever came out.
 int solve(lua_State* state) {
   MissionRun& run = run_of(state);
@@ -74,6 +89,7 @@ int solve(lua_State* state) {
   SolutionObject solution;
   solution.problem = object.problem;
   solution.solver = argument.type;
+  solution.constraints = constraints_of(object);
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
     solution.result = solve_by(*solver, *object.problem, request);
@@ -352,6 +368,7 @@ int plan(lua_State* state) {
   document.trajectory = solution.problem->trajectory(solution.result.point.stages);
   document.environment = solution.problem->environment();
   document.task = task_of(given.table("task"));
+  document.constraints = solution.constraints;
   for (const Parameters& cut : given.tables("cuts"))
     document.cuts.push_back({cut.number("start"), cut.number("finish")});
   for (const Parameters& light : given.tables("lights"))

@@ -26,6 +26,7 @@ TrajectoryProblem& open_problem(lua_State* state) {
 struct PluginArgument {
   std::string type, name;
   double weight = 1;
+  bool listed = false;  // of a constraint: by name in the certificate
   Value parameters = Value::map();
 };
 
@@ -35,18 +36,23 @@ ParameterTable plugin_frame_table() {
   return frame;
 }
 
+ParameterTable constraint_frame_table() {
+  return plugin_frame_table().choice(
+      "certificate", "other_checks", {"other_checks", "listed"},
+      "other_checks judge what it holds; or it is listed, as not judged independently");
+}
+
 ParameterTable cost_frame_table() {
   return plugin_frame_table().number("weight", 1.0, "", "weight of the term", at_least(0));
 }
 
-PluginArgument plugin_argument(lua_State* state, const char* what, bool weighted) {
+PluginArgument plugin_argument(lua_State* state, const char* what, const ParameterTable& frame) {
   const Origin origin = Sandbox::of(state).script_position(state);
   if (!lua_istable(state, 2)) {
     throw InputError(origin,
                      std::string(what) + ": expected a table, got " + luaL_typename(state, 2));
   }
   const Value given = value_from_lua(state, 2, origin, what);
-  const ParameterTable frame = weighted ? cost_frame_table() : plugin_frame_table();
   Value own = Value::map();
   own.with_origin(origin);
   PluginArgument argument;
@@ -59,7 +65,8 @@ PluginArgument plugin_argument(lua_State* state, const char* what, bool weighted
   const Parameters checked = check(frame, own, what);
   argument.type = checked.text("type");
   argument.name = checked.has("name") ? checked.text("name") : argument.type;
-  if (weighted) argument.weight = checked.number("weight");
+  if (frame.find("weight")) argument.weight = checked.number("weight");
+  if (frame.find("certificate")) argument.listed = checked.text("certificate") == "listed";
   return argument;
 }
 
@@ -72,7 +79,7 @@ std::unique_ptr<Interface> create(lua_State* state, const PluginArgument& argume
 
 int add_model(lua_State* state) {
   TrajectoryProblem& problem = open_problem(state);
-  const PluginArgument argument = plugin_argument(state, "add_model", false);
+  const PluginArgument argument = plugin_argument(state, "add_model", plugin_frame_table());
   problem.add_model(argument.name, create<VehicleModel>(state, argument));
   return 0;
 }
@@ -112,7 +119,7 @@ bool add_own_term(lua_State* state, ScriptTermKind kind) {
 int add_cost(lua_State* state) {
   if (add_own_term(state, ScriptTermKind::cost)) return 0;
   TrajectoryProblem& problem = open_problem(state);
-  const PluginArgument argument = plugin_argument(state, "add_cost", true);
+  const PluginArgument argument = plugin_argument(state, "add_cost", cost_frame_table());
   problem.add_cost(argument.name, argument.weight, create<CostTerm>(state, argument));
   return 0;
 }
@@ -120,8 +127,14 @@ int add_cost(lua_State* state) {
 int add_constraint(lua_State* state) {
   if (add_own_term(state, ScriptTermKind::constraint)) return 0;
   TrajectoryProblem& problem = open_problem(state);
-  const PluginArgument argument = plugin_argument(state, "add_constraint", false);
+  const PluginArgument argument =
+      plugin_argument(state, "add_constraint", constraint_frame_table());
   problem.add_constraint(argument.name, create<Constraint>(state, argument));
+  if (argument.listed)
+    object_argument<ProblemObject>(state, 1, kProblemType)
+        .listed.push_back({.name = argument.name,
+                           .unjudged = "of the plugin '" + argument.type +
+                                       "', not judged independently"});
   return 0;
 }
 
@@ -397,6 +410,7 @@ void open_problem_library(lua_State* state) {
       {"finish", &guarded<finish>, "()", "binds everything; nothing can be added after"}};
   static const BoundTable tables[] = {
       {"plugin_frame", &plugin_frame_table, {}},
+      {"constraint_frame", &constraint_frame_table, {}},
       {"cost_frame", &cost_frame_table, {}},
       {"own_cost", &own_cost_table, kOwnCostObjects},
       {"own_constraint", &own_constraint_table, kOwnConstraintObjects}};

@@ -58,12 +58,14 @@ struct ProblemObject {
   bool finished = false;
   // Written in the script, recorded when the problem is finished.
   std::shared_ptr<std::vector<ScriptTerm>> terms = nullptr;
+  std::vector<StatedConstraint> listed = {};  // constraints of plugins that plans name
 };
 
 struct SolutionObject {
   std::shared_ptr<TrajectoryProblem> problem;
   std::string solver;
   SolveResult result;
+  std::vector<StatedConstraint> constraints = {};  // of the script, as they were solved with
 };
 
 // What several functions take beside plain data.

@@ -30,6 +30,11 @@ ParameterTable script_term_table(ScriptTermKind kind) {
       .numbers("times", {}, "s", "when it is asked; none: at every stage", at_least(0))
       .tables("spans", time_span_table(), "spans of time in which it is asked; none: always")
       .tables("except", time_span_table(), "spans of time in which it is not asked");
+  if (kind == ScriptTermKind::constraint)
+    table
+        .choice("certificate", "required", {"required", "reported"},
+                "whether a plan that breaks it is not certified, or says so alone")
+        .boolean("held", true, "by the solver; false: judged by the certificate alone");
   if (kind == ScriptTermKind::cost)
     table.number("weight", 1.0, "", "weight of the squared residuals", at_least(0))
         .boolean("integral", true,
@@ -188,6 +193,8 @@ ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
     term.weight = given.number("weight");
     term.shape.integral = given.boolean("integral") && !timed;
   } else {
+    term.required = given.text("certificate") == "required";
+    term.held = given.boolean("held");
     const Value lower = field_value(state, index, "lower", term.origin, call + ".lower");
     const Value upper = field_value(state, index, "upper", term.origin, call + ".upper");
     if (lower.is_null() && upper.is_null())
@@ -207,12 +214,73 @@ ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
   return term;
 }
 
+namespace {
+
+// Blocks that a plan's samples hold, by the names of the shipped models; a free block does not
+// reach the plan, but for the target.
+bool is_in_plans(const std::string& block) {
+  static const std::vector<std::string> known{
+      "time",          "step",       "position",     "yaw",       "velocity",
+      "yaw_rate",      "force",      "yaw_torque",   "target",    "orientation",
+      "body_rates",    "gimbal_yaw", "gimbal_pitch", "gimbal_yaw_rate",
+      "rotor_thrusts", "gimbal_pitch_rate"};
+  return std::find(known.begin(), known.end(), block) != known.end();
+}
+
+// What the plan says of the constraint, but for its parameters.
+void state_constraint(ScriptTerm& term, const std::vector<double>& lower,
+                      const std::vector<double>& upper, const Horizon& horizon) {
+  StatedConstraint& stated = term.stated;
+  stated.name = term.name;
+  stated.required = term.required;
+  if (horizon.step_free && !(term.shape.times.empty() && term.shape.spans.empty() &&
+                             term.shape.except.empty()))
+    stated.unjudged = "it names times of a flight whose times are free";
+  if (term.recorded.operations.size() > StatedConstraint::kMostOperations)
+    stated.unjudged = "it takes more than " + std::to_string(StatedConstraint::kMostOperations) +
+                      " operations";
+  for (const ConstraintStep& step : term.recorded.operations) {
+    if (step.op == ConstraintOp::input && !is_in_plans(step.name))
+      stated.unjudged = "it reads '" + step.name + "', which plans do not hold";
+    if (!std::isfinite(step.number))
+      stated.unjudged = "it computes with a number that is not finite";
+  }
+  if (!stated.unjudged.empty()) return;
+  stated.times = term.shape.times;
+  stated.spans = term.shape.spans;
+  stated.except = term.shape.except;
+  for (std::size_t r = 0; r < lower.size(); ++r) {
+    ConstraintResult result{.operation = term.recorded.results[r]};
+    if (std::isfinite(lower[r])) result.lower = lower[r];
+    if (std::isfinite(upper[r])) result.upper = upper[r];
+    if (result.lower || result.upper) stated.results.push_back(result);
+  }
+  if (stated.results.empty()) stated.unjudged = "its bounds are infinite";
+  stated.operations = term.recorded.operations;
+}
+
+}  // namespace
+
+std::vector<StatedConstraint> stated_constraints(const std::vector<ScriptTerm>& terms) {
+  std::vector<StatedConstraint> all;
+  for (const ScriptTerm& term : terms) {
+    if (term.kind != ScriptTermKind::constraint) continue;
+    StatedConstraint stated = term.stated;
+    if (!stated.operations.empty())
+      for (const auto& [place, parameter] : term.recorded.parameters)
+        stated.operations[place].number = (*term.parameters.values)[parameter];
+    all.push_back(std::move(stated));
+  }
+  return all;
+}
+
 void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& problem) {
   const std::string what = std::string(word_of(term.kind)) + " '" + term.name + "'";
   {
     lua_rawgeti(state, LUA_REGISTRYINDEX, term.function);
     TermRecording recording(state, what, problem, term.parameters, term.width);
     recording.record(lua_gettop(state), term.shape);
+    if (term.kind == ScriptTermKind::constraint) term.recorded = recording.operations();
     lua_pop(state, 1);
   }
   term.shape.parameters = term.parameters.values;
@@ -229,6 +297,8 @@ void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& prob
     if (lower[r] > upper[r])
       throw InputError(term.origin,
                        what + ": lower is above upper in result " + std::to_string(r + 1));
+  state_constraint(term, lower, upper, problem.horizon());
+  if (!term.held) return;
   problem.add_constraint(term.name,
                          tape_constraint(term.shape, std::move(lower), std::move(upper)));
 }

@@ -32,7 +32,15 @@ struct ScriptTerm {
   std::vector<double> lower, upper;  // of a constraint: none, one for all rows, or one each
   Origin origin;
   TermParameters parameters;
+  // Of a constraint: whether the certificate requires it, whether solvers hold it, and what the
+  // plan states of it.
+  bool required = true, held = true;
+  RecordedOperations recorded;
+  StatedConstraint stated;
 };
+
+// What the plan of a solution says of these constraints: with their parameters as they are now.
+std::vector<StatedConstraint> stated_constraints(const std::vector<ScriptTerm>& terms);
 
 // What such terms are stated with, and what changes a parameter of one.
 ParameterTable own_cost_table();

@@ -241,6 +241,7 @@ void TermRecording::record(int function, TapeFunction& result) {
                        setting_.what + ": returns no finite number whatever the stage is");
     outputs.push_back(symbolic_node(setting_, row));
   }
+  outputs_ = outputs;
   int width = 0;
   list_inputs(result, places, width);
   const bool free = problem_.horizon().step_free;

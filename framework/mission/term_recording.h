@@ -18,6 +18,7 @@
 #include "framework/mission/symbolic_values.h"
 #include "framework/problem/tape_function.h"
 #include "framework/problem/trajectory_problem.h"
+#include "framework/trajectory/stated_constraint.h"
 
 namespace lapwing {
 
@@ -32,6 +33,13 @@ struct TermParameters {
   std::shared_ptr<std::vector<double>> values = std::make_shared<std::vector<double>>();
 };
 
+// What a function does, as a plan states it (trajectory/stated_constraint.h).
+struct RecordedOperations {
+  std::vector<ConstraintStep> operations;
+  std::vector<int> results;                     // places in it
+  std::vector<std::pair<int, int>> parameters;  // constants that hold one: place, parameter
+};
+
 class TermRecording {
  public:
   TermRecording(lua_State* state, std::string what, const TrajectoryProblem& problem,
@@ -43,6 +51,8 @@ class TermRecording {
   // Records the function at `function` of the Lua stack into `result`: its tape, blocks and window,
   // which is at least the one that is there. InputError for whatever is wrong with it.
   void record(int function, TapeFunction& result);
+  // The same as data, once it is recorded.
+  RecordedOperations operations() const;
 
   // Whether the tape says what the function says; `guess` is the finished problem's. InputError
   // with the place, and the numbers where it does not, or where it has no value anywhere.
@@ -81,6 +91,7 @@ class TermRecording {
   SymbolicSetting setting_;
   bool symbolic_ = true;
   std::vector<Input> inputs_;
+  std::vector<int> outputs_;  // nodes
   std::map<std::pair<int, int>, std::vector<double>> numbers_;  // of a point, by stage and block
   std::vector<double> point_parameters_;
   Random random_{1};

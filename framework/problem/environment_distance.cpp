@@ -61,8 +61,8 @@ class DistanceWriter {
     return graph_.apply(TapeOp::select, nearest_face, outside, nearest_face);
   }
 
-  int field(std::shared_ptr<const DistanceField> field) {
-    const int index = graph_.add_field(std::move(field));
+  int field(std::shared_ptr<const DistanceField> field, FieldSource source) {
+    const int index = graph_.add_field(std::move(field), std::move(source));
     return graph_.apply(TapeOp::distance, point_[0], point_[1], point_[2], 0, index);
   }
 
@@ -96,17 +96,23 @@ int nearest_distance(ExpressionGraph& graph, const Environment& environment,
         nearest = writer.minimum(nearest, distance(obstacle));
     }
   };
-  const auto read = [&](const auto& obstacle) {
+  const auto read = [&](const auto& obstacle, const char* kind, const auto& list) {
     if (!obstacle.distance)
       throw InputError("'" + obstacle.name + "' has no distances: its file was not read");
-    return writer.field(obstacle.distance);
+    return writer.field(obstacle.distance, {kind, static_cast<int>(&obstacle - list.data())});
   };
   each(environment.spheres, [&](const Sphere& sphere) { return writer.sphere(sphere); });
   each(environment.boxes, [&](const Box& box) { return writer.box(box); });
   each(environment.zones,
-       [&](const Zone& zone) { return writer.field(std::make_shared<ZoneField>(zone)); });
-  each(environment.meshes, read);
-  each(environment.maps, read);
+       [&](const Zone& zone) {
+         return writer.field(
+             std::make_shared<ZoneField>(zone),
+             {"no_fly_zone", static_cast<int>(&zone - environment.zones.data())});
+       });
+  each(environment.meshes,
+       [&](const MeshObstacle& mesh) { return read(mesh, "mesh", environment.meshes); });
+  each(environment.maps,
+       [&](const MapObstacle& map) { return read(map, "map", environment.maps); });
   if (nearest >= 0) return nearest;
   if (name.empty()) throw InputError("the environment has no obstacle to be distant from");
   std::string message = "no obstacle '" + name + "' in the environment";

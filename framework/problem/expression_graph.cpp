@@ -81,10 +81,11 @@ int ExpressionGraph::add_subject(const Subject& subject) {
   return static_cast<int>(sources_.subjects.size()) - 1;
 }
 
-int ExpressionGraph::add_field(std::shared_ptr<const DistanceField> field) {
+int ExpressionGraph::add_field(std::shared_ptr<const DistanceField> field, FieldSource source) {
   for (std::size_t k = 0; k < sources_.fields.size(); ++k)
     if (sources_.fields[k] == field) return static_cast<int>(k);
   sources_.fields.push_back(std::move(field));
+  field_sources_.push_back(std::move(source));
   return static_cast<int>(sources_.fields.size()) - 1;
 }
 

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <map>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -17,6 +18,12 @@ namespace lapwing {
 struct ExpressionNode {
   TapeCall call;
   int operands[3] = {-1, -1, -1};
+};
+
+// Whose distance a field is: "mesh", "map" or "no_fly_zone", and its place in the environment.
+struct FieldSource {
+  std::string kind;
+  int index = 0;
 };
 
 class ExpressionGraph {
@@ -34,8 +41,9 @@ class ExpressionGraph {
 
   // Indices for TapeOp::track and TapeOp::distance.
   int add_subject(const Subject& subject);
-  int add_field(std::shared_ptr<const DistanceField> field);
+  int add_field(std::shared_ptr<const DistanceField> field, FieldSource source);
   const TapeSources& sources() const { return sources_; }
+  const FieldSource& source_of_field(int index) const { return field_sources_[index]; }
 
   // Whether every output is a straight function of the inputs, with slopes that no parameter
   // changes. `known` says which inputs no solver moves, such as the time of a fixed horizon.
@@ -49,6 +57,7 @@ class ExpressionGraph {
   std::vector<ExpressionNode> nodes_;
   std::map<Key, int> known_;
   TapeSources sources_;
+  std::vector<FieldSource> field_sources_;
 };
 
 }  // namespace lapwing

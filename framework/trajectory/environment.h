@@ -55,8 +55,8 @@ struct MapObstacle {
   std::shared_ptr<const DistanceField> distance = nullptr;  // likewise
 };
 
-// What is filmed: an upright cylinder around a middle that may move. Straight and even motion
-// between the times of its track, at rest before and after.
+// What is filmed, or only kept away from: an upright cylinder around a middle that may move.
+// Straight and even motion between the times of its track, at rest before and after.
 struct Subject {
   std::string name;
   std::vector<double> times;               // s, strictly increasing, one at least
@@ -64,6 +64,7 @@ struct Subject {
   double height = 0;                       // m, from foot to top; 0 is a point
   double width = 0;                        // m, diameter
   double distance = 0;                     // m, kept from its middle; 0 asks for none
+  bool filmed = true;                      // else a bystander, whom no camera looks for
 
   Eigen::Vector3d position(double time) const;
 };
@@ -75,7 +76,7 @@ struct Environment {
   std::vector<Zone> flight_zones;  // the flight stays inside every one of them
   std::vector<MeshObstacle> meshes;
   std::vector<MapObstacle> maps;
-  std::vector<Subject> subjects;  // filmed
+  std::vector<Subject> subjects;  // filmed, or bystanders
   double margin = 0;              // m kept from every surface, vehicle radius included
 };
 

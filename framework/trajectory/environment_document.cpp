@@ -57,6 +57,7 @@ Value to_value(const Subject& subject) {
   value.set("height", subject.height);
   value.set("width", subject.width);
   if (subject.distance != 0) value.set("distance", subject.distance);
+  if (!subject.filmed) value.set("filmed", false);
   return value;
 }
 
@@ -88,6 +89,7 @@ Subject subject_from(Fields& fields) {
   subject.height = fields.number("height");
   subject.width = fields.number("width");
   subject.distance = fields.optional_number("distance").value_or(0.0);
+  if (fields.has("filmed")) subject.filmed = fields.boolean("filmed");
   return subject;
 }
 

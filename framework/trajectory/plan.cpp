@@ -151,6 +151,8 @@ Value to_value(const Plan& plan) {
   if (!plan.lights.empty()) value.set("lights", spans_to_value(plan.lights));
   if (plan.budget) value.set("budget", *plan.budget);
   value.set("task", task_to_value(plan.task));
+  if (!plan.constraints.empty())
+    value.set("constraints", constraints_to_value(plan.constraints));
   if (!plan.configuration.is_null()) value.set("configuration", plan.configuration);
   if (!plan.solver.is_null()) value.set("solver", plan.solver);
   if (!plan.certificate.is_null()) value.set("certificate", plan.certificate);
@@ -179,6 +181,7 @@ Plan plan_from_value(const Value& value) {
   plan.lights = spans_from(fields.optional_tables("lights"));
   plan.budget = fields.optional_number("budget");
   plan.task = task_from(fields.table("task"));
+  plan.constraints = constraints_from(fields.optional_tables("constraints"));
   plan.configuration = fields.opaque("configuration");
   plan.solver = fields.opaque("solver");
   plan.certificate = fields.opaque("certificate");

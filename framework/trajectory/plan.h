@@ -15,6 +15,7 @@
 #include "framework/trajectory/gate.h"
 #include "framework/trajectory/polyline.h"
 #include "framework/trajectory/scan_task.h"
+#include "framework/trajectory/stated_constraint.h"
 #include "framework/trajectory/time_span.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -61,6 +62,7 @@ struct Plan {
   std::vector<TimeSpan> lights;  // when the light is on; in order, apart from each other
   std::optional<double> budget;  // s of flight
   Task task;
+  std::vector<StatedConstraint> constraints;  // of the script
   Value configuration;  // effective, with overrides
   Value solver;         // solver report
   Value certificate;    // as verify writes it

@@ -20,6 +20,10 @@ Environment environment_from(Fields fields);
 Value spans_to_value(const std::vector<TimeSpan>& cuts);
 std::vector<TimeSpan> spans_from(std::vector<Fields> entries);
 
+// Those of the script, in its order.
+Value constraints_to_value(const std::vector<StatedConstraint>& constraints);
+std::vector<StatedConstraint> constraints_from(std::vector<Fields> entries);
+
 // A task that asks for no framing has neither of its keys.
 Value task_to_value(const Task& task);
 Task task_from(Fields fields);

@@ -26,7 +26,7 @@ struct CheckKind {
   const char* unit;
 };
 
-// Every certificate lists all of these, in this order.
+// Every certificate lists all of these, in this order; then the constraints of the script.
 inline constexpr std::array kCheckKinds{
     CheckKind{"document", CheckGroup::safety, true, ""},
     CheckKind{"provenance", CheckGroup::safety, true, ""},
@@ -138,12 +138,16 @@ void check_framing(const Flight& flight, Certificate& certificate);
 void check_gates(const Flight& flight, Certificate& certificate);
 void check_views(const Flight& flight, Certificate& certificate);
 void check_coverage(const Flight& flight, Certificate& certificate);
+// One for each constraint of the script, named after it, behind all that every certificate lists.
+void check_constraints(const Flight& flight, Certificate& certificate);
+void skip_constraints(const Plan& plan, const std::string& reason, Certificate& certificate);
 
 // What of the environment, the cuts and the framing does not hold together, in words. The spans are
 // judged against a flight that ends at `finish`.
 void list_problems(const Environment& environment, std::vector<std::string>& problems);
 void list_gate_problems(const Task& task, std::vector<std::string>& problems);
 void list_scan_problems(const Plan& plan, std::vector<std::string>& problems);
+void list_constraint_problems(const Plan& plan, std::vector<std::string>& problems);
 void list_problems(const Plan& film, double finish, std::vector<std::string>& problems);
 
 // Whether a figure is one that a plan may hold.

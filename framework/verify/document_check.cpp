@@ -22,6 +22,7 @@ class Reader {
     samples();
     list_problems(plan_.environment, problems_);
     task();
+    list_constraint_problems(plan_, problems_);
     if (problems_.empty()) {
       list_problems(plan_, plan_.trajectory.samples.back().time, problems_);
     }
@@ -89,13 +90,23 @@ class Reader {
     for (std::size_t i = 0; i <= motion.intervals(); ++i) box.extend(motion.stated(i).position);
     for (std::size_t i = 0; i < motion.intervals(); ++i)
       for (const MotionPoint& point : motion.integrate(i)) box.extend(point.position);
-    const Eigen::Vector3d room =
-        Eigen::Vector3d::Constant(plan_.environment.margin + tolerances::kMapReach);
+    const Eigen::Vector3d room = Eigen::Vector3d::Constant(
+        std::max(plan_.environment.margin + tolerances::kMapReach, map_reach()));
     box = Eigen::AlignedBox3d(box.min() - room, box.max() + room);
     const auto& scan = plan_.task.scan;
     if (!scan || scan->map != map) return box;
     for (const PlannedView& view : scan->views) box.extend(view.position);
     return box.merged(scan->region);
+  }
+
+  // How far constraints of the script tell distances to maps apart, m.
+  double map_reach() const {
+    double reach = 0;
+    for (const StatedConstraint& constraint : plan_.constraints)
+      for (const ConstraintStep& step : constraint.operations)
+        if (step.op == ConstraintOp::distance && step.name == "map")
+          reach = std::max(reach, step.number);
+    return reach;
   }
 
   void read_maps(const Vehicle& vehicle, std::vector<BlockedVoxels>& maps) {
@@ -161,8 +172,18 @@ class Reader {
 
   void steps(const Vehicle& vehicle) {
     const double total = Motion(plan_.trajectory, vehicle).total_steps();
-    if (total <= tolerances::kLargestSteps) return;
     char text[160];
+    double work = 0;
+    for (const StatedConstraint& constraint : plan_.constraints)
+      work += total * static_cast<double>(constraint.operations.size());
+    if (work > tolerances::kMostConstraintWork) {
+      std::snprintf(text, sizeof text,
+                    "evaluating the constraints of the script would take %.3g operations, more "
+                    "than %.0g",
+                    work, tolerances::kMostConstraintWork);
+      add(text);
+    }
+    if (total <= tolerances::kLargestSteps) return;
     std::snprintf(text, sizeof text,
                   "following the motion would take %.3g steps, more than %.0g: the samples are too "
                   "coarse for their inputs",

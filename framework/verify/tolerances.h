@@ -41,6 +41,17 @@ inline constexpr double kHiddenSpeed = 2e-5;    // m/s, across, up or down
 inline constexpr double kHiddenYawRate = 2e-5;  // rad/s
 inline constexpr double kHiddenGimbal = 1e-6;   // rad
 
+// Of the values of a constraint that the script states, whose unit nobody knows: a share of the
+// bound, or of the range of the values where that is larger. Between two samples a value may pass
+// its bound by this factor times an eighth of its second difference, and by at most a share of the
+// range.
+inline constexpr double kConstraintShare = 1e-4;
+inline constexpr double kConstraintFloor = 1e-5;
+inline constexpr double kConstraintBend = 2;
+inline constexpr double kConstraintBetween = 0.01;
+inline constexpr double kConstraintTime = 1e-9;       // s, nearer to a span's end than this is on it
+inline constexpr double kMostConstraintWork = 5e9;    // operations, at all points together
+
 // What a plan may hold at all.
 inline constexpr double kLargestNumber = 1e7;  // any figure of a sample or of the task, SI
 inline constexpr double kLargestSteps = 5e6;   // steps of integration

@@ -13,6 +13,7 @@ Certificate verify(const Plan& plan, const std::filesystem::path& folder) {
       certificate.checks.push_back(
           skipped_check(kCheckKinds[i].name, "the check 'document' failed"));
     }
+    skip_constraints(plan, "the check 'document' failed", certificate);
     return certificate;
   }
   certificate.checks.push_back(skipped_check("provenance", "the numbers alone do not tell"));
@@ -26,6 +27,7 @@ Certificate verify(const Plan& plan, const std::filesystem::path& folder) {
   check_time(flight, certificate);
   const std::optional<FlownPath> flown = check_closed_loop(flight, certificate);
   check_task(flight, flown, certificate);
+  check_constraints(flight, certificate);
   return certificate;
 }
 

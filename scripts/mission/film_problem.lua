@@ -175,7 +175,8 @@ local function guess(keyframes, camera, path)
 end
 
 -- Problem, task and camera of a film with all times multiplied by `stretch`. `only`: "unlimited",
--- as if the vehicle could do anything; "flight", without the camera.
+-- as if the vehicle could do anything; "flight", without the camera; "unconstrained", with the
+-- script's own constraints judged and not held.
 function problem.state(run, shot, stretch, only)
   local o = run.options
   local duration = shot.duration * stretch
@@ -231,7 +232,7 @@ function problem.state(run, shot, stretch, only)
     end
     task.framing_share = #task.framing > 0 and o.framing or nil
   end
-  if not only then own.add(p, o, shot.terms) end
+  if not only or only == "unconstrained" then own.add(p, o, shot.terms, not only) end
   p:guess_path(guess(keyframes, camera, path))
   p:finish()
   return p, task, camera

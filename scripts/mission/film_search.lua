@@ -11,6 +11,7 @@ local M = {}
 
 local HOVER = 10                -- s, of a single keyframe without a time
 local LARGEST_STRETCH = 64
+local MUCH_STRETCH = 4          -- at which a film holds that time alone mends
 local CAMERA_STRETCH = 1.05     -- steps beyond what the flight alone needs
 local STRETCH_ACCURACY = 1.01   -- the smallest certified stretch is found to 1 %
 
@@ -44,6 +45,41 @@ local function broken_limit(run, shot, failing, leg)
   local limit = free.solution.status == "optimal" and free.verdict.failures[1]
   if limit then return "flown as if the vehicle had no limits: " .. limit end
   return failing.verdict.failures[1] or failing.solution.message
+end
+
+-- The script's own constraints that a verdict breaks: sentences; and whether it breaks nothing
+-- else.
+local function broken_constraints(verdict)
+  local list, alone = {}, true
+  for _, sentence in ipairs(verdict.failures) do
+    if string.find(sentence, '^constraint "') then list[#list + 1] = sentence
+    else alone = false end
+  end
+  return list, alone
+end
+
+-- Whether the script's own constraints are what is in the way of a film, in words: the same film
+-- flown without holding them.
+local function in_the_way(run, shot, failing)
+  if #run.options.constraints == 0 or run:cancelled() then return nil end
+  local free = attempt(run, shot, failing.stretch, "unconstrained")
+  local list, alone = broken_constraints(free.verdict)
+  if not alone or free.solution.status == "infeasible" then
+    local worst = failing.solution.violations[1]
+    for _, entry in ipairs(run.options.constraints) do
+      if worst and worst.amount > 1e-4 and worst.name == (entry.name or entry.type) then
+        return string.format('constraint "%s" is in the way: missed by %.3g at %.4g s', worst.name,
+                             worst.amount, worst.time)
+      end
+    end
+    return nil
+  end
+  if #list > 0 then return "in the way, as the film shows without it: " .. list[1] end
+  local names = {}
+  for i, entry in ipairs(run.options.constraints) do
+    names[i] = '"' .. (entry.name or entry.type) .. '"'
+  end
+  return "certified without the constraints of the script, " .. table.concat(names, ", ")
 end
 
 -- Certified, and not only because the least violation hides in the verifier's tolerance.
@@ -121,7 +157,13 @@ local function at_given_times(run, shot)
   end
   if not why and blocked(first) then return finished(run, shot, first, notes) end
   local hopeless = not why and out_of_sight(first)
-  why = broken_limit(run, shot, first, why)
+  local constraint = not why and in_the_way(run, shot, first)
+  -- More time mends a constraint on speed, and none on places: one try tells.
+  if constraint then
+    hopeless = hopeless or not (o.hard or auto)
+               or not holds(attempt(run, shot, first.stretch * MUCH_STRETCH))
+  end
+  why = constraint or broken_limit(run, shot, first, why)
   if hopeless or not o.hard and not auto then
     notes[#notes + 1] = why
     return finished(run, shot, first, notes)

@@ -6,22 +6,21 @@
 --             { type = "input_effort", weight = 0.1 } },
 --   constraints = { { name = "west", upper = 4, value = function(s) return s.position.x end } },
 --
--- Name, type and weight are options as any other (`--set costs[1].weight=2`); the rest is handed on
--- to the problem, which checks it.
+-- All parameters of a plugin are options, and so are the name and the weight of a function
+-- (`--set costs[1].weight=2`, `--set costs[2].height=6`); the rest of a function is handed on to the
+-- problem, which checks it.
 local own = {}
 
 local name = { name = "name", type = "text", summary = "for messages and reports" }
-local plugin = { name = "type", type = "text", summary = "a plugin; absent: a function is given" }
-
 own.declared = {
-  { name = "costs", type = "tables", summary = "cost terms beside those of the mission",
-    also = "(lapwing.cost_term|lapwing.own_cost)[]", table = {
-    name, plugin, { name = "weight", type = "number", default = 1, minimum = 0, maximum = 1e9,
-                    summary = "of its squares" } } },
-  { name = "constraints", type = "tables", summary = "constraints beside those of the mission",
-    also = "(lapwing.constraint|lapwing.own_constraint)[]", table = { name, plugin } },
+  { name = "costs", type = "plugins", kind = "cost_term", also = "lapwing.own_cost[]",
+    summary = "cost terms beside those of the mission",
+    table = { name, { name = "weight", type = "number", default = 1, minimum = 0, maximum = 1e9,
+                      summary = "of its squares" } } },
+  { name = "constraints", type = "plugins", kind = "constraint", also = "lapwing.own_constraint[]",
+    summary = "constraints beside those of the mission", table = { name } },
 }
-local settled = { name = true, type = true, weight = true }
+local settled = { name = true, weight = true }
 
 -- Takes out of `options`, which is changed, what is no plain data, and returns it.
 function own.taken(options)
@@ -38,7 +37,10 @@ function own.taken(options)
         lapwing.fail(string.format("%s[%d]: expected a table, got %s", list, i, type(entry)))
       end
       local kept, other = {}, {}
-      for key, value in pairs(entry) do (settled[key] and kept or other)[key] = value end
+      for key, value in pairs(entry) do
+        local plain = settled[key] or entry.type ~= nil and type(value) ~= "function"
+        if plain then kept[key] = value else other[key] = value end
+      end
       if kept.weight and list == "constraints" then
         lapwing.fail(string.format("constraints[%d]: a constraint has no weight", i))
       end
@@ -48,14 +50,17 @@ function own.taken(options)
   return rest
 end
 
--- Adds them to a problem; `rest` is what own.taken returned.
-function own.add(p, options, rest)
+-- Adds them to a problem; `rest` is what own.taken returned. Where they are not `held`, constraints
+-- are left to the certificate alone, and those of plugins out.
+function own.add(p, options, rest, held)
   for list, add in pairs { costs = "add_cost", constraints = "add_constraint" } do
     for i, entry in ipairs(options[list] or {}) do
       local term = {}
       for key, value in pairs(rest[list][i] or {}) do term[key] = value end
       for key, value in pairs(entry) do term[key] = value end
-      p[add](p, term)
+      if list == "constraints" and entry.type then term.certificate = "listed" end
+      if list == "constraints" and not held and not entry.type then term.held = false end
+      if list == "costs" or held or not entry.type then p[add](p, term) end
     end
   end
 end
