@@ -32,3 +32,24 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/lapwing-config-version.cmak
   VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/installed/lapwing-config.cmake
   ${CMAKE_BINARY_DIR}/lapwing-config-version.cmake DESTINATION ${package})
+
+# The manual and the completions are written by the program itself, from the commands that it has.
+include(GNUInstallDirs)
+set(manual ${CMAKE_BINARY_DIR}/share)
+set(manual_files ${manual}/man/man1/lapwing.1)
+set(write_manual COMMAND ${CMAKE_COMMAND} -E make_directory ${manual}/man/man1
+                 COMMAND lapwing_app man > ${manual}/man/man1/lapwing.1)
+foreach(shell bash:bash-completion/completions/lapwing zsh:zsh/site-functions/_lapwing
+        fish:fish/vendor_completions.d/lapwing.fish)
+  string(REPLACE ":" ";" shell ${shell})
+  list(GET shell 0 name)
+  list(GET shell 1 file)
+  get_filename_component(folder ${file} DIRECTORY)
+  list(APPEND manual_files ${manual}/${file})
+  list(APPEND write_manual COMMAND ${CMAKE_COMMAND} -E make_directory ${manual}/${folder}
+                           COMMAND lapwing_app completion ${name} > ${manual}/${file})
+  install(FILES ${manual}/${file} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder})
+endforeach()
+add_custom_command(OUTPUT ${manual_files} ${write_manual} DEPENDS lapwing_app VERBATIM)
+add_custom_target(lapwing_manual ALL DEPENDS ${manual_files})
+install(FILES ${manual}/man/man1/lapwing.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

@@ -31,8 +31,9 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
   add_text(*check, "plugin", "FILE.so|[KIND/]NAME", "a library, or the name of a plugin",
            [&](const std::string& given) { asked.target = given; })
       ->required();
-  add_repeated(*check, "--only", "TEST", asked.only, "this test alone; repeatable");
-  add_text(*check, "--limit", "S", "s that one test may take; else 60",
+  add_repeated(*check, "--only", "TEST", asked.only,
+               "this test alone; repeatable; default: all of them");
+  add_text(*check, "--limit", "S", "s that one test may take; default: 60",
            [&](const std::string& text) {
              asked.limit = read_number("--limit", text);
              if (!(asked.limit > 0))
@@ -47,13 +48,13 @@ void add_description_commands(CLI::App& app, Invocation& invocation, Description
                               Command& command) {
   CLI::App* annotations = app.add_subcommand(
       "annotations", "what scripts may call and set, for editors with a Lua language server");
-  CLI::App* schema = app.add_subcommand(
-      "schema", "a JSON schema of configurations, for editors that check YAML");
+  CLI::App* schema =
+      app.add_subcommand("schema", "a JSON schema of configurations, for editors that check YAML");
   for (CLI::App* one : {annotations, schema})
-    add_text(*one, "-o,--output", "FILE", "the file to write; else standard output",
+    add_text(*one, "-o,--output", "FILE", "the file to write; default: standard output",
              [&](const std::string& path) { asked.target = path; });
   annotations->add_flag("--markdown", asked.markdown, "the calls alone, as a table of a README");
-  add_text(*schema, "kind", "KIND", "a kind of mission, or vehicle; else all missions",
+  add_text(*schema, "kind", "KIND", "a kind of mission, or vehicle; default: all missions",
            [&](const std::string& given) { asked.kind = given; });
   annotations->callback([&] { command = [&] { return write_annotations(asked, invocation); }; });
   schema->callback([&] { command = [&] { return write_schema(asked, invocation); }; });
@@ -75,7 +76,7 @@ void add_new_commands(CLI::App& app, Invocation& invocation, NewFiles& wanted, C
         ->required();
     add_json(*one, invocation);
   }
-  add_text(*plugin, "--in", "DIR", "where the folder is made; else here",
+  add_text(*plugin, "--in", "DIR", "where the folder is made; default: here",
            [&](const std::string& given) { wanted.folder = given; });
   plugin->callback([&] { command = [&] { return new_plugin(wanted, invocation); }; });
   mission->callback([&] { command = [&] { return new_mission(wanted, invocation); }; });

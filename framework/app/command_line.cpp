@@ -1,23 +1,29 @@
 #include "framework/app/command_line.h"
 #include "framework/app/command_options.h"
+#include "framework/app/command_reference.h"
 #include "framework/app/descriptions.h"
+#include "framework/app/diff_command.h"
 #include "framework/app/evaluate_explore.h"
+#include "framework/app/help_commands.h"
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
 #include "framework/app/plugin_guard.h"
 #include "framework/app/provenance.h"
 #include "framework/app/sweep_command.h"
+#include "framework/app/terminal.h"
 #include "framework/app/train_command.h"
 #include "framework/app/version.h"
 
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <iostream>
+#include <new>
 #include <sstream>
 
 #include "framework/core/json.h"
 #include "framework/core/log.h"
 #include "framework/core/units.h"
+#include "framework/core/visible_text.h"
 #include "framework/vehicle/closed_loop.h"
 
 namespace lapwing {
@@ -33,10 +39,10 @@ void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& scrip
   CLI::App* run = app.add_subcommand("run", "plan a mission, certify and write it");
   add_mission(*run, script);
   add_configuration(*run, invocation);
-  add_text(*run, "-o,--out", "DIR", "folder of the results; else out/<mission>",
+  add_text(*run, "-o,--out", "DIR", "folder of the results; default: out/<mission>",
            [&](const std::string& path) { invocation.out = path; });
   run->add_flag("--keep", invocation.keep, "keep an older run in the folder as DIR.1, DIR.2, ...");
-  add_threads(*run, invocation, "threads to use; else one per core");
+  add_threads(*run, invocation, "threads to use; default: one per core");
   run->add_flag("--quiet", invocation.quiet, "no progress, no summary");
   run->add_flag("--verbose", invocation.verbose, "say what was tried and came to nothing, too");
   add_json(*run, invocation);
@@ -55,11 +61,14 @@ void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& com
   add_mission(*sweep, asked.script);
   add_configuration(*sweep, invocation);
   add_repeated(*sweep, "--vary", "KEY=VALUE,VALUE,...", asked.varied,
-               "values of one option; of several, all combinations are run");
-  add_count(*sweep, "--jobs", 1, 64, "runs at once; else 2",
+               "values of one option; repeatable: all combinations are run; default: none");
+  add_count(*sweep, "--jobs", 1, 64, "runs at once; default: 2",
             [&](std::uint64_t jobs) { asked.jobs = static_cast<int>(jobs); });
-  add_text(*sweep, "-o,--out", "DIR", "folder of the results; else out/sweep",
+  add_text(*sweep, "-o,--out", "DIR", "folder of the results; default: out/sweep",
            [&](const std::string& path) { invocation.out = path; });
+  sweep->add_flag("--resume", asked.resume,
+                  "go on with a sweep that was ended: run what is missing");
+  sweep->add_flag("--quiet", invocation.quiet, "no progress, no table");
   add_json(*sweep, invocation);
   sweep->callback([&] { command = [&] { return sweep_missions(asked, invocation); }; });
 }
@@ -96,13 +105,13 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
       app.add_subcommand("simulate", "fly a plan by the whole quadrotor under control");
   add_plan(*simulate, plan);
   add_text(*simulate, "--wind", "MEAN,GUST[,TO]",
-           "wind and gusts in m/s, and where it blows to in degrees (0: east)",
+           "wind and gusts in m/s, and where it blows to in degrees (0: east); default: calm",
            [&](const std::string& text) { read_wind(text, conditions); });
-  add_text(*simulate, "--mass-error", "PERCENT", "by which the true mass exceeds the plan's",
-           [&](const std::string& text) {
+  add_text(*simulate, "--mass-error", "PERCENT",
+           "by which the true mass exceeds the plan's; default: 0", [&](const std::string& text) {
              conditions.mass_error = read_number("--mass-error", text) / 100;
            });
-  add_seed(*simulate, conditions.seed, "of the gusts");
+  add_seed(*simulate, conditions.seed, "of the gusts; default: 1");
   add_page(*simulate, target);
   add_json(*simulate, invocation);
   simulate->callback(
@@ -155,11 +164,13 @@ void add_scene_commands(CLI::App& app, Invocation& invocation, std::filesystem::
            [&](const std::string& path) { file = path; })
       ->required();
   add_page(*view, target)->required();
-  add_count(*view, "--seed", 0, kLargestSeed, "of a Lua scene",
+  add_count(*view, "--seed", 0, kLargestSeed, "of a Lua scene; default: the scene's own",
             [&](std::uint64_t seed) { stated.seed = seed; });
-  add_text(*view, "--unit", "M", "metres that one unit of a mesh file is, in place of what it says",
+  add_text(*view, "--unit", "M",
+           "metres that one unit of a mesh file is; default: what the file says",
            [&](const std::string& text) { stated.unit = read_number("--unit", text); });
-  add_text(*view, "--up", "x|y|z", "the axis of a mesh file that points up, in place of its own",
+  add_text(*view, "--up", "x|y|z",
+           "the axis of a mesh file that points up; default: what the file says",
            [&](const std::string& axis) { stated.up = axis; });
   view->callback([&] { command = [&] { return view_scene(file, stated, target, invocation); }; });
 }
@@ -171,12 +182,13 @@ void add_race_command(CLI::App& app, Invocation& invocation, std::filesystem::pa
   add_plan(*race, plan);
   add_repeated(*race, "--pilot", "LOG[:KEY=VALUE,...]", pilots,
                "a stick log (CSV: time,forward,left), and of its pilot: name, weight, strength, "
-               "reach, speed, handicap; one or more");
-  add_text(*race, "--deviation-price", "S", "s per metre of mean distance from the course",
+               "reach, speed, handicap; repeatable, at least one; no default");
+  add_text(*race, "--deviation-price", "S",
+           "s per metre of mean distance from the course; default: 5",
            [&](const std::string& text) {
              rules.deviation_price = read_number("--deviation-price", text);
            });
-  add_text(*race, "--gate-price", "S", "s per gate that is missed",
+  add_text(*race, "--gate-price", "S", "s per gate that is missed; default: 10",
            [&](const std::string& text) { rules.gate_price = read_number("--gate-price", text); });
   add_page(*race, target);
   add_json(*race, invocation);
@@ -184,25 +196,9 @@ void add_race_command(CLI::App& app, Invocation& invocation, std::filesystem::pa
       [&] { command = [&] { return race_plan(plan, pilots, rules, target, invocation); }; });
 }
 
-// What to say of a first word that is no command; empty where there is none.
-std::string unknown_command(const CLI::App& app) {
-  const CLI::App* at = &app;
-  while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
-  const std::vector<std::string> rest = app.remaining(true);
-  if (rest.empty() || rest.front().starts_with("-")) return "";
-  std::vector<std::string> known;
-  for (const CLI::App* command : at->get_subcommands([](const CLI::App*) { return true; })) {
-    known.push_back(command->get_name());
-  }
-  if (known.empty()) return "";
-  const std::string nearest = nearest_name(rest.front(), known);
-  return "unknown command '" + rest.front() + "'" +
-         (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
-}
-
 ExitStatus report_error(const Invocation& invocation, ExitStatus status,
                         const std::string& message) {
-  std::cerr << "lapwing: " << message << "\n";
+  std::cerr << tinted_error(Tone::bad, "lapwing:") << " " << visible_text(message) << "\n";
   if (invocation.json) {
     Value object = Value::map();
     object.set("status", "failed");
@@ -219,6 +215,13 @@ ExitStatus guarded_command(const Command& command, const Invocation& invocation)
     return report_error(invocation, ExitStatus::bad_input, error.what());
   } catch (const Cancelled&) {
     return report_error(invocation, ExitStatus::interrupted, "cancelled");
+  } catch (const std::filesystem::filesystem_error& error) {  // a path that nobody checked before
+    return report_error(invocation, ExitStatus::bad_input,
+                        "cannot use '" + error.path1().string() + "': " + error.code().message());
+  } catch (const std::bad_alloc&) {
+    return report_error(invocation, ExitStatus::defect,
+                        "out of memory: this needs more than the system or a limit (ulimit -v) "
+                        "gives");
   } catch (const std::exception& error) {
     return report_error(invocation, ExitStatus::defect,
                         std::string("internal error: ") + error.what());
@@ -238,10 +241,10 @@ Registry Invocation::registry() const {
   return Registry(plugin_search_path(plugin_path));
 }
 
-int run_command_line(int argc, const char* const* argv) {
-  CLI::App app("Planning for camera-carrying micro aerial vehicles.", "lapwing");
-  app.set_version_flag("--version", std::string("lapwing ") + program_version());
-  app.require_subcommand(1);
+namespace {
+
+// What the options of a command line are read into.
+struct Requests {
   Invocation invocation;
   std::filesystem::path script, plan, target;
   std::string format, name;
@@ -256,34 +259,67 @@ int run_command_line(int argc, const char* const* argv) {
   Description described;
   NewFiles wanted;
   Sweep sweep;
-  ScanEvaluation asked;
+  PlanDifference difference;
+  ScanEvaluation scanning;
   ExploreEvaluation exploring;
+  HelpRequest help;
   Command command;
+};
+
+// Everything that there is. `asked` outlives the parse and the command.
+void declare_commands(CLI::App& app, Requests& asked) {
+  Invocation& invocation = asked.invocation;
+  Command& command = asked.command;
+  app.set_version_flag("--version", std::string("lapwing ") + program_version(),
+                       "the program's version");
+  app.require_subcommand(1);
   add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
-               "a folder of plugins, searched first");
+               "a folder of plugins, searched first; repeatable; default: none");
+  add_colour(app);
   app.fallthrough();
-  add_run(app, invocation, script, command);
-  add_sweep(app, invocation, sweep, command);
-  add_plan_commands(app, invocation, plan, conditions, format, target, judges, uncertified,
-                    command);
-  add_map_commands(app, invocation, plan, target, command);
-  add_scene_commands(app, invocation, plan, stated, target, command);
-  add_race_command(app, invocation, plan, pilots, rules, target, command);
-  add_plugin_commands(app, invocation, name, described, checking, command);
-  add_description_commands(app, invocation, described, command);
-  add_new_commands(app, invocation, wanted, command);
-  add_train_commands(app, invocation, training, command);
+  add_run(app, invocation, asked.script, command);
+  add_sweep(app, invocation, asked.sweep, command);
+  add_difference(app, invocation, asked.difference, command);
+  add_plan_commands(app, invocation, asked.plan, asked.conditions, asked.format, asked.target,
+                    asked.judges, asked.uncertified, command);
+  add_map_commands(app, invocation, asked.plan, asked.target, command);
+  add_scene_commands(app, invocation, asked.plan, asked.stated, asked.target, command);
+  add_race_command(app, invocation, asked.plan, asked.pilots, asked.rules, asked.target, command);
+  add_plugin_commands(app, invocation, asked.name, asked.described, asked.checking, command);
+  add_description_commands(app, invocation, asked.described, command);
+  add_new_commands(app, invocation, asked.wanted, command);
+  add_train_commands(app, invocation, asked.training, command);
   CLI::App* evaluate = app.add_subcommand("evaluate", "studies: methods against each other");
   evaluate->require_subcommand(1);
-  add_evaluate_scan(*evaluate, invocation, asked, command);
-  add_evaluate_explore(*evaluate, invocation, exploring, command);
+  add_evaluate_scan(*evaluate, invocation, asked.scanning, command);
+  add_evaluate_explore(*evaluate, invocation, asked.exploring, command);
+  add_help_commands(app, asked.help, command);
+  add_footers(app);
+}
+
+constexpr const char* kAbout = "Plan flights for camera drones.";
+
+}  // namespace
+
+CommandEntry command_tree() {
+  CLI::App app(kAbout, "lapwing");
+  Requests asked;
+  declare_commands(app, asked);
+  return entry_of(app, "lapwing");
+}
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app(kAbout, "lapwing");
+  Requests asked;
+  declare_commands(app, asked);
+  choose_colour(ColourChoice::automatic);
   // Documents name files, and JSON holds nothing else.
   for (int k = 1; k < argc; ++k)
     if (!is_utf8(argv[k])) {
-      invocation.json = std::any_of(argv + 1, argv + argc,
-                                    [](const char* a) { return std::string(a) == "--json"; });
+      asked.invocation.json = std::any_of(argv + 1, argv + argc,
+                                          [](const char* a) { return std::string(a) == "--json"; });
       return static_cast<int>(
-          report_error(invocation, ExitStatus::bad_input,
+          report_error(asked.invocation, ExitStatus::bad_input,
                        "'" + as_utf8(argv[k]) + "': a name or text that is not UTF-8; rename it"));
     }
   try {
@@ -291,14 +327,11 @@ int run_command_line(int argc, const char* const* argv) {
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
-    if (const std::string message = unknown_command(app); !message.empty()) {
-      std::cerr << "lapwing: " << message << "\nRun with --help for more information.\n";
-    } else {
-      app.exit(error, std::cerr, std::cerr);
-    }
+    std::cerr << tinted_error(Tone::bad, "lapwing:") << " "
+              << visible_text(usage_error(app, error.what())) << "\n";
     return static_cast<int>(ExitStatus::bad_input);
   }
-  return static_cast<int>(guarded_command(command, invocation));
+  return static_cast<int>(guarded_command(asked.command, asked.invocation));
 }
 
 }  // namespace lapwing

@@ -39,7 +39,7 @@ CLI::Option* add_text(CLI::App& command, const std::string& name, const std::str
 }
 
 CLI::Option* add_page(CLI::App& command, std::filesystem::path& target) {
-  return add_text(command, "-o,--output", "PATH", "the report page to write, .html",
+  return add_text(command, "-o,--output", "PATH", "the report page to write, .html; default: none",
                   [&](const std::string& path) {
                     target = path;
                     if (target.extension() != ".html")
@@ -72,11 +72,14 @@ void add_count(CLI::App& command, const std::string& name, std::uint64_t least, 
 }
 
 void add_configuration(CLI::App& command, Invocation& invocation) {
-  add_repeated(command, "--config", "FILE", invocation.configs,
-               "a configuration file or its name in configs/; later ones win");
-  add_repeated(command, "--set", "KEY=VALUE", invocation.overrides, "set one option");
-  add_repeated(command, "--data", "DIR", invocation.data, "a folder that the script may read");
-  add_seed(command, invocation.seed, "of all random numbers");
+  add_repeated(
+      command, "--config", "FILE", invocation.configs,
+      "a configuration file or its name in configs/; repeatable, later ones win; default: none");
+  add_repeated(command, "--set", "KEY=VALUE", invocation.overrides,
+               "set one option; repeatable, later ones win; default: none");
+  add_repeated(command, "--data", "DIR", invocation.data,
+               "a folder that the script may read; repeatable; default: those of LAPWING_DATA");
+  add_seed(command, invocation.seed, "of all random numbers; default: 1");
 }
 
 void add_mission(CLI::App& command, std::filesystem::path& script) {

@@ -3,6 +3,7 @@
 
 #include "framework/app/command_line.h"
 #include "framework/core/files.h"
+#include "framework/core/visible_text.h"
 #include "framework/export/map_report.h"
 #include "framework/map/map_file.h"
 
@@ -65,7 +66,7 @@ ExitStatus show_map(const fs::path& file, const Invocation& invocation) {
     print_json(object);
     return ExitStatus::done;
   }
-  std::printf("%s\n", file.c_str());
+  std::printf("%s\n", visible_line(file.string()).c_str());
   std::printf("  holds      %s\n", read.two_states ? "two states" : "log odds");
   std::printf("  voxel      %.6g m\n", read.resolution);
   std::printf("  leaves     %zu\n", read.leaves.size());

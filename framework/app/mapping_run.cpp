@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "framework/app/terminal.h"
+#include "framework/core/visible_text.h"
 #include "framework/export/map_report.h"
 #include "framework/map/map_file.h"
 
@@ -37,13 +39,14 @@ Value json_of(const MappingOutcome& outcome, const Invocation& invocation,
 void print_summary(const MappingOutcome& outcome, const std::string& status) {
   const Mapping& mapping = *outcome.result.mapping;
   const VoxelCounts counts = mapping.map->counts();
-  std::printf("%s: %s\n", outcome.result.plan.mission.c_str(),
-              status == "ok" ? "complete" : status.c_str());
+  std::printf("%s: %s\n", visible_line(outcome.result.plan.mission).c_str(),
+              tinted(status == "ok" ? Tone::good : Tone::bad, status == "ok" ? "complete" : status)
+                  .c_str());
   std::printf(
       "  %s, voxels of %.4g m by %s: %llu free, %llu occupied, "
       "%llu known but undecided, %.1f MiB\n",
-      mapping.source.c_str(), mapping.map->grid().resolution(), mapping.plugin.c_str(),
-      static_cast<unsigned long long>(counts.free),
+      visible_line(mapping.source).c_str(), mapping.map->grid().resolution(),
+      mapping.plugin.c_str(), static_cast<unsigned long long>(counts.free),
       static_cast<unsigned long long>(counts.occupied),
       static_cast<unsigned long long>(counts.known - counts.free - counts.occupied),
       static_cast<double>(mapping.map->bytes()) / (1 << 20));
@@ -52,9 +55,9 @@ void print_summary(const MappingOutcome& outcome, const std::string& status) {
                 1e3 * mapping.seconds / static_cast<double>(mapping.scans));
   if (counts.free + counts.occupied == 0)
     std::printf("  nothing was measured often enough to be free or occupied\n");
-  std::printf("  report: %s\n", (outcome.target.folder() / "report.html").c_str());
+  std::printf("  report: %s\n", visible_line((outcome.target.folder() / "report.html").string()).c_str());
   if (const std::string old = outcome.target.old_run_in_words(); !old.empty())
-    std::printf("  %s\n", old.c_str());
+    std::printf("  %s\n", visible_line(old).c_str());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "framework/config/lookup.h"
 #include "framework/config/shipped.h"
 #include "framework/core/log.h"
+#include "framework/core/visible_text.h"
 
 namespace lapwing {
 
@@ -67,7 +68,7 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
     logging::info(line);
     if (quiet) return;
     if (before_print) before_print();
-    std::cerr << line << "\n";
+    std::cerr << visible_text(line) << "\n";
   };
   auto mission = std::make_unique<Mission>(script, std::move(settings));
   mission->configure(layers, invocation.overrides);

@@ -33,6 +33,26 @@ void expect_kind(const std::string& kind, const std::vector<std::string>& known,
                    " There are: " + all);
 }
 
+constexpr std::size_t kLongestPluginName = 64;  // file systems take 255 bytes, endings included
+
+void expect_usable_length(const std::string& name) {
+  if (name.size() <= kLongestPluginName) return;
+  throw InputError("a plugin's name of " + std::to_string(name.size()) +
+                   " letters is too long: at most " + std::to_string(kLongestPluginName) +
+                   " are taken");
+}
+
+// The name stands for the plugin in source, scripts and configurations.
+void expect_no_keyword(const std::string& name, const fs::path& templates) {
+  std::istringstream keywords(read_file(templates / "keywords.txt"));
+  for (std::string word; keywords >> word;)
+    if (word == name)
+      throw InputError("'" + name +
+                       "' cannot be a plugin's name: it is a keyword of C++; choose another, "
+                       "such as my_" +
+                       name);
+}
+
 void expect_snake_case(const std::string& name) {
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
@@ -94,9 +114,12 @@ void say(const Invocation& invocation, const std::vector<fs::path>& files,
 ExitStatus new_plugin(const NewFiles& wanted, const Invocation& invocation) {
   const fs::path templates = shipped_folder("scripts") / "templates" / "plugins";
   expect_kind(wanted.kind, kinds_in(templates), "plugin");
+  expect_usable_length(wanted.name);
   expect_snake_case(wanted.name);
+  expect_no_keyword(wanted.name, templates.parent_path());
   expect_free_class(wanted.name, in_pascal_case(wanted.name), templates.parent_path());
-  if (!wanted.folder.empty() && !fs::is_directory(wanted.folder))
+  std::error_code code;
+  if (!wanted.folder.empty() && !fs::is_directory(wanted.folder, code))
     throw InputError("--in: '" + wanted.folder.string() + "' is no folder");
   const fs::path folder = wanted.folder / wanted.name;
   if (fs::exists(folder)) throw InputError("'" + folder.string() + "' exists already");
@@ -130,6 +153,10 @@ ExitStatus new_mission(const NewFiles& wanted, const Invocation& invocation) {
   const fs::path templates = shipped_folder("scripts") / "templates" / "missions";
   expect_kind(wanted.kind, kinds_in(templates), "mission");
   const fs::path file = wanted.name;
+  std::error_code code;
+  static_cast<void>(fs::symlink_status(file, code));
+  if (code && code != std::errc::no_such_file_or_directory)
+    throw InputError("cannot write '" + file.string() + "': " + code.message());
   if (file.extension() != ".lua")
     throw InputError("'" + wanted.name +
                      "' is no name for a script: expected one that ends in .lua");

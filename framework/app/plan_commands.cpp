@@ -5,8 +5,10 @@
 #include "framework/app/command_line.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/provenance.h"
+#include "framework/app/terminal.h"
 #include "framework/config/annotated.h"
 #include "framework/core/files.h"
+#include "framework/core/visible_text.h"
 #include "framework/export/exporter.h"
 
 namespace lapwing {
@@ -14,10 +16,13 @@ namespace lapwing {
 namespace {
 
 void print_check(const Check& check) {
-  const char* verdict = !check.skipped.empty() ? "skipped" : check.pass ? "pass" : "FAIL";
+  const bool made = check.skipped.empty();
+  std::string verdict = !made ? "skipped" : check.pass ? "pass   " : "FAIL   ";
+  verdict = tinted(!made ? Tone::faint : check.pass ? Tone::good : Tone::bad, verdict);
   const bool above = check.name == "provenance" && check.pass;  // in the lines before the checks
   const std::string result = above ? "as its sources say, see above" : result_of(check);
-  std::printf("  %-7s  %-22s %s%s\n", verdict, check.name.c_str(), result.c_str(),
+  std::printf("  %s  %-22s %s%s\n", verdict.c_str(), check.name.c_str(),
+              visible_line(result).c_str(),
               check.required || !check.skipped.empty() ? "" : " (reported only)");
 }
 
@@ -56,8 +61,11 @@ ExitStatus verify_plan(const std::filesystem::path& file, const Judges& judges,
     object.set("certificate", certificate.to_value());
     print_json(object);
   } else {
-    std::printf("%s: %s\n%s", judged.plan.mission.c_str(),
-                certificate.feasible() ? "certified" : "not certified", judged.lines.c_str());
+    const bool feasible = certificate.feasible();
+    std::printf("%s: %s\n%s", visible_line(judged.plan.mission).c_str(),
+                tinted(feasible ? Tone::good : Tone::bad, feasible ? "certified" : "not certified")
+                    .c_str(),
+                visible_text(judged.lines).c_str());
     for (const Check& check : certificate.checks) print_check(check);
   }
   return certificate.feasible() ? ExitStatus::done : ExitStatus::not_certified;
@@ -101,8 +109,9 @@ ExitStatus show_configuration(const std::filesystem::path& script, const Invocat
   if (invocation.json) {
     print_json(mission->configuration());
   } else {
-    std::cout << "# " << mission->kind() << ": " << mission->name() << "\n"
-              << annotated_yaml(mission->configuration());
+    std::cout << "# " << visible_line(mission->kind()) << ": " << visible_line(mission->name())
+              << "\n"
+              << visible_text(annotated_yaml(mission->configuration()));
   }
   return ExitStatus::done;
 }

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "framework/app/terminal.h"
 #include "framework/conformance/check.h"
 #include "framework/core/json.h"
 #include "framework/core/own_process.h"
+#include "framework/core/visible_text.h"
 
 namespace lapwing {
 
@@ -172,6 +174,15 @@ Tested opens(const fs::path& library, double limit) {
   return result_of("opens", found);
 }
 
+// Padded to the longest outcome.
+std::string in_its_colour(std::string outcome) {
+  const Tone tone = outcome == "passed"                           ? Tone::good
+                    : outcome == "failed" || outcome == "crashed" ? Tone::bad
+                                                                  : Tone::faint;
+  outcome.resize(std::max<std::size_t>(outcome.size(), 8), ' ');
+  return tinted(tone, outcome);
+}
+
 bool report(const std::string& title, const std::vector<Tested>& tests, bool json, Value& list) {
   bool good = true;
   Value values = Value::list();
@@ -186,8 +197,8 @@ bool report(const std::string& title, const std::vector<Tested>& tests, bool jso
     if (!test.message.empty()) value.set("message", test.message);
     values.push_back(std::move(value));
     if (!json)
-      std::printf("  %-8s %s%s%s\n", test.outcome.c_str(), test.name.c_str(),
-                  test.message.empty() ? "" : ": ", test.message.c_str());
+      std::printf("  %s %s%s%s\n", in_its_colour(test.outcome).c_str(), test.name.c_str(),
+                  test.message.empty() ? "" : ": ", visible_text(test.message).c_str());
   }
   if (!json) std::printf("%zu tests, %d failed\n", tests.size(), failed);
   list.as_list().back().set("tests", std::move(values));

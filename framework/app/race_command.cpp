@@ -5,6 +5,7 @@
 #include "framework/app/command_line.h"
 #include "framework/app/provenance.h"
 #include "framework/core/files.h"
+#include "framework/core/visible_text.h"
 #include "framework/export/race_report.h"
 #include "framework/verify/verify.h"
 
@@ -83,7 +84,8 @@ ExitStatus race_plan(const std::filesystem::path& file, const std::vector<std::s
     object.set("game", to_value(raced));
     print_json(object);
   } else {
-    std::printf("%s\n%s", plan.mission.c_str(), race_result(raced).c_str());
+    std::printf("%s\n%s", visible_line(plan.mission).c_str(),
+                visible_text(race_result(raced)).c_str());
   }
   return winner_of(raced) < 0 ? ExitStatus::not_certified : ExitStatus::done;
 }

@@ -7,12 +7,15 @@
 #include "framework/app/interruption.h"
 #include "framework/app/mapping_run.h"
 #include "framework/app/mission_loading.h"
+#include "framework/app/plan_figures.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
 #include "framework/app/run_target.h"
+#include "framework/app/terminal.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/log.h"
+#include "framework/core/visible_text.h"
 #include "framework/export/exporter.h"
 #include "framework/export/flight_report.h"
 #include "framework/export/light_painting.h"
@@ -113,16 +116,25 @@ std::string reported_misses(const Certificate& certificate) {
   return lines;
 }
 
-std::string in_words(const RunOutcome& outcome) {
+std::string verdict_in_words(const RunOutcome& outcome) {
   const std::string& status = outcome.status;
-  if (status == "ok") return "certified" + reported_misses(outcome.certificate);
-  std::string words = status == "not_certified" ? "not certified" : status;
-  const std::vector<Check> failures = outcome.certificate.failures();
-  if (status == "cancelled") {
-    return words + "; the best so far is " + (failures.empty() ? "certified" : "not certified");
-  }
-  for (const Check& check : failures) words += "\n  " + to_line(check);
-  return words;
+  if (status == "ok") return "certified";
+  if (status != "cancelled") return status == "not_certified" ? "not certified" : status;
+  return status + "; the best so far is " +
+         (outcome.certificate.failures().empty() ? "certified" : "not certified");
+}
+
+// Why the flight is not certified, each reason once: checks, the solver's message, and `notes` of
+// the mission.
+std::vector<std::string> findings(const RunOutcome& outcome,
+                                  const std::vector<std::string>& notes) {
+  std::vector<std::string> lines;
+  const bool failed = outcome.status != "ok" && outcome.status != "cancelled";
+  if (failed)
+    for (const Check& check : outcome.certificate.failures()) lines.push_back(to_line(check));
+  if (failed) lines.push_back(outcome.result.report.message);
+  lines.insert(lines.end(), notes.begin(), notes.end());
+  return said_once(lines);
 }
 
 std::string not_raced_words(const RunOutcome& outcome) {
@@ -135,21 +147,25 @@ void print_summary(const RunOutcome& outcome, bool verbose) {
   std::snprintf(line, sizeof line, "  %.4g s of flight, solved by %s (%s) in %.3g s",
                 result.plan.trajectory.duration(), result.solver.c_str(),
                 to_string(result.report.status), result.solve_seconds);
-  std::cout << result.plan.mission << ": " << in_words(outcome) << "\n" << line << "\n";
-  if (outcome.status != "ok" && outcome.status != "cancelled" && !result.report.message.empty()) {
-    std::cout << "  " << result.report.message << "\n";
-  }
+  const bool ok = outcome.status == "ok";
+  std::cout << visible_line(result.plan.mission) << ": "
+            << tinted(ok ? Tone::good : Tone::bad, verdict_in_words(outcome))
+            << (ok ? visible_text(reported_misses(outcome.certificate)) : "") << "\n"
+            << line << "\n";
+  const bool details = verbose || !ok;
+  for (const std::string& finding :
+       findings(outcome, details ? all_notes(result) : result.notes))
+    std::cout << "  " << visible_text(finding) << "\n";
   if (outcome.status == "ok" && result.report.status == SolveStatus::iteration_limit)
     std::cout << "  the solver came to its iteration limit: every check holds, a slightly better "
                  "flight may exist\n";
-  const bool details = verbose || outcome.status != "ok";
-  for (const std::string& note : details ? all_notes(result) : result.notes)
-    std::cout << "  " << note << "\n";
-  std::cout << race_result(outcome.raced);
-  if (!outcome.not_raced.empty()) std::cout << "  " << not_raced_words(outcome) << "\n";
-  std::cout << "  report: " << (outcome.target.folder() / "report.html").string() << "\n";
+  std::cout << visible_text(race_result(outcome.raced));
+  if (!outcome.not_raced.empty())
+    std::cout << "  " << visible_text(not_raced_words(outcome)) << "\n";
+  std::cout << "  report: " << visible_line((outcome.target.folder() / "report.html").string())
+            << "\n";
   if (const std::string old = outcome.target.old_run_in_words(); !old.empty())
-    std::cout << "  " << old << "\n";
+    std::cout << "  " << visible_line(old) << "\n";
   std::cout.flush();
 }
 
@@ -296,13 +312,14 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   } else if (!invocation.quiet) {
     print_summary(outcome, invocation.verbose);
   } else if (outcome.status != "ok") {
-    const std::string& message = outcome.result.report.message;
-    std::cerr << "lapwing: " << outcome.result.plan.mission << ": " << in_words(outcome)
-              << (outcome.status == "cancelled" || message.empty() ? "" : "\n  " + message)
-              << std::endl;
+    std::cerr << "lapwing: " << visible_line(outcome.result.plan.mission) << ": "
+              << tinted_error(Tone::bad, verdict_in_words(outcome));
+    for (const std::string& finding : findings(outcome, {}))
+      std::cerr << "\n  " << visible_text(finding);
+    std::cerr << std::endl;
   } else if (!outcome.not_raced.empty()) {
-    std::cerr << "lapwing: " << outcome.result.plan.mission << ": " << not_raced_words(outcome)
-              << std::endl;
+    std::cerr << "lapwing: " << visible_line(outcome.result.plan.mission) << ": "
+              << visible_text(not_raced_words(outcome)) << std::endl;
   }
   return exit_status_of(outcome.status);
 }

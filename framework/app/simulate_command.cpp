@@ -3,8 +3,10 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/provenance.h"
+#include "framework/app/terminal.h"
 #include "framework/core/files.h"
 #include "framework/core/units.h"
+#include "framework/core/visible_text.h"
 #include "framework/export/light_painting.h"
 #include "framework/export/simulation_report.h"
 #include "framework/vehicle/closed_loop.h"
@@ -34,10 +36,11 @@ bool kept(const FlownPath& path) {
 }
 
 void print(const Plan& plan, const FlownPath& path) {
-  std::printf("%s: %s\n", plan.mission.c_str(),
-              path.lost    ? "lost"
-              : kept(path) ? "flown"
-                           : "strays");
+  std::printf("%s: %s\n", visible_line(plan.mission).c_str(),
+              tinted(kept(path) ? Tone::good : Tone::bad, path.lost    ? "lost"
+                                                          : kept(path) ? "flown"
+                                                                       : "strays")
+                  .c_str());
   std::printf("  distance from the plan  worst %.3f m at %.4g s, mean %.3f m\n",
               path.position_error_worst, path.position_error_at, path.position_error_mean);
   std::printf("  yaw against the plan    worst %.2f degrees at %.4g s\n",

@@ -12,11 +12,13 @@ namespace {
 
 constexpr const char* kWorldHelp =
     "a scene of scripts/scene with its seeds, a mesh file, which gets a floor, or FILE@X,Y,Z: the "
-    "space within a mesh that holds that place; repeatable";
-constexpr const char* kMovesHelp = "step, turn_deg, body or clear, as a mission's `moves`";
+    "space within a mesh that holds that place; repeatable, at least one; no default";
+constexpr const char* kMovesHelp =
+    "step, turn_deg, body or clear, as a mission's `moves`; repeatable; default: the mission's";
 constexpr const char* kMappingHelp =
     "width, height, view_deg, pitch_deg or range of the camera, resolution, hit or miss of the "
-    "map, as a mission has them: a learned utility is good for one of these alone";
+    "map, as a mission has them: a learned utility is good for one of these alone; repeatable; "
+    "default: the mission's";
 
 std::uint64_t read_seed(const std::string& text) {
   std::uint64_t seed = 0;
@@ -39,19 +41,20 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
       ->take_all();
   add_repeated(*scan, "--method", "NAME", asked.methods,
                "a tour solver (milp, milp:nodes=100, cost_benefit+local_search) or a pattern "
-               "(circle_50, ellipse_60x40, meander_85x100, hemisphere_60); else all");
-  add_text(*scan, "--seeds", "N,N,...", "of the missions; else 1", [&](const std::string& text) {
-    asked.seeds.clear();
-    read_list(text, [&](const std::string& part) { asked.seeds.push_back(read_seed(part)); });
-  });
-  add_text(*scan, "--budgets", "S,S,...", "of flight; else each mission's own",
+               "(circle_50, ellipse_60x40, meander_85x100, hemisphere_60); default: all");
+  add_text(
+      *scan, "--seeds", "N,N,...", "of the missions; default: 1", [&](const std::string& text) {
+        asked.seeds.clear();
+        read_list(text, [&](const std::string& part) { asked.seeds.push_back(read_seed(part)); });
+      });
+  add_text(*scan, "--budgets", "S,S,...", "of flight; default: each mission's own",
            [&](const std::string& text) {
              read_list(text, [&](const std::string& part) {
                asked.budgets.push_back(read_number("--budgets", part));
              });
            });
   add_text(*scan, "--noise", "SIGMA[,DROPPED]",
-           "of the judged depth: m, and the share of pixels without any; else ideal",
+           "of the judged depth: m, and the share of pixels without any; default: ideal",
            [&](const std::string& text) {
              std::vector<double> numbers;
              read_list(text, [&](const std::string& part) {
@@ -61,18 +64,21 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
                throw CLI::ValidationError("--noise", "expected SIGMA or SIGMA,DROPPED");
              asked.noise = DepthNoise{numbers.size() > 1 ? numbers[1] : 0, numbers[0]};
            });
-  add_text(*scan, "--guard", "S", "of wall clock that one solver may take; else 300",
+  add_text(*scan, "--guard", "S", "of wall clock that one solver may take; default: 300",
            [&](const std::string& text) { asked.guard = read_number("--guard", text); });
   scan->add_flag("--photos", asked.photos,
                  "render photographs along each tour and ask COLMAP how many fit into one model");
   scan->add_flag("--resume", asked.resume, "go on with a study that was ended");
-  add_repeated(*scan, "--config", "FILE", invocation.configs,
-               "a configuration file or its name in configs/, of all missions");
-  add_repeated(*scan, "--set", "KEY=VALUE", invocation.overrides, "set one option of all missions");
-  add_repeated(*scan, "--data", "DIR", invocation.data, "a folder that the scripts may read");
-  add_text(*scan, "-o,--out", "DIR", "folder of the results; else out/evaluate_scan",
+  add_repeated(
+      *scan, "--config", "FILE", invocation.configs,
+      "a configuration file or its name in configs/, of all missions; repeatable; default: none");
+  add_repeated(*scan, "--set", "KEY=VALUE", invocation.overrides,
+               "set one option of all missions; repeatable; default: none");
+  add_repeated(*scan, "--data", "DIR", invocation.data,
+               "a folder that the scripts may read; repeatable; default: those of LAPWING_DATA");
+  add_text(*scan, "-o,--out", "DIR", "folder of the results; default: out/evaluate_scan",
            [&](const std::string& path) { invocation.out = path; });
-  add_threads(*scan, invocation, "rows at once; else one per core");
+  add_threads(*scan, invocation, "rows at once; default: one per core");
   scan->add_flag("--quiet", invocation.quiet, "no progress, no tables");
   add_json(*scan, invocation);
   scan->callback([&] { command = [&] { return evaluate_scan(asked, invocation); }; });
@@ -84,9 +90,9 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   train->require_subcommand(1);
   const auto add = [&](const char* name, const char* help) {
     CLI::App* made = train->add_subcommand(name, help);
-    add_text(*made, "--utility", "NAME", "the utility that is trained; else learned",
+    add_text(*made, "--utility", "NAME", "the utility that is trained; default: learned",
              [&](const std::string& given) { request.utility = given; });
-    add_threads(*made, invocation, "threads to use; else one per core");
+    add_threads(*made, invocation, "threads to use; default: one per core");
     return made;
   };
   const auto add_making = [&](CLI::App& made, const char* target) {
@@ -94,8 +100,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
       request.target = path;
     })->required();
     add_repeated(made, "--set", "KEY=VALUE", invocation.overrides,
-                 "set one parameter of the network or its training");
-    add_seed(made, invocation.seed, "of all random numbers");
+                 "set one parameter of the network or its training; repeatable; default: none");
+    add_seed(made, invocation.seed, "of all random numbers; default: 1");
     made.add_flag("--quiet", invocation.quiet, "no lines of progress");
     made.add_flag("--resume", request.resume, "go on with what is there");
   };
@@ -110,24 +116,25 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   CLI::App* dataset = add("dataset", "samples from episodes of the oracle");
   add_making(*dataset, "a folder");
   add_repeated(*dataset, "--world", "NAME[:FIRST-LAST]", request.worlds, kWorldHelp);
-  add_text(*dataset, "--explorer", "NAME", "the utility that explores; else the oracle",
+  add_text(*dataset, "--explorer", "NAME", "the utility that explores; default: the oracle",
            [&](const std::string& given) { request.explorer = given; });
-  add_repeated(*dataset, "--explorer-set", "KEY=VALUE", request.explorer_overrides,
-               "set one parameter of the utility that explores, as model=FILE");
+  add_repeated(
+      *dataset, "--explorer-set", "KEY=VALUE", request.explorer_overrides,
+      "set one parameter of the utility that explores, as model=FILE; repeatable; default: none");
   add_text(*dataset, "--up", "x|y|z",
-           "the axis of mesh files that points up, in place of their own",
+           "the axis of mesh files that points up; default: what the files say",
            [&](const std::string& axis) { request.up = axis; });
   add_repeated(*dataset, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
   add_repeated(*dataset, "--mapping", "KEY=VALUE", request.mapping, kMappingHelp);
-  add_count(*dataset, "--episodes", 1, 100'000, "of each world",
+  add_count(*dataset, "--episodes", 1, 100'000, "of each world; default: 4",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
-  add_count(*dataset, "--steps", 1, 100'000, "of each episode",
+  add_count(*dataset, "--steps", 1, 100'000, "of each episode; default: 200",
             [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
   CLI::App* fit = add("fit", "train a model");
   add_making(*fit, "the model's file");
   add_samples(*fit);
   add_repeated(*fit, "--validation", "DIR|FILE", request.validation,
-               "samples of other worlds or episodes; repeatable");
+               "samples of other worlds or episodes; repeatable, at least one; no default");
   CLI::App* score = add("score", "rank correlation and loss of a model");
   add_text(*score, "--model", "FILE", "that is judged", [&](const std::string& path) {
     request.model = path;
@@ -143,32 +150,36 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
   CLI::App* made =
       evaluate.add_subcommand("explore", "utilities against the oracle, tables 5.1 on");
   add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds, kWorldHelp);
-  add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; else every one");
-  add_text(*made, "--up", "x|y|z", "the axis of mesh files that points up, in place of their own",
+  add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; default: every one");
+  add_text(*made, "--up", "x|y|z",
+           "the axis of mesh files that points up; default: what the files say",
            [&](const std::string& axis) { request.up = axis; });
   add_repeated(*made, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
   add_repeated(*made, "--mapping", "KEY=VALUE", request.mapping, kMappingHelp);
-  add_count(*made, "--episodes", 1, 10'000, "of each world",
+  add_count(*made, "--episodes", 1, 10'000, "of each world; default: 10",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
-  add_count(*made, "--steps", 1, 100'000, "of each episode",
+  add_count(*made, "--steps", 1, 100'000, "of each episode; default: 200",
             [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
-  add_count(*made, "--lookahead", 1, 4, "views of the ways that are valued; else 1",
+  add_count(*made, "--lookahead", 1, 4, "views of the ways that are valued; default: 1",
             [&](std::uint64_t count) { request.lookahead = static_cast<int>(count); });
-  add_text(*made, "--sigma", "M", "noise of the depth; the views are replayed without",
+  add_text(*made, "--sigma", "M", "noise of the depth; the views are replayed without; default: 0",
            [&](const std::string& text) { request.sigma = read_within("--sigma", text, 100); });
-  add_text(*made, "--dropped", "SHARE", "of the pixels without a measurement",
+  add_text(*made, "--dropped", "SHARE", "of the pixels without a measurement; default: 0",
            [&](const std::string& text) { request.dropped = read_within("--dropped", text, 1); });
-  add_text(*made, "--stereo", "M", "depth by a pair of cameras so far apart, likewise",
+  add_text(*made, "--stereo", "M",
+           "depth by a pair of cameras so far apart, likewise; default: a depth camera",
            [&](const std::string& text) { request.stereo = read_within("--stereo", text, 100); });
   add_repeated(*made, "--set", "UTILITY.KEY=VALUE", invocation.overrides,
-               "set one parameter of a utility");
+               "set one parameter of a utility; repeatable; default: none");
   add_text(*made, "--against", "DIR",
-           "another evaluation's folder: efficiency over that there, start by start (table 5.4)",
+           "another evaluation's folder: efficiency over that there, start by start (table 5.4); "
+           "default: none",
            [&](const std::string& path) { request.against = path; });
-  add_text(*made, "-o,--out,--output", "DIR", "folder of the results; else out/evaluate_explore",
+  add_text(*made, "-o,--out,--output", "DIR",
+           "folder of the results; default: out/evaluate_explore",
            [&](const std::string& path) { request.folder = path; });
-  add_threads(*made, invocation, "threads to use; else one per core");
-  add_seed(*made, invocation.seed, "of the starts");
+  add_threads(*made, invocation, "threads to use; default: one per core");
+  add_seed(*made, invocation.seed, "of the starts; default: 1");
   made->add_flag("--resume", request.resume, "keep the episodes that are there");
   add_json(*made, invocation);
   made->add_flag("--quiet", invocation.quiet, "no progress, no tables");

@@ -1,15 +1,20 @@
 #include "framework/app/sweep_command.h"
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdio>
-#include <map>
+#include <iostream>
+#include <regex>
+#include <set>
 
+#include "framework/app/interruption.h"
+#include "framework/app/progress_line.h"
+#include "framework/app/sweep_tables.h"
+#include "framework/app/text_table.h"
+#include "framework/config/lookup.h"
+#include "framework/config/shipped.h"
+#include "framework/core/checksum.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/core/visible_text.h"
 
 namespace lapwing {
 
@@ -17,65 +22,94 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostRuns = 1000;
-
-struct SweepRun {
-  std::vector<std::string> values;  // one for each key
-  fs::path folder;
-  int status = -1;
-  Value answer;  // null where it gave none
-};
-
-struct VariedKey {
-  std::string name;
-  std::vector<std::string> values;
-};
-
-VariedKey read_varied(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    throw InputError("--vary: expected KEY=VALUE,VALUE,..., got '" + text + "'");
-  VariedKey key{text.substr(0, equals), {}};
-  int depth = 0;  // of brackets: {1, 2, 3} is one value
-  std::string value;
-  for (const char c : text.substr(equals + 1)) {
-    depth += (c == '[' || c == '{') - (c == ']' || c == '}');
-    if (c != ',' || depth > 0) {
-      value += c;
-      continue;
-    }
-    key.values.push_back(std::move(value));
-    value.clear();
-  }
-  key.values.push_back(std::move(value));
-  return key;
+std::string checksum_of_folder(const fs::path& folder) {
+  std::set<fs::path> files;
+  for (const auto& item : fs::recursive_directory_iterator(folder))
+    if (item.is_regular_file()) files.insert(item.path());
+  std::string all;
+  for (const fs::path& file : files)
+    all += file.lexically_relative(folder).string() + " " + sha256(read_file(file)) + "\n";
+  return sha256(all);
 }
 
-std::vector<SweepRun> combinations(const std::vector<VariedKey>& keys, const fs::path& out) {
-  std::vector<SweepRun> runs(1);
-  for (const VariedKey& key : keys) {
-    std::vector<SweepRun> longer;
-    for (const SweepRun& run : runs)
-      for (const std::string& value : key.values) {
-        longer.push_back(run);
-        longer.back().values.push_back(value);
-      }
-    runs = std::move(longer);
-    if (runs.size() > kMostRuns) throw InputError("--vary: more than a thousand runs");
+// The script, and its own modules as far as their names are written out.
+void add_checksums(const fs::path& script, const fs::path& folder, Value& sums) {
+  const std::string text = read_file(script);
+  sums.set(script.lexically_relative(folder).string(), sha256(text));
+  static const std::regex required("require\\s*\\(?\\s*[\"']([A-Za-z0-9_.]+)[\"']");
+  for (std::sregex_iterator at(text.begin(), text.end(), required), end; at != end; ++at) {
+    std::string name = (*at)[1];
+    std::replace(name.begin(), name.end(), '.', '/');
+    const fs::path module = folder / (name + ".lua");
+    std::error_code code;
+    if (fs::is_regular_file(module, code) && !sums.find(module.lexically_relative(folder).string()))
+      add_checksums(module, folder, sums);
   }
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    char name[32];
-    std::snprintf(name, sizeof name, "run_%03zu", i + 1);
-    runs[i].folder = out / name;
-  }
-  return runs;
 }
 
-pid_t start_run(const SweepRun& run, const std::vector<VariedKey>& keys, const Sweep& asked,
-                const Invocation& invocation) {
+template <class Texts>
+Value list_of(const Texts& texts) {
+  Value list = Value::list();
+  for (const auto& text : texts) list.push_back(fs::path(text).string());
+  return list;
+}
+
+// All that the runs are made of.
+Value statement_of(const Sweep& asked, const Invocation& invocation) {
+  Value value = Value::map();
+  value.set("sweep", 1);
+  value.set("version", program_version());
+  value.set("script", asked.script.string());
+  fs::path folder = asked.script.parent_path();
+  if (folder.empty()) folder = ".";
+  add_checksums(folder / asked.script.filename(), folder,
+                value.set("scripts_sha256", Value::map()));
+  value.set("shipped_scripts", checksum_of_folder(shipped_folder("scripts")));
+  value.set("shipped_configs", checksum_of_folder(shipped_folder("configs")));
+  ConfigSearch search;
+  search.folders = {shipped_folder("configs")};
+  Value& configs = value.set("configs", Value::list());
+  for (const std::string& name : invocation.configs)
+    configs.push_back(name + " " + sha256(read_file(find_config(name, search))));
+  value.set("set", list_of(invocation.overrides));
+  value.set("vary", list_of(asked.varied));
+  value.set("data", list_of(invocation.data));
+  value.set("plugin_path", list_of(invocation.plugin_path));
+  value.set("seed", static_cast<std::int64_t>(invocation.seed));
+  return value;
+}
+
+void require_same(const fs::path& file, const Value& now) {
+  std::error_code code;
+  if (!fs::exists(file, code))
+    throw InputError("--resume: there is no sweep in '" + file.parent_path().string() + "'");
+  const Value before = from_json(read_file(file), file.string());
+  std::string differing;
+  for (const auto& [name, value] : now.as_map()) {
+    const Value* other = before.find(name);
+    if (!other || !(*other == value)) differing += (differing.empty() ? "" : ", ") + name;
+  }
+  if (!differing.empty())
+    throw InputError("--resume: the sweep in '" + file.parent_path().string() +
+                     "' was made of something else: " + differing + " (see " + file.string() +
+                     "); leave --resume out to begin anew");
+}
+
+// Of an earlier sweep into the same folder: its runs, and nothing else.
+void remove_old_runs(const fs::path& out) {
+  static const std::regex name("run_[0-9]{3,4}");
+  std::error_code code;
+  std::vector<fs::path> old;
+  for (const auto& item : fs::directory_iterator(out, code))
+    if (std::regex_match(item.path().filename().string(), name)) old.push_back(item.path());
+  for (const fs::path& folder : old) fs::remove_all(folder);
+}
+
+std::vector<std::string> words_of(const SweepRun& run, const std::vector<VariedKey>& keys,
+                                  const Sweep& asked, const Invocation& invocation) {
   std::vector<std::string> words{
-      "lapwing",           "run",    asked.script.string(),          "--json", "--out",
-      run.folder.string(), "--seed", std::to_string(invocation.seed)};
+      "lapwing",           "run",    asked.script.string(),           "--json",  "--quiet", "--out",
+      run.folder.string(), "--seed", std::to_string(invocation.seed), "--color", "never"};
   for (const fs::path& folder : invocation.plugin_path)
     words.insert(words.end(), {"--plugin-path", folder.string()});
   for (const fs::path& folder : invocation.data)
@@ -84,61 +118,36 @@ pid_t start_run(const SweepRun& run, const std::vector<VariedKey>& keys, const S
   for (const std::string& text : invocation.overrides) words.insert(words.end(), {"--set", text});
   for (std::size_t k = 0; k < keys.size(); ++k)
     words.insert(words.end(), {"--set", keys[k].name + "=" + run.values[k]});
-  fs::create_directories(run.folder);
-  const std::string out = run.folder / "answer.json", errors = run.folder / "errors.txt";
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const pid_t child = ::fork();
-  if (child != 0) return child;
-  const int to = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  const int log = ::open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  if (to < 0 || log < 0 || ::dup2(to, STDOUT_FILENO) < 0 || ::dup2(log, STDERR_FILENO) < 0)
-    ::_exit(static_cast<int>(ExitStatus::defect));
-  ::execv("/proc/self/exe", arguments.data());
-  ::_exit(static_cast<int>(ExitStatus::defect));
+  return words;
 }
 
-void finish_one(std::map<pid_t, SweepRun*>& running) {
-  int status = 0;
-  const pid_t ended = ::waitpid(-1, &status, 0);
-  const auto found = running.find(ended);
-  if (found == running.end()) return;
-  SweepRun& run = *found->second;
-  run.status = WIFEXITED(status) ? WEXITSTATUS(status) : static_cast<int>(ExitStatus::defect);
-  const fs::path answer = run.folder / "answer.json";
-  if (const std::string text = read_file(answer); !text.empty())
-    run.answer = from_json(text, answer.string());
-  running.erase(found);
-}
-
-std::string seconds_of(const Value& answer, const char* part) {
-  const Value* seconds = answer.find("seconds");
-  const Value* found = seconds ? seconds->find(part) : nullptr;
-  char text[32] = "-";
-  if (found && found->is_number()) std::snprintf(text, sizeof text, "%.2f", found->as_number());
-  return text;
-}
-
-void print_table(const std::vector<VariedKey>& keys, const std::vector<SweepRun>& runs) {
-  std::vector<std::vector<std::string>> rows(1);
-  for (const VariedKey& key : keys) rows[0].push_back(key.name);
-  rows[0].insert(rows[0].end(), {"status", "solve [s]", "folder"});
-  for (const SweepRun& run : runs) {
-    rows.push_back(run.values);
-    const Value* status = run.answer.find("status");
-    rows.back().insert(rows.back().end(),
-                       {status ? status->as_text() : "exit " + std::to_string(run.status),
-                        seconds_of(run.answer, "solve"), run.folder.string()});
+// A run that a defect ended, or that was interrupted, is done again.
+void keep_finished(std::vector<SweepRun>& runs) {
+  for (SweepRun& run : runs) {
+    read_results(run);
+    if (run.exit && *run.exit >= static_cast<int>(ExitStatus::defect))
+      run = SweepRun{run.name, run.values, run.folder, {}, {}, {}, {}, {}};
   }
-  std::vector<std::size_t> widths(rows[0].size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i)
-      std::printf("%-*s%s", i + 1 < row.size() ? static_cast<int>(widths[i]) : 0, row[i].c_str(),
-                  i + 1 < row.size() ? "  " : "\n");
+}
+
+void begin(const Sweep& asked, const Invocation& invocation, const fs::path& out,
+           std::vector<SweepRun>& runs) {
+  const fs::path file = out / "sweep.json";
+  require_writable(file);
+  const Value statement = statement_of(asked, invocation);
+  if (asked.resume) {
+    require_same(file, statement);
+    keep_finished(runs);
+    return;
   }
+  std::error_code code;
+  if (fs::exists(file, code)) {
+    if (!invocation.quiet)
+      std::cerr << "lapwing: replaces the sweep in '" << visible_line(out.string()) << "'\n";
+    fs::remove(file);
+    remove_old_runs(out);
+  }
+  write_file_atomically(file, to_json(statement) + "\n");
 }
 
 }  // namespace
@@ -151,34 +160,33 @@ ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
   for (const std::string& text : asked.varied) keys.push_back(read_varied(text));
   const fs::path out = invocation.out.empty() ? fs::path("out") / "sweep" : invocation.out;
   std::vector<SweepRun> runs = combinations(keys, out);
-  std::map<pid_t, SweepRun*> running;
-  for (SweepRun& run : runs) {
-    while (static_cast<int>(running.size()) >= std::max(asked.jobs, 1)) finish_one(running);
-    const pid_t child = start_run(run, keys, asked, invocation);
-    if (child < 0) throw Error("sweep: no process for a run");
-    running[child] = &run;
-  }
-  while (!running.empty()) finish_one(running);
+  const Interruption interruption;
+  begin(asked, invocation, out, runs);
+  ProgressLine progress("sweep", std::cerr, progress_style_of_stderr(invocation.quiet),
+                        columns_of_stderr(), &steady_seconds);
+  do_runs(
+      runs, asked.jobs, [&](const SweepRun& run) { return words_of(run, keys, asked, invocation); },
+      interruption.token(), progress);
+  progress.clear();
+  write_file_atomically(out / "table.csv", sweep_csv(keys, runs));
+  write_file_atomically(out / "report.html", sweep_page(asked.script.string(), keys, runs));
+  if (invocation.json)
+    print_json(sweep_value(keys, runs));
+  else if (!invocation.quiet)
+    std::cout << sweep_text(keys, runs, columns_of_stdout())
+              << "\ntable: " << visible_line((out / "table.csv").string())
+              << "\nreport: " << visible_line((out / "report.html").string()) << std::endl;
   int worst = 0;
-  Value list = Value::list();
   for (const SweepRun& run : runs) {
-    worst = std::max(worst, run.status);
-    Value entry = Value::map(), values = Value::map();
-    for (std::size_t k = 0; k < keys.size(); ++k) values.set(keys[k].name, run.values[k]);
-    entry.set("values", std::move(values));
-    entry.set("folder", run.folder.string());
-    entry.set("exit", run.status);
-    entry.set("answer", run.answer);
-    list.push_back(std::move(entry));
+    if (!run.exit) {
+      if (!interruption.token().cancelled())
+        std::cerr << "lapwing: " << run.name << " was ended by a signal; --resume does it again\n";
+      return interruption.token().cancelled() ? ExitStatus::interrupted : ExitStatus::defect;
+    }
+    worst = std::max(worst, *run.exit);
   }
-  if (invocation.json) {
-    Value object = Value::map();
-    object.set("runs", std::move(list));
-    print_json(object);
-  } else {
-    print_table(keys, runs);
-  }
-  return static_cast<ExitStatus>(worst);
+  return interruption.token().cancelled() ? ExitStatus::interrupted
+                                          : static_cast<ExitStatus>(worst);
 }
 
 }  // namespace lapwing

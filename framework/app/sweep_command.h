@@ -13,6 +13,7 @@ struct Sweep {
   std::filesystem::path script;
   std::vector<std::string> varied;  // "key=value,value,..."; all combinations are run
   int jobs = 2;                     // runs at once
+  bool resume = false;              // go on with what is missing
 };
 
 // Each run is `lapwing run` in a process of its own, into a folder of its own below --out. Exit

@@ -7,6 +7,8 @@
 
 #include <mutex>
 
+#include "framework/core/visible_text.h"
+
 namespace lapwing::logging {
 
 namespace {
@@ -71,17 +73,21 @@ Output& output() {
 void set_console_level(Level level) {
   output().console->set_level(to_spdlog(level));
 }
+void set_console_colour(bool coloured) {
+  output().console->set_color_mode(coloured ? spdlog::color_mode::always
+                                            : spdlog::color_mode::never);
+}
 void debug(const std::string& message) {
-  output().logger.debug("{}", message);
+  output().logger.debug("{}", visible_text(message));
 }
 void info(const std::string& message) {
-  output().logger.info("{}", message);
+  output().logger.info("{}", visible_text(message));
 }
 void warning(const std::string& message) {
-  output().logger.warn("{}", message);
+  output().logger.warn("{}", visible_text(message));
 }
 void error(const std::string& message) {
-  output().logger.error("{}", message);
+  output().logger.error("{}", visible_text(message));
 }
 
 struct Capture::Impl {

@@ -1,4 +1,5 @@
-// The log: to stderr for the user, and to a run's own file. Thread-safe.
+// The log: to stderr for the user, and to a run's own file. Thread-safe. Control characters of a
+// message are shown as text (visible_text.h).
 #pragma once
 
 #include <filesystem>
@@ -8,7 +9,8 @@ namespace lapwing::logging {
 
 enum class Level { debug, info, warning, error, off };
 
-void set_console_level(Level level);  // default: warning
+void set_console_level(Level level);     // default: warning
+void set_console_colour(bool coloured);  // default: where stderr is a terminal
 void debug(const std::string& message);
 void info(const std::string& message);
 void warning(const std::string& message);

@@ -61,6 +61,26 @@ Projection better_side(const Trajectory& trajectory) {
   return extent.x() >= extent.y() ? Projection::from_south : Projection::from_east;
 }
 
+// All that is drawn beside the path: what the flight was asked for, and what surrounds it.
+void add_task(const Plan& plan, const std::filesystem::path& folder, Drawing& drawing) {
+  for (std::size_t i = 0; i < plan.task.keyframes.size(); ++i) {
+    drawing.points.push_back({std::to_string(i + 1), plan.task.keyframes[i].position});
+  }
+  add_surroundings(plan, folder, drawing);
+  std::erase_if(drawing.zones, all_around);
+  std::set<std::string> drawn;  // once, however many laps there are
+  for (const GateTask& gate : plan.task.gates)
+    if (drawn.insert(gate.name).second) add_gate(gate, drawing);
+  for (const Subject& subject : plan.environment.subjects) add_track(plan, subject, drawing);
+}
+
+std::vector<Block> views_of(const Drawing& drawing, const std::string& title, Projection side) {
+  const std::string from = side == Projection::from_south ? "south" : "east";
+  return {PathView{title + " from above", Projection::above, drawing},
+          PathView{title + " from the " + from, side, drawing},
+          Scene3D{title + " in space", drawing}};
+}
+
 }  // namespace
 
 Section path_section(const Plan& plan, const std::filesystem::path& folder) {
@@ -74,20 +94,25 @@ Section path_section(const Plan& plan, const std::filesystem::path& folder) {
   }
   drawing.value = {"speed", "m/s"};
   drawing.lines.push_back(std::move(line));
-  for (std::size_t i = 0; i < plan.task.keyframes.size(); ++i) {
-    drawing.points.push_back({std::to_string(i + 1), plan.task.keyframes[i].position});
+  add_task(plan, folder, drawing);
+  return {"Path", views_of(drawing, "Path", better_side(plan.trajectory))};
+}
+
+Section paths_section(const std::vector<std::pair<std::string, const Plan*>>& plans,
+                      const std::filesystem::path& folder) {
+  if (plans.empty()) return {"Paths", {}};
+  Drawing drawing;
+  drawing.along = time_axis();
+  for (const auto& [name, plan] : plans) {
+    Polyline line{name, {}, {}, {}};
+    for (const Sample& s : plan->trajectory.samples) {
+      line.points.push_back(s.position);
+      line.along.push_back(s.time);
+    }
+    drawing.lines.push_back(std::move(line));
   }
-  add_surroundings(plan, folder, drawing);
-  std::erase_if(drawing.zones, all_around);
-  std::set<std::string> drawn;  // once, however many laps there are
-  for (const GateTask& gate : plan.task.gates)
-    if (drawn.insert(gate.name).second) add_gate(gate, drawing);
-  for (const Subject& subject : plan.environment.subjects) add_track(plan, subject, drawing);
-  const Projection side = better_side(plan.trajectory);
-  const std::string from = side == Projection::from_south ? "south" : "east";
-  return {"Path",
-          {PathView{"Path from above", Projection::above, drawing},
-           PathView{"Path from the " + from, side, drawing}, Scene3D{"Path in space", drawing}}};
+  add_task(*plans.front().second, folder, drawing);
+  return {"Paths", views_of(drawing, "Paths", better_side(plans.front().second->trajectory))};
 }
 
 Section motion_section(const Plan& plan, const Vehicle& vehicle) {
@@ -163,9 +188,10 @@ Section direction_section(const Plan& plan, const Vehicle& vehicle) {
     const bool rotors = plan.trajectory.model == MotionModel::rotors;
     section.blocks.push_back(charts.chart(
         rotors ? "Body rate about the thrust" : "Yaw rate", rotors ? "rate" : "yaw rate",
-        "\u00b0/s", {charts.series("rate", [=](const Sample& s) {
-          return degrees(rotors ? s.body_rates.z() : s.yaw_rate);
-        })},
+        "\u00b0/s",
+        {charts.series(
+            "rate",
+            [=](const Sample& s) { return degrees(rotors ? s.body_rates.z() : s.yaw_rate); })},
         both_ways(degrees(vehicle.yaw_rate_max))));
   }
   return section;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/export/time_charts.h"
@@ -13,6 +15,10 @@ namespace lapwing {
 // Path from above, from the side that shows more of it, and in space, coloured by speed.
 // `folder` holds the meshes of its environment.
 Section path_section(const Plan& plan, const std::filesystem::path& folder);
+// The paths of several plans, each by its name, in one picture, with the task and the surroundings
+// of the first, whose meshes lie in `folder`.
+Section paths_section(const std::vector<std::pair<std::string, const Plan*>>& plans,
+                      const std::filesystem::path& folder);
 // Position, speeds and accelerations against the vehicle's limits; of a `path`, position alone.
 Section motion_section(const Plan& plan, const Vehicle& vehicle);
 // Thrust and yaw torque (model force) or rotor thrusts (model rotors); empty for a `path`.

@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <new>
 #include <string>
 
 #include "framework/core/error.h"
@@ -11,9 +12,12 @@ namespace lapwing {
 
 RTCDeviceTy* tracing_device() {
   static const RTCDevice shared = rtcNewDevice("set_affinity=0");
+  // The library forgets the reason once it was asked for.
+  static const RTCError reason = shared ? RTC_ERROR_NONE : rtcGetDeviceError(nullptr);
+  if (reason == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!shared) {
     throw Error("Embree cannot be used on this machine (error " +
-                std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))) + ")");
+                std::to_string(static_cast<int>(reason)) + ")");
   }
   return shared;
 }
@@ -23,6 +27,7 @@ void commit(RTCSceneTy* scene, const char* what) {
   const RTCError error = rtcGetDeviceError(tracing_device());
   if (error == RTC_ERROR_NONE) return;
   rtcReleaseScene(scene);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   throw Error(std::string("Embree could not build ") + what + " (error " +
               std::to_string(static_cast<int>(error)) + ")");
 }

@@ -3,6 +3,7 @@
 #include <lua.hpp>
 
 #include "framework/config/overrides.h"
+#include "framework/core/files.h"
 #include "framework/mission/explore_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -66,6 +67,7 @@ struct Mission::Impl {
 };
 
 void Mission::Impl::load() {
+  static_cast<void>(read_file(script));  // what cannot be read has no line to blame
   sandbox.protect([this](lua_State* state) {
     open_script_libraries(state, run);
     sandbox.run_script(state, script);

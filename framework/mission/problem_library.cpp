@@ -362,7 +362,10 @@ int problem_of_run(lua_State* state) {
 // run:vehicle("vehicles/solo") or run:vehicle{...} with the keys of a vehicle file.
 int vehicle_of_run(lua_State* state) {
   const Origin origin = Sandbox::of(state).script_position(state);
-  const Value source = value_from_lua(state, 2, origin, "vehicle");
+  Value source = value_from_lua(state, 2, origin, "vehicle");
+  // Lua's values bear no origin: an option that is handed on keeps the place where it was written.
+  const Value* option = run_of(state).configuration.find("vehicle");
+  if (option && *option == source && option->origin().source != "default") source = *option;
   new_object(state, kVehicleType, load_vehicle(source, run_of(state).files.folders()));
   return 1;
 }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <tuple>
 
 #include "framework/core/active_call.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/core/log.h"
 #include "framework/plugin/library.h"
 #include "framework/plugin/sidecar.h"
 
@@ -44,12 +46,36 @@ std::string in_quotes(std::string_view text) {
   return "'" + std::string(text) + "'";
 }
 
+// The sidecar in `file`; none, with a warning, where the file is something else. A file beside a
+// library of its name is meant to be one.
+std::optional<Value> sidecar_in(const fs::path& file) {
+  std::string why = "it has no key 'sidecar'";
+  try {
+    Value read = from_json(read_file(file), file.string());
+    if (read.is_map() && read.find("sidecar")) return read;
+  } catch (const InputError& error) {
+    why = error.what();
+  }
+  if (fs::exists(fs::path(file).replace_extension(".so")))
+    throw InputError("malformed plugin sidecar " + in_quotes(file.string()) + ": " + why);
+  logging::warning(in_quotes(file.string()) +
+                   " lies in a folder of plugins and is no plugin's sidecar: " + why +
+                   "; it is left out");
+  return std::nullopt;
+}
+
+std::string without_its_library(const PluginEntry& entry, const fs::path& sidecar) {
+  return in_quotes(sidecar.string()) + " describes " + in_quotes(entry.library.string()) +
+         ", which does not exist: build the plugin again, or remove the sidecar";
+}
+
 }  // namespace
 
 struct Registry::Impl {
   std::vector<fs::path> folders;
   std::vector<PluginEntry> entries;
   std::vector<fs::path> undescribed;        // libraries without a sidecar
+  std::vector<PluginEntry> unbuilt;         // of sidecars without their library
   std::map<fs::path, fs::path> sidecar_of;  // by library
   mutable std::mutex mutex;
   mutable std::set<fs::path> compared;  // libraries whose sidecar was found true
@@ -73,12 +99,15 @@ void Registry::Impl::read_folder(const fs::path& folder, std::set<fs::path>& see
 }
 
 void Registry::Impl::read_sidecar(const fs::path& file) {
-  const Value sidecar = from_json(read_file(file), file.string());
-  std::vector<PluginEntry> found = entries_from_sidecar(sidecar, file);
+  const std::optional<Value> sidecar = sidecar_in(file);
+  if (!sidecar) return;
+  std::vector<PluginEntry> found = entries_from_sidecar(*sidecar, file);
   const fs::path library = found.front().library;
   if (!fs::exists(library)) {
-    throw InputError("plugin sidecar '" + file.string() + "' describes '" + library.string() +
-                     "', which does not exist; rebuild the plugin or remove the sidecar");
+    logging::warning("plugin sidecar " + without_its_library(found.front(), file) +
+                     "; its plugins are left out");
+    unbuilt.insert(unbuilt.end(), found.begin(), found.end());
+    return;
   }
   sidecar_of[library] = file;
   entries.insert(entries.end(), found.begin(), found.end());
@@ -164,6 +193,10 @@ const PluginEntry& Registry::find(std::string_view kind, std::string_view name,
   if (!nearest.empty()) message += "; did you mean " + in_quotes(nearest) + "?";
   if (!elsewhere.empty())
     message += "; there is a plugin of that name, but its kind is " + elsewhere;
+  for (const PluginEntry& entry : impl_->unbuilt)
+    if (entry.kind == kind && entry.name == name)
+      message +=
+          "; " + in_quotes(entry.library.string()) + " does not exist, only its sidecar does";
   for (const fs::path& library : impl_->undescribed) {
     if (library.stem() != name) continue;
     message += "; " + in_quotes(library.string()) + " has no sidecar: run lapwing_sidecar on it";

@@ -36,8 +36,9 @@ class Registry {
  public:
   // Reads every sidecar in `folders` (and one level of sub-folders), first folder first. Throws
   // InputError when two plugins of one kind have one name (naming both files), or a sidecar is
-  // malformed, stale or without its library. A folder that does not exist is skipped; one that is
-  // named twice is read once.
+  // malformed or stale. A sidecar without its library, and a JSON file that is no sidecar, are
+  // warned of and left out. A folder that does not exist is skipped; one that is named twice is
+  // read once.
   explicit Registry(std::vector<std::filesystem::path> folders);
   ~Registry();
   Registry(Registry&&) noexcept;

@@ -160,7 +160,7 @@ TEST_F(CommandLine, PluginsAreListedAndShown) {
 }
 
 TEST_F(CommandLine, UsageErrors) {
-  refused({}, {"subcommand"});
+  refused({}, {"expected a command after 'lapwing'"});
   refused({"rnu", "shot.lua"}, {"unknown command 'rnu'; did you mean 'run'?"});
   refused({"plugins", "lst"}, {"unknown command 'lst'; did you mean 'list'?"});
   refused({"run"}, {"mission is required"});

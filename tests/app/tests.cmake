@@ -1,6 +1,6 @@
 # The program and its plugins are run as a user runs them.
 if(TARGET test_app)
   get_property(plugins GLOBAL PROPERTY LAPWING_PLUGINS)
-  add_dependencies(test_app lapwing_app ${plugins})
+  add_dependencies(test_app lapwing_app lapwing_manual ${plugins})
   add_dependencies(test_mission ${plugins})
 endif()

@@ -5,6 +5,7 @@
 
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/core/log.h"
 #include "framework/plugin/sidecar.h"
 #include "tests/plugin/fixtures/fixture.h"
 
@@ -196,9 +197,6 @@ TEST_F(RegistryTest, RefusesBrokenSidecars) {
   changed.set("library", "../good.so");
   expect_refused(changed, "plain file name");
   changed = whole;
-  changed.set("library", "gone.so");
-  expect_refused(changed, "does not exist");
-  changed = whole;
   changed.find("plugins")->as_list()[0].set("name", "Good Plugin");
   expect_refused(changed, "snake_case");
   changed = whole;
@@ -207,6 +205,27 @@ TEST_F(RegistryTest, RefusesBrokenSidecars) {
   const std::string text = to_json(whole);
   write_file_atomically(folder_ / "good.json", text.substr(0, text.size() / 2));
   EXPECT_SAYS(refusal([&] { registry(); }), "invalid JSON");
+}
+
+// A folder of builds holds more than plugins; what is none of them stops nobody.
+TEST_F(RegistryTest, LeavesOutWhatIsNoPlugin) {
+  copy("whole", "good");
+  write_file_atomically(folder_ / "notes.json", "{\"name\": \"notes\"}");
+  write_file_atomically(folder_ / "list.json", "[1, 2");
+  write_file_atomically(folder_ / "empty.json", "");
+  Value gone = sidecar("good");
+  gone.set("library", "gone.so");
+  gone.find("plugins")->as_list()[0].set("name", "gone");
+  gone.find("plugins")->as_list()[0].set("presets", Value::list());
+  write_file_atomically(folder_ / "gone.json", to_json(gone));
+  const logging::Capture capture;
+  const Registry plugins = registry();
+  EXPECT_EQ(plugins.entries().size(), 2u);
+  for (const char* part : {"notes.json", "no key 'sidecar'", "list.json", "empty.json",
+                           "gone.so', which does not exist", "left out"})
+    EXPECT_SAYS(capture.text(), part);
+  EXPECT_SAYS(refusal([&] { plugins.create<Fixture>("gone"); }), "only its sidecar does");
+  EXPECT_NE(plugins.create<Fixture>("good"), nullptr);
 }
 
 TEST_F(RegistryTest, RefusesStaleSidecars) {

@@ -1,0 +1,157 @@
+#include "framework/app/help_commands.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "framework/app/command_reference.h"
+#include "framework/app/terminal.h"
+
+namespace lapwing {
+
+namespace {
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+std::vector<std::string> names_of_commands(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> names_of_options(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  std::string nearest;
+  for (const std::string& name : known)  // "--conf" begins "--config", however long the rest is
+    if (word.size() > 3 && name.starts_with(word) && nearest.empty()) nearest = name;
+  if (nearest.empty()) nearest = nearest_name(word, known);
+  return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
+
+// The command that was reached; its path is "lapwing map info".
+struct ReachedCommand {
+  const CLI::App* app;
+  std::string path;
+};
+
+ReachedCommand reached_command(const CLI::App& app) {
+  ReachedCommand reached{&app, "lapwing"};
+  while (!reached.app->get_subcommands().empty()) {
+    reached.app = reached.app->get_subcommands().front();
+    reached.path += " " + reached.app->get_name();
+  }
+  return reached;
+}
+
+std::string unknown_word(const CLI::App& app, const ReachedCommand& reached) {
+  std::vector<std::string> known = names_of_options(*reached.app);
+  for (const std::string& name : names_of_options(app)) known.push_back(name);
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.starts_with("-") || word == "-" || word == "--") continue;
+    const std::string option = word.substr(0, word.find('='));
+    return "'" + reached.path + "' has no option '" + option + "'" + did_you_mean(option, known);
+  }
+  const std::vector<std::string> rest = app.remaining(true);
+  const std::vector<std::string> commands = names_of_commands(*reached.app);
+  if (rest.empty()) return "";
+  if (commands.empty())
+    return "'" + reached.path + "' takes no '" + rest.front() + "' beside what it has been given";
+  return "unknown command '" + rest.front() + "'" + did_you_mean(rest.front(), commands);
+}
+
+ExitStatus print_help(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* at = &app;
+  std::string path = "lapwing";
+  for (const std::string& word : words) {
+    const std::vector<std::string> known = names_of_commands(*at);
+    const CLI::App* next = nullptr;
+    for (const CLI::App* command : commands_of(*at))
+      if (command->get_name() == word) next = command;
+    if (!next)
+      throw InputError("'" + path + "' has no command '" + word + "'" + did_you_mean(word, known));
+    at = next;
+    path += " " + word;
+  }
+  // The name that stands before the command's own, as CLI11 writes it for --help.
+  std::cout << at->help(path.substr(0, path.rfind(' ') == path.npos ? 0 : path.rfind(' ')))
+            << std::flush;
+  return ExitStatus::done;
+}
+
+}  // namespace
+
+void add_help_commands(CLI::App& app, HelpRequest& asked, Command& command) {
+  CLI::App* version = app.add_subcommand("version", "the program's version");
+  version->callback([&] {
+    command = [] {
+      std::cout << "lapwing " << program_version() << std::endl;
+      return ExitStatus::done;
+    };
+  });
+  CLI::App* help = app.add_subcommand("help", "the commands, or what one of them takes");
+  add_text(*help, "command", "COMMAND...", "such as run, or map info; default: all commands",
+           [&](const std::string& word) { asked.words.push_back(word); })
+      ->expected(-1)
+      ->take_all();
+  help->callback([&] { command = [&] { return print_help(app, asked.words); }; });
+  CLI::App* completion =
+      app.add_subcommand("completion", "a script that completes commands and options in a shell");
+  add_text(*completion, "shell", "bash|zsh|fish", "which shell", [&](const std::string& name) {
+    asked.shell = name;
+  })->required();
+  completion->callback([&] {
+    command = [&] {
+      std::cout << completion_script(command_tree(), asked.shell) << std::flush;
+      return ExitStatus::done;
+    };
+  });
+  CLI::App* man = app.add_subcommand("man", "the manual page, in roff");
+  man->callback([&] {
+    command = [] {
+      std::cout << manual_page(command_tree(), program_version()) << std::flush;
+      return ExitStatus::done;
+    };
+  });
+}
+
+void add_colour(CLI::App& app) {
+  add_text(app, "--color", "auto|always|never",
+           "colour of what is printed; default: auto, on a terminal unless NO_COLOR is set",
+           [](const std::string& word) {
+             if (word == "auto")
+               choose_colour(ColourChoice::automatic);
+             else if (word == "always")
+               choose_colour(ColourChoice::always);
+             else if (word == "never")
+               choose_colour(ColourChoice::never);
+             else
+               throw CLI::ValidationError("--color",
+                                          "expected auto, always or never, not '" + word + "'");
+           });
+}
+
+std::string usage_error(const CLI::App& app, const std::string& reason) {
+  const ReachedCommand reached = reached_command(app);
+  std::string message = unknown_word(app, reached);
+  const std::vector<const CLI::App*> below = commands_of(*reached.app);
+  if (!message.empty() || below.empty())
+    return (message.empty() ? reason : message) + "\nRun '" + reached.path +
+           " --help' for what it takes.";
+  message = "expected a command after '" + reached.path + "':";
+  for (const CLI::App* command : below) {
+    std::string name = command->get_name();
+    name.resize(std::max<std::size_t>(name.size(), 12), ' ');
+    message += "\n  " + name + " " + command->get_description();
+  }
+  return message + "\nRun '" + reached.path +
+         (reached.app == &app ? " help COMMAND'" : " COMMAND --help'") + " for what one takes.";
+}
+
+}  // namespace lapwing

@@ -1,0 +1,188 @@
+// lapwing sweep: what it prints and writes, how it ends, how it goes on.
+#include <signal.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "framework/core/json.h"
+#include "tests/app/program_fixture.h"
+
+namespace lapwing {
+namespace {
+
+class Sweeping : public CommandLine {
+ protected:
+  static std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != text.npos; at += part.size()) ++count;
+    return count;
+  }
+  // Waits until a file is there; false after ten seconds.
+  static bool appears(const fs::path& file) {
+    for (int i = 0; i < 500; ++i) {
+      if (fs::exists(file)) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return false;
+  }
+  // Processes that run this test's sweep.
+  int processes_of_runs() const {
+    int count = 0;
+    for (const auto& item : fs::directory_iterator("/proc")) {
+      std::ifstream words(item.path() / "cmdline");
+      const std::string line{std::istreambuf_iterator<char>(words), {}};
+      std::error_code code;
+      if (line.find("run_0") != line.npos &&
+          fs::read_symlink(item.path() / "cwd", code) == fs::canonical(folder_))
+        ++count;
+    }
+    return count;
+  }
+};
+
+TEST_F(Sweeping, SaysWhatEveryRunCameTo) {
+  write("shot.lua", film("name = 'hop', hard = 0.01, obstacles = { { type = 'sphere', "
+                         "center = {2, 3, 2}, radius = 1 } },"));
+  const Finished finished = run({"sweep", "shot.lua", "--vary", "weights.smoothness=0.001,0.1",
+                                 "--vary", "duration=4,0.5", "--jobs", "3"});
+  EXPECT_EQ(finished.status, 1) << finished.err;
+  EXPECT_EQ(finished.out.rfind("run      weights.smoothness  duration  status", 0), 0u)
+      << finished.out;
+  for (const char* part :
+       {"run_001", "run_004", "certified", "cost", "flight [s]", "path [m]", "clearance [m]",
+        "nearest limit", "Cost of each term", "smoothness", "table: out/sweep/table.csv"})
+    EXPECT_NE(finished.out.find(part), std::string::npos) << part << "\n" << finished.out;
+  // What is too short for the vehicle says why.
+  const std::size_t failure = finished.out.find("\nrun_002: ");
+  ASSERT_NE(failure, std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("exceeds", failure), std::string::npos) << finished.out;
+  EXPECT_EQ(finished.out.find('\x1b'), std::string::npos);
+  std::size_t longest = 0, begin = 0;
+  for (std::size_t end; (end = finished.out.find('\n', begin)) != std::string::npos;
+       begin = end + 1)
+    if (finished.out.substr(begin, 2) != "  ") longest = std::max(longest, end - begin);
+  EXPECT_LE(longest, 100u) << finished.out;
+  const std::string csv = read_file(folder_ / "out/sweep/table.csv");
+  EXPECT_EQ(count_of(csv, "\n"), 5u);
+  EXPECT_EQ(csv.rfind("run,weights.smoothness,duration,status,exit,cost,duration_s,path_length_m,"
+                      "clearance_m,solve_seconds,nearest_limit,nearest_limit_share,cost.",
+                      0),
+            0u)
+      << csv;
+  const std::string page = read_file(folder_ / "out/sweep/report.html");
+  for (const char* part : {"Paths from above", "run_003: weights.smoothness=0.1, duration=4"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+}
+
+TEST_F(Sweeping, JsonHoldsTheFigures) {
+  write("shot.lua", film("name = 'hop',"));
+  const Finished finished =
+      run({"sweep", "shot.lua", "--vary", "weights.effort=0.01,-1", "--json"});
+  EXPECT_EQ(finished.status, 2);
+  const Value answer = from_json(finished.out, "answer");
+  const Value& good = answer.at("runs").as_list()[0];
+  EXPECT_EQ(good.at("status").as_text(), "ok");
+  EXPECT_GT(good.at("figures").at("path_length").as_number(), 5);
+  EXPECT_GT(good.at("figures").at("terms").at("smoothness").as_number(), 0);
+  EXPECT_GT(good.at("figures").at("nearest_limit").at("share").as_number(), 0.1);
+  EXPECT_TRUE(good.at("reasons").as_list().empty());
+  const Value& bad = answer.at("runs").as_list()[1];
+  EXPECT_TRUE(bad.at("figures").is_null());
+  EXPECT_EQ(bad.at("reasons").as_list().size(), 1u);
+  EXPECT_NE(bad.at("reasons").as_list()[0].as_text().find("weights.effort"), std::string::npos);
+}
+
+// A mission that plans until it is told to stop, unless `step` is 0.2.
+constexpr const char* kLong = R"(
+local film = require "mission.film"
+local mission = film.shot { name = "long", keyframes = {
+  { position = {0, 0, 2} }, { position = {5, 0, 3} } } }
+local plan = mission.plan
+mission.plan = function(run)
+  local result = plan(run)
+  while run.options.step ~= 0.2 and not run:cancelled() do result = plan(run) end
+  return result
+end
+return mission)";
+
+TEST_F(Sweeping, EndsItsRunsWhenItIsEnded) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    write("shot.lua", kLong);
+    const pid_t child = start({"sweep", "shot.lua", "--vary", "step=0.2,0.1,0.15", "--jobs", "1"});
+    ASSERT_TRUE(appears(folder_ / "out/sweep/run_001/exit.txt"));
+    ASSERT_TRUE(appears(folder_ / "out/sweep/run_002/answer.json"));
+    ::kill(child, signal);
+    const Finished finished = finish(child);
+    EXPECT_EQ(finished.status, 130) << finished.err;
+    EXPECT_NE(finished.out.find("run_001  0.2   certified"), std::string::npos) << finished.out;
+    EXPECT_NE(finished.out.find("run_003  0.15  not run"), std::string::npos) << finished.out;
+    EXPECT_EQ(processes_of_runs(), 0);
+    EXPECT_TRUE(fs::exists(folder_ / "out/sweep/table.csv"));
+    fs::remove_all(folder_ / "out");
+  }
+}
+
+TEST_F(Sweeping, KilledItLeavesNoRunBehind) {
+  write("shot.lua", kLong);
+  const pid_t child = start({"sweep", "shot.lua", "--vary", "step=0.1,0.15"});
+  ASSERT_TRUE(appears(folder_ / "out/sweep/run_002/answer.json"));
+  ::kill(child, SIGKILL);
+  finish(child);
+  for (int i = 0; i < 100 && processes_of_runs() > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(processes_of_runs(), 0);
+}
+
+TEST_F(Sweeping, GoesOnWithWhatIsMissing) {
+  write("shot.lua", film("name = 'hop',"));
+  const std::vector<std::string> typed{"sweep", "shot.lua", "--vary", "weights.effort=0.01,0.1,1"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = typed;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  refused(with({"--resume"}), {"--resume: there is no sweep in 'out/sweep'"});
+  ASSERT_EQ(run(typed).status, 0);
+  const auto time = [&](const char* file) { return fs::last_write_time(folder_ / file); };
+  const std::string second = read_file(folder_ / "out/sweep/run_002/plan.json");
+  const auto kept = time("out/sweep/run_001/plan.json");
+  // As a kill leaves it: begun, without its end.
+  fs::remove(folder_ / "out/sweep/run_002/exit.txt");
+  fs::remove(folder_ / "out/sweep/run_002/plan.json");
+  fs::remove_all(folder_ / "out/sweep/run_003");
+  const Finished finished = run(with({"--resume", "--json"}));
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(from_json(finished.out, "answer").at("runs").as_list().size(), 3u);
+  EXPECT_EQ(read_file(folder_ / "out/sweep/run_002/plan.json"), second);
+  EXPECT_TRUE(fs::exists(folder_ / "out/sweep/run_003/plan.json"));
+  EXPECT_EQ(time("out/sweep/run_001/plan.json"), kept);
+
+  // Of something else it is another sweep.
+  Finished other = run(with({"--resume", "--seed", "2"}));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("was made of something else: seed"), std::string::npos) << other.err;
+  other = run(with({"--resume", "--set", "hard=0.1"}));
+  EXPECT_NE(other.err.find("something else: set"), std::string::npos) << other.err;
+  write("shot.lua", film("name = 'hop', hard = 0.3,"));
+  other = run(with({"--resume"}));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("something else: scripts_sha256"), std::string::npos) << other.err;
+  other = run(typed);
+  EXPECT_EQ(other.status, 0);
+  EXPECT_NE(other.err.find("replaces the sweep in 'out/sweep'"), std::string::npos) << other.err;
+}
+
+// A module of one's own counts as the script does.
+TEST_F(Sweeping, ItsOwnModulesCount) {
+  write("sizes.lua", "return { hard = 0.3 }");
+  write("shot.lua", "local sizes = require 'sizes'\n" + film("hard = sizes.hard,"));
+  ASSERT_EQ(run({"sweep", "shot.lua", "--vary", "step=0.1"}).status, 0);
+  write("sizes.lua", "return { hard = 0.4 }");
+  const Finished finished = run({"sweep", "shot.lua", "--vary", "step=0.1", "--resume"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("scripts_sha256"), std::string::npos) << finished.err;
+}
+
+}  // namespace
+}  // namespace lapwing
