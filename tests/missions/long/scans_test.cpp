@@ -59,6 +59,15 @@ TEST_F(Filming, ShippedScansAreCertified) {
   }
 }
 
+TEST_F(Filming, ShippedMeshesAreScanned) {
+  for (const char* name : {"tower.obj", "cottage.dae"})
+    expect_scan(
+        fly("../scan/own_mesh.lua",
+            "--config scan/small --set candidates.most=400 --set ground=true --data '" +
+                std::string(LAPWING_SOURCE_DIR "/tests/data") + "' --set input=meshes/" + name),
+        name);
+}
+
 TEST_F(Filming, MeshesOfOthersAreScanned) {
   if (data_folder().empty()) GTEST_SKIP() << "LAPWING_DATA names no folder with meshes";
   for (const char* name : {"delft_block.obj", "gz_powerplant.dae"})
