@@ -1,5 +1,8 @@
 #include "framework/export/flight_charts.h"
 
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <set>
 
 #include "framework/core/units.h"
@@ -12,12 +15,33 @@ double across(const Eigen::Vector3d& v) {
   return v.head<2>().norm();
 }
 
+// How far the flight keeps from a bystander: a circle on the level, and one upright in each view.
+void add_distance(const Subject& subject, double time, Drawing& drawing) {
+  constexpr int kCorners = 48;
+  const double nowhere = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Vector3d middle = subject.position(time), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  Polyline rings{subject.name + ", distance kept", {}, {}, {}};
+  for (const auto& [first, second] : {std::pair{x, y}, {x, z}, {y, z}}) {
+    for (int i = 0; i <= kCorners; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kCorners;
+      rings.points.push_back(middle + subject.distance * (std::cos(angle) * first +
+                                                          std::sin(angle) * second));
+    }
+    rings.points.push_back(Eigen::Vector3d::Constant(nowhere));
+  }
+  drawing.lines.push_back(std::move(rings));
+}
+
 // A subject that stands is a point; one that moves, its track while the flight lasts.
 void add_track(const Plan& plan, const Subject& subject, Drawing& drawing) {
   constexpr int kMost = 200;
   const auto& samples = plan.trajectory.samples;
   const double start = samples.front().time, duration = plan.trajectory.duration();
   drawing.points.push_back({subject.name, subject.position(start)});
+  if (!subject.filmed && subject.distance > 0) {
+    add_distance(subject, start, drawing);
+    if (subject.positions.size() > 1) add_distance(subject, start + duration, drawing);
+  }
   if (subject.positions.size() < 2 || !(duration > 0)) return;
   Polyline track{subject.name, {}, {}, {}};
   for (int i = 0; i <= kMost; ++i) {

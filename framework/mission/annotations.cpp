@@ -121,6 +121,7 @@ class AnnotationWriter {
       write_entries(mission.declarations, "lapwing." + mission.kind + "." + mission.name, {});
       finish_class();
     }
+    write_described();
     write_class("lapwing.vehicle_file", vehicle_table().to_value());
     return text_;
   }
@@ -234,6 +235,21 @@ class AnnotationWriter {
              names + ") end\n";
   }
 
+  void write_described() {
+    std::string owner;
+    for (const DescribedFunction& function : interface_.described) {
+      const std::string name = "lapwing." + function.owner;
+      if (function.owner != owner) begin_class(name);
+      owner = function.owner;
+      write_field(function.name,
+                  "fun(given: " + name + "." + function.name + "): " + function.gives,
+                  function.summary);
+    }
+    if (!owner.empty()) finish_class();
+    for (const DescribedFunction& function : interface_.described)
+      write_class("lapwing." + function.owner + "." + function.name, function.declarations);
+  }
+
   void write_plugins() {
     std::string kind, alternatives;
     const auto finish = [&] {
@@ -301,6 +317,28 @@ std::string call_of(const Binding& binding) {
 
 std::string annotations_of(const ScriptInterface& interface, const Registry& registry) {
   return AnnotationWriter(interface, registry).write();
+}
+
+std::string argument_table_of(const ScriptInterface& interface, const std::string& owner) {
+  std::string text = "| shot | argument | default | |\n|---|---|---|---|\n";
+  for (const DescribedFunction& function : interface.described) {
+    if (function.owner != owner) continue;
+    text += "| `" + function.name + "` | | | " + function.summary + " |\n";
+    for (const Value& entry : function.declarations.as_list()) {
+      const Value* fallback = entry.find("default");
+      const std::string unit = text_of(entry, "unit");
+      text += "| | `" + text_of(entry, "name") + "` | " +
+              (is_required(entry) ? "required"
+               : fallback         ? to_json(*fallback, -1) + (unit.empty() ? "" : " " + unit)
+                                  : "–") +
+              " | " + text_of(entry, "summary");
+      Value bare = entry;
+      bare.set("default", Value());
+      const std::string details = details_of(bare);
+      text += (details.empty() ? "" : " (" + details + ")") + " |\n";
+    }
+  }
+  return text;
 }
 
 std::string call_table_of(const ScriptInterface& interface) {

@@ -40,6 +40,7 @@ Subject subject_of(const Parameters& given) {
   subject.height = given.number("height");
   subject.width = given.number("width");
   subject.distance = given.number("distance");
+  subject.filmed = given.boolean("filmed");
   for (const Parameters& point : given.tables("track")) {
     const double time = point.number("time");
     if (!subject.times.empty() && !(time > subject.times.back()))
@@ -103,6 +104,7 @@ ParameterTable environment_table() {
       .number("width", 0, "m", "diameter", between(0, 1e5))
       .number("distance", 0, "m", "kept from its middle, judged by the certificate",
               between(0, 1e5))
+      .boolean("filmed", true, "else a bystander, whom no camera looks for")
       .tables("track", point, "where it is, straight in between", true);
   ParameterTable table = shapes_table();
   table.tables("meshes", mesh, "to keep away from")

@@ -50,6 +50,21 @@ int options(lua_State* state) {
   return 1;
 }
 
+// lapwing.arguments(what, declarations, given): the given values, checked, with every default.
+int arguments(lua_State* state) {
+  const Origin origin = Sandbox::of(state).script_position(state);
+  const std::string what = text_argument(state, 1, "lapwing.arguments");
+  const auto declarations =
+      OptionDeclarations::from_value(value_from_lua(state, 2, origin, "declarations"));
+  Value given = value_from_lua(state, 3, origin, what);
+  if (given.is_list() && given.as_list().empty()) given = Value::map();
+  if (!given.is_map())
+    throw InputError(origin, what + ": expected a table, got " + given.describe_type());
+  given.with_origin(origin);
+  push_value(state, declarations.check(given, *run_of(state).settings.registry, what));
+  return 1;
+}
+
 // lapwing.fail(message): an error at the script's own line, whatever module found it.
 int fail(lua_State* state) {
   throw InputError(Sandbox::of(state).script_position(state),
@@ -85,6 +100,9 @@ void open_lapwing_library(lua_State* state, MissionRun& run) {
       {"options", &guarded<options>,
        "(declarations: lapwing.option[], given: table): lapwing.options",
        "a mission's options: what may be set, and what the script sets"},
+      {"arguments", &guarded<arguments>,
+       "(what: string, declarations: lapwing.option[], given: table): table",
+       "the arguments of a function, checked as options are, with their defaults"},
       {"local_from_geodetic", &guarded<local_from_geodetic>,
        "(origin: lapwing.geodetic, point: lapwing.geodetic): number[]",
        "{east, north, up} of the point from the origin, m"},

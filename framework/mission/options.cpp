@@ -278,7 +278,8 @@ ParameterTable OptionDeclarations::table_for(Value& given, const Registry& regis
   return ParameterTable::from_value(list);
 }
 
-Value OptionDeclarations::check(const Value& given, const Registry& registry) const {
+Value OptionDeclarations::check(const Value& given, const Registry& registry,
+                                const std::string& what) const {
   Value values = given.is_map() ? given : Value::map();
   values.with_origin(given.origin());
   Value plain = Value::map(), lists = Value::map(), result = Value::map();
@@ -291,7 +292,7 @@ Value OptionDeclarations::check(const Value& given, const Registry& registry) co
     (std::any_of(options_.begin(), options_.end(), of_plugins) ? lists : plain).set(key, value);
   }
   const ParameterTable table = table_for(plain, registry);
-  const Parameters checked = lapwing::check(table, plain, "", errors);
+  const Parameters checked = lapwing::check(table, plain, what, errors);
   result.with_origin(checked.value().origin());
   for (const Option& option : options_) {
     if (option.plugins)

@@ -56,8 +56,9 @@ class OptionDeclarations {
   static OptionDeclarations from_options(const Value& options);
 
   // Checks given values (script and overrides, merged) and fills in every default, those of the
-  // plugins chosen included; no code is loaded. InputError with all errors.
-  Value check(const Value& given, const Registry& registry) const;
+  // plugins chosen included; no code is loaded. InputError with all errors, whose keys begin with
+  // `what`.
+  Value check(const Value& given, const Registry& registry, const std::string& what = "") const;
 
   // A plugin's name alone, where the mission has entries of its own beside the plugin's, becomes a
   // table with that name, so that it takes nothing else away: "tour=greedy" is

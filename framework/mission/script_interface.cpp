@@ -6,6 +6,7 @@
 
 #include "framework/core/files.h"
 #include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
 #include "framework/mission/options.h"
 
 namespace lapwing {
@@ -49,6 +50,30 @@ void ask_functions(lua_State* state, const std::string& kind, std::vector<Missio
   }
 }
 
+// Tables of the module on top of the stack that hold `described`, as film.shots does:
+// {{name =, summary =, gives =, arguments = {...}}, ...}.
+void read_described(lua_State* state, const std::string& kind,
+                    std::vector<DescribedFunction>& found) {
+  const int module = lua_gettop(state);
+  if (!lua_istable(state, module)) return;
+  std::vector<std::string> names;
+  for (lua_pushnil(state); lua_next(state, module); lua_pop(state, 1))
+    if (lua_type(state, -2) == LUA_TSTRING && lua_istable(state, -1))
+      names.emplace_back(lua_tostring(state, -2));
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) {
+    lua_settop(state, module);
+    lua_getfield(state, module, name.c_str());
+    if (lua_getfield(state, -1, "described") != LUA_TTABLE) continue;
+    const Value list = value_from_lua(state, lua_gettop(state), {kind, 0}, "described");
+    for (const Value& entry : list.as_list())
+      found.push_back({kind + "." + name, entry.at("name").as_text(),
+                       entry.at("summary").as_text(), entry.at("gives").as_text(),
+                       OptionDeclarations::from_value(entry.at("arguments")).to_value()});
+  }
+  lua_settop(state, module);
+}
+
 }  // namespace
 
 ScriptInterface read_script_interface(const MissionSettings& settings) {
@@ -61,6 +86,7 @@ ScriptInterface read_script_interface(const MissionSettings& settings) {
     for (const std::string& name : mission_modules(settings.scripts)) {
       lua_settop(state, 0);
       sandbox.require(state, "mission." + name);
+      read_described(state, name, interface.described);
       ask_functions(state, name, interface.missions);
     }
     lua_settop(state, 0);

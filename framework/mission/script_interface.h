@@ -18,9 +18,18 @@ struct MissionFunction {
   Value declarations;  // of its options, as lapwing.options takes them
 };
 
+// A function that a kind's module describes in a table of its own: film.shots.orbit.
+struct DescribedFunction {
+  std::string owner;        // "film.shots"
+  std::string name, summary;
+  std::string gives;        // a type as LuaLS writes it
+  Value declarations;       // of its arguments, as lapwing.arguments takes them
+};
+
 struct ScriptInterface {
   std::vector<BoundType> types;
   std::vector<MissionFunction> missions;  // by kind, then by name
+  std::vector<DescribedFunction> described;  // by owner, then in the module's order
 };
 
 // Opens a sandbox, binds everything, and asks every kind in `settings.scripts` what it declares.
@@ -33,6 +42,9 @@ std::string annotations_of(const ScriptInterface& interface, const Registry& reg
 
 // The rows of the README's tables: "| call | gives |" of all functions, or of one type.
 std::string call_table_of(const ScriptInterface& interface);
+
+// "| argument | default | |" of the functions that `owner` describes.
+std::string argument_table_of(const ScriptInterface& interface, const std::string& owner);
 
 // A JSON schema for configurations: of missions of one kind, of all ("" for `kind`), or of vehicle
 // files ("vehicle"). InputError naming the kinds there are.

@@ -28,7 +28,7 @@ class Nearness {
     Check check = judged(make_check("subject_distance"), distance_, subject_->distance,
                          tolerances::kClearance, at_, true);
     if (!check.detail.empty()) check.detail += "; ";
-    check.detail += "subject '" + subject_->name + "'";
+    check.detail += (subject_->filmed ? "subject '" : "bystander '") + subject_->name + "'";
     return check;
   }
 

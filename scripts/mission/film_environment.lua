@@ -1,4 +1,6 @@
 -- What surrounds a film: obstacles, flight zones and the tracking volume, as a problem wants them.
+local tracks = require "mission.tracks"
+
 local M = {}
 
 local MOST_OBSTACLES = 300
@@ -67,6 +69,61 @@ function M.of(run, options, keyframes)
     table.insert(lists[given.type], made)
   end
   return environment
+end
+
+-- The environment that a film states, subjects and bystanders included; sets shot.bystanders.
+function M.state(run, shot, options, camera, stretch)
+  local environment = M.of(run, options, shot.keyframes)
+  environment.subjects = {}
+  for i, subject in ipairs(camera and camera.list or {}) do
+    environment.subjects[i] = { name = subject.name, height = subject.height,
+                                width = subject.width, distance = subject.distance,
+                                track = subject.track }
+  end
+  shot.bystanders = tracks.checked(run, options.keep_away, stretch or 1, "keep_away", "bystander")
+  for i, bystander in ipairs(shot.bystanders) do
+    for _, subject in ipairs(environment.subjects) do
+      if subject.name == bystander.name then
+        run:fail("keep_away[" .. i .. "].name", "'" .. subject.name .. "' is taken")
+      end
+    end
+    bystander.bystander = true
+    environment.subjects[#environment.subjects + 1] = { name = bystander.name, filmed = false,
+      distance = bystander.distance, track = bystander.track }
+  end
+  return environment
+end
+
+-- Constraints that keep a problem clear of its environment; or within a corridor.
+function M.add(p, environment, camera, corridor)
+  if corridor then
+    p:add_constraint { type = "corridor", regions = corridor }
+  else
+    for form, plugin in pairs { spheres = "sphere_obstacle", boxes = "box_obstacle",
+                                zones = "no_fly_zone", flight_zones = "flight_zone" } do
+      if #environment[form] > 0 then p:add_constraint { type = plugin } end
+    end
+    if #environment.meshes + #environment.maps > 0 then p:add_constraint { type = "clearance" } end
+  end
+  for _, subject in ipairs(camera and camera.list or {}) do
+    if subject.distance then
+      p:add_constraint { type = "subject_distance", name = "distance to " .. subject.name,
+                         subject = subject.name, distance = subject.distance }
+    end
+  end
+  for _, subject in ipairs(environment.subjects or {}) do
+    if subject.filmed == false then
+      p:add_constraint { type = "subject_distance", name = "distance to " .. subject.name,
+                         subject = subject.name, distance = subject.distance }
+    end
+  end
+end
+
+-- The film's own limit of speed, as a constraint of a script: the certificate reads it off the plan.
+function M.add_speed_limit(p, options, held)
+  if not options.speed_limit then return end
+  p:add_constraint { name = "speed_limit", upper = options.speed_limit, held = held,
+                     value = function(s) return lapwing.norm(s.velocity) end }
 end
 
 return M

@@ -72,10 +72,10 @@ function input.written_out(given)
     if type(out.subject) ~= "table" then lapwing.fail("subject: expected a table") end
     out.subjects, out.subject = { out.subject }, nil
   end
-  if type(out.subjects) == "table" then
+  for _, option in ipairs { "subjects", "keep_away" } do
     local list = {}
-    for i, entry in ipairs(out.subjects) do
-      local what = string.format("subjects[%d].track", i)
+    for i, entry in ipairs(type(out[option]) == "table" and out[option] or {}) do
+      local what = string.format("%s[%d].track", option, i)
       if type(entry) == "table" then
         local copy = {}
         for key, value in pairs(entry) do copy[key] = value end
@@ -86,7 +86,7 @@ function input.written_out(given)
       end
       list[i] = entry
     end
-    out.subjects = list
+    if type(out[option]) == "table" then out[option] = list end
   end
   if type(out.keyframes) == "table" then
     local list = {}
@@ -111,16 +111,27 @@ function input.written_out(given)
   return out
 end
 
+local track = { name = "track", type = "tables", also = "fun(time: number): number[]",
+  summary = "where it is, and when, straight in between",
+  table = {
+    { name = "time", type = "number", unit = "s", required = true, summary = "of the film" },
+    { name = "position", type = "numbers", size = 3, unit = "m", required = true,
+      minimum = -1e6, maximum = 1e6, summary = "of its middle" } } }
+
+input.bystander = {
+  { name = "name", type = "text", summary = "for messages" },
+  { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
+    summary = "where it stands still" },
+  track,
+  { name = "distance", type = "number", unit = "m", required = true, above = 0, maximum = 1e5,
+    summary = "kept from it along the whole path" },
+}
+
 input.subject = {
   { name = "name", type = "text", summary = "by which keyframes ask for it" },
   { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
     summary = "of its middle, where it stands still" },
-  { name = "track", type = "tables", also = "fun(time: number): number[]",
-    summary = "where it is, and when, straight in between",
-    table = {
-      { name = "time", type = "number", unit = "s", required = true, summary = "of the film" },
-      { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-        minimum = -1e6, maximum = 1e6, summary = "of its middle" } } },
+  track,
   { name = "height", type = "number", unit = "m", default = 0, minimum = 0, maximum = 1e5,
     summary = "from foot to top" },
   { name = "width", type = "number", unit = "m", default = 0, minimum = 0, maximum = 1e5,
@@ -136,6 +147,8 @@ input.subject = {
 input.keyframe = {
   { name = "time", type = "number", unit = "s", minimum = 0,
     summary = "absent: evenly between the others, or as timing says" },
+  { name = "speed", type = "number", unit = "m/s", above = 0, maximum = 1e3,
+    summary = "of the leg that leads to it; absent: the film's" },
   { name = "time_weight", type = "number", above = 0,
     summary = "free timing: prefers the time; times its squared miss, s of flight" },
   { name = "earliest", type = "number", unit = "s", minimum = 0,

@@ -61,15 +61,17 @@ end
 -- A keyframe so deep in an obstacle, or so near to a subject, that it cannot be met.
 local function check_keyframes(run, p, shot, options, stretch, camera)
   local reach = options.hard or problem.MISS
+  local people = table.move(camera and camera.list or {}, 1, camera and #camera.list or 0, 1, {})
+  table.move(shot.bystanders, 1, #shot.bystanders, #people + 1, people)
   for i, k in ipairs(shot.keyframes) do
     local distance, name = p:nearest_obstacle(k.position)
-    for _, subject in ipairs(camera and camera.list or {}) do
+    for _, subject in ipairs(people) do
       local at, squares = tracks.at(subject.track, k.time * stretch), 0
       for c = 1, 3 do squares = squares + (k.position[c] - at[c]) ^ 2 end
       if subject.distance and math.sqrt(squares) + reach < subject.distance then
         run:fail("keyframes[" .. i .. "].position", string.format(
-          "%.3g m from subject '%s', and %g m are to be kept", math.sqrt(squares), subject.name,
-          subject.distance))
+          "%.3g m from %s '%s', and %g m are to be kept", math.sqrt(squares),
+          subject.bystander and "bystander" or "subject", subject.name, subject.distance))
       end
     end
     local outside, zone = p:flight_zone_distance(k.position)
@@ -83,36 +85,6 @@ local function check_keyframes(run, p, shot, options, stretch, camera)
       run:fail("keyframes[" .. i .. "].position", string.format(
         "%s obstacle '%s': %.3g m from its surface, and %g m are to be kept",
         distance < 0 and "inside" or "too near", name, distance, options.margin))
-    end
-  end
-end
-
--- The environment that a film states, subjects included.
-local function environment_of(run, shot, options, camera)
-  local environment = surroundings.of(run, options, shot.keyframes)
-  environment.subjects = {}
-  for i, subject in ipairs(camera and camera.list or {}) do
-    environment.subjects[i] = { name = subject.name, height = subject.height,
-                                width = subject.width, distance = subject.distance,
-                                track = subject.track }
-  end
-  return environment
-end
-
-local function add_obstacles(p, environment, camera, corridor)
-  if corridor then
-    p:add_constraint { type = "corridor", regions = corridor }
-  else
-    for form, plugin in pairs { spheres = "sphere_obstacle", boxes = "box_obstacle",
-                                zones = "no_fly_zone", flight_zones = "flight_zone" } do
-      if #environment[form] > 0 then p:add_constraint { type = plugin } end
-    end
-    if #environment.meshes + #environment.maps > 0 then p:add_constraint { type = "clearance" } end
-  end
-  for _, subject in ipairs(camera and camera.list or {}) do
-    if subject.distance then
-      p:add_constraint { type = "subject_distance", name = "distance to " .. subject.name,
-                         subject = subject.name, distance = subject.distance }
     end
   end
 end
@@ -183,7 +155,7 @@ function problem.state(run, shot, stretch, only)
   local camera = only ~= "flight" and shot.vehicle.gimbal
     and subjects.plan(run, shot, stretch, duration, shot.vehicle)
   local keyframes = keyframes_of(shot, stretch, o)
-  local environment = environment_of(run, shot, o, camera)
+  local environment = surroundings.state(run, shot, o, camera, stretch)
   local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
                                   duration / FEWEST_INTERVALS)
   local p = run:problem { vehicle = shot.vehicle, duration = duration, step = step,
@@ -204,8 +176,9 @@ function problem.state(run, shot, stretch, only)
   if only ~= "unlimited" then
     p:add_constraint { type = "input_limits", across = "extent" }
     p:add_constraint { type = "state_limits" }
-    add_obstacles(p, environment, camera, corridor)
+    surroundings.add(p, environment, camera, corridor)
   end
+  surroundings.add_speed_limit(p, o, only ~= "unlimited")
   if shot.track and only ~= "flight" then  -- of timing.lua
     p:add_cost { type = "keyframe", name = "path", weight = shot.track_weight,
                  keyframes = shot.track }
@@ -239,7 +212,6 @@ function problem.state(run, shot, stretch, only)
 end
 
 -- For problems that share some of it.
-problem.parts = { boundary = boundary, smoothness = smoothness, environment = environment_of,
-                  add_obstacles = add_obstacles, guess = guess }
+problem.parts = { boundary = boundary, smoothness = smoothness, guess = guess }
 
 return problem

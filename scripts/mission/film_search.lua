@@ -133,13 +133,13 @@ end
 -- The film at the times that its keyframes have.
 local function at_given_times(run, shot)
   local o = run.options
-  times.fill(shot, shot.vehicle)
+  times.fill(shot, shot.vehicle, o)
   times.check(run, shot)
   times.unwrap_yaw(shot.keyframes)
   local last = shot.keyframes[#shot.keyframes].time
   shot.duration = shot.duration or (last > 0 and last or HOVER)
   local least, why = times.fastest_leg(shot.keyframes, shot.vehicle, o.hard or problem.MISS,
-                                      o.hard and 0 or problem.LATE)
+                                      o.hard and 0 or problem.LATE, o.speed_limit)
   local auto = o.stretch == "auto"
   times.check_battery(run, shot, auto and 1 or o.stretch)
   local first = attempt(run, shot, auto and 1 or o.stretch, auto and why and "flight" or nil)
@@ -184,6 +184,7 @@ function M.fly(run, shot)
   if #shot.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
   check_gimbal(run, shot)
   timing.check(run, shot)
+  times.check_speed(run, shot)
   if o.timing == "given" or o.timing == "time_first" then return at_given_times(run, shot) end
   local way = o.timing == "free" and wished or timing
   local chosen, notes, figures = way.fly(run, shot, attempt, holds)

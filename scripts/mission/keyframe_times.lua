@@ -12,11 +12,77 @@ local function leg_time(from, to, vehicle)
                   math.sqrt(8 * across / vehicle.acceleration_across))
 end
 
+local function length(a, b)
+  return math.sqrt((a[1] - b[1]) ^ 2 + (a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2)
+end
+
+-- A `speed`, of the film or of a leg, times keyframes that have no time: what contradicts it.
+local function check_speed(run, shot)
+  local o, list = run.options, shot.keyframes
+  local untimed, own
+  for i, k in ipairs(list) do
+    local what = "keyframes[" .. i .. "]"
+    own = own or k.speed and what .. ".speed"
+    if k.speed and i == 1 then run:fail(what .. ".speed", "no leg leads to the first keyframe") end
+    if k.speed and k.time then run:fail(what .. ".speed", "give a time or a speed") end
+    if k.speed and o.speed_limit and k.speed > o.speed_limit then
+      run:fail(what .. ".speed", string.format("above the speed_limit of %g m/s", o.speed_limit))
+    end
+    if not k.time and i > 1 then untimed = untimed or i end
+    if k.time and untimed and (own or o.speed) then
+      run:fail(what .. ".time", string.format(
+        "keyframe %d is timed by its speed: give this one no time, or that one a time", untimed))
+    end
+    if i > 1 and (k.speed or o.speed) and not k.time
+       and length(k.position, list[i - 1].position) == 0 then
+      run:fail(what, "at the place of the one before: no speed says how long it takes; give a time")
+    end
+  end
+  if not (own or o.speed) then return end
+  local what = own or "speed"
+  if o.timing ~= "given" and o.timing ~= "time_first" then
+    run:fail(what, "times keyframes of timing = \"given\"; there is speed_limit")
+  end
+  if not untimed then
+    run:fail(what, "every keyframe has a time; give times or a speed")
+  end
+  if shot.duration then
+    run:fail(what, "the duration says how long the film takes; give a duration or a speed")
+  end
+  if o.speed and o.speed_limit and o.speed > o.speed_limit then
+    run:fail("speed", string.format("above the speed_limit of %g m/s", o.speed_limit))
+  end
+end
+times.check_speed = check_speed
+
+-- Each leg at its speed, and what speeding up from rest and slowing down take besides; at half the
+-- vehicle's acceleration.
+local function fill_at_speed(shot, vehicle, options)
+  local list = shot.keyframes
+  for i = 2, #list do
+    local speed = list[i].speed or options.speed
+    local taken = leg_time(list[i - 1].position, list[i].position, vehicle)
+    if speed then
+      local ramp = speed / vehicle.acceleration_across
+      taken = length(list[i].position, list[i - 1].position) / speed
+        + (i == 2 and options.start == "rest" and ramp or 0)
+        + (i == #list and options.finish == "rest" and ramp or 0)
+    end
+    list[i].time = list[i].time or list[i - 1].time + taken
+  end
+end
+
 -- Keyframes without a time stand evenly between those that have one. Where nothing says how fast,
--- every leg takes as long as the longest one needs.
-function times.fill(shot, vehicle)
+-- every leg takes as long as the longest one needs. With `options`, those of the film, speeds count.
+function times.fill(shot, vehicle, options)
   local list, pace, known = shot.keyframes, SHORTEST_LEG, 1
   local count = #list
+  local timed_by_speed = options and options.speed
+  for _, k in ipairs(list) do timed_by_speed = timed_by_speed or options and k.speed end
+  if timed_by_speed then
+    list[1].time = list[1].time or 0
+    return fill_at_speed(shot, vehicle, options)
+  end
   for i = 2, count do
     pace = math.max(pace, leg_time(list[i - 1].position, list[i].position, vehicle))
   end
@@ -63,15 +129,17 @@ end
 
 -- The least factor on all times at which no leg asks for more than the vehicle's speeds, when each
 -- end may be missed by `miss` metres and `late` seconds; and a sentence where a leg asks for more.
-function times.fastest_leg(keyframes, vehicle, miss, late)
+function times.fastest_leg(keyframes, vehicle, miss, late, speed_limit)
   local least, sentence = 0, nil
   for i = 2, #keyframes do
     local a, b = keyframes[i - 1], keyframes[i]
     local up = b.position[3] - a.position[3]
     local across = math.sqrt((b.position[1] - a.position[1]) ^ 2
                              + (b.position[2] - a.position[2]) ^ 2)
-    for name, distance in pairs { speed_across = across, climb_speed = up, descent_speed = -up } do
-      local limit, span = vehicle[name], b.time - a.time
+    local asked = { speed_across = across, climb_speed = up, descent_speed = -up }
+    if speed_limit then asked.speed_limit = length(a.position, b.position) end
+    for name, distance in pairs(asked) do
+      local limit, span = name == "speed_limit" and speed_limit or vehicle[name], b.time - a.time
       local factor = ((distance - 2 * miss) / limit - 2 * late) / span
       if factor > least then
         least = factor

@@ -1,78 +1,136 @@
 -- Named shots as keyframes: how a film crew asks for a camera move.
 --
--- Each takes a table and gives keyframes for film.shot, evenly in time from `start` (0) over
--- `duration` seconds; several can be joined with shots.sequence. Places are in m, world; angles in
--- degrees, 0 east, counter-clockwise.
+-- Each takes a table and gives keyframes for film.shot, in time from `start` (0) over `duration`
+-- seconds; several can be joined with shots.sequence. Places are in m, world; angles in degrees, 0
+-- east, counter-clockwise. What each takes is declared below, as options of missions are; the
+-- README's table and the annotations for editors are written from it.
 --
 --   keyframes = shots.orbit { center = {0, 0, 2}, radius = 12, height = 6, duration = 20 }
+---@type lapwing.film.shots
 local shots = {}
 
-local SPACING = 15  -- deg of an orbit between two keyframes
+local ORBIT_SPACING = 5  -- deg of an orbit between two keyframes, at most
 
--- Checked arguments: what a shot needs, and what it may be given besides.
-local function arguments(what, given, needed, optional)
-  if type(given) ~= "table" then lapwing.fail("shots." .. what .. ": expected a table") end
-  local known = { duration = true, start = true, look_at = true }
-  for _, key in ipairs(needed) do known[key] = true end
-  for _, key in ipairs(optional or {}) do known[key] = true end
-  for key in pairs(given) do
-    if not known[key] then lapwing.fail("shots." .. what .. ": unknown key '" .. key .. "'") end
-  end
-  for _, key in ipairs(needed) do
-    if given[key] == nil then lapwing.fail("shots." .. what .. ": needs " .. key) end
-  end
-  local numbers = { duration = true, radius = true, height = true, angle = true, from = true,
-                    start = true, by = true }
-  for key, value in pairs(given) do
-    local expected = numbers[key] and "number" or (key ~= "look_at" and "table")
-    if expected and type(value) ~= expected then
-      lapwing.fail(string.format("shots.%s.%s: expected a %s, got %s", what, key,
-                                 expected == "table" and "position" or expected, type(value)))
-    end
-  end
-  if type(given.duration) ~= "number" or given.duration <= 0 then
-    lapwing.fail("shots." .. what .. ".duration: expected seconds above 0")
-  end
-  return given
+-- ---- what they take ------------------------------------------------------------------------------
+
+local function place(name, summary)
+  return { name = name, type = "numbers", size = 3, unit = "m", required = true, minimum = -1e6,
+           maximum = 1e6, summary = summary }
+end
+local function look(name, required, summary)
+  return { name = name, type = "numbers", size = 3, unit = "m", required = required,
+           minimum = -1e6, maximum = 1e6, also = "string", summary = summary }
+end
+local common = {
+  { name = "duration", type = "number", unit = "s", required = true, above = 0, maximum = 1e5,
+    summary = "of the shot" },
+  { name = "start", type = "number", unit = "s", default = 0, minimum = 0, maximum = 1e5,
+    summary = "of the shot" },
+  look("look_at", false, "what is looked at: a point, or a subject's name"),
+}
+local function described(name, summary, own)
+  return { name = name, summary = summary, gives = "lapwing.film.shot.keyframes[]",
+           arguments = table.move(common, 1, #common, #own + 1, own) }
 end
 
+shots.described = {
+  described("static", "The camera stands still.", { place("position", "of the camera") }),
+  described("pan", "The camera stands still and turns from one look to another.",
+            { place("position", "of the camera"), look("look_from", true, "at the start"),
+              look("look_to", true, "at the end") }),
+  described("dolly", "A straight line, as on rails.",
+            { place("from_position", "at the start"), place("to_position", "at the end") }),
+  described("orbit", "Around a center, at a constant rate but for the ramps.", {
+    place("center", "of the circle; its height does not matter"),
+    { name = "radius", type = "number", unit = "m", required = true, above = 0, maximum = 1e5,
+      summary = "of the circle" },
+    { name = "height", type = "number", unit = "m", required = true, minimum = -1e6,
+      maximum = 1e6, summary = "of the camera, in the world" },
+    { name = "angle", type = "number", unit = "deg", default = 360, minimum = -36000,
+      maximum = 36000, summary = "that is turned through; negative is clockwise" },
+    { name = "from", type = "number", unit = "deg", default = 0, minimum = -36000,
+      maximum = 36000, summary = "direction from the center at the start" },
+    { name = "ramp", type = "number", unit = "s", default = 2, minimum = 0, maximum = 1e5,
+      summary = "in which the rate rises at the start and falls at the end; 0: constant "
+        .. "throughout, for a film that starts and finishes `free`" } }),
+  described("crane", "Straight up, or down, as on a crane's arm.",
+            { place("position", "at the start"),
+              { name = "by", type = "number", unit = "m", required = true, minimum = -1e5,
+                maximum = 1e5, summary = "upwards; negative is downwards" } }),
+  described("flyover", "Over something, and down on its far side.",
+            { place("from_position", "at the start"), place("to_position", "at the end"),
+              { name = "height", type = "number", unit = "m", required = true, minimum = -1e5,
+                maximum = 1e5, summary = "above the line between the ends, at half-time" } }),
+}
+local declared = {}
+for _, shot in ipairs(shots.described) do declared[shot.name] = shot end
+
+-- The arguments with their defaults; an error at the script's line where they do not fit.
+local function arguments(what, given)
+  local plain, list = {}, declared[what].arguments
+  if type(given) ~= "table" then
+    lapwing.fail("shots." .. what .. ": expected a table, got " .. type(given))
+  end
+  for key, value in pairs(given) do plain[key] = value end
+  local checked = table.move(list, 1, #list, 1, {})
+  for i, argument in ipairs(checked) do
+    if argument.also == "string" and type(plain[argument.name]) == "string" then
+      checked[i] = { name = argument.name, type = "text", summary = argument.summary }
+    end
+  end
+  return lapwing.arguments("shots." .. what, checked, plain)
+end
+
+-- ---- what they give ------------------------------------------------------------------------------
+
 local function at(given, share, position, look_at)
-  return { time = (given.start or 0) + share * given.duration, position = position,
+  return { time = given.start + share * given.duration, position = position,
            look_at = look_at or given.look_at }
 end
 
 local function raised(position, up) return { position[1], position[2], position[3] + up } end
 
--- The camera stands still.
 function shots.static(given)
-  arguments("static", given, { "position" })
+  given = arguments("static", given)
   return { at(given, 0, given.position), at(given, 1, given.position) }
 end
 
--- The camera stands still and turns from one look to another, points or names of subjects.
 function shots.pan(given)
-  arguments("pan", given, { "position", "look_from", "look_to" })
+  given = arguments("pan", given)
   return { at(given, 0, given.position, given.look_from),
            at(given, 1, given.position, given.look_to) }
 end
 
--- A straight line, as on rails.
 function shots.dolly(given)
-  arguments("dolly", given, { "from_position", "to_position" })
+  given = arguments("dolly", given)
   local a, b = given.from_position, given.to_position
   local middle = { (a[1] + b[1]) / 2, (a[2] + b[2]) / 2, (a[3] + b[3]) / 2 }
   return { at(given, 0, a), at(given, 0.5, middle), at(given, 1, b) }
 end
 
--- Around a center, `angle` degrees (360; negative is clockwise) from direction `from` (0), at a
--- height in the world.
+-- The share of an orbit that is behind after `time`: the rate rises smoothly, without a jump of the
+-- acceleration, over `ramp`, is constant, and falls likewise.
+local function turned(time, duration, ramp)
+  if time > duration / 2 then return 1 - turned(duration - time, duration, ramp) end
+  local rate = 1 / (duration - ramp)
+  if time >= ramp then return rate * (time - ramp / 2) end
+  local x = time / ramp
+  return rate * ramp * x ^ 4 * (x * x - 3 * x + 2.5)
+end
+
 function shots.orbit(given)
-  arguments("orbit", given, { "center", "radius", "height" }, { "angle", "from" })
-  local angle, from = given.angle or 360, given.from or 0
-  local count = math.max(2, math.ceil(math.abs(angle) / SPACING))
+  given = arguments("orbit", given)
+  local duration, ramp = given.duration, given.ramp
+  if 2 * ramp > duration then
+    lapwing.fail(string.format("shots.orbit.ramp: two of %g s are more than the %g s of the shot",
+                               ramp, duration))
+  end
+  local rate = math.abs(given.angle) / (duration - ramp)  -- deg/s, the largest
+  local count = math.max(2, math.ceil(rate * duration / ORBIT_SPACING))
   local keyframes = {}
   for i = 0, count do
-    local direction = math.rad(from + angle * i / count)
+    local share = turned(duration * i / count, duration, ramp)
+    local direction = math.rad(given.from + given.angle * share)
     keyframes[i + 1] = at(given, i / count, {
       given.center[1] + given.radius * math.cos(direction),
       given.center[2] + given.radius * math.sin(direction), given.height })
@@ -80,16 +138,14 @@ function shots.orbit(given)
   return keyframes
 end
 
--- Straight up, or down with `by` below 0, as on a crane's arm.
 function shots.crane(given)
-  arguments("crane", given, { "position", "by" })
+  given = arguments("crane", given)
   return { at(given, 0, given.position), at(given, 0.5, raised(given.position, given.by / 2)),
            at(given, 1, raised(given.position, given.by)) }
 end
 
--- Over something and down on its far side: `height` above the line between the ends at half-time.
 function shots.flyover(given)
-  arguments("flyover", given, { "from_position", "to_position", "height" })
+  given = arguments("flyover", given)
   local a, b = given.from_position, given.to_position
   local top = { (a[1] + b[1]) / 2, (a[2] + b[2]) / 2, (a[3] + b[3]) / 2 + given.height }
   return { at(given, 0, a), at(given, 0.5, top), at(given, 1, b) }

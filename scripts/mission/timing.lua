@@ -169,7 +169,8 @@ function M.fly(run, shot, attempt, holds)
   local path, share, tried = base.solution.path, 1, nil
   while share > SLOWEST and not run:cancelled() do
     local timed = run:time_path { points = path, spacing = SPACING, rounding = ROUNDING,
-                                  vehicle = shot.vehicle, share = share }
+                                  vehicle = shot.vehicle, share = share,
+                                  speed = run.options.speed_limit }
     local stops, legs = stops_of(own, timed), {}
     for i = 1, #stops - 1 do
       legs[i] = math.max(0.05, timed.times[stops[i + 1]] - timed.times[stops[i]])

@@ -3,12 +3,14 @@ local tracks = {}
 
 local STEEP = 0.05  -- share of the distance, below which a look has no heading
 
--- Subjects with names and tracks; a subject without a track stands still.
-function tracks.checked(run, list, stretch)
+-- Subjects with names and tracks; a subject without a track stands still. `option` and `word`: of
+-- bystanders, where they are not subjects.
+function tracks.checked(run, list, stretch, option, word)
   local result, by_name = {}, {}
   for i, given in ipairs(list) do
-    local what = "subjects[" .. i .. "]"
-    local name = given.name or (#list == 1 and "subject" or "subject " .. i)
+    local what = (option or "subjects") .. "[" .. i .. "]"
+    word = word or "subject"
+    local name = given.name or (#list == 1 and word or word .. " " .. i)
     local track = given.track
     if not given.position == (not track or #track == 0) then
       run:fail(what, "expected a position, or a track of times and positions")

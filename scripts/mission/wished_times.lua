@@ -3,6 +3,7 @@
 -- a weight, within a window or free, and each second of flight costs `weights.time`.
 local film = require "mission.film_problem"
 local passages = require "mission.passages"
+local surroundings = require "mission.film_environment"
 local times = require "mission.keyframe_times"
 
 local M = {}
@@ -83,7 +84,7 @@ local function problem_of(run, shot, list, share)
                       intervals = math.max(FEWEST, math.ceil(span / STEP)) }
     end
   end
-  local environment = film.parts.environment(run, shot, o)
+  local environment = surroundings.state(run, shot, o)
   local p = run:problem { vehicle = shot.vehicle, legs = legs, environment = environment }
   local path, corridor = passages.path(p, shot, keyframes, environment, o.planner)
   p:add_model { type = "quadrotor" }
@@ -101,7 +102,8 @@ local function problem_of(run, shot, list, share)
                  weight = o.weights.keyframe, keyframes = keyframes.yaws }
   end
   p:add_constraint(film.parts.boundary(o, 1, #keyframes.yaws == 0 and 0 or nil))
-  film.parts.add_obstacles(p, environment, nil, corridor)
+  surroundings.add(p, environment, nil, corridor)
+  surroundings.add_speed_limit(p, o, true)
   add_wishes(p, shot, list)
   p:guess_path(film.parts.guess(keyframes, nil, path))
   p:finish()
