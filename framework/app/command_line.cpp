@@ -19,6 +19,7 @@
 #include <iostream>
 #include <new>
 #include <sstream>
+#include <system_error>
 
 #include "framework/core/json.h"
 #include "framework/core/log.h"
@@ -222,6 +223,12 @@ ExitStatus guarded_command(const Command& command, const Invocation& invocation)
     return report_error(invocation, ExitStatus::defect,
                         "out of memory: this needs more than the system or a limit (ulimit -v) "
                         "gives");
+  } catch (const std::system_error& error) {
+    const bool scarce = error.code() == std::errc::resource_unavailable_try_again;
+    return report_error(invocation, ExitStatus::defect,
+                        scarce ? "the system gives no more threads or memory; is there a limit "
+                                 "(ulimit -u, ulimit -v)?"
+                               : std::string("internal error: ") + error.what());
   } catch (const std::exception& error) {
     return report_error(invocation, ExitStatus::defect,
                         std::string("internal error: ") + error.what());

@@ -1,5 +1,7 @@
 #include "framework/core/error.h"
 
+#include <new>
+
 namespace lapwing {
 
 std::string Origin::to_string() const {
@@ -42,8 +44,9 @@ std::string cure_of_plugin(std::string_view plugin) {
 
 PluginError plugin_failure(std::string_view plugin, std::string_view call,
                            const std::string& what) {
+  const bool scarce = what == std::bad_alloc().what();
   return PluginError("plugin '" + std::string(plugin) + "' failed in " + std::string(call) + ": " +
-                     what + cure_of_plugin(plugin));
+                     (scarce ? "out of memory" : what) + cure_of_plugin(plugin));
 }
 
 }  // namespace lapwing
