@@ -79,9 +79,9 @@ DifferenceTable table_of(const std::string& title, const std::vector<FigureRow>&
   DifferenceTable table{title, {{"figure", "first", "second", "change"}}, ""};
   for (const FigureRow& row : figures) {
     if (!std::isfinite(row.first) && !std::isfinite(row.second)) continue;
-    const double change = row.second - row.first;
-    table.rows.push_back({row.name + (row.unit.empty() ? "" : " [" + row.unit + "]"),
-                          figure_text(row.first), figure_text(row.second),
+    const std::string first = figure_text(row.first), second = figure_text(row.second);
+    const double change = first == second ? 0 : row.second - row.first;
+    table.rows.push_back({row.name + (row.unit.empty() ? "" : " [" + row.unit + "]"), first, second,
                           change == 0 ? "same" : (change > 0 ? "+" : "") + figure_text(change)});
   }
   return table;

@@ -79,9 +79,8 @@ ExitStatus print_help(const CLI::App& app, const std::vector<std::string>& words
     at = next;
     path += " " + word;
   }
-  // The name that stands before the command's own, as CLI11 writes it for --help.
-  std::cout << at->help(path.substr(0, path.rfind(' ') == path.npos ? 0 : path.rfind(' ')))
-            << std::flush;
+  // App::help would show the command that was typed: `help` itself.
+  std::cout << at->get_formatter()->make_help(at, path, CLI::AppFormatMode::Normal) << std::flush;
   return ExitStatus::done;
 }
 

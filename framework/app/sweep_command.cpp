@@ -6,6 +6,7 @@
 #include <set>
 
 #include "framework/app/interruption.h"
+#include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/sweep_tables.h"
 #include "framework/app/text_table.h"
@@ -121,6 +122,36 @@ std::vector<std::string> words_of(const SweepRun& run, const std::vector<VariedK
   return words;
 }
 
+// What a run would be told is wrong with the option is wrong with what varies it.
+std::string blaming_vary(std::string message, const std::vector<VariedKey>& keys) {
+  for (const VariedKey& key : keys) {
+    const std::string blamed = "--set: " + key.name;
+    if (message.rfind(blamed, 0) == 0) return "--vary" + message.substr(5);
+  }
+  return message;
+}
+
+// What no run could do is refused before anything is written: InputError where neither the first
+// nor the last can be loaded. One whose values alone are bad is a row of the table.
+void require_one_that_loads(const Sweep& asked, const Invocation& invocation,
+                            const std::vector<VariedKey>& keys, const std::vector<SweepRun>& runs) {
+  const Registry registry = invocation.registry();
+  std::string first_error;
+  for (const SweepRun* run : {&runs.front(), &runs.back()}) {
+    Invocation one = invocation;
+    one.quiet = true;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      one.overrides.push_back(keys[k].name + "=" + run->values[k]);
+    try {
+      load_mission(asked.script, one, registry);
+      return;
+    } catch (const InputError& error) {
+      if (first_error.empty()) first_error = error.what();
+    }
+  }
+  throw InputError(blaming_vary(first_error, keys));
+}
+
 // A run that a defect ended, or that was interrupted, is done again.
 void keep_finished(std::vector<SweepRun>& runs) {
   for (SweepRun& run : runs) {
@@ -160,6 +191,7 @@ ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
   for (const std::string& text : asked.varied) keys.push_back(read_varied(text));
   const fs::path out = invocation.out.empty() ? fs::path("out") / "sweep" : invocation.out;
   std::vector<SweepRun> runs = combinations(keys, out);
+  require_one_that_loads(asked, invocation, keys, runs);
   const Interruption interruption;
   begin(asked, invocation, out, runs);
   ProgressLine progress("sweep", std::cerr, progress_style_of_stderr(invocation.quiet),

@@ -29,7 +29,7 @@ TEST_F(Comparing, WhatDiffersIsNamed) {
   EXPECT_EQ(finished.status, 1) << finished.err;
   for (const char* part :
        {"m apart at the same time", "path length [m]", "Cost of each term", "weights.smoothness",
-        "keyframes[2].position", "[7.0, 0.0, 3.0]", "Task, vehicle and surroundings",
+        "keyframes[2].position", "[7.0,0.0,3.0]", "Task, vehicle and surroundings",
         "task.keyframes[2].position", "Certificate", "speed_across", "at most 10"})
     EXPECT_NE(finished.out.find(part), std::string::npos) << part << "\n" << finished.out;
   EXPECT_EQ(finished.out.find("vehicle.mass"), std::string::npos);

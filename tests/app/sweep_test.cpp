@@ -173,6 +173,15 @@ TEST_F(Sweeping, GoesOnWithWhatIsMissing) {
   EXPECT_NE(other.err.find("replaces the sweep in 'out/sweep'"), std::string::npos) << other.err;
 }
 
+TEST_F(Sweeping, WhatNoRunCouldDoIsRefusedBefore) {
+  write("shot.lua", film("name = 'hop',"));
+  refused({"sweep", "shot.lua", "--vary", "weights.efort=1,2"},
+          {"lapwing: --vary: weights.efort: unknown key; did you mean 'effort'?"});
+  refused({"sweep", "nothing.lua", "--vary", "step=0.1"}, {"there is no script 'nothing.lua'"});
+  refused({"sweep", "shot.lua"}, {"expected --vary KEY=VALUE,VALUE,..."});
+  refused({"sweep", "shot.lua", "--vary", "step=0.1", "--set", "hard=x"}, {"--set: hard"});
+}
+
 // A module of one's own counts as the script does.
 TEST_F(Sweeping, ItsOwnModulesCount) {
   write("sizes.lua", "return { hard = 0.3 }");
