@@ -10,9 +10,11 @@
 #include <cstdlib>
 #include <optional>
 #include <sstream>
+#include <unordered_map>
 #include <vector>
 
 #include "framework/core/files.h"
+#include "framework/core/json.h"
 
 namespace lapwing {
 
@@ -76,23 +78,12 @@ std::optional<Value> typed_scalar(const std::string& text) {
   return Value(number);
 }
 
-// The first byte that is not UTF-8, or npos. yaml-cpp would guess an encoding instead.
-std::size_t first_bad_byte(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t length = lead < 0x80   ? 1
-                               : lead < 0xc2 ? 0
-                               : lead < 0xe0 ? 2
-                               : lead < 0xf0 ? 3
-                               : lead < 0xf5 ? 4
-                                             : 0;
-    if (length == 0 || lead == 0 || i + length > text.size()) return i;
-    for (std::size_t k = 1; k < length; ++k) {
-      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return i;
-    }
-    i += length;
-  }
-  return text.npos;
+// yaml-cpp reads a collection in flow style to its end before it hands out any of it, with some 250
+// bytes for each of these.
+constexpr std::ptrdiff_t kMostFlowSigns = 200'000;
+
+bool is_flow_sign(char letter) {
+  return letter == ',' || letter == '[' || letter == ']' || letter == '{' || letter == '}';
 }
 
 // Receives the parser's events and builds the tree.
@@ -160,6 +151,7 @@ class Builder final : public YAML::EventHandler {
     std::optional<std::string> key;  // read, its value not yet
     int key_line = 0;
     bool repeated = false;
+    std::unordered_map<std::string, int> keys;  // those so far, and their lines
   };
 
   bool expects_key() const {
@@ -174,10 +166,10 @@ class Builder final : public YAML::EventHandler {
   void take_key(const YAML::Mark& mark, const std::string& tag, const std::string& text) {
     Level& top = stack_.back();
     if (tag == "?" && text == "<<") refuse(mark, "the merge key '<<' is not supported");
-    top.repeated = top.value.find(text) != nullptr;
+    const auto [known, fresh] = top.keys.emplace(text, mark.line + 1);
+    top.repeated = !fresh;
     if (top.repeated) {
-      refuse(mark, "repeated key '" + text + "', first on line " +
-                       std::to_string(top.value.find(text)->origin().line));
+      refuse(mark, "repeated key '" + text + "', first on line " + std::to_string(known->second));
     }
     top.key = text;
     top.key_line = mark.line + 1;
@@ -213,7 +205,7 @@ class Builder final : public YAML::EventHandler {
                        "nested deeper than " + std::to_string(kMaximumYamlDepth) + " levels");
     }
     value.with_origin(origin_here(value, mark));
-    stack_.push_back({std::move(value), std::nullopt, 0, false});
+    stack_.push_back({std::move(value), std::nullopt, 0, false, {}});
   }
   void close() {
     Value value = std::move(stack_.back().value);
@@ -231,7 +223,12 @@ void require_plain_text(std::string_view text, const std::string& source) {
   if (text.size() > kMaximumYamlBytes) {
     throw InputError(source + ": larger than " + std::to_string(kMaximumYamlBytes) + " bytes");
   }
-  const std::size_t bad = first_bad_byte(text);
+  if (std::count_if(text.begin(), text.end(), is_flow_sign) > kMostFlowSigns) {
+    throw InputError(source + ": more than " + std::to_string(kMostFlowSigns) +
+                     " of the signs [ ] { } and the comma: too many entries for YAML");
+  }
+  // yaml-cpp would guess an encoding instead.
+  const std::size_t bad = std::min(first_invalid_utf8(text), text.find('\0'));
   if (bad == text.npos) return;
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(bad), '\n');
   throw InputError({source, static_cast<int>(line)}, "not UTF-8 text");

@@ -10,9 +10,16 @@ std::string Origin::to_string() const {
 
 namespace {
 
+// A message is read as a C string: a NUL in what it quotes would end it.
+std::string with_visible_nul(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\0', at)) != text.npos; ++at)
+    text.replace(at, 1, "\\0");
+  return text;
+}
+
 std::string located(const Origin& origin, const std::string& message) {
   const std::string where = origin.to_string();
-  return where.empty() ? message : where + ": " + message;
+  return with_visible_nul(where.empty() ? message : where + ": " + message);
 }
 
 }  // namespace

@@ -14,6 +14,8 @@ namespace lapwing {
 
 namespace {
 
+constexpr std::size_t kAnnounced = 1u
+                                   << 20;   // bytes of values, from one call of `hold` to the next
 constexpr std::size_t kMaximumDepth = 200;  // a Value is built and destroyed recursively
 
 class Writer {
@@ -158,8 +160,8 @@ class CountingIterator {
 // Receives the parser's events and builds the tree.
 class Builder final : public nlohmann::json_sax<nlohmann::json> {
  public:
-  Builder(const std::string& source, const Position& position)
-      : source_(source), position_(position) {}
+  Builder(const std::string& source, const Position& position, const HoldValues& hold)
+      : source_(source), position_(position), announce_(hold) {}
   Value take() { return std::move(root_); }
 
   bool null() override { return put(Value()); }
@@ -181,6 +183,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& name) override {
     Level& top = stack_.back();
     if (!top.keys.insert(name).second) fail("repeated key '" + name + "'");
+    hold(2 * (name.size() + sizeof name));
     top.key = name;
     return true;
   }
@@ -210,7 +213,14 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   [[noreturn]] void fail(const std::string& message) const { throw InputError(here(), message); }
   Origin here() const { return {source_, position_.line_of_token}; }
 
+  void hold(std::size_t bytes) {
+    held_ += bytes;
+    if (held_ < announced_ || !announce_) return;
+    announce_(held_);
+    announced_ = held_ + kAnnounced;
+  }
   bool put(Value value) {
+    hold(sizeof(Value) + source_.size() + (value.is_text() ? value.as_text().size() : 0));
     if (value.origin().line == 0) value.with_origin(here());
     if (stack_.empty()) {
       root_ = std::move(value);
@@ -239,14 +249,39 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
 
   const std::string& source_;
   const Position& position_;
+  const HoldValues& announce_;
+  std::size_t held_ = 0, announced_ = kAnnounced;  // bytes
   std::vector<Level> stack_;
   Value root_;
 };
 
 }  // namespace
 
+std::size_t first_invalid_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const std::size_t length = lead < 0x80   ? 1
+                               : lead < 0xc2 ? 0
+                               : lead < 0xe0 ? 2
+                               : lead < 0xf0 ? 3
+                               : lead < 0xf5 ? 4
+                                             : 0;
+    if (length == 0 || i + length > text.size()) return i;
+    const auto second = static_cast<unsigned char>(length > 1 ? text[i + 1] : 0x80);
+    // Too long for what they say, halves of a pair, and what is above the last character.
+    if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f) ||
+        (lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second > 0x8f))
+      return i;
+    for (std::size_t k = 1; k < length; ++k) {
+      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return i;
+    }
+    i += length;
+  }
+  return text.npos;
+}
+
 bool is_utf8(std::string_view text) {
-  return as_utf8(text) == text;
+  return first_invalid_utf8(text) == text.npos;
 }
 
 std::string as_utf8(std::string_view text) {
@@ -261,9 +296,9 @@ std::string to_json(const Value& value, int indent) {
   return writer.take();
 }
 
-Value from_json(std::string_view text, const std::string& source) {
+Value from_json(std::string_view text, const std::string& source, const HoldValues& hold) {
   Position position;
-  Builder builder(source, position);
+  Builder builder(source, position, hold);
   const CountingIterator begin(text.data(), &position);
   const CountingIterator end(text.data() + text.size(), &position);
   nlohmann::json::sax_parse(begin, end, &builder);

@@ -42,7 +42,8 @@ void note_bindings(lua_State* state, std::vector<BoundType>& types) {
 
 void bind_functions(lua_State* state, const char* type, std::span<const Binding> functions) {
   for (const Binding& binding : functions) {
-    lua_pushcfunction(state, binding.function);
+    lua_pushnil(state);  // an upvalue makes it an object with a number, see sandbox_heap.h
+    lua_pushcclosure(state, binding.function, 1);
     lua_setfield(state, -2, binding.name);
   }
   if (BoundType* noted = noted_type(state, type))

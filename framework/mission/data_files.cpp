@@ -85,8 +85,9 @@ std::string DataFiles::read_text(const std::string& name, const std::string& ins
   return read_file(find(name, inside), kLargestFile);
 }
 
-Value DataFiles::read_json(const std::string& name, const std::string& inside) const {
-  return from_json(read_text(name, inside), name);
+Value DataFiles::read_json(const std::string& name, const std::string& inside,
+                           const HoldValues& hold) const {
+  return from_json(read_text(name, inside), name, hold);
 }
 
 }  // namespace lapwing

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/value.h"
+#include "framework/core/json.h"
 
 namespace lapwing {
 
@@ -31,8 +31,9 @@ class DataFiles {
 
   // At most 64 MiB.
   std::string read_text(const std::string& name, const std::string& inside = "") const;
-  // InputError with line and column for malformed or truncated text.
-  Value read_json(const std::string& name, const std::string& inside = "") const;
+  // InputError with line and column for malformed or truncated text. `hold`: as of from_json.
+  Value read_json(const std::string& name, const std::string& inside = "",
+                  const HoldValues& hold = {}) const;
 
  private:
   std::filesystem::path find_entry(const std::string& name, const std::string& inside,

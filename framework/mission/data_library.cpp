@@ -17,8 +17,26 @@ struct DataFile {
   Value content;
 };
 
-std::string folder_argument(lua_State* state, const char* what) {
-  return lua_isnoneornil(state, 2) ? "" : text_argument(state, 2, what);
+// Arguments of the three functions below: a file's name, and a sub-folder that is asked as well.
+struct DataName {
+  std::string name, folder;
+  std::size_t bytes = 0;  // of the file
+};
+
+DataName data_argument(lua_State* state, const char* function) {
+  DataName data{text_argument(state, 1, function), "", 0};
+  if (!lua_isnoneornil(state, 2)) data.folder = text_argument(state, 2, function);
+  std::error_code error;
+  const auto size =
+      std::filesystem::file_size(run_of(state).files.find(data.name, data.folder), error);
+  if (!error) data.bytes = size;
+  return data;
+}
+
+// A file's text, then its values beside it, then the tables made of them, which take less than half
+// as much as the values.
+void claim_data(lua_State* state, const DataName& data, std::size_t values) {
+  Sandbox::of(state).claim(state, data.bytes + values + values / 2);
 }
 
 int push_file(lua_State* state, Value content) {
@@ -31,23 +49,25 @@ int push_file(lua_State* state, Value content) {
 // folders or the shipped ones, and the file; `folder` is a sub-folder of these that is asked as
 // well.
 int read_json(lua_State* state) {
-  const std::string name = text_argument(state, 1, "lapwing.read_json");
-  return push_file(
-      state, run_of(state).files.read_json(name, folder_argument(state, "lapwing.read_json")));
+  const DataName data = data_argument(state, "lapwing.read_json");
+  claim_data(state, data, 0);
+  const HoldValues hold = [&](std::size_t bytes) { claim_data(state, data, bytes); };
+  return push_file(state, run_of(state).files.read_json(data.name, data.folder, hold));
 }
 
 // lapwing.read_yaml(name [, folder]): the same from a YAML file.
 int read_yaml_data(lua_State* state) {
-  const std::string name = text_argument(state, 1, "lapwing.read_yaml");
-  const std::string folder = folder_argument(state, "lapwing.read_yaml");
-  return push_file(state, from_yaml(run_of(state).files.read_text(name, folder), name));
+  const DataName data = data_argument(state, "lapwing.read_yaml");
+  claim_data(state, data, 0);
+  return push_file(
+      state, from_yaml(run_of(state).files.read_text(data.name, data.folder), data.name));
 }
 
 // lapwing.read_text(name [, folder]): the text of a file, found as read_json finds it.
 int read_text(lua_State* state) {
-  const std::string name = text_argument(state, 1, "lapwing.read_text");
-  push_text(state,
-            run_of(state).files.read_text(name, folder_argument(state, "lapwing.read_text")));
+  const DataName data = data_argument(state, "lapwing.read_text");
+  claim_data(state, data, data.bytes);
+  push_text(state, run_of(state).files.read_text(data.name, data.folder));
   return 1;
 }
 

@@ -40,6 +40,7 @@ int options(lua_State* state) {
   made.declarations =
       OptionDeclarations::from_value(value_from_lua(state, 1, origin, "declarations"));
   made.given = value_from_lua(state, 2, origin);
+  claim_copies(state, made.given);
   if (made.given.is_list() && made.given.as_list().empty()) made.given = Value::map();
   if (!made.given.is_map()) {
     throw InputError(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "framework/core/json.h"
@@ -12,6 +13,9 @@ namespace lapwing {
 namespace {
 
 constexpr int kDeepest = 32;
+constexpr std::size_t kLongestKey = 1000;   // bytes
+constexpr std::size_t kCopies = 4;          // of a text, on its way from Lua into a plan
+constexpr std::size_t kClaimed = 1u << 20;  // bytes of values, before the limit is asked again
 
 class Reader {
  public:
@@ -26,11 +30,8 @@ class Reader {
         return located(Value(static_cast<bool>(lua_toboolean(state_, index))));
       case LUA_TNUMBER:
         return read_number(index, path);
-      case LUA_TSTRING: {
-        std::size_t length = 0;
-        const char* text = lua_tolstring(state_, index, &length);
-        return located(read_text(std::string(text, length), path));
-      }
+      case LUA_TSTRING:
+        return located(Value(text_at(index, path)));
       case LUA_TTABLE:
         return read_table(index, path, without);
       default:
@@ -39,26 +40,36 @@ class Reader {
   }
 
  private:
-  Value located(Value value) const {
+  Value located(Value value) {
     value.with_origin(origin_);
+    hold(sizeof(Value) + origin_.source.size());
     return value;
+  }
+
+  // Values are held outside of Lua, and count as the script's memory all the same.
+  void hold(std::size_t bytes) {
+    held_ += bytes;
+    if (held_ < claimed_) return;
+    Sandbox::of(state_).claim(state_, held_);
+    claimed_ = held_ + kClaimed;
   }
 
   [[noreturn]] void refuse(const std::string& path, const std::string& message) const {
     throw InputError(origin_, path.empty() ? message : path + ": " + message);
   }
 
-  // Texts end up in JSON, which is UTF-8.
-  Value read_text(std::string text, const std::string& path) const {
-    try {
-      to_json(Value(text));
-    } catch (const Error&) {
-      refuse(path, "expected text in UTF-8");
-    }
-    return Value(std::move(text));
+  // Texts end up in JSON, which is UTF-8, and in names, which a NUL would cut.
+  std::string text_at(int index, const std::string& path) {
+    std::size_t length = 0;
+    const char* const text = lua_tolstring(state_, index, &length);
+    hold(kCopies * length);
+    const std::string_view view(text, length);
+    if (!is_utf8(view)) refuse(path, "expected text in UTF-8");
+    if (view.find('\0') != view.npos) refuse(path, "a text with a NUL character cannot stand here");
+    return std::string(view);
   }
 
-  Value read_number(int index, const std::string& path) const {
+  Value read_number(int index, const std::string& path) {
     if (lua_isinteger(state_, index)) {
       return located(Value(static_cast<std::int64_t>(lua_tointeger(state_, index))));
     }
@@ -114,7 +125,9 @@ class Reader {
       lua_pop(state_, 1);
       ++entries;
       if (lua_type(state_, -1) == LUA_TSTRING) {
-        keys.emplace_back(lua_tostring(state_, -1));
+        if (lua_rawlen(state_, -1) > kLongestKey)
+          refuse(path, "a name of more than " + std::to_string(kLongestKey) + " bytes");
+        keys.push_back(text_at(-1, path));
       } else if (!lua_isinteger(state_, -1)) {
         refuse(path, std::string("keys must be texts or 1, 2, 3, ..., not a ") +
                          luaL_typename(state_, -1));
@@ -129,6 +142,7 @@ class Reader {
   Origin origin_;
   std::vector<const void*> open_;
   lua_Integer entries_ = 0;
+  std::size_t held_ = 0, claimed_ = kClaimed;  // bytes
 };
 
 }  // namespace
@@ -136,6 +150,24 @@ class Reader {
 Value value_from_lua(lua_State* state, int index, const Origin& origin, const std::string& key_path,
                      std::span<const std::string_view> without) {
   return Reader(state, origin).read(index, key_path, without);
+}
+
+namespace {
+
+// Without the texts, whose copies were claimed as they were read.
+std::size_t size_of(const Value& value) {
+  std::size_t bytes = sizeof(Value) + value.origin().source.size();
+  if (value.is_list())
+    for (const Value& entry : value.as_list()) bytes += size_of(entry);
+  if (value.is_map())
+    for (const auto& [key, entry] : value.as_map()) bytes += sizeof key + size_of(entry);
+  return bytes;
+}
+
+}  // namespace
+
+void claim_copies(lua_State* state, const Value& options) {
+  Sandbox::of(state).claim(state, kCopies * size_of(options));
 }
 
 void push_value(lua_State* state, const Value& value) {

@@ -22,6 +22,10 @@ Value value_from_lua(lua_State* state, int index, const Origin& origin,
                      const std::string& key_path = "",
                      std::span<const std::string_view> without = {});
 
+// InputError where the script's limit of memory has no room for the copies that a mission's options
+// become: as given, laid over one another, checked, in the plan.
+void claim_copies(lua_State* state, const Value& options);
+
 void push_value(lua_State* state, const Value& value);
 
 }  // namespace lapwing

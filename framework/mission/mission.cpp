@@ -4,6 +4,7 @@
 
 #include "framework/config/overrides.h"
 #include "framework/core/files.h"
+#include "framework/core/json.h"
 #include "framework/mission/explore_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -31,6 +32,14 @@ std::vector<std::filesystem::path> data_folders(const std::filesystem::path& scr
   folders.insert(folders.end(), settings.data.begin(), settings.data.end());
   folders.push_back(settings.configs);
   return folders;
+}
+
+// "my_race" of shots/my_race.lua, as a name may be.
+std::string name_of_script(const std::filesystem::path& script) {
+  std::string name = as_utf8(script.stem().string());
+  for (char& letter : name)
+    if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) letter = '_';
+  return name;
 }
 
 }  // namespace
@@ -88,7 +97,7 @@ void Mission::Impl::read_mission(lua_State* state) {
   static constexpr std::string_view kParts[] = {"options", "plan"};
   ParameterTable table;
   table.required_text("kind", "of mission: film, race, ...")
-      .required_text("name", "of the mission");
+      .text("name", name_of_script(script), "of the mission; absent: the script's file name");
   const Parameters parts =
       check(table, value_from_lua(state, mission, origin, "mission", kParts), "mission");
   run.kind = parts.text("kind");
@@ -107,6 +116,7 @@ void Mission::Impl::read_mission(lua_State* state) {
     return;
   }
   options.given = value_from_lua(state, -1, origin, "options");
+  claim_copies(state, options.given);
   if (options.given.is_null() || options.given == Value::list()) options.given = Value::map();
   if (!options.given.is_map()) {
     throw InputError(origin, "options: expected a table, got " + options.given.describe_type());

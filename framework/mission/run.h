@@ -109,7 +109,7 @@ inline constexpr const char* kDataFileType = "data_file";
 // What a mission script returns.
 inline constexpr BoundField kMissionParts[] = {
     {"kind", "string", "of mission: film, race, ..."},
-    {"name", "string", "of the mission"},
+    {"name?", "string", "of the mission; absent: the script's file name"},
     {"options?", "lapwing.options|table", "what may be set"},
     {"plan", "fun(run: lapwing.run): lapwing.plan|lapwing.map",
      "called once the options are known"}};

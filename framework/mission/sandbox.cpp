@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 
 #include "framework/core/files.h"
 #include "framework/core/log.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/sandbox_library.h"
+#include "framework/mission/sandbox_text.h"
 
 namespace lapwing {
 
@@ -19,12 +19,13 @@ constexpr std::int64_t kGraceInstructions = 5'000'000;  // to finish after an in
 constexpr std::size_t kLargeBlock = 64u << 10;    // bytes; allocations above look at the clock
 constexpr std::size_t kLargestScript = 4u << 20;  // bytes
 constexpr std::size_t kMostPrinted = 1u << 20;    // bytes
-constexpr double kMegabyte = 1024.0 * 1024.0;
 
 double now() {
   using namespace std::chrono;
   return duration<double>(steady_clock::now().time_since_epoch()).count();
 }
+
+constexpr std::size_t kLongestArgument = 1u << 20;  // bytes of a name or a message
 
 std::string shortest(double number) {
   char buffer[32];
@@ -99,18 +100,21 @@ Sandbox::Sandbox(const SandboxLimits& limits, std::uint64_t seed,
     : limits_(limits),
       random_(seed),
       module_folders_(std::move(module_folders)),
-      print_(std::move(print)) {
+      print_(std::move(print)),
+      heap_(limits.memory) {
   state_ = lua_newstate(&Sandbox::allocate, this);
   if (!state_) throw Error("no memory for a Lua state");
   *static_cast<Sandbox**>(lua_getextraspace(state_)) = this;
+  lua_gc(state_, LUA_GCSTOP);  // `collect_when_due` does it
+  heap_.learn_layout(state_);
   open_allowed_libraries(state_);
-  memory_capped_ = true;
+  heap_.set_capped(true);
   started_ = now();
   arm(state_);
 }
 
 Sandbox::~Sandbox() {
-  memory_capped_ = false;
+  heap_.set_capped(false);
   lua_sethook(state_, nullptr, 0, 0);
   lua_close(state_);
 }
@@ -131,25 +135,32 @@ bool Sandbox::out_of_time() const {
 void* Sandbox::allocate(void* sandbox, void* block, std::size_t old_size, std::size_t new_size) {
   Sandbox& self = *static_cast<Sandbox*>(sandbox);
   const std::size_t old_bytes = block ? old_size : 0;
-  if (new_size == 0) {
-    std::free(block);
-    self.memory_ -= old_bytes;
+  if (new_size > kLargeBlock && new_size > old_bytes && self.started_ > 0 && self.out_of_time()) {
+    self.begin_overrun("");
     return nullptr;
   }
-  if (self.memory_capped_ && new_size > old_bytes) {
-    const double wanted = static_cast<double>(self.memory_ - old_bytes + new_size);
-    if (wanted > self.limits_.memory * kMegabyte) {
-      self.memory_exceeded_ = true;
-      return nullptr;
-    }
-    if (new_size > kLargeBlock && self.out_of_time()) {
-      self.begin_overrun("");
-      return nullptr;
-    }
-  }
-  void* moved = std::realloc(block, new_size);
-  if (moved) self.memory_ += new_size - old_bytes;
-  return moved;
+  return self.heap_.resize(block, old_size, new_size);
+}
+
+// Not inside of allocations, where Lua itself would: those come at other places in another run,
+// because the seed of Lua's hashes decides when a table grows.
+void Sandbox::collect_when_due(lua_State* state) {
+  if (!heap_.collection_due()) return;
+  lua_gc(state, LUA_GCCOLLECT);
+  heap_.note_collection();
+}
+
+void Sandbox::claim(lua_State* state, std::size_t bytes) {
+  if (heap_.fits(bytes)) return;
+  lua_gc(state, LUA_GCCOLLECT);
+  heap_.note_collection();
+  if (heap_.fits(bytes)) return;
+  throw InputError(script_position(state), too_much_memory());
+}
+
+std::string Sandbox::too_much_memory() const {
+  return "the script wants more than " + shortest(limits_.memory) +
+         " MB of memory; raise sandbox.memory if it needs it";
 }
 
 void Sandbox::arm(lua_State* state) {
@@ -178,6 +189,7 @@ void Sandbox::hook(lua_State* state, lua_Debug* record) {
 }
 
 void Sandbox::count(lua_State* state, lua_Debug* record) {
+  collect_when_due(state);
   executed_ += lua_gethookcount(state);
   if (!overrun_ && executed_ > limits_.instructions) {
     begin_overrun("the script ran more than " + std::to_string(limits_.instructions) +
@@ -199,6 +211,7 @@ void Sandbox::count(lua_State* state, lua_Debug* record) {
 }
 
 void Sandbox::check_clock(lua_State* state) {
+  collect_when_due(state);
   if (!overrun_ && !out_of_time()) return;
   begin_overrun("");
   arm(state);
@@ -244,11 +257,12 @@ void Sandbox::protect(const std::function<void(lua_State*)>& body) {
       });
   lua_pushlightuserdata(state, const_cast<std::function<void(lua_State*)>*>(&body));
   defect_ = nullptr;
-  memory_exceeded_ = false;
+  heap_.set_exceeded(false);
   const int status = lua_pcall(state, 1, 0, top + 1);
   std::string message;
   if (status != LUA_OK) {
-    if (const char* text = lua_tostring(state, -1)) message = text;
+    std::size_t length = 0;
+    if (const char* text = lua_tolstring(state, -1, &length)) message = as_message({text, length});
   }
   lua_settop(state, top);
   const bool interrupted = overrun_ && interrupted_at_ >= 0;
@@ -261,10 +275,7 @@ void Sandbox::fail(int status, const std::string& message) {
   const Origin last{script_, std::max(last_line_, 1)};
   const bool no_memory = status == LUA_ERRMEM || message.find("not enough memory") != message.npos;
   if (no_memory && overrun_) throw InputError(last, overrun_message_);
-  if (no_memory && memory_exceeded_) {
-    throw InputError(last, "the script wants more than " + shortest(limits_.memory) +
-                               " MB of memory; raise sandbox.memory if it needs it");
-  }
+  if (no_memory && heap_.exceeded()) throw InputError(last, too_much_memory());
   if (status == LUA_ERRERR && overrun_) throw InputError(last, overrun_message_);
   if (!begins_with_place(message)) throw InputError(last, message);
   throw InputError(message);
@@ -275,7 +286,9 @@ int Sandbox::describe_error(lua_State* state) {
   const Sandbox& self = of(state);
   std::string message;
   if (lua_type(state, 1) == LUA_TSTRING) {
-    message = lua_tostring(state, 1);
+    std::size_t length = 0;
+    const char* const text = lua_tolstring(state, 1, &length);
+    message = as_message({text, length});
   } else {
     message =
         std::string("the script raised an error that is no text but a ") + luaL_typename(state, 1);
@@ -307,8 +320,10 @@ void Sandbox::load(lua_State* state, const std::filesystem::path& file, const st
   if (luaL_loadbufferx(state, text.data(), text.size(), ("@" + shown).c_str(), "t") == LUA_OK) {
     return;
   }
-  const char* given = lua_tostring(state, -1);
-  const std::string message = with_full_name(given ? given : "the file does not load", shown);
+  std::size_t length = 0;
+  const char* const given = lua_tolstring(state, -1, &length);
+  const std::string message =
+      with_full_name(given ? as_message({given, length}) : "the file does not load", shown);
   if (begins_with_place(message)) throw InputError(message);
   throw InputError({shown, 1}, message);
 }
@@ -422,6 +437,10 @@ std::string text_argument(lua_State* state, int index, const char* what) {
   }
   std::size_t length = 0;
   const char* text = lua_tolstring(state, index, &length);
+  if (length > kLongestArgument) {
+    throw InputError(std::string(what) + ": a text of " + std::to_string(length) +
+                     " bytes; expected at most " + std::to_string(kLongestArgument));
+  }
   return std::string(text, length);
 }
 

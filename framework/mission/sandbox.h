@@ -12,6 +12,9 @@
 // table.move and the like) are wrapped and refuse work beyond a limit before they start. Finalisers
 // and message handlers could run with hooks off and are refused or replaced.
 //
+// What a script computes is the same in every run: see sandbox_library.h and sandbox_heap.h.
+// Garbage is collected by the hook, not by Lua.
+//
 // Not thread-safe. Everything that touches the state goes through `protect`: errors of the script
 // come out as InputError with the script's file and line, defects of the bindings as themselves.
 #pragma once
@@ -27,6 +30,7 @@
 #include "framework/core/parameters.h"
 #include "framework/core/progress.h"
 #include "framework/core/random.h"
+#include "framework/mission/sandbox_heap.h"
 
 struct lua_State;
 struct lua_Debug;
@@ -69,6 +73,7 @@ class Sandbox {
   const std::string& script() const { return script_; }
   const SandboxLimits& limits() const { return limits_; }
   Random& random() { return random_; }
+  const SandboxHeap& heap() const { return heap_; }
   // InputError once a script has printed more than a megabyte.
   void print(const std::string& line);
 
@@ -94,6 +99,9 @@ class Sandbox {
   // For the library's own sources only. `check_clock` raises the error when the time is up: called
   // by functions that may work long at one instruction.
   void check_clock(lua_State* state);
+  // InputError where `bytes` that the kernel is about to hold for the script do not fit into what
+  // its limit of memory leaves.
+  void claim(lua_State* state, std::size_t bytes);
   void require(lua_State* state, const std::string& module);
   void keep_defect(std::exception_ptr defect) { defect_ = std::move(defect); }
 
@@ -103,7 +111,9 @@ class Sandbox {
   static int describe_error(lua_State* state);
   void count(lua_State* state, lua_Debug* record);
   bool out_of_time() const;
+  void collect_when_due(lua_State* state);
   void begin_overrun(std::string message);
+  std::string too_much_memory() const;
   void load(lua_State* state, const std::filesystem::path& file, const std::string& shown);
   void arm(lua_State* state);
   [[noreturn]] void fail(int status, const std::string& message);
@@ -113,11 +123,9 @@ class Sandbox {
   std::vector<std::filesystem::path> module_folders_;
   std::function<void(const std::string&)> print_;
   lua_State* state_ = nullptr;
-  std::string script_;          // as the user typed it
-  int last_line_ = 0;           // of the script
-  std::size_t memory_ = 0;      // bytes in use
-  bool memory_capped_ = false;  // off while the libraries are set up
-  bool memory_exceeded_ = false;
+  std::string script_;  // as the user typed it
+  int last_line_ = 0;   // of the script
+  SandboxHeap heap_;
   std::int64_t executed_ = 0;
   bool watching_lines_ = false;
   bool overrun_ = false;

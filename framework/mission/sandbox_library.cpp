@@ -2,19 +2,30 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/mission/guard.h"
+#include "framework/mission/sandbox_order.h"
+#include "framework/mission/sandbox_sort.h"
+#include "framework/mission/sandbox_text.h"
 
 namespace lapwing {
 
 namespace {
 
 constexpr lua_Integer kLongestRange = 10'000'000;  // entries that one table function may go through
-constexpr lua_Integer kLargestSort = 2'000'000;    // entries
 
-// Calls the function that a wrapper stands for, with the wrapper's own arguments.
+// Calls the function that a wrapper stands for, with the wrapper's own arguments and in its frame,
+// so that messages name it as the script does.
 int call_original(lua_State* state) {
+  const int results = lua_tocfunction(state, lua_upvalueindex(1))(state);
+  Sandbox::of(state).check_clock(state);
+  return results;
+}
+
+// The same for a function that has upvalues of its own.
+int call_closure(lua_State* state) {
   const int arguments = lua_gettop(state);
   lua_pushvalue(state, lua_upvalueindex(1));
   lua_insert(state, 1);
@@ -56,9 +67,11 @@ int gsub(lua_State* state) {
 
 int gmatch(lua_State* state) {
   check_pattern(state, "gmatch", false);
-  call_original(state);
+  const int results = call_original(state);
+  lua_pushvalue(state, -results);
+  lua_replace(state, 1);
   lua_settop(state, 1);
-  lua_pushcclosure(state, &guarded<call_original>, 1);
+  lua_pushcclosure(state, &guarded<call_closure>, 1);
   return 1;
 }
 
@@ -111,11 +124,6 @@ int remove(lua_State* state) {
   return call_original(state);
 }
 
-int sort(lua_State* state) {
-  check_plain_length(state, "sort", kLargestSort);
-  return call_original(state);
-}
-
 int concat(lua_State* state) {
   check_plain_length(state, "concat", kLongestRange);
   check_range(state, "concat", 3, 4);
@@ -136,20 +144,6 @@ int move(lua_State* state) {
 // -- base
 // ------------------------------------------------------------------------------------------
 
-int print(lua_State* state) {
-  std::string line;
-  const int count = lua_gettop(state);
-  for (int i = 1; i <= count; ++i) {
-    std::size_t length = 0;
-    const char* text = luaL_tolstring(state, i, &length);
-    if (i > 1) line += '\t';
-    line.append(text, length);
-    lua_pop(state, 1);
-  }
-  Sandbox::of(state).print(line);
-  return 0;
-}
-
 // A finaliser would run with the limits off.
 int set_metatable(lua_State* state) {
   if (lua_istable(state, 2)) {
@@ -165,76 +159,6 @@ int set_metatable(lua_State* state) {
 int require(lua_State* state) {
   Sandbox::of(state).require(state, text_argument(state, 1, "require"));
   return 1;
-}
-
-struct Key {
-  int rank = 0;  // numbers, then texts, then the rest as they come
-  double number = 0;
-  std::string text;
-  int place = 0;  // in the list of keys as they came
-};
-
-bool before(const Key& a, const Key& b) {
-  if (a.rank != b.rank) return a.rank < b.rank;
-  if (a.rank == 0) return a.number < b.number;
-  if (a.rank == 1) return a.text < b.text;
-  return a.place < b.place;
-}
-
-// upvalues: keys as they came, order, how many have been visited
-int next_in_order(lua_State* state) {
-  for (;;) {
-    const lua_Integer visited = lua_tointeger(state, lua_upvalueindex(3)) + 1;
-    lua_pushinteger(state, visited);
-    lua_copy(state, -1, lua_upvalueindex(3));
-    lua_pop(state, 1);
-    if (lua_rawgeti(state, lua_upvalueindex(2), visited) == LUA_TNIL) return 1;
-    lua_rawgeti(state, lua_upvalueindex(1), lua_tointeger(state, -1));
-    lua_pushvalue(state, -1);
-    if (lua_rawget(state, 1) != LUA_TNIL) return 2;
-    lua_settop(state, 1);  // removed meanwhile
-  }
-}
-
-int ordered_pairs(lua_State* state) {
-  if (luaL_getmetafield(state, 1, "__pairs") != LUA_TNIL) {
-    lua_pushvalue(state, 1);
-    lua_call(state, 1, 3);
-    return 3;
-  }
-  luaL_checktype(state, 1, LUA_TTABLE);
-  lua_settop(state, 1);
-  lua_newtable(state);
-  std::vector<Key> keys;
-  lua_pushnil(state);
-  while (lua_next(state, 1)) {
-    lua_pop(state, 1);
-    Key key;
-    key.place = static_cast<int>(keys.size()) + 1;
-    key.rank = 2;
-    if (lua_type(state, -1) == LUA_TNUMBER) {
-      key.rank = 0;
-      key.number = lua_tonumber(state, -1);
-    } else if (lua_type(state, -1) == LUA_TSTRING) {
-      key.rank = 1;
-      key.text = lua_tostring(state, -1);
-    }
-    keys.push_back(std::move(key));
-    lua_pushvalue(state, -1);
-    lua_rawseti(state, 2, keys.back().place);
-  }
-  std::sort(keys.begin(), keys.end(), before);
-  lua_createtable(state, static_cast<int>(keys.size()), 0);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    lua_pushinteger(state, keys[i].place);
-    lua_rawseti(state, 3, static_cast<lua_Integer>(i) + 1);
-  }
-  Sandbox::of(state).check_clock(state);
-  lua_pushinteger(state, 0);
-  lua_pushcclosure(state, &next_in_order, 3);
-  lua_pushvalue(state, 1);
-  lua_pushnil(state);
-  return 3;
 }
 
 // -- math
@@ -288,6 +212,31 @@ void wrap(lua_State* state, const char* name, lua_CFunction wrapper) {
   lua_setfield(state, -2, name);
 }
 
+// A function of C without upvalues has no number, only an address: each field of the table on top
+// becomes one with an upvalue, in the order of names.
+void number_functions(lua_State* state) {
+  std::vector<std::string> names;
+  lua_pushnil(state);
+  while (lua_next(state, -2)) {
+    if (lua_type(state, -2) == LUA_TSTRING && lua_iscfunction(state, -1))
+      names.emplace_back(lua_tostring(state, -2));
+    lua_pop(state, 1);
+  }
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) {
+    lua_getfield(state, -1, name.c_str());
+    if (lua_getupvalue(state, -1, 1)) {
+      lua_pop(state, 2);
+      continue;
+    }
+    const lua_CFunction function = lua_tocfunction(state, -1);
+    lua_pop(state, 1);
+    lua_pushnil(state);
+    lua_pushcclosure(state, function, 1);
+    lua_setfield(state, -2, name.c_str());
+  }
+}
+
 void remove_fields(lua_State* state, std::initializer_list<const char*> names) {
   for (const char* name : names) {
     lua_pushnil(state);
@@ -299,10 +248,10 @@ void open_base(lua_State* state) {
   luaL_requiref(state, LUA_GNAME, luaopen_base, 1);
   remove_fields(state, {"collectgarbage", "dofile", "load", "loadfile", "warn"});
   wrap(state, "setmetatable", &guarded<set_metatable>);
-  const luaL_Reg functions[] = {{"print", &guarded<print>},
-                                {"require", &guarded<require>},
-                                {"pairs", &guarded<ordered_pairs>},
-                                {nullptr, nullptr}};
+  const luaL_Reg functions[] = {
+      {"print", &guarded<print_described>}, {"require", &guarded<require>},
+      {"pairs", &guarded<ordered_pairs>},   {"next", &guarded<ordered_next>},
+      {"tostring", &guarded<described>},    {nullptr, nullptr}};
   luaL_setfuncs(state, functions, 0);
   lua_pop(state, 1);
 }
@@ -315,6 +264,7 @@ void open_strings(lua_State* state) {
   wrap(state, "gsub", &guarded<gsub>);
   wrap(state, "gmatch", &guarded<gmatch>);
   wrap(state, "rep", &guarded<rep>);
+  wrap(state, "format", &guarded<format_described>);
   lua_pop(state, 1);
   lua_pushliteral(state, "");
   lua_getmetatable(state, -1);
@@ -327,7 +277,8 @@ void open_tables(lua_State* state) {
   luaL_requiref(state, LUA_TABLIBNAME, luaopen_table, 1);
   wrap(state, "insert", &guarded<insert>);
   wrap(state, "remove", &guarded<remove>);
-  wrap(state, "sort", &guarded<sort>);
+  lua_pushcfunction(state, &guarded<stable_sort>);
+  lua_setfield(state, -2, "sort");
   wrap(state, "concat", &guarded<concat>);
   wrap(state, "unpack", &guarded<unpack>);
   wrap(state, "move", &guarded<move>);
@@ -347,6 +298,12 @@ void open_allowed_libraries(lua_State* state) {
   luaL_requiref(state, LUA_UTF8LIBNAME, luaopen_utf8, 1);
   luaL_requiref(state, LUA_COLIBNAME, luaopen_coroutine, 1);
   remove_fields(state, {"close"});
+  for (const char* table : {LUA_GNAME, LUA_STRLIBNAME, LUA_TABLIBNAME, LUA_MATHLIBNAME,
+                            LUA_UTF8LIBNAME, LUA_COLIBNAME}) {
+    lua_getglobal(state, table);
+    number_functions(state);
+    lua_pop(state, 1);
+  }
   const std::string_view prelude = kPrelude;
   if (luaL_loadbufferx(state, prelude.data(), prelude.size(), "=sandbox", "t") != LUA_OK) {
     throw Error(lua_tostring(state, -1));

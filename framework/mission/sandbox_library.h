@@ -5,8 +5,8 @@ struct lua_State;
 
 namespace lapwing {
 
-// Sets up the global table. `pairs` goes through keys in order (numbers, then texts), because Lua's
-// own order changes from run to run.
+// Sets up the global table. Whatever would differ from run to run is replaced: the order of `pairs`
+// and `next` (sandbox_order.h), addresses in texts (sandbox_text.h), `table.sort` (sandbox_sort.h).
 void open_allowed_libraries(lua_State* state);
 
 // Steps that matching `pattern` somewhere in a subject of `length` characters takes at the worst.

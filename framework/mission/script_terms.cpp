@@ -1,6 +1,7 @@
 #include "framework/mission/script_terms.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -119,15 +120,21 @@ namespace {
 // The commonest slip: `value` for `residual`, or a slip of the pen. `index` is a table without a
 // plugin's `type` and without the function's own key.
 void refuse_misnamed_function(lua_State* state, int index, ScriptTermKind kind) {
+  std::vector<std::string> names;
   lua_pushnil(state);
   while (lua_next(state, index)) {
     if (lua_isfunction(state, -1) && lua_type(state, -2) == LUA_TSTRING)
-      throw InputError(place_of_function(state, lua_gettop(state)),
-                       std::string("add_") + word_of(kind) + ": '" + lua_tostring(state, -2) +
-                           "' is a function; did you mean `" + function_key(kind) +
-                           "`, which is the function of a " + word_of(kind) + "'s own?");
+      names.push_back(text_argument(state, -2, word_of(kind)));
     lua_pop(state, 1);
   }
+  if (names.empty()) return;
+  const std::string& first = *std::min_element(names.begin(), names.end());
+  push_text(state, first);
+  lua_rawget(state, index);
+  throw InputError(place_of_function(state, lua_gettop(state)),
+                   std::string("add_") + word_of(kind) + ": '" + first +
+                       "' is a function; did you mean `" + function_key(kind) +
+                       "`, which is the function of a " + word_of(kind) + "'s own?");
 }
 
 // "add_cost 'keep_low'", as messages call what is wrong in its table.

@@ -52,6 +52,7 @@ std::vector<std::string> functions_of_lapwing(lua_State* state) {
     lua_pop(state, 1);
   }
   lua_pop(state, 1);
+  std::sort(names.begin(), names.end());
   return names;
 }
 
