@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "framework/core/units.h"
+#include "framework/vehicle/plausibility.h"
 
 namespace lapwing {
 namespace {
@@ -23,9 +24,12 @@ class Checker {
     body();
     const bool body_is_sound = sound_;
     limits();
+    signs_are_sound_ =
+        sound_ && v_.camera.width >= 1 && v_.camera.focal_x > 0 && v_.camera.focal_y > 0;
     if (v_.gimbal) gimbal(*v_.gimbal);
     camera();
     if (body_is_sound) hover();
+    if (signs_are_sound_) check_plausible(v_, add_);
   }
 
  private:
@@ -70,7 +74,13 @@ class Checker {
             "leaves no thrust to choose from: the bounds are " + bounds);
     require(v_.thrust_min() < weight && weight < v_.thrust_max(), "mass",
             "the vehicle cannot hover: its weight is " + text_of(weight, "N") +
-                ", its usable thrust " + bounds);
+                ", its usable thrust " + bounds + lighter(weight));
+  }
+
+  // What a weight is that a thousandth of would hover.
+  std::string lighter(double weight) const {
+    const bool in_grams = v_.thrust_min() < weight / 1000 && weight / 1000 < v_.thrust_max();
+    return in_grams ? "; is the mass in g? Then write '" + text_of(v_.mass, "g") + "'" : "";
   }
 
   void limits() {
@@ -117,6 +127,7 @@ class Checker {
   const Vehicle& v_;
   Add add_;
   bool sound_ = true;
+  bool signs_are_sound_ = false;  // of body, limits and camera
 };
 
 }  // namespace

@@ -111,7 +111,7 @@ Origin origin_of(const Parameters& vehicle, const Parameters& camera, const std:
 
 ParameterTable vehicle_table() {
   ParameterTable table;
-  table.required_number("mass", "kg", "take-off mass, camera included", between(0.01, 100))
+  table.required_number("mass", "kg", "take-off mass, camera included", above(0))
       .required_numbers("inertia", 3, "kg m^2", "moments of inertia about the body's axes",
                         above(0))
       .number("drag", 0, "N s/m", "linear drag against the air; needed to fly in wind",
