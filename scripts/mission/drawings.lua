@@ -4,7 +4,28 @@ local svg = require "mission.svg"
 
 local M = {}
 
--- Strokes as {{x, y}, ...}, y up, and the height of what is 1 high in the drawing.
+-- Strokes of an SVG file, y up, and notes of what of it is not drawn.
+local function picture(name)
+  local good, strokes, notes = pcall(svg.strokes, lapwing.read_text(name, "strokes"))
+  if not good then lapwing.fail(name .. ": " .. tostring(strokes):gsub("^[^ ]*:%d+: ", "")) end
+  for _, stroke in ipairs(strokes) do
+    for _, p in ipairs(stroke) do
+      p[2] = -p[2]
+      if p[1] ~= p[1] or p[2] ~= p[2] or math.abs(p[1]) > 1e9 or math.abs(p[2]) > 1e9 then
+        lapwing.fail(name .. ": a path holds a number that is not finite or too large")
+      end
+    end
+  end
+  for i, note in ipairs(notes) do notes[i] = name .. ", " .. note end
+  if #strokes == 0 then
+    lapwing.fail(name .. ": no path is drawn in it"
+                 .. (#notes > 0 and "; " .. table.concat(notes, "; ") or ""))
+  end
+  return strokes, notes
+end
+
+-- Strokes as {{x, y}, ...}, y up, the height of what is 1 high in the drawing (nil: all of it is
+-- `height` high), and notes of what is not drawn.
 function M.read(run)
   local o = run.options
   local given = 0
@@ -40,19 +61,8 @@ function M.read(run)
     end
     return strokes
   end
-  local name = o.svg or o.input
-  local good, strokes = pcall(svg.strokes, lapwing.read_text(name, "strokes"))
-  if not good then lapwing.fail(name .. ": " .. tostring(strokes):gsub("^[^ ]*:%d+: ", "")) end
-  for _, stroke in ipairs(strokes) do
-    for _, p in ipairs(stroke) do
-      p[2] = -p[2]
-      if p[1] ~= p[1] or p[2] ~= p[2] or math.abs(p[1]) > 1e9 or math.abs(p[2]) > 1e9 then
-        lapwing.fail(name .. ": a path holds a number that is not finite or too large")
-      end
-    end
-  end
-  if #strokes == 0 then lapwing.fail(name .. ": no path is drawn in it") end
-  return strokes
+  local strokes, notes = picture(o.svg or o.input)
+  return strokes, nil, notes
 end
 
 -- Points that repeat the one before, and strokes without a length, left out.

@@ -134,10 +134,10 @@ local function plan_of(run, strokes, lights, solution, figures, notes)
 end
 
 -- What a user should know of a flight that is not as asked.
-local function notes_of(best, o)
-  local notes = {}
+local function notes_of(best, o, undrawn)
+  local notes = table.move(undrawn or {}, 1, undrawn and #undrawn or 0, 1, {})
   if not o.step and best.step > STEP + 1e-9 then
-    notes[1] = string.format("stages are %.3g s apart, not %.3g s: more than %d make a flight of "
+    notes[#notes + 1] = string.format("stages are %.3g s apart, not %.3g s: more than %d make a flight of "
                              .. "%.4g s slow to solve (step)", best.step, STEP, MOST_STAGES,
                              best.solution.duration)
   end
@@ -156,7 +156,7 @@ end
 local function painted(run)
   local o = run.options
   local vehicle = run:vehicle(o.vehicle)
-  local drawn, unit = drawings.read(run)
+  local drawn, unit, undrawn = drawings.read(run)
   drawn = drawings.without_repeats(drawn)
   if #drawn == 0 then lapwing.fail("the drawing has no line of any length") end
   if o.reorder then drawn = order.short(drawn) end
@@ -194,7 +194,7 @@ local function painted(run)
       return plan_of(run, strokes, best.lights, best.solution, {
         mean_error = best.flown.mean_drawing_error, worst_error = best.flown.worst_drawing_error,
         strokes = #strokes, speed_share = best.share,
-      }, notes_of(best, o))
+      }, notes_of(best, o, undrawn))
     end
     share = slower
   end

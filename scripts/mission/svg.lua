@@ -1,161 +1,178 @@
--- Paths of an SVG picture as strokes: lists of {x, y}, y down as in the file. All path commands,
--- basic shapes, transforms of elements and groups; curves become short straight pieces.
+-- An SVG picture as strokes: lists of {x, y}, y down as in the file, curves as short straight
+-- pieces. What a light cannot draw, or what is not read, is said; nothing is left out in silence.
 local path = require "mission.svg_path"
+local shapes = require "mission.svg_shapes"
+local styles = require "mission.svg_style"
+local tree = require "mission.svg_tree"
 
 local M = {}
 
-local IDENTITY = { 1, 0, 0, 1, 0, 0 }  -- a b c d e f: x' = a x + c y + e, y' = b x + d y + f
+local LISTED = 5        -- lines named of each note
+local MOST_USES = 10000 -- of <use>, one within another: they multiply
 
-local function times(m, n)
-  return { m[1] * n[1] + m[3] * n[2], m[2] * n[1] + m[4] * n[2],
-           m[1] * n[3] + m[3] * n[4], m[2] * n[3] + m[4] * n[4],
-           m[1] * n[5] + m[3] * n[6] + m[5], m[2] * n[5] + m[4] * n[6] + m[6] }
-end
+local GROUPS = { g = true, a = true, switch = true }
+-- Not drawn where they stand, by the rules of SVG.
+local DEFINITIONS = { defs = true, symbol = true, clipPath = true, mask = true, marker = true,
+                      pattern = true, linearGradient = true, radialGradient = true, filter = true,
+                      style = true, title = true, desc = true, metadata = true, script = true,
+                      view = true, cursor = true, font = true }
+local CURES = { text = "convert text to paths", image = "trace it to paths",
+                foreignObject = "convert it to paths" }
+-- Attributes that change a picture and are not honoured.
+local UNREAD = { ["clip-path"] = "what it cuts off is drawn", mask = "what it hides is drawn",
+                 filter = "shapes are drawn without it",
+                 ["stroke-dasharray"] = "lines are drawn without gaps",
+                 ["transform-origin"] = "transforms turn about 0, 0",
+                 ["marker-start"] = "arrow heads are not drawn",
+                 ["marker-mid"] = "arrow heads are not drawn",
+                 ["marker-end"] = "arrow heads are not drawn" }
 
-local function numbers_of(text)
-  local r, list = path.reader(text), {}
-  while not r.done() do list[#list + 1] = r.number() end
-  return list
-end
-
-local TRANSFORMS = {
-  matrix = function(n) return n end,
-  translate = function(n) return { 1, 0, 0, 1, n[1], n[2] or 0 } end,
-  scale = function(n) return { n[1], 0, 0, n[2] or n[1], 0, 0 } end,
-  rotate = function(n)
-    local c, s = math.cos(math.rad(n[1])), math.sin(math.rad(n[1]))
-    local x, y = n[2] or 0, n[3] or 0
-    return { c, s, -s, c, x - c * x + s * y, y - s * x - c * y }
-  end,
-  skewX = function(n) return { 1, 0, math.tan(math.rad(n[1])), 1, 0, 0 } end,
-  skewY = function(n) return { 1, math.tan(math.rad(n[1])), 0, 1, 0, 0 } end,
-}
-
-local function transform_of(text)
-  local matrix = IDENTITY
-  local rest = text or ""
-  while rest:find("(", 1, true) do
-    local open, close = rest:find("(", 1, true), rest:find(")", 1, true)
-    if not close then error("transform '" .. rest .. "' lacks its ')'") end
-    local name = rest:sub(1, open - 1):match("%a+")
-    local make = TRANSFORMS[name] or error("unknown transform '" .. tostring(name) .. "'")
-    local given = numbers_of(rest:sub(open + 1, close - 1))
-    if #given < (name == "matrix" and 6 or 1) then
-      error("transform " .. name .. " lacks numbers")
+-- Notes in the order of their first line: what is said, and the lines that it holds for.
+local function note_book()
+  local book, order = {}, {}
+  local function note(line, what)
+    if not book[what] then
+      book[what] = {}
+      order[#order + 1] = what
     end
-    matrix = times(matrix, make(given))
-    rest = rest:sub(close + 1)
+    local lines = book[what]
+    if lines[#lines] ~= line then lines[#lines + 1] = line end
   end
-  return matrix
-end
-
--- Basic shapes as path data.
-local function shape_data(name, a)
-  local function n(key)
-    return tonumber(a[key] or 0)
-      or error(("%s: %s is '%s', expected a plain number"):format(name, key, a[key]))
-  end
-  local function positive(key)
-    return n(key) > 0 and n(key) or error(("%s: %s must be above 0"):format(name, key))
-  end
-  if name == "line" then
-    return ("M%f,%f L%f,%f"):format(n "x1", n "y1", n "x2", n "y2")
-  elseif name == "polyline" or name == "polygon" then
-    return "M" .. (a.points or "") .. (name == "polygon" and "Z" or "")
-  elseif name == "rect" then
-    if n "rx" ~= 0 or n "ry" ~= 0 then error("rect: rounded corners are not read; use a path") end
-    return ("M%f,%f h%f v%f h%f Z"):format(n "x", n "y", positive "width", positive "height",
-                                           -n "width")
-  elseif name == "circle" or name == "ellipse" then
-    local rx = positive(name == "circle" and "r" or "rx")
-    local ry = name == "circle" and rx or positive "ry"
-    return ("M%f,%f a%f,%f 0 1 1 %f,0 a%f,%f 0 1 1 %f,0"):format(n "cx" - rx, n "cy", rx, ry,
-                                                                   2 * rx, rx, ry, -2 * rx)
-  end
-end
-
--- name="value" pairs of a tag.
-local function attributes_of(text)
-  local a, at = {}, 1
-  while true do
-    local equals = text:find("=", at, true)
-    if not equals then return a end
-    local quote_at = text:find("[\"']", equals)
-    if not quote_at then return a end
-    local close = text:find(text:sub(quote_at, quote_at), quote_at + 1, true)
-    if not close then error("an attribute lacks its closing quote") end
-    local words = text:sub(at, equals - 1)
-    a[words:match("[%w:_%-]+", 1) or ""] = text:sub(quote_at + 1, close - 1)
-    at = close + 1
-  end
-end
-
--- The '>' that ends the tag, outside of quotes.
-local function tag_end(text, at)
-  while true do
-    local found = text:find("[\"'>]", at)
-    if not found or text:sub(found, found) == ">" then return found end
-    local close = text:find(text:sub(found, found), found + 1, true)
-    if not close then return nil end
-    at = close + 1
-  end
-end
-
--- Calls f(closing, name, attributes, empty) for every tag.
-local function for_each_tag(text, f)
-  local at = 1
-  while true do
-    local open = text:find("<", at, true)
-    if not open then return end
-    local comment = text:sub(open, open + 3) == "<!--"
-    local close = comment and text:find("-->", open, true) or tag_end(text, open)
-    if not close then error("the file ends within a tag") end
-    if comment then
-      close = close + 2
-    elseif not text:match("^<[!?]", open) then
-      local inside = text:sub(open + 1, close - 1)
-      local closing, empty = inside:sub(1, 1) == "/", inside:sub(-1) == "/"
-      if closing then inside = inside:sub(2) end
-      if empty then inside = inside:sub(1, -2) end
-      local name = inside:match("^[%w:_%-]+") or ""
-      f(closing, name, closing and {} or attributes_of(inside:sub(#name + 1)), empty)
+  local function listed()
+    local all = {}
+    for i, what in ipairs(order) do
+      local lines = book[what]
+      local shown = table.concat(lines, ", ", 1, math.min(#lines, LISTED))
+      if #lines > LISTED then shown = shown .. (" and %d more"):format(#lines - LISTED) end
+      all[i] = ("line%s %s: %s"):format(#lines > 1 and "s" or "", shown, what)
     end
-    at = close + 1
+    return all
   end
+  return note, listed
 end
 
-local HIDDEN = { defs = true, clipPath = true, mask = true, symbol = true }
+local function identified(root)
+  local named = {}
+  local function visit(element)
+    local id = element.attributes.id
+    if id and not named[id] then named[id] = element end
+    for _, child in ipairs(element.children) do visit(child) end
+  end
+  visit(root)
+  return named
+end
 
--- Strokes of a whole picture.
-function M.strokes(text)
-  local strokes, stack, hides, hidden = {}, { IDENTITY }, {}, 0
-  for_each_tag(text, function(closing, name, a, empty)
-    if closing then
-      if #stack > 1 then table.remove(stack) end
-      if table.remove(hides) then hidden = hidden - 1 end
-      return
+local function drawing(root)
+  local note, notes = note_book()
+  local D = { strokes = {}, notes = notes, note = note, rules = styles.rules(root, note),
+              named = identified(root), uses = 0, open = {} }
+
+  function D.shape(element, style, matrix)
+    local seen = styles.seen_by(style)
+    if not seen then
+      return note(element.line, "a shape that is not seen (neither line nor face) is not drawn")
     end
-    local matrix = times(stack[#stack], transform_of(a.transform))
-    local hide = HIDDEN[name] or a.display == "none" or a.visibility == "hidden"
-                 or (a.style or ""):gsub("%s", ""):find("display:none", 1, true)
-    if name == "use" and hidden == 0 and not hide then
-      error("<use> is not read; write the path itself")
+    local data = shapes.data[element.name](element.attributes)
+    if not data then return note(element.line, "a shape of no size is not drawn") end
+    if seen == "fill" then
+      note(element.line, "a filled shape without a line is drawn by its outline")
     end
-    local data = not hide and (name == "path" and a.d or shape_data(name, a))
-    for _, stroke in ipairs(data and hidden == 0 and path.strokes(data) or {}) do
+    local colour = seen == "stroke" and styles.colour(style)
+    if colour then
+      note(element.line, ("the colour %s is not flown: the light has one colour"):format(colour))
+    end
+    if style["stroke-dasharray"] and style["stroke-dasharray"] ~= "none" then
+      note(element.line, "stroke-dasharray is not honoured: " .. UNREAD["stroke-dasharray"])
+    end
+    for _, stroke in ipairs(path.strokes(data)) do
       for i, p in ipairs(stroke) do
         stroke[i] = { matrix[1] * p[1] + matrix[3] * p[2] + matrix[5],
                       matrix[2] * p[1] + matrix[4] * p[2] + matrix[6] }
       end
-      strokes[#strokes + 1] = stroke
+      D.strokes[#D.strokes + 1] = stroke
     end
-    if not empty then
-      stack[#stack + 1] = matrix
-      hides[#hides + 1] = hide and true or false
-      if hide then hidden = hidden + 1 end
+  end
+
+  function D.children(element, style, matrix)
+    for _, child in ipairs(element.children) do D.element(child, style, matrix) end
+  end
+
+  function D.use(element, style, matrix)
+    local a = element.attributes
+    local reference = a.href or a["xlink:href"] or ""
+    local target = D.named[reference:match("^#(.+)$") or ""]
+    if not target then error(("'%s' names no element of this file"):format(reference), 0) end
+    D.uses = D.uses + 1
+    if D.open[target] or D.uses > MOST_USES then
+      error(D.open[target] and "it uses itself" or "more than 10000 uses of elements", 0)
     end
-  end)
-  return strokes
+    D.open[target] = true
+    matrix = shapes.times(matrix, shapes.viewport({ x = a.x, y = a.y }))
+    if target.name == "symbol" or target.name == "svg" then
+      local own = styles.of(target, style, D.rules)
+      local inner = target.attributes
+      D.children(target, own, shapes.times(matrix, shapes.viewport(
+        { viewBox = inner.viewBox }, { width = a.width or inner.width,
+                                       height = a.height or inner.height })))
+    else
+      D.element(target, style, matrix)
+    end
+    D.open[target] = nil
+  end
+
+  local function drawn(element, parent, matrix)
+    local name, a = element.name, element.attributes
+    if DEFINITIONS[name] or name:find(":", 1, true) then return end
+    local style = styles.of(element, parent, D.rules)
+    if styles.hidden(style) then
+      return note(element.line, ("<%s> is hidden and not drawn"):format(name))
+    end
+    for key, effect in pairs(UNREAD) do
+      if style[key] and style[key] ~= "none" and key ~= "stroke-dasharray" then
+        note(element.line, key .. " is not honoured: " .. effect)
+      end
+    end
+    if style.transform and style.transform ~= a.transform then
+      error("a transform in a style is not read; write it as an attribute", 0)
+    end
+    matrix = shapes.times(matrix, shapes.transform(a.transform))
+    if shapes.data[name] then return D.shape(element, style, matrix) end
+    if name == "use" then return D.use(element, style, matrix) end
+    if name == "svg" then
+      if (a.preserveAspectRatio or "xMidYMid"):gsub("^%s*defer%s+", ""):sub(1, 8) ~= "xMidYMid" then
+        note(element.line, "preserveAspectRatio is not honoured: the picture is fitted in")
+      end
+      local inner = parent.inner and a or { viewBox = nil }
+      style.inner = true
+      return D.children(element, style, shapes.times(matrix, shapes.viewport(inner, a)))
+    end
+    if GROUPS[name] then
+      style.inner = parent.inner
+      return D.children(element, style, matrix)
+    end
+    note(element.line, ("<%s> is not drawn: %s"):format(
+      name, CURES[name] or "only paths, basic shapes and their groups are"))
+  end
+
+  function D.element(element, parent, matrix)
+    local good, problem = pcall(drawn, element, parent, matrix)
+    if good then return end
+    problem = tostring(problem)
+    if not problem:match("^line %d+: ") then
+      problem = ("line %d: <%s>: %s"):format(element.line, element.name,
+                                             (problem:gsub("^[^ ]*%.lua:%d+: ", "")))
+    end
+    error(problem, 0)
+  end
+  return D
+end
+
+-- Strokes of a whole picture, and notes of what is not in them. Errors name line and element.
+function M.strokes(text)
+  local root = tree.read(text)
+  local D = drawing(root)
+  D.children(root, {}, shapes.IDENTITY)
+  return D.strokes, D.notes()
 end
 
 return M
