@@ -13,6 +13,8 @@ namespace lapwing {
 struct Snippet {
   std::string language;  // "sh", "lua"
   std::string text;
+  bool excerpt = false;  // fenced as "lua excerpt": a piece that nobody could type as it stands
+  int line = 0;          // of its first line in the file
 };
 
 // The fenced blocks of a section: from its heading, which begins with `heading`, to the next one of
@@ -23,11 +25,16 @@ inline std::vector<Snippet> snippets_of(const std::filesystem::path& readme,
   std::istringstream lines(read_file(readme));
   bool inside = false, fenced = false;
   const std::string depth = heading.substr(0, heading.find(' ') + 1);
+  int number = 0;
   for (std::string line; std::getline(lines, line);) {
+    ++number;
     if (!fenced && line.rfind(depth, 0) == 0) inside = line.rfind(heading, 0) == 0;
     if (line.rfind("```", 0) == 0) {
       fenced = !fenced;
-      if (fenced && inside) snippets.push_back({line.substr(3), ""});
+      const std::string marks = line.substr(3);
+      if (fenced && inside)
+        snippets.push_back({marks.substr(0, marks.find(' ')), "",
+                            marks.find(" excerpt") != marks.npos, number + 1});
     } else if (fenced && inside) {
       snippets.back().text += line + "\n";
     }

@@ -95,7 +95,7 @@ local of_file = { { name = "input", type = "text", summary = "a designer's shot,
 local function mission(what, given, declared, shot_of)
   if type(given) ~= "table" then lapwing.fail(what .. ": expected a table, got " .. type(given)) end
   local options = input.written_out(given)
-  local name = options.name or "film"
+  local name = options.name
   options.name = nil
   local terms = own.taken(options)
   local all = table.move(common, 1, #common, #declared + 1, { table.unpack(declared) })

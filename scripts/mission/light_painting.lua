@@ -137,9 +137,9 @@ end
 local function notes_of(best, o, undrawn)
   local notes = table.move(undrawn or {}, 1, undrawn and #undrawn or 0, 1, {})
   if not o.step and best.step > STEP + 1e-9 then
-    notes[#notes + 1] = string.format("stages are %.3g s apart, not %.3g s: more than %d make a flight of "
-                             .. "%.4g s slow to solve (step)", best.step, STEP, MOST_STAGES,
-                             best.solution.duration)
+    notes[#notes + 1] = string.format("stages are %.3g s apart, not %.3g s: more than %d make a "
+                                      .. "flight of %.4g s slow to solve (step)", best.step, STEP,
+                                      MOST_STAGES, best.solution.duration)
   end
   if best.solution.status ~= "optimal" and best.solution.status ~= "feasible" then
     notes[#notes + 1] = "the solver ended " .. best.solution.status .. ": " .. best.solution.message
