@@ -1,11 +1,11 @@
 #include "framework/app/scan_tables.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 
+#include "framework/app/csv.h"
 #include "framework/app/stratified_sample.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
@@ -159,24 +159,6 @@ std::string tables_text(const std::vector<ScanSummary>& summaries) {
   });
   return out;
 }
-
-namespace {
-
-std::string csv_number(double number) {
-  if (!std::isfinite(number)) return "";
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr};
-}
-
-// Quoted where it must be (RFC 4180).
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-}  // namespace
 
 std::string tables_csv(const std::vector<ScanSummary>& summaries) {
   std::string out = "mission,budget [s],method,rows,counted,reproducible";

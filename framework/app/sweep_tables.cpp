@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/app/csv.h"
 #include "framework/app/terminal.h"
 #include "framework/app/text_table.h"
 #include "framework/core/number_text.h"
@@ -110,23 +111,6 @@ std::string reasons_as_text(const SweepRun& run) {
   std::string text;
   for (const std::string& reason : run.reasons()) text += "\n  " + visible_text(reason);
   return text;
-}
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string csv_line(const std::vector<std::string>& fields) {
-  std::string line;
-  for (std::size_t i = 0; i < fields.size(); ++i) line += (i > 0 ? "," : "") + csv_field(fields[i]);
-  return line + "\n";
-}
-
-std::string csv_number(double value) {
-  return std::isfinite(value) ? plain_number(value, 17) : "";
 }
 
 Mark mark_of(const SweepRun& run) {
