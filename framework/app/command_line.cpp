@@ -94,10 +94,10 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
   CLI::App* verify = app.add_subcommand("verify", "judge a plan from its numbers alone");
   add_plan(*verify, plan);
   add_text(*verify, "--vehicle", "FILE",
-           "judge by this vehicle file, or its name in configs/, in place of the plan's vehicle",
+           "judge by this vehicle file, or its name in configs/; default: the plan's own vehicle",
            [&](const std::string& path) { judges.vehicle = path; });
   add_text(*verify, "--environment", "FILE",
-           "judge by the obstacles of this YAML file in place of the plan's",
+           "judge by the obstacles of this YAML file; default: those of the plan",
            [&](const std::string& path) { judges.environment = path; });
   add_json(*verify, invocation);
   verify->callback([&] { command = [&] { return verify_plan(plan, judges, invocation); }; });

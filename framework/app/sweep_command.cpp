@@ -156,8 +156,9 @@ void require_one_that_loads(const Sweep& asked, const Invocation& invocation,
 void keep_finished(std::vector<SweepRun>& runs) {
   for (SweepRun& run : runs) {
     read_results(run);
-    if (run.exit && *run.exit >= static_cast<int>(ExitStatus::defect))
-      run = SweepRun{run.name, run.values, run.folder, {}, {}, {}, {}, {}};
+    if (run.exit && *run.exit < static_cast<int>(ExitStatus::defect)) continue;
+    fs::remove_all(run.folder);  // whatever of it is there, it begins anew
+    run = SweepRun{run.name, run.values, run.folder, {}, {}, {}, {}, {}};
   }
 }
 
