@@ -6,7 +6,8 @@ local M = {}
 M.IDENTITY = { 1, 0, 0, 1, 0, 0 }  -- a b c d e f: x' = a x + c y + e, y' = b x + d y + f
 
 -- User units in one of a length's unit, at the 96 to an inch of SVG.
-local UNITS = { [""] = 1, px = 1, ["in"] = 96, cm = 96 / 2.54, mm = 96 / 25.4, pt = 96 / 72, pc = 16 }
+local UNITS = { [""] = 1, px = 1, ["in"] = 96, cm = 96 / 2.54, mm = 96 / 25.4, pt = 96 / 72,
+                pc = 16 }
 
 function M.times(m, n)
   return { m[1] * n[1] + m[3] * n[2], m[2] * n[1] + m[4] * n[2],

@@ -38,7 +38,11 @@ note(select(2, pcall(error, objects[1])) == objects[1] and 'same' or 'other')
 local ties, ramp, state = {}, {}, 1
 for i = 1, 3000 do ties[i], ramp[i] = { i % 7, i }, i end
 table.sort(ties, function(a, b) return a[1] < b[1] end)
-table.sort(ramp, function() state = (state * 1103515245 + 12345) % 2147483648 return state % 3 == 0 end)
+local function contradictory()
+  state = (state * 1103515245 + 12345) % 2147483648
+  return state % 3 == 0
+end
+table.sort(ramp, contradictory)
 for i = 1, 60 do note(ties[i * 50][2], ramp[i * 50]) end
 
 -- what a weak table still holds
@@ -53,7 +57,8 @@ note(math.random(), math.random(1000))
 return film.shot {
   name = 'asking',
   keyframes = { { position = {0, 0, 2} }, { position = {6, 0, 4} } },
-  obstacles = { { type = 'sphere', name = table.concat(out, ' '), center = {3, 9, 9}, radius = 1 } },
+  obstacles = { { type = 'sphere', name = table.concat(out, ' '), center = {3, 9, 9},
+                  radius = 1 } },
 }
 )lua";
 

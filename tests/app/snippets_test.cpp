@@ -19,7 +19,8 @@ constexpr const char* kProblem = R"lua(return { kind = 'snippet', plan = functio
     flight_zones = { { name = 'field', corners = {-60, -60, 60, -60, 60, 60, -60, 60},
                        floor = 0, ceiling = 50 } },
     subjects = { { name = 'walker', height = 1.8, track = { { time = 0, position = {6, 9, 1} } } },
-                 { name = 'actor', height = 1.8, track = { { time = 0, position = {6, 7, 1} } } } } } }
+                 { name = 'actor', height = 1.8,
+                   track = { { time = 0, position = {6, 7, 1} } } } } } }
 %MODELS%
 %SNIPPET%
   p:guess_path { times = {0, 8}, positions = { {0, 0, 3}, {9, 0, 3} }, yaws = {0, 0} }
