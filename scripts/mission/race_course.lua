@@ -18,7 +18,6 @@ local function finite(x) return math.type(x) ~= nil and x == x and math.abs(x) <
 local function number(name, unit, summary)
   return { name = name, type = "number", unit = unit, summary = summary }
 end
-
 -- A gate, in a script or in a file.
 course.GATE = {
   { name = "name", type = "text", summary = "in messages" },

@@ -15,13 +15,14 @@ local function number(file, value, path)
   return value
 end
 
-local function table_of(file, value, path)
-  if type(value) ~= "table" then file:fail(path, "expected a table or a list") end
+-- `path`: of the value, or of what it should be in.
+local function table_of(file, value, path, what)
+  if type(value) ~= "table" then file:fail(path, what .. " is missing, or no table") end
   return value
 end
 
-local function geodetic(file, value, path)
-  table_of(file, value, path)
+local function geodetic(file, value, path, what)
+  table_of(file, value, path, what)
   return { lat = number(file, value.lat, path .. ".lat"),
            lon = number(file, value.lng, path .. ".lng"),
            alt = number(file, value.altitude, path .. ".altitude") }
@@ -33,14 +34,14 @@ local function place(file, origin, entry, path, ned, pose)
   local given = entry[ned]
   if given ~= nil then
     path = path .. "." .. ned
-    table_of(file, given, path)
+    table_of(file, given, path, ned)
     return { number(file, given.e, path .. ".e"), number(file, given.n, path .. ".n"),
              -number(file, given.d, path .. ".d") }
   end
   if entry[pose] == nil then
     file:fail(path .. "." .. ned, string.format("missing; expected {n, e, d}, or %s", pose))
   end
-  return lapwing.local_from_geodetic(origin, geodetic(file, entry[pose], path .. "." .. pose))
+  return lapwing.local_from_geodetic(origin, geodetic(file, entry[pose], path .. "." .. pose, pose))
 end
 
 -- The points looked at as the track of a subject, at rest before the first and after the last.
@@ -62,23 +63,24 @@ function shot_file.read(run)
   if not name then lapwing.fail("give the shot to fly: --set input=PATH") end
   local shot, file = lapwing.read_json(name, "shots")
   file:expect_keys("", { "keyFrameList", "keyframeTimes", "refLLH" }, true)
-  local list = table_of(file, shot.keyFrameList, "keyFrameList")
-  local times = table_of(file, shot.keyframeTimes, "keyframeTimes")
+  local list = table_of(file, shot.keyFrameList, "", "keyFrameList")
+  local times = table_of(file, shot.keyframeTimes, "", "keyframeTimes")
   if #list == 0 or #list ~= #times then
     file:fail("keyframeTimes", string.format("%d keyframes, but %d times", #list, #times))
   end
   local origin
   if shot.refLLH then
-    origin = geodetic(file, shot.refLLH, "refLLH")
+    origin = geodetic(file, shot.refLLH, "refLLH", "refLLH")
   else
-    local first = table_of(file, list[1], "keyFrameList[1]")
-    origin = geodetic(file, first.cameraPose, "keyFrameList[1].cameraPose")
+    local first = table_of(file, list[1], "keyFrameList[1]", "keyframe 1")
+    local path = "keyFrameList[1].cameraPose"
+    origin = geodetic(file, first.cameraPose, path, "keyframe 1: cameraPose")
   end
   local keyframes, track = {}, {}
   local gimbal = run:vehicle(run.options.vehicle).gimbal
   for i, entry in ipairs(list) do
     local path = string.format("keyFrameList[%d]", i)
-    table_of(file, entry, path)
+    table_of(file, entry, path, "keyframe " .. i)
     file:expect_keys(path, KEYS, true)
     local from = place(file, origin, entry, path, "lookFromNED", "cameraPose")
     local time = number(file, times[i], string.format("keyframeTimes[%d]", i))
