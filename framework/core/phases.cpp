@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLeastFraction = 0.05;  // before, a share tells too little of the phase
 constexpr double kLeastSeconds = 1;      // likewise
-constexpr double kMostGuessed = 0.25;    // of the whole, by weights alone
+constexpr double kMostGuessed = 0.2;     // of the whole, by weights alone
 constexpr double kFalls = 0.02;          // a share that falls by more has begun again
 
 }  // namespace

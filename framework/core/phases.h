@@ -31,7 +31,7 @@ void begin_phase(Progress* progress, const std::string& phase);
 // How far work has come, from what was measured. Times are s since it began.
 //
 // Of the phase that runs its own share done says what it takes; of later phases their weights, by
-// what the measured ones took for theirs. Where these guesses are more than a quarter of all there
+// what the measured ones took for theirs. Where these guesses are more than a fifth of all there
 // is no estimate, for nobody knows.
 class PhaseTimes {
  public:

@@ -100,6 +100,9 @@ ParameterTable graph_table() {
   table.table("region", box_table(), "of interest")
       .table("allowed", box_table(), "where the vehicle's middle may be")
       .tables("starts", viewpoint_table(), "where candidates grow from, if there is room", true)
+      .boolean("fixed", true,
+               "tours begin at the first of the starts, else at the first of those "
+               "that most views are joined to")
       .integer("needed", 1, "of the starts, the first so many: there must be room", between(1, 2))
       .numbers("body", {1, 1, 0.5}, "m", "half edges of the vehicle's box")
       .number("mesh_room", 1, "m", "more that is kept from the prior mesh", at_least(0))
@@ -201,6 +204,19 @@ std::vector<int> islands_of(const ScanGraph& graph) {
   return island;
 }
 
+// The first of the given views that most views are joined to by motions.
+int best_home(const ScanWork& work) {
+  std::vector<int> sizes(work.island.size(), 0);
+  for (const int island : work.island) ++sizes[static_cast<std::size_t>(island)];
+  const auto joined = [&](int v) {
+    return sizes[static_cast<std::size_t>(work.island[static_cast<std::size_t>(v)])];
+  };
+  int best = 0;
+  for (int v = 1; v < work.graph.candidates.given; ++v)
+    if (joined(v) > joined(best)) best = v;
+  return best;
+}
+
 const Vehicle& vehicle_argument(lua_State* state, int table) {
   lua_getfield(state, table, "vehicle");
   return object_argument<Vehicle>(state, -1, kVehicleType);
@@ -277,6 +293,7 @@ int scan_graph_of_run(lua_State* state) {
                       starts, settings, run.settings.cancellation, run.settings.progress);
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
   work->island = islands_of(work->graph);
+  if (!given.boolean("fixed")) work->home = best_home(*work);
   const ScanGraph& graph = work->graph;
   logging::info("candidates: " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
                 std::to_string(graph.candidates.blocked) + " places blocked, " +
@@ -313,6 +330,7 @@ constexpr BoundField kGraphFields[] = {
     {"blocked", "integer", "pairs without a free way"},
     {"voxels", "integer", "that are scored"},
     {"total", "number", "score of seeing all of them perfectly"},
+    {"home", "integer", "the candidate in which tours begin, from 1"},
     {"reach", "string", "how many views can be reached from the start, in words"}};
 
 int graph_field(lua_State* state) {
@@ -326,7 +344,8 @@ int graph_field(lua_State* state) {
   fields.set("blocked", graph.motions.blocked);
   fields.set("voxels", static_cast<std::int64_t>(graph.voxels.size()));
   fields.set("total", graph.score->total());
-  fields.set("reach", reach_in_words(work, 0));
+  fields.set("home", static_cast<std::int64_t>(work.home + 1));
+  fields.set("reach", reach_in_words(work, work.home));
   const std::string field = text_argument(state, 2, "scan graph");
   return push_field(state, "a scan graph", field, fields, kGraphFields);
 }
@@ -399,6 +418,7 @@ int solve_tour_of_run(lua_State* state) {
   if (given.integer("finish") > count)
     throw InputError(given.origin("finish"),
                      "solve_tour: there are candidates from 1 to " + std::to_string(count));
+  definition.start = work.home;
   definition.end = static_cast<int>(given.integer("finish") - 1);
   if (given.integer("images") > 0)
     definition.image_limit = static_cast<int>(given.integer("images"));

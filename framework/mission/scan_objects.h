@@ -54,6 +54,7 @@ struct ScanWork : LegFlight {
   ScanGraph graph;
   std::vector<double> seconds;  // of each motion, a view's own included
   std::vector<int> island;      // of the views that are joined by motions, per view
+  int home = 0;                 // of the views, where tours begin
   Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
 
   // The place of the motion between two views; Error where there is none.

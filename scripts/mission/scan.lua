@@ -71,7 +71,8 @@ local function graph_of(run, known, vehicle, starts, finish)
   return run:scan_graph {
     prior = known, vehicle = vehicle, region = region,
     allowed = space.room(run, starts),
-    starts = starts, needed = finish, body = o.body, mesh_room = o.mesh_room,
+    starts = starts, fixed = o.start ~= nil or o.exploration.images > 0, needed = finish,
+    body = o.body, mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
       step_growth = c.step_growth,
@@ -90,7 +91,7 @@ local function refuse(run, graph, tour, budget)
   local why = found and "no further view brings anything that could be seen in that time"
     or tour.message ~= "" and tour.message or tour.status
   run:fail("tour", string.format(
-    "no tour of %.4g s: %s. From the start (the first of %d candidates) %s; %d views lie within "
+    "no tour of %.4g s: %s. From the start (one of %d candidates) %s; %d views lie within "
     .. "the budget", budget, why, graph.candidates, graph.reach, tour.reachable))
 end
 
@@ -205,7 +206,8 @@ local function planned(run)
     local function begin(phase) run:phase(phases.named(run, phase, round)) end
     begin("views")
     local graph = graph_of(run, known, vehicle, starts, finish)
-    plan = plan_of(run, graph, vehicle, finish, known, explored, begin)
+    local last = o.finish and finish or graph.home  -- a loop, unless said otherwise
+    plan = plan_of(run, graph, vehicle, last, known, explored, begin)
     if round < o.rounds and not run:cancelled() then
       -- The tour is flown, and what it sees is known from then on; candidates grow from where it
       -- was as well (thesis 4.4.4).

@@ -51,7 +51,8 @@ local DECLARATIONS = {
   { name = "region", type = "table", summary = "of interest; absent: the "
     .. "scene's, or a mesh's bounds and so much round them as body and a view take", table = {
     place("lower", "lowest corner, world"), place("upper", "highest corner, world") } },
-  place("start", "where the tour begins; absent: the first flight's first view"),
+  place("start", "where the tour begins; absent: the first of the first flight's views that most "
+        .. "others are joined to"),
   place("finish", "where it ends; absent: where it begins"),
   number("safe_height", nil, "m", "above it the air is free, world; absent: 4 m over the region",
          { minimum = -1e5, maximum = 1e5 }),
@@ -64,7 +65,8 @@ local DECLARATIONS = {
     summary = "half edges of the box that must be free" },
   number("mesh_room", 1, "m", "more that is kept from the prior mesh", NOT_NEGATIVE),
   { name = "flights", type = "tables", table = PATTERN,
-    summary = "first flights, into one map; absent: one crosshatch" },
+    summary = "first flights, into one map; absent: a crosshatch, and a grid "
+    .. "that looks down" },
   exploration.DECLARATION,
   { name = "utility", type = "plugin", kind = "utility", default = "learned",
     summary = "of an exploration: how useful a view is" },

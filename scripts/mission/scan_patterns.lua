@@ -98,19 +98,6 @@ local function oblique_grid(box, along, height, spacing, pitch, reach, poses)
   end
 end
 
--- The pose nearest to the middle of the box comes first: from there most can be reached.
-local function from_the_middle(poses, box)
-  if #poses == 0 then return poses end
-  local nearest, least = 1, math.huge
-  for i, pose in ipairs(poses) do
-    local x = pose.position[1] - (box.lower[1] + box.upper[1]) / 2
-    local y = pose.position[2] - (box.lower[2] + box.upper[2]) / 2
-    if x * x + y * y < least - 1e-9 then nearest, least = i, x * x + y * y end
-  end
-  table.insert(poses, 1, table.remove(poses, nearest))
-  return poses
-end
-
 -- Two oblique grids in crossing directions, as surveyors fly where walls count: every place is seen
 -- from four sides. Stops are `OVERLAP` times the height over the region's floor apart, or as much
 -- farther as a smaller number of views asks for.
@@ -123,7 +110,7 @@ local function crosshatch(box, height, views, pitch, reach)
     if not views or #poses <= views then break end
     spacing = 1.05 * spacing
   end
-  return from_the_middle(poses, box)
+  return poses
 end
 
 -- Poses of `pattern` (circle, crosshatch, ellipse, meander) over the box `region` at `height` (m,

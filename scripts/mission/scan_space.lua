@@ -10,6 +10,8 @@ local SAFE_ABOVE = 4      -- m of a region, unless said otherwise
 local FLIGHT_ABOVE = { crosshatch = 5 }  -- m of the safe height, likewise
 local FLIGHT_ABOVE_ELSE = 15
 local VIEW = 4            -- m from a wall, to look along it: beside the body, round a mesh's bounds
+local DOWN_APART = 0.5    -- heights over the floor, between images that look down
+local FEWEST_DOWN, MOST_DOWN = 6, 200
 local OVERHEAD = 2        -- m of free air above the highest first flight
 
 local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
@@ -66,9 +68,17 @@ function M.safe_height(run)
   return run.options.safe_height or M.region_of(run).upper[3] + SAFE_ABOVE
 end
 
+-- As given, or as surveyors fly: a crosshatch for what stands up, and a grid that looks down for
+-- roofs, grounds and narrow courts.
 function M.flights_of(run)
-  local o = run.options
-  return #o.flights > 0 and o.flights or { { pattern = "crosshatch" } }
+  local o, region = run.options, M.region_of(run)
+  if #o.flights > 0 then return o.flights end
+  local height = M.safe_height(run) + FLIGHT_ABOVE.crosshatch
+  local area = (region.upper[1] - region.lower[1]) * (region.upper[2] - region.lower[2])
+  local apart = DOWN_APART * (height - region.lower[3])
+  local views = math.max(FEWEST_DOWN, math.min(MOST_DOWN, math.ceil(area / apart ^ 2)))
+  return { { pattern = "crosshatch", height = height },
+           { pattern = "meander", height = height, pitch_deg = -80, reach = 0, views = views } }
 end
 
 function M.height_of(run, flight)

@@ -32,7 +32,8 @@ TEST(ShippedConfigurations, SetNothingThatOnlyTheUserKnows) {
     if (kFilesOfThings.contains(folder)) continue;
     const auto allowed = kMaySet.find(folder);
     ASSERT_NE(allowed, kMaySet.end()) << entry.path() << ": say what it may set";
-    for (const auto& [key, value] : read_yaml(entry.path()).as_map())
+    const Value settings = read_yaml(entry.path());
+    for (const auto& [key, value] : settings.as_map())
       EXPECT_TRUE(allowed->second.contains(key))
           << entry.path() << " sets '" << key << "', which may be the user's own";
     ++seen;

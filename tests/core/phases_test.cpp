@@ -61,21 +61,22 @@ const std::vector<Stage> kScan = {{"first flight", 35, 34, true}, {"prior mesh",
 TEST(PhaseTimes, WhatIsSaidToBeLeftIsLeft) {
   double end = 0;
   const std::vector<Told> told = recorded(kScan, end);
-  ASSERT_GT(told.size(), 300u);
+  ASSERT_GT(told.size(), 200u);
   for (const Told& t : told) EXPECT_NEAR(t.left, end - t.time, 0.3 * (end - t.time) + 8) << t.time;
 }
 
-// Another machine, with other speeds of everything: later it is better known.
-TEST(PhaseTimes, WeightsThatAreFarOffAreNotBelievedForLong) {
+// A machine on which every phase goes at another speed: no estimate is off by more than a fifth of
+// the whole, however wrong the weights are.
+TEST(PhaseTimes, WeightsThatAreFarOffDoNoGreatHarm) {
   std::vector<Stage> stages = kScan;
   stages[0].seconds = 5;
   stages[1].seconds = 200;
   stages[5].seconds = 3;
   double end = 0;
-  for (const Told& t : recorded(stages, end)) {
-    if (t.time < 0.9 * end) continue;
-    EXPECT_LT(t.left, 3 * (end - t.time) + 20) << t.time;
-  }
+  const std::vector<Told> told = recorded(stages, end);
+  ASSERT_GT(told.size(), 100u);
+  for (const Told& t : told)
+    EXPECT_LT(t.left - (end - t.time), 0.2 * (t.time + t.left) + 1) << t.time;
 }
 
 TEST(PhaseTimes, WithoutWeightsNobodyKnowsTheWhole) {
