@@ -7,6 +7,7 @@
 #include "framework/core/files.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/path/free_space.h"
+#include "framework/path/path_planner.h"
 #include "framework/plugin/registry.h"
 #include "framework/verify/verify.h"
 #include "tests/verify/reference_plan.h"
