@@ -131,7 +131,7 @@ bool maps_hold(const Medians& medians) {
     if (!exact) held &= at_most(medians, brick.c_str(), 50, 3, false);
   }
   return held & map_ratio(medians, "map_cast_room/brick", "map_cast_room/octomap", 5) &
-         map_ratio(medians, "map_cast_singly/brick", "map_cast_singly/octomap", 50) &
+         map_ratio(medians, "map_cast_singly/brick", "map_cast_singly/octomap", 15) &
          map_ratio(medians, "map_cast_street/brick", "map_cast_street/octomap", 10) &
          map_ratio(medians, "map_cast_street/brick", "map_castRay_street", 10) &
          map_ratio(medians, "map_cast_room/brick", "map_castRay_room", 5) &
@@ -159,9 +159,9 @@ int main(int argc, char** argv) {
   if (medians.absent())
     std::printf("Not measured, for want of the real depth images (LAPWING_DATA): claims on them\n");
   const bool held = ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s", 8) &
-                    ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s_mehrotra", 8) &
-                    faster(medians, "to_half_a_percent/iqp", "to_half_a_percent/ipopt", 4) &
-                    faster(medians, "to_the_end/moved_warm", "to_the_end/moved_cold", 2) &
+                    ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s_mehrotra", 6) &
+                    faster(medians, "to_half_a_percent/iqp", "to_half_a_percent/ipopt", 3) &
+                    faster(medians, "to_the_end/moved_warm", "to_the_end/moved_cold", 1.6) &
                     growth(medians, "interior_point/flight_30s", "interior_point/flight_300s", 15) &
                     growth(medians, "film_terms/plugins", "film_terms/lua", 1.3) &
                     maps_hold(medians);

@@ -6,6 +6,7 @@
 #include "framework/core/checksum.h"
 #include "framework/core/files.h"
 #include "framework/geometry/mesh_file.h"
+#include "framework/geometry/mesh_scene.h"
 #include "framework/path/free_space.h"
 #include "framework/path/path_planner.h"
 #include "framework/plugin/registry.h"
@@ -16,12 +17,11 @@ namespace lapwing {
 namespace {
 
 namespace fs = std::filesystem;
-using Eigen::Vector3d;
 
-constexpr double kReach = 0.4;  // m
+constexpr double kGalleryReach = 0.4;  // m
 
 // Whether the polyline through `points` is clear of the gallery by the reach.
-Certificate judged(const TriangleMesh& mesh, const std::vector<Vector3d>& points) {
+Certificate judged(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& points) {
   const fs::path folder =
       fs::temp_directory_path() / ("lapwing_gallery_" + std::to_string(::getpid()));
   write_ply(mesh, folder / "gallery.ply");
@@ -30,10 +30,10 @@ Certificate judged(const TriangleMesh& mesh, const std::vector<Vector3d>& points
   plan.kind = "scan";
   plan.vehicle = to_value(reference_vehicle());
   plan.trajectory.model = MotionModel::path;
-  plan.environment.margin = kReach;
+  plan.environment.margin = kGalleryReach;
   plan.environment.meshes = {{"gallery", "gallery.ply", sha256(read_file(folder / "gallery.ply"))}};
   Sample sample;
-  for (const Vector3d& p : points) {
+  for (const Eigen::Vector3d& p : points) {
     if (!plan.trajectory.samples.empty()) sample.time += (p - sample.position).norm();
     sample.position = p;
     plan.trajectory.samples.push_back(sample);
@@ -50,8 +50,8 @@ TEST(Gallery, IsFlownThroughAroundItsBends) {
   const PathProblem problem{space.get(),
                             {1, 0, 1.3},
                             {51, 3, 1.3},
-                            Vector3d::Constant(kReach),
-                            {Vector3d(-2, -6, 0.6), Vector3d(56, 20, 2.2)}};
+                            Eigen::Vector3d::Constant(kGalleryReach),
+                            {Eigen::Vector3d(-2, -6, 0.6), Eigen::Vector3d(56, 20, 2.2)}};
   const Registry registry({fs::path(LAPWING_BUILD_DIR) / "lib/plugins"});
   Value parameters = Value::map();
   parameters.set("iterations", 20000);

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/view/orienteering_file.h"
 #include "tests/plugins/tour_solvers/tour_plugins.h"
