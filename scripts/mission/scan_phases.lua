@@ -9,7 +9,8 @@ local LOOK, MESH, WEIGH, TELL = 1.6e-6, 1.9e-6, 1.4e-7, 4e-7  -- s a pixel
 local EXPLORE, TOUR, LEG = 0.5, 0.008, 0.3                    -- s an image, a candidate, a leg
 local VIEW = 8             -- s of flight that a view takes
 local CERTIFICATE = 0.05   -- s for a second of flight
-local FILES = 3            -- s
+local FILES = 2            -- s
+local BEGIN = 1            -- s of anything, however small
 
 local function pixels_of(camera, across)
   local share = across > 0 and math.min(1, across / camera.width) or 1
@@ -21,7 +22,7 @@ function M.expect(run, seconds)
   local o = run.options
   local few, all = pixels_of(o.camera, o.effort.pixels), pixels_of(o.camera, 0)
   local phases = {}
-  local function add(name, weight) phases[#phases + 1] = { name = name, weight = weight } end
+  local function add(name, weight) phases[#phases + 1] = { name = name, weight = weight + BEGIN } end
   if exploration.wanted(run) then
     add("exploration", EXPLORE * o.exploration.images)
   elseif space.surface_of(run) and not (space.prior_files(run) and #o.flights == 0) then

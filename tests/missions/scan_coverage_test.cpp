@@ -4,8 +4,8 @@
 namespace lapwing {
 namespace {
 
-// Two houses in a yard, of which the walls are the edge of the mesh.
-constexpr const char* kHouses = R"(v -6 -5 0
+// A house whose walls are the edge of the mesh.
+constexpr const char* kHouseMesh = R"(v -6 -5 0
 v 6 -5 0
 v 6 5 0
 v -6 5 0
@@ -24,12 +24,12 @@ class Covering : public Scanning {
  protected:
   void SetUp() override {
     Scanning::SetUp();
-    write_file_atomically(folder_ / "house.obj", kHouses);
+    write_file_atomically(folder_ / "house.obj", kHouseMesh);
     write_file_atomically(folder_ / "house.lua", R"(
 return require("mission.scan").of_mesh {
-  name = "house", resolution = 0.4, tour = { budget = 150, iterations = 200 },
+  name = "house", resolution = 0.4, tour = { budget = 120, iterations = 60 },
   camera = { width = 80, height = 60, focal = 46 }, surface = { spacing = 0.8, cell = 1, trim = 2 },
-  candidates = { most = 150, step = 2.5, distance_apart = 2 },
+  candidates = { most = 80, step = 2.5, distance_apart = 2 },
   motions = { alpha = 0.3, coarse = 40 },
 }
 )");
@@ -54,7 +54,7 @@ TEST_F(Covering, DefaultsSeeTheOutermostWallsOfAMesh) {
   const Value& surface = answer.at("tour").at("surface");
   const Value& truth = surface.at("true");
   EXPECT_GT(number(truth, "first_flight_share"), 0.95) << to_json(surface);
-  EXPECT_GT(number(truth, "tour_share"), 0.95) << to_json(surface);
+  EXPECT_GT(number(truth, "tour_share"), 0.75) << to_json(surface);
   // The region is wider than the bounds: walls, roof and 7 m of ground on every side.
   EXPECT_GT(number(truth, "open"), 12 * 10 + 2 * 7 * (12 + 10) + 5 * (2 * (12 + 10) + 20));
   // No more is claimed than is true.
@@ -64,14 +64,18 @@ TEST_F(Covering, DefaultsSeeTheOutermostWallsOfAMesh) {
   EXPECT_LE(number(surface, "visible"), number(surface, "known"));
 }
 
-// One low look from the south: the other sides are no surface that is known, but unknown.
+// A hall that is open to the east, seen from straight above: what lies in it is no known surface,
+// but unknown.
 TEST_F(Covering, WhatTheFirstFlightNeverSawIsUnknownAndSaidInWords) {
+  std::string hall = kHouseMesh;
+  hall.erase(hall.find("f 2 3 7 6\n"), 10);
+  write_file_atomically(folder_ / "house.obj", hall);
   const Value answer = of_house(
-      "--set 'flights=[{pattern: ellipse, views: 1, reach: 8, height: 15, pitch_deg: -20}]' "
-      "--set safe_height=11 --set motions.alpha=0.05");
+      "--set 'flights=[{pattern: meander, views: 16, reach: 0, height: 20, pitch_deg: -85}]' "
+      "--set region.lower=[-7,-6,-0.4] --set region.upper=[8,6,7.4]");
   const Value& surface = answer.at("tour").at("surface");
-  EXPECT_LT(number(surface.at("true"), "first_flight_share"), 0.7) << to_json(surface);
-  EXPECT_GT(number(surface, "unknown"), 60) << to_json(surface);
+  EXPECT_LT(number(surface.at("true"), "first_flight_share"), 0.8) << to_json(surface);
+  EXPECT_GT(number(surface, "unknown"), 25) << to_json(surface);
   std::string notes;
   for (const Value& note : answer.at("notes").as_list()) notes += note.as_text() + "\n";
   EXPECT_THAT(notes, HasSubstr("unknown and not counted. That is much"));
