@@ -53,7 +53,7 @@ TEST_F(SceneMoves, AreAppliedAndNamedWhereTheUserSaysNothing) {
 TEST_F(SceneMoves, TheUsersOwnGoBeforeThem) {
   const Said said = evaluate("--moves step=0.5 --json --world '" + room() + "'" + in("mixed"));
   ASSERT_EQ(said.status, 0) << said.err;
-  const Value& moves = from_json(said.out, "out").at("world_moves").at("room.lua 1");
+  const Value moves = from_json(said.out, "out").at("world_moves").at("room.lua 1");
   EXPECT_EQ(moves.at("step").as_number(), 0.5);
   EXPECT_EQ(moves.at("body").as_number(), 0.5);
 }
