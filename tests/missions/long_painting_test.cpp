@@ -13,8 +13,8 @@ class LongPainting : public Filming {
   std::string script(const std::string& more) {
     const fs::path file = folder_ / "painting.lua";
     write_file_atomically(file,
-                          "return require 'mission.light_painting'.text { name = 'painting', text = "
-                          "'HELLO', height = 2, speed = 0.2, " +
+                          "return require 'mission.light_painting'.text { name = 'painting', "
+                          "text = 'HELLO', height = 2, speed = 0.2, " +
                               more + " }");
     return file.string();
   }
