@@ -16,13 +16,13 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(LAPWING_SOURCE_DIR) / "tests/data/orienteering";
 
-struct Known {
+struct ShippedInstance {
   fs::path file;
   double optimum = 0;
 };
 
-std::vector<Known> known_instances() {
-  std::vector<Known> known{{kFolder / "meadow13.txt", 90}};
+std::vector<ShippedInstance> known_instances() {
+  std::vector<ShippedInstance> known{{kFolder / "meadow13.txt", 90}};
   std::istringstream lines(read_file(kFolder / "best_known.csv"));
   std::string line;
   std::getline(lines, line);  // instance,nodes,distance,cost_limit,optimum
@@ -34,9 +34,9 @@ std::vector<Known> known_instances() {
 
 // Rounded, geographic and stated distances, and the plain format's exact ones.
 TEST(ShippedInstances, AreSolvedToTheirOptima) {
-  const std::vector<Known> instances = known_instances();
+  const std::vector<ShippedInstance> instances = known_instances();
   ASSERT_EQ(instances.size(), 4u);
-  for (const Known& known : instances) {
+  for (const ShippedInstance& known : instances) {
     SCOPED_TRACE(known.file.filename());
     const TourProblem problem(read_orienteering_file(known.file).definition);
     for (const char* solver : {"local_search", "milp"}) {
