@@ -22,7 +22,9 @@ function M.expect(run, seconds)
   local o = run.options
   local few, all = pixels_of(o.camera, o.effort.pixels), pixels_of(o.camera, 0)
   local phases = {}
-  local function add(name, weight) phases[#phases + 1] = { name = name, weight = weight + BEGIN } end
+  local function add(name, weight)
+    phases[#phases + 1] = { name = name, weight = weight + BEGIN }
+  end
   if exploration.wanted(run) then
     add("exploration", EXPLORE * o.exploration.images)
   elseif space.surface_of(run) and not (space.prior_files(run) and #o.flights == 0) then
