@@ -24,8 +24,8 @@ void add_distance(const Subject& subject, double time, Drawing& drawing) {
   for (const auto& [first, second] : {std::pair{x, y}, {x, z}, {y, z}}) {
     for (int i = 0; i <= kCorners; ++i) {
       const double angle = 2 * std::numbers::pi * i / kCorners;
-      rings.points.push_back(middle + subject.distance * (std::cos(angle) * first +
-                                                          std::sin(angle) * second));
+      rings.points.push_back(middle + subject.distance *
+                                          (std::cos(angle) * first + std::sin(angle) * second));
     }
     rings.points.push_back(Eigen::Vector3d::Constant(nowhere));
   }

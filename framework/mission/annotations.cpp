@@ -264,8 +264,8 @@ class AnnotationWriter {
       text_ += "--- " + entry.summary + "\n";
       begin_class(name, kind == "cost_term"    ? "lapwing.cost_frame"
                         : kind == "constraint" ? "lapwing.constraint_frame"
-                        : term              ? "lapwing.plugin_frame"
-                                            : "");
+                        : term                 ? "lapwing.plugin_frame"
+                                               : "");
       text_ += "---@field type \"" + entry.name + "\"\n";
       write_entries(entry.parameters.to_value(), name, {"type"});
       finish_class();

@@ -94,8 +94,7 @@ OptionDeclarations OptionDeclarations::from_value(const Value& list) {
     option.name = declaration.at("name").as_text();
     const std::string type = declaration.at("type").as_text();
     option.plugins = type == "plugins";
-    if (type == "plugin" || option.plugins)
-      option.plugin_kind = declaration.at("kind").as_text();
+    if (type == "plugin" || option.plugins) option.plugin_kind = declaration.at("kind").as_text();
     option.vehicle = type == "vehicle";
     if (type == "plugin" || type == "vehicle" || option.plugins) declaration.set("type", "text");
     if (const Value* words = declaration.find("words")) {
@@ -224,7 +223,8 @@ Value OptionDeclarations::spelled_out(Value layer) const {
 
 std::string OptionDeclarations::spelled_out(const std::string& override_text) const {
   for (const Option& option : options_) {
-    if (!option.own.is_list() || option.plugins || !override_text.starts_with(option.name + "=")) continue;
+    if (!option.own.is_list() || option.plugins || !override_text.starts_with(option.name + "="))
+      continue;
     Value given = Value::map();
     apply_override(given, override_text);
     if (given.at(option.name).is_text())
@@ -245,8 +245,7 @@ Value OptionDeclarations::checked_plugins(const Option& option, const Value* giv
     return all;
   }
   for (const Value& entry : given->as_list()) {
-    const std::string what =
-        option.name + "[" + std::to_string(all.as_list().size() + 1) + "]";
+    const std::string what = option.name + "[" + std::to_string(all.as_list().size() + 1) + "]";
     Value table = option.own;
     const Value* type = entry.find("type");
     if (type) {
@@ -296,8 +295,7 @@ Value OptionDeclarations::check(const Value& given, const Registry& registry,
   result.with_origin(checked.value().origin());
   for (const Option& option : options_) {
     if (option.plugins)
-      result.set(option.name,
-                 checked_plugins(option, lists.find(option.name), registry, errors));
+      result.set(option.name, checked_plugins(option, lists.find(option.name), registry, errors));
     else if (const Value* value = checked.value().find(option.name))
       result.set(option.name, *value);
   }

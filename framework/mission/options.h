@@ -9,8 +9,8 @@
 //       under = "solver": the key that names the plugin, in place of `type`
 //       table = {...}: entries of the mission's own beside the plugin's parameters
 //   type = "plugins", kind = "cost_term", table = {...}
-//       a list of tables, each with a plugin's `type`, its parameters and the mission's own entries;
-//       one without `type` has the mission's own entries alone
+//       a list of tables, each with a plugin's `type`, its parameters and the mission's own
+//       entries; one without `type` has the mission's own entries alone
 //   type = "vehicle"               a vehicle file's name, or a table as in such a file
 //   words = {"auto"}               on a number: these texts are allowed as well
 //   also = "string"                a short form that the kind itself writes out, for annotations
@@ -76,7 +76,7 @@ class OptionDeclarations {
     Value own;                   // of a plugin: entries of the mission's own; null or a list
     std::string also;            // a short form, for annotations
     bool vehicle = false;
-    bool plugins = false;        // a list of them
+    bool plugins = false;  // a list of them
     std::vector<std::string> words;
   };
   // Each gives the entry of a parameter table that fits `given`.

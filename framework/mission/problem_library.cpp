@@ -132,9 +132,9 @@ int add_constraint(lua_State* state) {
   problem.add_constraint(argument.name, create<Constraint>(state, argument));
   if (argument.listed)
     object_argument<ProblemObject>(state, 1, kProblemType)
-        .listed.push_back({.name = argument.name,
-                           .unjudged = "of the plugin '" + argument.type +
-                                       "', not judged independently"});
+        .listed.push_back(
+            {.name = argument.name,
+             .unjudged = "of the plugin '" + argument.type + "', not judged independently"});
   return 0;
 }
 

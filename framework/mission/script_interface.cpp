@@ -67,8 +67,8 @@ void read_described(lua_State* state, const std::string& kind,
     if (lua_getfield(state, -1, "described") != LUA_TTABLE) continue;
     const Value list = value_from_lua(state, lua_gettop(state), {kind, 0}, "described");
     for (const Value& entry : list.as_list())
-      found.push_back({kind + "." + name, entry.at("name").as_text(),
-                       entry.at("summary").as_text(), entry.at("gives").as_text(),
+      found.push_back({kind + "." + name, entry.at("name").as_text(), entry.at("summary").as_text(),
+                       entry.at("gives").as_text(),
                        OptionDeclarations::from_value(entry.at("arguments")).to_value()});
   }
   lua_settop(state, module);

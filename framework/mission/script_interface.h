@@ -20,15 +20,15 @@ struct MissionFunction {
 
 // A function that a kind's module describes in a table of its own: film.shots.orbit.
 struct DescribedFunction {
-  std::string owner;        // "film.shots"
+  std::string owner;  // "film.shots"
   std::string name, summary;
-  std::string gives;        // a type as LuaLS writes it
-  Value declarations;       // of its arguments, as lapwing.arguments takes them
+  std::string gives;   // a type as LuaLS writes it
+  Value declarations;  // of its arguments, as lapwing.arguments takes them
 };
 
 struct ScriptInterface {
   std::vector<BoundType> types;
-  std::vector<MissionFunction> missions;  // by kind, then by name
+  std::vector<MissionFunction> missions;     // by kind, then by name
   std::vector<DescribedFunction> described;  // by owner, then in the module's order
 };
 

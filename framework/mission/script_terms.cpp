@@ -226,11 +226,14 @@ namespace {
 // Blocks that a plan's samples hold, by the names of the shipped models; a free block does not
 // reach the plan, but for the target.
 bool is_in_plans(const std::string& block) {
-  static const std::vector<std::string> known{
-      "time",          "step",       "position",     "yaw",       "velocity",
-      "yaw_rate",      "force",      "yaw_torque",   "target",    "orientation",
-      "body_rates",    "gimbal_yaw", "gimbal_pitch", "gimbal_yaw_rate",
-      "rotor_thrusts", "gimbal_pitch_rate"};
+  static const std::vector<std::string> known{"time",          "step",
+                                              "position",      "yaw",
+                                              "velocity",      "yaw_rate",
+                                              "force",         "yaw_torque",
+                                              "target",        "orientation",
+                                              "body_rates",    "gimbal_yaw",
+                                              "gimbal_pitch",  "gimbal_yaw_rate",
+                                              "rotor_thrusts", "gimbal_pitch_rate"};
   return std::find(known.begin(), known.end(), block) != known.end();
 }
 
@@ -240,12 +243,12 @@ void state_constraint(ScriptTerm& term, const std::vector<double>& lower,
   StatedConstraint& stated = term.stated;
   stated.name = term.name;
   stated.required = term.required;
-  if (horizon.step_free && !(term.shape.times.empty() && term.shape.spans.empty() &&
-                             term.shape.except.empty()))
+  if (horizon.step_free &&
+      !(term.shape.times.empty() && term.shape.spans.empty() && term.shape.except.empty()))
     stated.unjudged = "it names times of a flight whose times are free";
   if (term.recorded.operations.size() > StatedConstraint::kMostOperations)
-    stated.unjudged = "it takes more than " + std::to_string(StatedConstraint::kMostOperations) +
-                      " operations";
+    stated.unjudged =
+        "it takes more than " + std::to_string(StatedConstraint::kMostOperations) + " operations";
   for (const ConstraintStep& step : term.recorded.operations) {
     if (step.op == ConstraintOp::input && !is_in_plans(step.name))
       stated.unjudged = "it reads '" + step.name + "', which plans do not hold";

@@ -103,12 +103,10 @@ int nearest_distance(ExpressionGraph& graph, const Environment& environment,
   };
   each(environment.spheres, [&](const Sphere& sphere) { return writer.sphere(sphere); });
   each(environment.boxes, [&](const Box& box) { return writer.box(box); });
-  each(environment.zones,
-       [&](const Zone& zone) {
-         return writer.field(
-             std::make_shared<ZoneField>(zone),
-             {"no_fly_zone", static_cast<int>(&zone - environment.zones.data())});
-       });
+  each(environment.zones, [&](const Zone& zone) {
+    return writer.field(std::make_shared<ZoneField>(zone),
+                        {"no_fly_zone", static_cast<int>(&zone - environment.zones.data())});
+  });
   each(environment.meshes,
        [&](const MeshObstacle& mesh) { return read(mesh, "mesh", environment.meshes); });
   each(environment.maps,

@@ -151,8 +151,7 @@ Value to_value(const Plan& plan) {
   if (!plan.lights.empty()) value.set("lights", spans_to_value(plan.lights));
   if (plan.budget) value.set("budget", *plan.budget);
   value.set("task", task_to_value(plan.task));
-  if (!plan.constraints.empty())
-    value.set("constraints", constraints_to_value(plan.constraints));
+  if (!plan.constraints.empty()) value.set("constraints", constraints_to_value(plan.constraints));
   if (!plan.configuration.is_null()) value.set("configuration", plan.configuration);
   if (!plan.solver.is_null()) value.set("solver", plan.solver);
   if (!plan.certificate.is_null()) value.set("certificate", plan.certificate);

@@ -55,8 +55,7 @@ class ConstraintJudge {
         samples_(flight.plan.trajectory.samples.size()),
         rows_(constraint.results.size()),
         found_(rows_, 0.0) {
-    for (std::size_t i = 0; i < samples_; ++i)
-      points_.push_back(point(i, flight.motion.stated(i)));
+    for (std::size_t i = 0; i < samples_; ++i) points_.push_back(point(i, flight.motion.stated(i)));
   }
 
   Check check() {
@@ -72,8 +71,8 @@ class ConstraintJudge {
     check = judged(std::move(check), worst_.value, worst_.limit, worst_.tolerance, worst_.time,
                    worst_.at_least);
     if (rows_ > 1)
-      check.detail += (check.detail.empty() ? "" : "; ") + ("result " +
-                      std::to_string(worst_.row + 1)) + " of " + std::to_string(rows_);
+      check.detail += (check.detail.empty() ? "" : "; ") +
+                      ("result " + std::to_string(worst_.row + 1)) + " of " + std::to_string(rows_);
     return check;
   }
 
@@ -92,8 +91,8 @@ class ConstraintJudge {
     if (first + 1 >= samples_) return p;
     p.step = samples[first + 1].time - samples[first].time;
     if (i + 1 < samples_)
-      p.target += (motion.time - samples[i].time) / p.step *
-                  (samples[i + 1].target - samples[i].target);
+      p.target +=
+          (motion.time - samples[i].time) / p.step * (samples[i + 1].target - samples[i].target);
     return p;
   }
 

@@ -49,8 +49,8 @@ inline constexpr double kConstraintShare = 1e-4;
 inline constexpr double kConstraintFloor = 1e-5;
 inline constexpr double kConstraintBend = 2;
 inline constexpr double kConstraintBetween = 0.01;
-inline constexpr double kConstraintTime = 1e-9;       // s, nearer to a span's end than this is on it
-inline constexpr double kMostConstraintWork = 5e9;    // operations, at all points together
+inline constexpr double kConstraintTime = 1e-9;     // s, nearer to a span's end is on it
+inline constexpr double kMostConstraintWork = 5e9;  // operations, at all points together
 
 // What a plan may hold at all.
 inline constexpr double kLargestNumber = 1e7;  // any figure of a sample or of the task, SI

@@ -32,6 +32,7 @@ local weights = {
   weight("skewness", 0, "seeing a subject from far above or below"),
   weight("framing", 100, "a subject away from its place and size in the image"),
   weight("occlusion", 10, "obstacles between camera and target"),
+  weight("speed", 1, "away from the `speed` of a leg, per m^2/s"),
   weight("time", 1, "timing = free: the duration, per s"),
 }
 local ends = { "rest", "moving", "free" }

@@ -119,7 +119,23 @@ function M.add(p, environment, camera, corridor)
   end
 end
 
--- The film's own limit of speed, as a constraint of a script: the certificate reads it off the plan.
+-- The speeds that keyframes are timed by, wanted in between them as well: along the straight leg,
+-- which keeps the term convex where the flight goes round something.
+function M.add_cruise(p, shot, weight, stretch)
+  for i, leg in ipairs(shot.cruise or {}) do
+    local speed, way, length = leg.speed / stretch, {}, 0
+    for c = 1, 3 do
+      way[c] = leg.to[c] - leg.from[c]
+      length = length + way[c] ^ 2
+    end
+    for c = 1, 3 do way[c] = way[c] / math.sqrt(length) end
+    p:add_cost { name = "cruise " .. i, weight = weight,
+                 spans = { { start = leg.start * stretch, finish = leg.finish * stretch } },
+                 residual = function(s) return lapwing.dot(s.velocity, way) - speed end }
+  end
+end
+
+-- The film's own limit of speed, as a constraint of a script: the certificate judges it.
 function M.add_speed_limit(p, options, held)
   if not options.speed_limit then return end
   p:add_constraint { name = "speed_limit", upper = options.speed_limit, held = held,

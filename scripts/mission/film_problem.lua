@@ -178,6 +178,7 @@ function problem.state(run, shot, stretch, only)
     p:add_constraint { type = "state_limits" }
     surroundings.add(p, environment, camera, corridor)
   end
+  surroundings.add_cruise(p, shot, o.weights.speed, stretch)
   surroundings.add_speed_limit(p, o, only ~= "unlimited")
   if shot.track and only ~= "flight" then  -- of timing.lua
     p:add_cost { type = "keyframe", name = "path", weight = shot.track_weight,

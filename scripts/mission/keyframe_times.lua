@@ -56,24 +56,30 @@ end
 times.check_speed = check_speed
 
 -- Each leg at its speed, and what speeding up from rest and slowing down take besides; at half the
--- vehicle's acceleration.
+-- vehicle's acceleration. Notes in shot.cruise when which speed is flown.
 local function fill_at_speed(shot, vehicle, options)
   local list = shot.keyframes
+  shot.cruise = {}
   for i = 2, #list do
     local speed = list[i].speed or options.speed
     local taken = leg_time(list[i - 1].position, list[i].position, vehicle)
     if speed then
       local ramp = speed / vehicle.acceleration_across
-      taken = length(list[i].position, list[i - 1].position) / speed
-        + (i == 2 and options.start == "rest" and ramp or 0)
-        + (i == #list and options.finish == "rest" and ramp or 0)
+      local first = i == 2 and options.start == "rest" and ramp or 0
+      local last = i == #list and options.finish == "rest" and ramp or 0
+      taken = length(list[i].position, list[i - 1].position) / speed + first + last
+      local from, to = list[i - 1].time + 2 * first, list[i - 1].time + taken - 2 * last
+      if not list[i].time and to > from then
+        shot.cruise[#shot.cruise + 1] = { speed = speed, start = from, finish = to,
+                                          from = list[i - 1].position, to = list[i].position }
+      end
     end
     list[i].time = list[i].time or list[i - 1].time + taken
   end
 end
 
 -- Keyframes without a time stand evenly between those that have one. Where nothing says how fast,
--- every leg takes as long as the longest one needs. With `options`, those of the film, speeds count.
+-- every leg takes as long as the longest one needs. With the film's `options` speeds count.
 function times.fill(shot, vehicle, options)
   local list, pace, known = shot.keyframes, SHORTEST_LEG, 1
   local count = #list

@@ -7,8 +7,8 @@
 --   constraints = { { name = "west", upper = 4, value = function(s) return s.position.x end } },
 --
 -- All parameters of a plugin are options, and so are the name and the weight of a function
--- (`--set costs[1].weight=2`, `--set costs[2].height=6`); the rest of a function is handed on to the
--- problem, which checks it.
+-- (`--set costs[1].weight=2`, `--set costs[2].height=6`); the rest of a function is handed on to
+-- the problem, which checks it.
 local own = {}
 
 local name = { name = "name", type = "text", summary = "for messages and reports" }

@@ -11,7 +11,7 @@ local shots = {}
 
 local ORBIT_SPACING = 5  -- deg of an orbit between two keyframes, at most
 
--- ---- what they take ------------------------------------------------------------------------------
+-- ---- what they take ---------------------------------------------------------------------
 
 local function place(name, summary)
   return { name = name, type = "numbers", size = 3, unit = "m", required = true, minimum = -1e6,
@@ -81,7 +81,7 @@ local function arguments(what, given)
   return lapwing.arguments("shots." .. what, checked, plain)
 end
 
--- ---- what they give ------------------------------------------------------------------------------
+-- ---- what they give ---------------------------------------------------------------------
 
 local function at(given, share, position, look_at)
   return { time = given.start + share * given.duration, position = position,

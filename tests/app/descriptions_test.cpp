@@ -71,6 +71,11 @@ TEST(Described, CallsInTheReadmeOfMissions) {
                     call_table_of(shipped_interface()));
 }
 
+TEST(Described, NamedShotsInTheReadmeOfMissionKinds) {
+  expect_fresh_part(kTree / "scripts/mission/README.md", "named shots",
+                    argument_table_of(shipped_interface(), "film.shots"));
+}
+
 TEST(Described, SchemasBesideConfigurations) {
   const ScriptInterface interface = shipped_interface();
   const Registry registry = shipped_plugins();
@@ -99,6 +104,9 @@ TEST(Described, SchemasBesideConfigurations) {
   EXPECT_EQ(error("solver: ipopt"), "");
   EXPECT_EQ(error("solver: {type: iqp, iterations: 10}\nduration: 20 s"), "");
   EXPECT_EQ(error("tour: {budget: 120}"), "");
+  EXPECT_EQ(error("costs: [{type: skewness, height: 6, weight: 2}, {name: low}]"), "");
+  EXPECT_NE(error("costs: [{type: skewness, hieght: 6}]"), "");
+  EXPECT_NE(error("costs: [{type: subject_distance, distance: 6}]"), "");
   EXPECT_EQ(error("duration: 20 s\nstretch: auto\nsandbox: {seconds: 60}"), "");
   EXPECT_NE(error("solvr: ipopt"), "");
   EXPECT_NE(error("solver: ipoppt"), "");

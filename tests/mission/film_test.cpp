@@ -300,10 +300,10 @@ TEST_F(FilmTest, ShotTypesMakeKeyframes) {
   const auto orbit = keyframes(
       "shots.orbit { center = {0, 0, 1}, radius = 10, height = 4, angle = -90, from = 180, "
       "duration = 12 }");
-  ASSERT_EQ(orbit.size(), 7u);
+  ASSERT_EQ(orbit.size(), 23u);
   EXPECT_LT((orbit.front().position - Eigen::Vector3d(-10, 0, 4)).norm(), 1e-9);
   EXPECT_LT((orbit.back().position - Eigen::Vector3d(0, 10, 4)).norm(), 1e-9);
-  EXPECT_NEAR(orbit[3].time, 6, 1e-9);
+  EXPECT_NEAR(orbit[11].time, 6, 1e-9);
   const auto joined = keyframes(
       "shots.sequence(shots.static { position = {5, 0, 2}, duration = 4 }, "
       "shots.crane { position = {5, 0, 2}, by = 3, duration = 6 }, "
@@ -312,11 +312,11 @@ TEST_F(FilmTest, ShotTypesMakeKeyframes) {
   EXPECT_NEAR(joined.back().time, 22, 1e-9);
   EXPECT_LT((joined[joined.size() - 2].position - Eigen::Vector3d(0, 0, 9)).norm(), 1e-9);
   expect("return require('mission.film').shots.orbit { radius = 3, duration = 4 }",
-         "shots.orbit: needs center");
+         "shots.orbit.center: missing");
   expect("return require('mission.film').shots.crane { position = {0, 0, 1}, by = 1, duraton = 4 }",
-         "shots.crane: unknown key 'duraton'");
+         "shots.crane.duraton: unknown key; did you mean 'duration'?");
   expect("return require('mission.film').shots.static { position = {0, 0, 1} }",
-         "shots.static.duration: expected seconds above 0");
+         "shots.static.duration: missing");
 }
 
 }  // namespace

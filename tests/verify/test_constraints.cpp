@@ -67,7 +67,7 @@ TEST(StatedConstraints, EveryOperationGivesWhatTheTapeGives) {
       if (stated == ConstraintOp::norm) x[0] = std::abs(x[0]);
       const bool kink = stated == ConstraintOp::absolute || stated == ConstraintOp::norm ||
                         stated == ConstraintOp::maximum;
-      const double number = kink                           ? (i % 3 ? 0.2 : 0.0)
+      const double number = kink                            ? (i % 3 ? 0.2 : 0.0)
                             : stated == ConstraintOp::power ? 1 + i % 3
                                                             : 0;
       StatedConstraint constraint{.name = "one",
@@ -94,12 +94,13 @@ TEST(StatedConstraints, ASubjectIsWhereTheTapeHasIt) {
   const Subject& walker = plan.environment.subjects[0];
   for (double time = -1; time < 10; time += 0.13)
     for (int component = 0; component < 3; ++component) {
-      const StatedConstraint constraint{
-          .name = "one",
-          .operations = {constant(time),
-                         {.op = ConstraintOp::subject, .operands = {0}, .name = "walker",
-                          .component = component}},
-          .results = {{.operation = 1, .upper = 0.0}}};
+      const StatedConstraint constraint{.name = "one",
+                                        .operations = {constant(time),
+                                                       {.op = ConstraintOp::subject,
+                                                        .operands = {0},
+                                                        .name = "walker",
+                                                        .component = component}},
+                                        .results = {{.operation = 1, .upper = 0.0}}};
       ConstraintEvaluation evaluation(constraint, {plan.environment, {}, {}});
       double result = 0;
       const ConstraintPoint point;
@@ -140,11 +141,11 @@ TEST(StatedConstraints, OneThatCannotBeJudgedIsListedWithTheReason) {
 
 // The flight of the reference is fastest at 4 s, where coarse samples have none.
 TEST(StatedConstraints, WhatHappensBetweenTwoSamplesCounts) {
-  StatedConstraint slow{.name = "slow",
-                        .operations = {input("time", 0), constant(3.95),
-                                       of(ConstraintOp::subtract, 0, 1),
-                                       of(ConstraintOp::absolute, 2, -1, -1, 0.0)},
-                        .results = {{.operation = 3, .lower = 0.04}}};
+  StatedConstraint slow{
+      .name = "slow",
+      .operations = {input("time", 0), constant(3.95), of(ConstraintOp::subtract, 0, 1),
+                     of(ConstraintOp::absolute, 2, -1, -1, 0.0)},
+      .results = {{.operation = 3, .lower = 0.04}}};
   const Check check = judged_constraint(with(slow));
   EXPECT_FALSE(check.pass);
   EXPECT_LT(*check.worst, 0.04 - check.tolerance);
@@ -192,11 +193,11 @@ TEST(StatedConstraints, NeighbouringSamplesAreRead) {
 }
 
 TEST(StatedConstraints, WhatIsNoNumberFails) {
-  StatedConstraint constraint{.name = "root",
-                              .operations = {input("position", 0), constant(-1e6),
-                                             of(ConstraintOp::add, 0, 1),
-                                             of(ConstraintOp::sqrt, 2)},
-                              .results = {{.operation = 3, .upper = 1.0}}};
+  StatedConstraint constraint{
+      .name = "root",
+      .operations = {input("position", 0), constant(-1e6), of(ConstraintOp::add, 0, 1),
+                     of(ConstraintOp::sqrt, 2)},
+      .results = {{.operation = 3, .upper = 1.0}}};
   const Check check = judged_constraint(with(constraint));
   EXPECT_FALSE(check.pass);
   EXPECT_EQ(check.detail, "not a finite number");
@@ -260,8 +261,11 @@ TEST(StatedConstraints, CorruptOperationsAreRefusedByName) {
       {.op = ConstraintOp::subject, .operands = {0}, .name = "nobody", .component = 0});
   refused(broken, "the subject 'nobody'");
   broken = west(4);
-  broken.operations.push_back({.op = ConstraintOp::distance, .operands = {0, 0, 0}, .number = 5,
-                               .name = "mesh", .component = 0});
+  broken.operations.push_back({.op = ConstraintOp::distance,
+                               .operands = {0, 0, 0},
+                               .number = 5,
+                               .name = "mesh",
+                               .component = 0});
   refused(broken, "measures to mesh 0, which the environment lacks");
   broken = west(4);
   broken.spans = {{4, 2}};
@@ -277,12 +281,15 @@ TEST(StatedConstraints, ADocumentHoldsThemAndOlderOnesHaveNone) {
   EXPECT_EQ(to_value(plain).find("constraints"), nullptr);
   EXPECT_TRUE(plan_from_value(to_value(plain)).constraints.empty());
   StatedConstraint all = west(4);
-  all.operations.push_back({.op = ConstraintOp::subject, .operands = {0}, .name = "walker",
-                            .component = 2});
+  all.operations.push_back(
+      {.op = ConstraintOp::subject, .operands = {0}, .name = "walker", .component = 2});
   all.operations.push_back(of(ConstraintOp::maximum, 0, 1, -1, 0.25));
   all.operations.push_back(of(ConstraintOp::power, 2, -1, -1, 1.5));
-  all.operations.push_back({.op = ConstraintOp::distance, .operands = {0, 1, 2}, .number = 7,
-                            .name = "no_fly_zone", .component = 1});
+  all.operations.push_back({.op = ConstraintOp::distance,
+                            .operands = {0, 1, 2},
+                            .number = 7,
+                            .name = "no_fly_zone",
+                            .component = 1});
   all.results.push_back({.operation = 4, .lower = 0.5});
   all.times = {1, 2};
   Plan plan = with(all);
