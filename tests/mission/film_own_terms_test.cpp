@@ -118,8 +118,9 @@ TEST_F(FilmOwnTerms, ParametersOfPluginsAreOptions) {
 
 TEST_F(FilmOwnTerms, ASpeedTimesTheKeyframes) {
   const MissionResult result = flown(
-      "return require('mission.film').shot { speed = 4, speed_limit = 4.5, keyframes = { { "
-      "position = {0, 0, 3} }, { position = {40, 0, 3} }, { position = {60, 0, 3}, speed = 2 } } }");
+      "return require('mission.film').shot { speed = 4, speed_limit = 4.5, keyframes = { "
+      "{ position = {0, 0, 3} }, { position = {40, 0, 3} }, "
+      "{ position = {60, 0, 3}, speed = 2 } } }");
   const auto& samples = result.plan.trajectory.samples;
   int cruising = 0;
   for (const Sample& s : samples)
@@ -150,9 +151,9 @@ TEST_F(FilmOwnTerms, ASpeedLimitThatTheTimesBreakIsNamed) {
 }
 
 TEST_F(FilmOwnTerms, BystandersAreKeptAwayFrom) {
-  const MissionResult result = flown(shot(
-      "keep_away = { { name = 'couple', position = {4, 0.5, 3}, distance = 3 }, { track = "
-      "function(t) return {8 - t / 2, 8, 3} end, distance = 2 } }"));
+  const MissionResult result = flown(
+      shot("keep_away = { { name = 'couple', position = {4, 0.5, 3}, distance = 3 }, { track = "
+           "function(t) return {8 - t / 2, 8, 3} end, distance = 2 } }"));
   const Certificate certificate = verify(result.plan);
   EXPECT_TRUE(certificate.feasible());
   const Check* check = find(certificate, "subject_distance");
