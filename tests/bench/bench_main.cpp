@@ -135,7 +135,7 @@ bool maps_hold(const Medians& medians) {
          map_ratio(medians, "map_cast_street/brick", "map_cast_street/octomap", 10) &
          map_ratio(medians, "map_cast_street/brick", "map_castRay_street", 10) &
          map_ratio(medians, "map_cast_room/brick", "map_castRay_room", 5) &
-         at_most(medians, "map_view", 1, 25, true) &
+         at_most(medians, "map_view", 1, 35, true) &
          at_most(medians, "map_sweep/brick_10000", 1, 200, false);
 }
 

@@ -54,7 +54,7 @@ TEST(Gallery, IsFlownThroughAroundItsBends) {
                             {Eigen::Vector3d(-2, -6, 0.6), Eigen::Vector3d(56, 20, 2.2)}};
   const Registry registry({fs::path(LAPWING_BUILD_DIR) / "lib/plugins"});
   Value parameters = Value::map();
-  parameters.set("iterations", 20000);
+  parameters.set("iterations", 4000);
   const auto planner = registry.create<PathPlanner>("rrt_star", parameters);
   for (const std::uint64_t seed : {1, 2}) {
     const PathResult result = planner->plan(problem, {.seed = seed});

@@ -14,27 +14,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kFolder = fs::path(LAPWING_SOURCE_DIR) / "tests/data/orienteering";
+const fs::path kShippedInstances = fs::path(LAPWING_SOURCE_DIR) / "tests/data/orienteering";
 
 struct ShippedInstance {
   fs::path file;
   double optimum = 0;
 };
 
-std::vector<ShippedInstance> known_instances() {
-  std::vector<ShippedInstance> known{{kFolder / "meadow13.txt", 90}};
-  std::istringstream lines(read_file(kFolder / "best_known.csv"));
+std::vector<ShippedInstance> shipped_instances() {
+  std::vector<ShippedInstance> known{{kShippedInstances / "meadow13.txt", 90}};
+  std::istringstream lines(read_file(kShippedInstances / "best_known.csv"));
   std::string line;
   std::getline(lines, line);  // instance,nodes,distance,cost_limit,optimum
   while (std::getline(lines, line))
-    known.push_back({kFolder / "oplib" / (line.substr(0, line.find(',')) + ".oplib"),
+    known.push_back({kShippedInstances / "oplib" / (line.substr(0, line.find(',')) + ".oplib"),
                      std::stod(line.substr(line.rfind(',') + 1))});
   return known;
 }
 
 // Rounded, geographic and stated distances, and the plain format's exact ones.
 TEST(ShippedInstances, AreSolvedToTheirOptima) {
-  const std::vector<ShippedInstance> instances = known_instances();
+  const std::vector<ShippedInstance> instances = shipped_instances();
   ASSERT_EQ(instances.size(), 4u);
   for (const ShippedInstance& known : instances) {
     SCOPED_TRACE(known.file.filename());
