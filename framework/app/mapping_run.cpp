@@ -55,7 +55,8 @@ void print_summary(const MappingOutcome& outcome, const std::string& status) {
                 1e3 * mapping.seconds / static_cast<double>(mapping.scans));
   if (counts.free + counts.occupied == 0)
     std::printf("  nothing was measured often enough to be free or occupied\n");
-  std::printf("  report: %s\n", visible_line((outcome.target.folder() / "report.html").string()).c_str());
+  std::printf("  report: %s\n",
+              visible_line((outcome.target.folder() / "report.html").string()).c_str());
   if (const std::string old = outcome.target.old_run_in_words(); !old.empty())
     std::printf("  %s\n", visible_line(old).c_str());
 }
