@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "framework/core/json.h"
 #include "tests/app/program_fixture.h"
 #include "tests/guide.h"
 
@@ -149,6 +150,8 @@ TEST_F(Snippets, OfEveryReadmeHold) {
         ++run, yaml(snippet.text);
       } else if (snippet.language == "sh") {
         ++run, shell(snippet.text);
+      } else if (snippet.language == "json") {
+        EXPECT_NO_THROW(from_json(snippet.text, where_)) << where_;
       } else {
         EXPECT_EQ(snippet.language, "") << where_ << ": mark it as an excerpt";
       }
