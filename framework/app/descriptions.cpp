@@ -1,3 +1,4 @@
+#include "framework/app/output_target.h"
 #include "framework/app/descriptions.h"
 
 #include <cstdio>
@@ -19,10 +20,12 @@ ScriptInterface interface_of_scripts() {
 }
 
 ExitStatus write_description(const std::filesystem::path& target, const std::string& text) {
-  if (target.empty())
+  if (target.empty()) {
     std::printf("%s", text.c_str());
-  else
+  } else {
+    require_output(target);
     write_file_atomically(target, text);
+  }
   return ExitStatus::done;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "framework/app/output_target.h"
 #include "framework/app/plan_comparison.h"
 #include "framework/app/text_table.h"
 #include "framework/core/files.h"
@@ -213,7 +214,7 @@ Report page_of(const PlanComparison& compared) {
 }  // namespace
 
 ExitStatus diff_plans(const PlanDifference& asked, const Invocation& invocation) {
-  if (!asked.page.empty()) require_writable(asked.page);
+  if (!asked.page.empty()) require_output(asked.page, {asked.first, asked.second});
   const PlanComparison compared = compare_plans(asked.first, asked.second);
   for (const ComparedPlan* one : {&compared.first, &compared.second})
     if (one->plan.trajectory.samples.empty())

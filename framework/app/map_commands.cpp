@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "framework/app/command_line.h"
+#include "framework/app/output_target.h"
 #include "framework/core/files.h"
 #include "framework/core/visible_text.h"
 #include "framework/export/map_report.h"
@@ -85,6 +86,7 @@ ExitStatus show_map(const fs::path& file, const Invocation& invocation) {
 }
 
 ExitStatus convert_map(const fs::path& file, const fs::path& target, const Invocation& invocation) {
+  require_output(target, {file});
   const Registry registry = invocation.registry();
   write_map_file(target, *loaded(file, registry));
   if (!invocation.quiet) std::printf("%s\n", target.c_str());
@@ -92,6 +94,7 @@ ExitStatus convert_map(const fs::path& file, const fs::path& target, const Invoc
 }
 
 ExitStatus view_map(const fs::path& file, const fs::path& target, const Invocation& invocation) {
+  require_output(target, {file});
   const Registry registry = invocation.registry();
   const std::unique_ptr<Map> map = loaded(file, registry);
   write_file_atomically(target, render_html(map_report({.title = file.filename().string(),

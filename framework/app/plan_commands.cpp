@@ -4,6 +4,7 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/mission_loading.h"
+#include "framework/app/output_target.h"
 #include "framework/app/provenance.h"
 #include "framework/app/terminal.h"
 #include "framework/config/annotated.h"
@@ -74,6 +75,7 @@ ExitStatus verify_plan(const std::filesystem::path& file, const Judges& judges,
 ExitStatus export_plan(const std::filesystem::path& file, const std::string& format,
                        const std::filesystem::path& target, bool uncertified,
                        const Invocation& invocation) {
+  require_output(target, {file});
   const Registry registry = invocation.registry();
   const auto exporter = registry.create<Exporter>(format);
   const JudgedPlan judged = judge_file(file);

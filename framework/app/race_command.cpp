@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "framework/app/command_line.h"
+#include "framework/app/output_target.h"
 #include "framework/app/provenance.h"
 #include "framework/core/files.h"
 #include "framework/core/visible_text.h"
@@ -63,6 +64,7 @@ ExitStatus race_plan(const std::filesystem::path& file, const std::vector<std::s
   if (pilots.empty()) throw InputError("race: name at least one pilot: --pilot LOG");
   if (!(rules.deviation_price >= 0 && rules.gate_price >= 0))
     throw InputError("race: prices must be at least 0 s");
+  if (!target.empty()) require_output(target, {file});
   const Plan plan = read_plan_file(file);
   const Certificate certificate = verify(plan, file.parent_path());
   if (const Check* document = certificate.find("document"); !document->pass)

@@ -1,6 +1,7 @@
 // lapwing scene view: a mesh file, or a scene that a Lua script makes.
 #include "framework/app/command_line.h"
 #include "framework/app/exploration_worlds.h"
+#include "framework/app/output_target.h"
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
 #include "framework/export/scene_report.h"
@@ -41,6 +42,7 @@ void require_an_ending(const fs::path& file) {
 
 ExitStatus view_scene(const fs::path& file, const SceneStatement& stated, const fs::path& target,
                       const Invocation& invocation) {
+  require_output(target, {file});
   SceneReport shown;
   shown.threads = std::max(1, invocation.threads);
   const fs::path script = script_of(file);

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "framework/app/command_line.h"
+#include "framework/app/output_target.h"
 #include "framework/app/provenance.h"
 #include "framework/app/terminal.h"
 #include "framework/core/files.h"
@@ -68,6 +69,7 @@ void require_a_sound_plan(const Plan& plan, const std::filesystem::path& folder)
 
 ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditions& conditions,
                          const std::filesystem::path& target, const Invocation& invocation) {
+  if (!target.empty()) require_output(target, {file});
   const Plan plan = read_plan_file(file);
   require_a_sound_plan(plan, file.parent_path());
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);

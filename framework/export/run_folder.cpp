@@ -39,8 +39,7 @@ std::vector<std::string> run_files_in(const fs::path& folder) {
   for (fs::directory_iterator item(folder, code); !code && item != fs::directory_iterator();
        item.increment(code)) {
     const std::string name = item->path().filename().string();
-    if (names_obstacle(name) || std::count(std::begin(kRunFiles), std::end(kRunFiles), name))
-      found.push_back(name);
+    if (names_run_file(name)) found.push_back(name);
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -109,6 +108,10 @@ fs::path write_beside_old(const fs::path& given, const RunFiles& files) {
 }
 
 }  // namespace
+
+bool names_run_file(const std::string& name) {
+  return names_obstacle(name) || std::count(std::begin(kRunFiles), std::end(kRunFiles), name) > 0;
+}
 
 std::string run_folder_name(std::string_view mission) {
   std::string name;

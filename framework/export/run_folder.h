@@ -32,6 +32,9 @@ struct RunFiles {
   std::vector<std::pair<std::string, std::string>> obstacles = {};
 };
 
+// Whether runs give files of theirs this name: plan.json, obstacle_1.ply, ...
+bool names_run_file(const std::string& name);
+
 // The mission whose run a folder holds, as its run.log says; none where it holds no run.
 std::optional<std::string> mission_in(const std::filesystem::path& folder);
 
