@@ -42,8 +42,8 @@ TEST_F(OutputTarget, IsNoInputScriptPlanOrPartOfARun) {
         "belongs to the run in 'out/hop'");
   keeps("out/hop/report.html", {"diff", "plan.json", "other.json", "-o", "out/hop/report.html"},
         "belongs to the run in 'out/hop'");
-  keeps("out/hop/trajectory.csv",
-        {"race", "plan.json", "--pilot", "a.csv", "-o", "out/hop/trajectory.csv"},
+  keeps("out/hop/report.html",
+        {"race", "plan.json", "--pilot", "a.csv", "-o", "out/hop/report.html"},
         "belongs to the run in 'out/hop'");
 }
 
