@@ -13,6 +13,7 @@
 #include "framework/config/lookup.h"
 #include "framework/config/shipped.h"
 #include "framework/core/checksum.h"
+#include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/visible_text.h"
@@ -96,13 +97,17 @@ void require_same(const fs::path& file, const Value& now) {
                      "); leave --resume out to begin anew");
 }
 
-// Of an earlier sweep into the same folder: its runs, and nothing else.
+constexpr const char* kTable = "table.csv";
+constexpr const char* kReport = "report.html";
+
+// Of an earlier sweep into the same folder: its runs, its table and its report, and nothing else.
 void remove_old_runs(const fs::path& out) {
   static const std::regex name("run_[0-9]{3,4}");
   std::error_code code;
   std::vector<fs::path> old;
   for (const auto& item : fs::directory_iterator(out, code))
     if (std::regex_match(item.path().filename().string(), name)) old.push_back(item.path());
+  old.insert(old.end(), {out / kTable, out / kReport});
   for (const fs::path& folder : old) fs::remove_all(folder);
 }
 
@@ -162,10 +167,10 @@ void keep_finished(std::vector<SweepRun>& runs) {
   }
 }
 
+// Of a folder that this process has claimed.
 void begin(const Sweep& asked, const Invocation& invocation, const fs::path& out,
            std::vector<SweepRun>& runs) {
   const fs::path file = out / "sweep.json";
-  require_writable(file);
   const Value statement = statement_of(asked, invocation);
   if (asked.resume) {
     require_same(file, statement);
@@ -194,6 +199,8 @@ ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
   std::vector<SweepRun> runs = combinations(keys, out);
   require_one_that_loads(asked, invocation, keys, runs);
   const Interruption interruption;
+  require_writable(out / "sweep.json");
+  const FolderClaim claim(out);  // two sweeps in one folder would remove each other's runs
   begin(asked, invocation, out, runs);
   ProgressLine progress("sweep", std::cerr, progress_style_of_stderr(invocation.quiet),
                         columns_of_stderr(), &steady_seconds);
@@ -201,14 +208,14 @@ ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
       runs, asked.jobs, [&](const SweepRun& run) { return words_of(run, keys, asked, invocation); },
       interruption.token(), progress);
   progress.clear();
-  write_file_atomically(out / "table.csv", sweep_csv(keys, runs));
-  write_file_atomically(out / "report.html", sweep_page(asked.script.string(), keys, runs));
+  write_files_together(out, {{{kTable, sweep_csv(keys, runs)},
+                              {kReport, sweep_page(asked.script.string(), keys, runs)}}});
   if (invocation.json)
     print_json(sweep_value(keys, runs));
   else if (!invocation.quiet)
     std::cout << sweep_text(keys, runs, columns_of_stdout())
-              << "\ntable: " << visible_line((out / "table.csv").string())
-              << "\nreport: " << visible_line((out / "report.html").string()) << std::endl;
+              << "\ntable: " << visible_line((out / kTable).string())
+              << "\nreport: " << visible_line((out / kReport).string()) << std::endl;
   int worst = 0;
   for (const SweepRun& run : runs) {
     if (!run.exit) {

@@ -123,6 +123,37 @@ TEST_F(Sweeping, EndsItsRunsWhenItIsEnded) {
   }
 }
 
+// The second would remove the runs of the first.
+TEST_F(Sweeping, TwoIntoOneFolderDoNotMix) {
+  write("shot.lua", kLong);
+  const pid_t child = start({"sweep", "shot.lua", "--vary", "step=0.2,0.1", "--jobs", "1"});
+  ASSERT_TRUE(appears(folder_ / "out/sweep/run_001/exit.txt"));
+  ASSERT_TRUE(appears(folder_ / "out/sweep/run_002/answer.json"));
+  const std::string statement = read_file(folder_ / "out/sweep/sweep.json");
+  for (const char* resume : {"", "--resume"}) {
+    // Its output goes elsewhere than that of the first.
+    const std::string command = "cd '" + folder_.string() +
+                                "' && " LAPWING_BUILD_DIR
+                                "/bin/lapwing sweep shot.lua --vary step=0.2 " +
+                                resume + " > second.txt 2>&1";
+    const int status = std::system(command.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 2) << resume;
+    const std::string said = read_file(folder_ / "second.txt");
+    EXPECT_NE(said.find("another process is writing into 'out/sweep'"), said.npos) << said;
+  }
+  EXPECT_EQ(read_file(folder_ / "out/sweep/sweep.json"), statement);
+  EXPECT_TRUE(fs::exists(folder_ / "out/sweep/run_001/plan.json"));
+  EXPECT_EQ(processes_of_runs(), 1);
+  ::kill(child, SIGINT);
+  const Finished finished = finish(child);
+  EXPECT_EQ(finished.status, 130) << finished.err;
+  EXPECT_NE(finished.out.find("run_001  0.2  certified"), std::string::npos) << finished.out;
+  // Nobody has it any more.
+  const Finished next = run({"sweep", "shot.lua", "--vary", "step=0.2"});
+  EXPECT_EQ(next.status, 0) << next.err;
+  EXPECT_FALSE(fs::exists(folder_ / "out/sweep/run_002"));
+}
+
 TEST_F(Sweeping, KilledItLeavesNoRunBehind) {
   write("shot.lua", kLong);
   const pid_t child = start({"sweep", "shot.lua", "--vary", "step=0.1,0.15"});
