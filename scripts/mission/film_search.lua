@@ -20,7 +20,8 @@ local function attempt(run, shot, stretch, only)
   run:phase(stretch == 1 and "film" or string.format("film %.4g times as long", stretch))
   local stated, task, camera = problem.state(run, shot, stretch, only)
   local cuts = camera and camera.cuts or {}
-  local result = { stretch = stretch, task = task, camera = camera, cuts = cuts }
+  local result = { stretch = stretch, task = task, camera = camera, cuts = cuts,
+                   keyframes = shot.keyframes }
   result.solution = run:solve(stated, run.options.solver)
   result.verdict = run:certify(run:plan { solution = result.solution, task = task, cuts = cuts })
   return result
@@ -58,11 +59,15 @@ local function broken_constraints(verdict)
   return list, alone
 end
 
--- Whether the script's own constraints are what is in the way of a film, in words: the same film
--- flown without holding them.
+-- Whether the script's own constraints are what is in the way of a film, in words: the same film,
+-- at the same times, flown without holding them.
 local function in_the_way(run, shot, failing)
   if #run.options.constraints == 0 or run:cancelled() then return nil end
+  local keyframes, legs = shot.keyframes, shot.legs
+  shot.keyframes = failing.keyframes
+  if shot.passages then shot.legs = nil end  -- the first passage again: it may have been right
   local free = attempt(run, shot, failing.stretch, "unconstrained")
+  shot.keyframes, shot.legs = keyframes, legs
   local list, alone = broken_constraints(free.verdict)
   if not alone or free.solution.status == "infeasible" then
     local worst = failing.solution.violations[1]
@@ -80,6 +85,13 @@ local function in_the_way(run, shot, failing)
     names[i] = '"' .. (entry.name or entry.type) .. '"'
   end
   return "certified without the constraints of the script, " .. table.concat(names, ", ")
+end
+
+-- Sentences on a film that came to nothing, with the script's constraint that is in the way first.
+local function with_constraint(run, shot, failing, notes)
+  local constraint = in_the_way(run, shot, failing)
+  if constraint then table.insert(notes, 1, constraint) end
+  return notes
 end
 
 -- Certified, and not only because the least violation hides in the verifier's tolerance.
@@ -155,7 +167,9 @@ local function at_given_times(run, shot)
     first, notes = passages.search(run, shot, first, attempt, holds)
     if holds(first) then return finished(run, shot, first, {}, first.stretch, nil, notes) end
   end
-  if not why and blocked(first) then return finished(run, shot, first, notes) end
+  if not why and blocked(first) then
+    return finished(run, shot, first, with_constraint(run, shot, first, notes))
+  end
   local hopeless = not why and out_of_sight(first)
   local constraint = not why and in_the_way(run, shot, first)
   -- More time mends a constraint on speed, and none on places: one try tells.
@@ -188,6 +202,7 @@ function M.fly(run, shot)
   if o.timing == "given" or o.timing == "time_first" then return at_given_times(run, shot) end
   local way = o.timing == "free" and wished or timing
   local chosen, notes, figures = way.fly(run, shot, attempt, holds)
+  if not holds(chosen) then notes = with_constraint(run, shot, chosen, notes) end
   return finished(run, shot, chosen, notes, holds(chosen) and 1 or nil, figures)
 end
 

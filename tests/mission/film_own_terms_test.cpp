@@ -70,6 +70,42 @@ TEST_F(FilmOwnTerms, AnImpossibleConstraintIsNamed) {
   EXPECT_NE(hard.notes[0].find("west of the road"), std::string::npos) << hard.notes[0];
 }
 
+TEST_F(FilmOwnTerms, AnImpossibleConstraintIsNamedForEveryWayOfTiming) {
+  for (const std::string timing : {"given", "time_first", "path_first", "free"})
+    for (const char* last : {"time = 10", "yaw_deg = 0"}) {
+      const std::string text =
+          shot("timing = '" + timing +
+                   "', constraints = { { name = 'west of the road', upper = 4, value = function(s) "
+                   "return s.position.x end } }",
+               last);
+      const MissionResult result = flown(text);
+      EXPECT_FALSE(verify(result.plan).feasible()) << timing;
+      ASSERT_FALSE(result.notes.empty()) << timing;
+      EXPECT_NE(result.notes[0].find(std::string(kWest) + " 8 exceeds 4 at"), std::string::npos)
+          << timing << ": " << result.notes[0];
+      // A constraint that a wider bound satisfies is no reason for anything.
+      const MissionResult held = flown(
+          shot("timing = '" + timing +
+                   "', constraints = { { name = 'west of the road', upper = 9, value = function(s) "
+                   "return s.position.x end } }",
+               last));
+      EXPECT_TRUE(verify(held.plan).feasible()) << timing;
+      EXPECT_TRUE(held.notes.empty()) << timing << ": " << held.notes[0];
+    }
+}
+
+// What shuts the flight in between the constraint and an obstacle is the constraint.
+TEST_F(FilmOwnTerms, AConstraintThatPushesIntoAnObstacleIsNamed) {
+  const MissionResult result = flown(
+      "return require('mission.film').shot { keyframes = { { time = 0, position = {0, 0, 2} }, "
+      "{ time = 10, position = {8, 0, 2} } }, margin = 0.3, obstacles = { { type = 'box', lower = "
+      "{3, -1, 0}, upper = {5, 30, 30} } }, constraints = { { name = 'north', lower = -1.1, value "
+      "= function(s) return s.position.y end } } }");
+  EXPECT_FALSE(verify(result.plan).feasible());
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes[0].find("constraint \"north\""), std::string::npos) << result.notes[0];
+}
+
 TEST_F(FilmOwnTerms, OneThatIsReportedOrNotHeldIsJudged) {
   const MissionResult reported = flown(west("upper = 4, held = false, certificate = 'reported'"));
   const Certificate certificate = verify(reported.plan);
@@ -184,8 +220,9 @@ TEST_F(FilmOwnTerms, AnOrbitIsEven) {
       if (s.time < ramp || s.time > 40 - ramp) continue;
       const double turned = (p.x() * v.y() - p.y() * v.x()) / p.head<2>().squaredNorm();
       EXPECT_NEAR(turned, rate, 0.02 * rate) << s.time;
-      if (s.time > 2 * ramp && s.time < 40 - 2 * ramp)
+      if (s.time > 2 * ramp && s.time < 40 - 2 * ramp) {
         EXPECT_NEAR(turned, rate, 0.005 * rate) << s.time;
+      }
     }
   }
 }
