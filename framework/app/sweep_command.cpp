@@ -167,6 +167,29 @@ void keep_finished(std::vector<SweepRun>& runs) {
   }
 }
 
+// A folder that a new sweep may use: InputError where it holds files of a sweep's names that no
+// sweep wrote, or, unless it was named by --out, the sweep of another script.
+void require_sweep_folder(const Sweep& asked, const Invocation& invocation, const fs::path& out,
+                          const std::vector<SweepRun>& runs) {
+  const fs::path file = out / "sweep.json";
+  std::error_code code;
+  if (fs::exists(file, code)) {
+    const Value before = from_json(read_file(file), file.string());
+    const Value* script = before.find("script");
+    if (invocation.out.empty() && script && script->is_text() &&
+        script->as_text() != asked.script.string())
+      throw InputError("'" + out.string() + "' holds the sweep of '" + script->as_text() +
+                       "'; give another folder with -o, or -o " + out.string() + " to replace it");
+    return;
+  }
+  std::vector<fs::path> names{out / kTable, out / kReport, out / "plan.json"};
+  for (const SweepRun& run : runs) names.push_back(run.folder);
+  for (const fs::path& name : names)
+    if (fs::exists(name, code))
+      throw InputError("'" + out.string() + "' holds '" + name.filename().string() +
+                       "', which no sweep wrote; give another folder with -o");
+}
+
 // Of a folder that this process has claimed.
 void begin(const Sweep& asked, const Invocation& invocation, const fs::path& out,
            std::vector<SweepRun>& runs) {
@@ -177,6 +200,7 @@ void begin(const Sweep& asked, const Invocation& invocation, const fs::path& out
     keep_finished(runs);
     return;
   }
+  require_sweep_folder(asked, invocation, out, runs);
   std::error_code code;
   if (fs::exists(file, code)) {
     if (!invocation.quiet)
@@ -216,6 +240,8 @@ ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
     std::cout << sweep_text(keys, runs, columns_of_stdout())
               << "\ntable: " << visible_line((out / kTable).string())
               << "\nreport: " << visible_line((out / kReport).string()) << std::endl;
+  if (interruption.token().cancelled())
+    std::cerr << "lapwing: interrupted; the same line with --resume does what is missing\n";
   int worst = 0;
   for (const SweepRun& run : runs) {
     if (!run.exit) {

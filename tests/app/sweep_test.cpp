@@ -147,7 +147,7 @@ TEST_F(Sweeping, TwoIntoOneFolderDoNotMix) {
   ::kill(child, SIGINT);
   const Finished finished = finish(child);
   EXPECT_EQ(finished.status, 130) << finished.err;
-  EXPECT_NE(finished.out.find("run_001  0.2  certified"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("run_001  0.2   certified"), std::string::npos) << finished.out;
   // Nobody has it any more.
   const Finished next = run({"sweep", "shot.lua", "--vary", "step=0.2"});
   EXPECT_EQ(next.status, 0) << next.err;
@@ -222,6 +222,26 @@ TEST_F(Sweeping, ItsOwnModulesCount) {
   const Finished finished = run({"sweep", "shot.lua", "--vary", "step=0.1", "--resume"});
   EXPECT_EQ(finished.status, 2);
   EXPECT_NE(finished.err.find("scripts_sha256"), std::string::npos) << finished.err;
+}
+
+// What no sweep wrote, and in the folder that nobody named the sweep of another script.
+TEST_F(Sweeping, ReplacesNothingElse) {
+  write("shot.lua", film("name = 'hop',"));
+  write("other.lua", film("name = 'other',"));
+  ASSERT_EQ(run({"run", "shot.lua", "-o", "mine"}).status, 0);
+  const std::string page = read_file(folder_ / "mine/report.html");
+  Finished finished = run({"sweep", "shot.lua", "--vary", "duration=4", "-o", "mine"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("which no sweep wrote"), std::string::npos) << finished.err;
+  EXPECT_EQ(read_file(folder_ / "mine/report.html"), page);
+  EXPECT_FALSE(fs::exists(folder_ / "mine/sweep.json"));
+  ASSERT_EQ(run({"sweep", "shot.lua", "--vary", "duration=4"}).status, 0);
+  const std::string table = read_file(folder_ / "out/sweep/table.csv");
+  finished = run({"sweep", "other.lua", "--vary", "duration=4"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("holds the sweep of 'shot.lua'"), std::string::npos) << finished.err;
+  EXPECT_EQ(read_file(folder_ / "out/sweep/table.csv"), table);
+  EXPECT_EQ(run({"sweep", "other.lua", "--vary", "duration=4", "-o", "out/sweep"}).status, 0);
 }
 
 }  // namespace
