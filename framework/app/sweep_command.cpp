@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <regex>
 #include <set>
 
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
+#include "framework/app/sweep_inputs.h"
 #include "framework/app/sweep_tables.h"
 #include "framework/app/text_table.h"
 #include "framework/config/lookup.h"
@@ -56,7 +58,20 @@ Value list_of(const Texts& texts) {
   return list;
 }
 
-// All that the runs are made of.
+// Of the libraries that a run may load, by kind and name.
+Value plugin_checksums(const Registry& registry) {
+  std::map<fs::path, std::string> sums;
+  Value value = Value::map();
+  for (const PluginEntry& entry : registry.entries()) {
+    std::string& sum = sums[entry.library];
+    if (sum.empty()) sum = sha256(read_file(entry.library));
+    value.set(entry.kind + " " + entry.name, sum);
+  }
+  return value;
+}
+
+// All that the runs are made of but the files that they read as they go: those are in
+// app/sweep_inputs.h.
 Value statement_of(const Sweep& asked, const Invocation& invocation) {
   Value value = Value::map();
   value.set("sweep", 1);
@@ -77,6 +92,7 @@ Value statement_of(const Sweep& asked, const Invocation& invocation) {
   value.set("vary", list_of(asked.varied));
   value.set("data", list_of(invocation.data));
   value.set("plugin_path", list_of(invocation.plugin_path));
+  value.set("plugins_sha256", plugin_checksums(invocation.registry()));
   value.set("seed", static_cast<std::int64_t>(invocation.seed));
   return value;
 }
@@ -157,13 +173,24 @@ void require_one_that_loads(const Sweep& asked, const Invocation& invocation,
   throw InputError(blaming_vary(first_error, keys));
 }
 
-// A run that a defect ended, or that was interrupted, is done again.
+// A run that a defect ended or that was interrupted is done again, and so is one of which it is not
+// known what it read: it failed before there was a plan. InputError where a kept run read what has
+// changed since; nothing is removed then.
 void keep_finished(std::vector<SweepRun>& runs) {
+  std::vector<SweepRun*> again;
   for (SweepRun& run : runs) {
     read_results(run);
-    if (run.exit && *run.exit < static_cast<int>(ExitStatus::defect)) continue;
-    fs::remove_all(run.folder);  // whatever of it is there, it begins anew
-    run = SweepRun{run.name, run.values, run.folder, {}, {}, {}, {}, {}};
+    const bool ended = run.exit && *run.exit < static_cast<int>(ExitStatus::defect);
+    if (!ended || !has_inputs(run.folder)) {
+      again.push_back(&run);
+    } else if (const std::string changed = changed_input(run.folder); !changed.empty()) {
+      throw InputError("--resume: '" + changed + "', which " + run.name +
+                       " read, has changed since; leave --resume out to begin anew");
+    }
+  }
+  for (SweepRun* run : again) {
+    fs::remove_all(run->folder);  // whatever of it is there, it begins anew
+    *run = SweepRun{run->name, run->values, run->folder, {}, {}, {}, {}, {}};
   }
 }
 

@@ -16,6 +16,7 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/progress_line.h"
+#include "framework/app/sweep_inputs.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 
@@ -62,6 +63,7 @@ pid_t start_run(const SweepRun& run, std::vector<std::string> words) {
 // A run that a signal ended has no result: it is done again.
 void finish_run(SweepRun& run, int status) {
   if (!WIFEXITED(status)) return;
+  keep_inputs(run.folder);
   write_file_atomically(run.folder / kExit, std::to_string(WEXITSTATUS(status)) + "\n");
   read_results(run);
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "framework/config/read_note.h"
+#include "framework/config/shipped.h"
 #include "framework/config/yaml.h"
 #include "framework/core/parameters.h"
 
@@ -101,6 +103,7 @@ fs::path find_config(const std::string& name, const ConfigSearch& search, const 
 
 Value read_config(const std::string& name, const ConfigSearch& search, const Origin& origin) {
   const fs::path file = find_config(name, search, origin);
+  if (!lies_within(file, shipped_folder("configs"))) note_read(file);
   Value value = read_yaml(file);
   if (!value.is_map()) {
     throw InputError(value.origin(), "expected keys and values, got " + value.describe_type());

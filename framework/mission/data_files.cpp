@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "framework/config/read_note.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 
@@ -29,12 +30,17 @@ void DataFiles::allow(const fs::path& file) {
   if (!error) allowed_.push_back(canonical);
 }
 
+// Whoever finds a file reads it.
 fs::path DataFiles::find(const std::string& name, const std::string& inside) const {
-  return find_entry(name, inside, false);
+  const fs::path file = find_entry(name, inside, false);
+  note_read(file);
+  return file;
 }
 
 fs::path DataFiles::find_folder(const std::string& name) const {
-  return find_entry(name, "", true);
+  const fs::path folder = find_entry(name, "", true);
+  note_read(folder);
+  return folder;
 }
 
 fs::path DataFiles::find_entry(const std::string& name, const std::string& inside,

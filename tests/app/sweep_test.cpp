@@ -244,5 +244,83 @@ TEST_F(Sweeping, ReplacesNothingElse) {
   EXPECT_EQ(run({"sweep", "other.lua", "--vary", "duration=4", "-o", "out/sweep"}).status, 0);
 }
 
+// Neither the names of data files nor their folders tell that one has changed.
+TEST_F(Sweeping, FilesThatRunsReadCount) {
+  fs::create_directories(folder_ / "data");
+  write("data/goal.yaml", "x: 5\n");
+  write("own.yaml", read_file(fs::path(LAPWING_SOURCE_DIR) / "configs/vehicles/solo.yaml"));
+  write("shot.lua",
+        "local film = require 'mission.film'\nlocal mission = film.shot { keyframes = {\n"
+        "  { position = {0, 0, 2} }, { position = {5, 0, 3} } }, duration = 4 }\n"
+        "local plan = mission.plan\n"
+        "mission.plan = function(run) lapwing.read_yaml('goal.yaml') return plan(run) end\n"
+        "return mission\n");
+  const std::vector<std::string> typed{"sweep",        "shot.lua",         "--vary",
+                                       "step=0.1,0.2", "--data",           "data",
+                                       "--set",        "vehicle=own.yaml", "--resume"};
+  std::vector<std::string> first = typed;
+  first.pop_back();
+  ASSERT_EQ(run(first).status, 0);
+  const fs::path inputs = folder_ / "out/sweep/run_001/inputs.json";
+  const Value sums = from_json(read_file(inputs), "inputs");
+  EXPECT_EQ(sums.as_map().size(), 2u) << to_json(sums);
+  const auto kept = fs::last_write_time(folder_ / "out/sweep/run_001/plan.json");
+  EXPECT_EQ(run(typed).status, 0) << "nothing has changed";
+  EXPECT_EQ(fs::last_write_time(folder_ / "out/sweep/run_001/plan.json"), kept);
+  const auto resumed_after = [&](const std::string& file, const std::string& more) {
+    const std::string before = read_file(folder_ / file);
+    write(file, before + more);
+    fs::remove(folder_ / "out/sweep/run_002/exit.txt");
+    const Finished finished = run(typed);
+    EXPECT_EQ(finished.status, 2) << file;
+    EXPECT_NE(finished.err.find(file + "', which run_001 read, has changed since"),
+              std::string::npos)
+        << finished.err;
+    EXPECT_TRUE(fs::exists(folder_ / "out/sweep/run_002/plan.json")) << "something was removed";
+    write(file, before);
+  };
+  resumed_after("data/goal.yaml", "y: 1\n");
+  resumed_after("own.yaml", "# other\n");
+  EXPECT_EQ(run(typed).status, 0) << "all is as it was";
+}
+
+// Of a run without a plan it is not known what it read.
+TEST_F(Sweeping, RunsWithoutAPlanAreDoneAgain) {
+  fs::create_directories(folder_ / "data");
+  write("data/goal.yaml", "y: 5\n");
+  write("shot.lua",
+        "local film = require 'mission.film'\nlocal mission = film.shot { keyframes = {\n"
+        "  { position = {0, 0, 2} }, { position = {5, 0, 3} } }, duration = 4 }\n"
+        "local plan = mission.plan\n"
+        "mission.plan = function(run)\n"
+        "  if not lapwing.read_yaml('goal.yaml').x then error('no x') end return plan(run) end\n"
+        "return mission\n");
+  ASSERT_EQ(run({"sweep", "shot.lua", "--vary", "step=0.1", "--data", "data"}).status, 2);
+  write("data/goal.yaml", "x: 5\n");
+  const Finished finished =
+      run({"sweep", "shot.lua", "--vary", "step=0.1", "--data", "data", "--resume"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+}
+
+// A plugin that was built anew is another one.
+TEST_F(Sweeping, LibrariesOfPluginsCount) {
+  write("shot.lua", film("name = 'hop', duration = 4,"));
+  const std::vector<std::string> typed{"sweep", "shot.lua", "--vary", "step=0.1"};
+  ASSERT_EQ(run(typed).status, 0);
+  const fs::path file = folder_ / "out/sweep/sweep.json";
+  Value statement = from_json(read_file(file), "sweep.json");
+  const Value* sums = statement.find("plugins_sha256");
+  ASSERT_NE(sums, nullptr);
+  ASSERT_NE(sums->find("cost_term derivative"), nullptr) << to_json(*sums);
+  EXPECT_EQ(sums->at("cost_term derivative").as_text().size(), 64u);
+  statement.find("plugins_sha256")->set("cost_term derivative", std::string(64, '0'));
+  write_file_atomically(file, to_json(statement));
+  std::vector<std::string> again = typed;
+  again.push_back("--resume");
+  const Finished finished = run(again);
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("something else: plugins_sha256"), std::string::npos) << finished.err;
+}
+
 }  // namespace
 }  // namespace lapwing
