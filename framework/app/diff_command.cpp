@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
+#include <map>
 
 #include "framework/app/output_target.h"
 #include "framework/app/plan_comparison.h"
@@ -64,14 +65,34 @@ struct DifferenceTable {
   std::string more;  // what was left out
 };
 
+// "keyframes" of "keyframes[3].position"; empty for what is in no list.
+std::string list_of(const std::string& key) {
+  const std::size_t bracket = key.find('[');
+  return bracket == key.npos ? "" : key.substr(0, bracket);
+}
+
+// Single values before lists; a list in which much differs is one row.
 DifferenceTable table_of(const std::string& title, const std::vector<ValueDifference>& found) {
+  constexpr std::size_t kFew = 4;  // differences of a list that are worth a row each
   DifferenceTable table{title, {{"key", "first", "second"}}, ""};
+  Rows single, few, folded;
+  std::map<std::string, std::size_t> in_list;
+  for (const ValueDifference& one : found) ++in_list[list_of(one.key)];
   for (const ValueDifference& one : found) {
-    if (table.rows.size() > kMostDifferences) {
-      table.more = "and " + std::to_string(found.size() - kMostDifferences) + " more: see --json";
-      break;
-    }
-    table.rows.push_back({one.key, value_text(one.first), value_text(one.second)});
+    const std::string list = list_of(one.key);
+    if (list.empty() || in_list[list] <= kFew)
+      (list.empty() ? single : few)
+          .push_back({one.key, value_text(one.first), value_text(one.second)});
+  }
+  for (const auto& [list, count] : in_list)
+    if (!list.empty() && count > kFew)
+      folded.push_back({list, std::to_string(count) + " values differ", "see --json"});
+  for (const Rows* rows : {&single, &few, &folded})
+    table.rows.insert(table.rows.end(), rows->begin(), rows->end());
+  if (table.rows.size() > kMostDifferences + 1) {
+    table.more =
+        "and " + std::to_string(table.rows.size() - kMostDifferences - 1) + " more: see --json";
+    table.rows.resize(kMostDifferences + 1);
   }
   return table;
 }

@@ -1,4 +1,6 @@
 // lapwing diff: two plans beside each other.
+#include <regex>
+
 #include "framework/core/json.h"
 #include "tests/app/program_fixture.h"
 
@@ -56,6 +58,29 @@ TEST_F(Comparing, OnlyAVehicleThatWasEditedDiffers) {
   EXPECT_NE(finished.out.find("vehicle.limits.speed_across"), std::string::npos) << finished.out;
   EXPECT_NE(finished.out.find("both fly the same path"), std::string::npos) << finished.out;
   EXPECT_EQ(finished.out.find("\nOptions\n"), std::string::npos) << finished.out;
+}
+
+// Single values are not buried under those of lists.
+TEST_F(Comparing, ListsAreFolded) {
+  std::string keyframes;
+  for (int i = 0; i < 12; ++i)
+    keyframes += (i > 0 ? ", " : "") + ("{position: [" + std::to_string(i)) + ", 1, 3]}";
+  ASSERT_EQ(run({"run", "shot.lua", "-o", "b", "--set", "keyframes=[" + keyframes + "]", "--set",
+                 "finish=free"})
+                .status,
+            0);
+  ASSERT_EQ(
+      run({"run", "shot.lua", "-o", "c", "--set",
+           "keyframes=[" + std::regex_replace(keyframes, std::regex(", 1, 3"), ", 2, 4") + "]"})
+          .status,
+      0);
+  const Finished finished = run({"diff", "b", "c"});
+  const std::size_t options = finished.out.find("\nOptions\n");
+  const std::size_t single = finished.out.find("finish", options);
+  const std::size_t list = finished.out.find("12 values differ", options);
+  ASSERT_NE(list, std::string::npos) << finished.out;
+  EXPECT_LT(single, list) << finished.out;
+  EXPECT_EQ(finished.out.find("keyframes[7]"), std::string::npos) << finished.out;
 }
 
 TEST_F(Comparing, WhatIsNoPlanIsRefused) {
