@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <ostream>
 #include <string>
 
@@ -16,6 +17,16 @@ void PrintTo(const FuzzedReader& reader, std::ostream* out) {
 
 namespace {
 
+// Inputs that a reader has at least: those that it once had stay.
+int fewest_inputs(const std::string& reader) {
+  static const std::map<std::string, int> fewest{
+      {"depth_reader", 11},       {"json_value", 8}, {"map_reader", 12},   {"mesh_reader", 18},
+      {"orienteering_reader", 9}, {"override", 12},  {"plan_document", 5}, {"ply_reader", 6},
+      {"png_reader", 7},          {"quantity", 8},   {"stick_log", 8},     {"yaml_value", 12}};
+  const auto found = fewest.find(reader);
+  return found == fewest.end() ? 5 : found->second;  // a new one: 5
+}
+
 class FuzzCorpus : public testing::TestWithParam<FuzzedReader> {};
 
 TEST_P(FuzzCorpus, EveryInputIsTakenOrRefused) {
@@ -28,7 +39,7 @@ TEST_P(FuzzCorpus, EveryInputIsTakenOrRefused) {
               0);
     ++count;
   }
-  EXPECT_GE(count, 5) << "too few inputs to start from";
+  EXPECT_GE(count, fewest_inputs(GetParam().name)) << "too few inputs to start from";
 }
 
 INSTANTIATE_TEST_SUITE_P(Readers, FuzzCorpus, testing::ValuesIn(fuzzed_readers()),
