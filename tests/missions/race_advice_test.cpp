@@ -79,16 +79,41 @@ TEST_F(RaceAdvice, PlansOfRotorsAreFlownAndRaced) {
       << read_file(folder_ / "out.txt");
 }
 
+// Ctrl-C when the flight is computed: the players do not fly any more, and the flight is kept.
 TEST_F(RaceAdvice, NothingComputedIsLostToAGameThatCannotBeFlown) {
   write_file_atomically(folder_ / "still.csv", "time,forward,left\n0,0,0\n0.4,0,0\n0.8,0,0\n");
-  // nlopt leaves such a problem unsolved: what there is of a plan does not fly.
-  const Flown flown = race(turns("solver = 'nlopt', players = { { log = 'still.csv' } }"));
-  EXPECT_EQ(flown.status, 1);
-  EXPECT_TRUE(fs::exists(flown.folder / "plan.json"));
-  EXPECT_TRUE(fs::exists(flown.folder / "report.html"));
-  const Value* game = flown.result.find("game");
-  ASSERT_NE(game, nullptr) << to_json(flown.result);
-  EXPECT_TRUE(game->find("not_flown") || game->find("pilots")) << to_json(*game);
+  write_file_atomically(folder_ / "course.lua", R"(
+local mission = require 'mission.race'.course { name = 'course',
+  advise = false, closed_loop = 'reported', refinements = 0, start = {0, 0, 2}, finish = {6, 0, 2},
+  gates = { { shape = 'ball', position = {3, 3, 2}, radius = 0.5 } },
+  players = { { log = 'still.csv' } } }
+local plan = mission.plan
+mission.plan = function(run)
+  local result = plan(run)
+  print 'planned'
+  while not run:cancelled() do plan(run) end
+  return result
+end
+return mission)");
+  // Job control, so that the program in the background heeds the signal.
+  write_file_atomically(folder_ / "interrupted.sh", "set -m\ncd '" + folder_.string() + "'\n'" +
+                                                        LAPWING_BUILD_DIR + R"(/bin/lapwing' run \
+  course.lua --json --out out >stdout.json 2>stderr.txt &
+while ! grep -q planned stderr.txt && kill -0 $!; do sleep 0.1; done
+kill -INT $!
+wait $!
+)");
+  const int status =
+      std::system(("bash '" + (folder_ / "interrupted.sh").string() + "' 2> /dev/null").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 130) << read_file(folder_ / "stderr.txt");
+  const Value result = from_json(read_file(folder_ / "stdout.json"), "stdout");
+  const Value* game = result.find("game");
+  ASSERT_NE(game, nullptr) << to_json(result);
+  ASSERT_NE(game->find("not_flown"), nullptr) << to_json(*game);
+  EXPECT_THAT(game->at("not_flown").as_text(), HasSubstr("interrupted; fly them with"));
+  EXPECT_EQ(game->find("pilots"), nullptr);
+  EXPECT_GT(read_plan(folder_ / "out/plan.json").trajectory.samples.size(), 10u);
+  EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr("the players did not fly"));
 }
 
 TEST_F(RaceAdvice, AnUnreadableLogIsSaidBeforeAnythingIsComputed) {
