@@ -18,3 +18,22 @@ why_not() {
     { echo "this container allows no chroot in a name space of its own"; return; }
   return 1
 }
+
+# commands_of README HEADING: what the shell snippets of a section say to type, in order; a Lua snippet
+# becomes the file that its first line names.
+commands_of() {
+  awk -v heading="$2" '
+    !fenced && /^## / { inside = index($0, heading) == 1 }
+    /^```/ {
+      if (fenced && taking && lua) print "END_OF_SNIPPET"
+      fenced = !fenced
+      taking = fenced && inside && /^```(sh|lua)( |$)/
+      lua = /^```lua/
+      first = 1
+      next
+    }
+    !taking { next }
+    first && lua { print "cat >" $2 " <<\047END_OF_SNIPPET\047" }
+    { first = 0; ++count; print }
+    END { if (!count) { print "no snippet under \047" heading "\047" >"/dev/stderr"; exit 1 } }' "$1"
+}

@@ -3,7 +3,8 @@
 # there, as root and as a user with sudo, installs what was built and writes the plugin of
 # plugins/README.md against it. README.md beside this file says more.
 #   tests/fresh_machine/run.sh [--keep]
-# Exit status: 0 all of it works, 1 something does not, 77 it cannot run here (the reason is printed).
+# Exit status: 0 all of it works, 1 something does not or takes longer than 20 minutes, 77 it cannot
+# run here (the reason is printed). LAPWING_FRESH_SECONDS is another limit, for a slow machine.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 cd "$root"
@@ -18,7 +19,9 @@ esac
 reason=$(why_not) && { echo "fresh_machine: skipped: $reason"; exit 77; }
 
 mkdir -p build
-readonly log="$root/build/fresh_machine.log" budget=1200 most=1800  # s
+readonly log="$root/build/fresh_machine.log" most=${LAPWING_FRESH_SECONDS:-1200}  # s
+[[ "$most" =~ ^[1-9][0-9]*$ ]] ||
+  { echo "run.sh: LAPWING_FRESH_SECONDS: expected whole seconds, not '$most'" >&2; exit 2; }
 : >"$log"
 machine=$(mktemp -d "${LAPWING_FRESH_FOLDER:-/var/tmp}/lapwing_fresh.XXXXXX")
 export machine log root
@@ -38,18 +41,21 @@ began=$SECONDS
 # `unshare` heeds no TERM; whatever runs in there ends with it.
 unshare --mount --pid --fork --kill-child bash tests/fresh_machine/steps.sh &
 inner=$!
-(sleep "$most"; kill -KILL "$inner") 2>/dev/null &
+# Whoever reads our output waits for everyone who holds it: the clock holds none of it, and is ended.
+sleep "$most" </dev/null >/dev/null 2>&1 &
 watch=$!
-status=0
-wait "$inner" || status=$?
-inner=
+status=0 ended=
+wait -n -p ended "$inner" "$watch" || status=$?
 took=$((SECONDS - began))
-kill "$watch" 2>/dev/null || true
+if [ "${ended:-}" = "$watch" ]; then
+  tail -n 20 "$log" >&2
+  echo "fresh_machine: stopped after $took s: its limit is $most s; all of it is in $log" >&2
+  exit 1
+fi
+inner=
 if [ "$status" -ne 0 ]; then
   tail -n 60 "$log" >&2
-  [ "$took" -lt "$most" ] || echo "fresh_machine: stopped after $most s" >&2
   echo "fresh_machine: failed after $took s; all of it is in $log" >&2
   exit 1
 fi
-echo "fresh_machine: all of it works, in $took s"
-[ "$took" -le "$budget" ] || echo "fresh_machine: that is over its budget of $budget s" >&2
+echo "fresh_machine: all of it works, in $took s of the $most s that it may take"

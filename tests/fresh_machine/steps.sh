@@ -87,28 +87,25 @@ a_user_with_sudo() {
     as_root "apt-get purge -y -q make ninja-build libgmock-dev libgtest-dev"
 }
 
-readonly first='bash scripts/run.sh examples/filming/castle_flyover.lua'
-readonly second='bash scripts/test.sh'
+# What the READMEs say to type is taken from there, so that what is tried is what they say.
+mapfile -t typed < <(commands_of "$root/README.md" '## Two commands' | sed 's/ *# .*//')
+[ ${#typed[@]} -eq 2 ] || { echo "README.md: expected two commands, not ${#typed[@]}" >&3; exit 1; }
+readonly first=${typed[0]} second=${typed[1]}
+install=$(commands_of "$root/README.md" '## `lapwing` as a command' | grep '^cmake ')
+guide=$(commands_of "$root/plugins/README.md" '## A first cost term')
 
-# The plugin in ten minutes, against what was installed, as plugins/README.md says.
+# The plugin in ten minutes, against what was installed; then installed beside it, as the guide says
+# too, and flown with no --plugin-path.
 plugin() {
-  as_user '
-    set -e
-    cmake --install build/release --prefix ~/.local
-    export PATH=~/.local/bin:$PATH
-    mkdir ~/work && cd ~/work
-    lapwing new plugin cost_term keep_low
-    cmake -S keep_low -B keep_low/build -DCMAKE_PREFIX_PATH=~/.local
-    cmake --build keep_low/build
-    ctest --test-dir keep_low/build --output-on-failure
-    lapwing plugins check keep_low/build/lib/plugins/cost_terms/keep_low.so
-    cmake --install keep_low/build
-    lapwing plugins show keep_low
-    printf "%s\n" "local film = require \"mission.film\"" "return film.shot {" \
-      "  name = \"low\"," \
-      "  keyframes = { { position = {0, 0, 2} }, { position = {8, 0, 12} } }," \
-      "  costs = { { type = \"keep_low\", height = 6, weight = 5 } }," "}" >low.lua
-    lapwing run low.lua'
+  as_user "
+set -e
+$install
+export PATH=~/.local/bin:\$PATH CMAKE_PREFIX_PATH=~/.local
+mkdir ~/work
+cd ~/work
+$guide
+cmake --install keep_low/build
+lapwing run low.lua -o again"
 }
 
 echo "A bare Debian 12 in $machine" >&3

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Checks the sources of build/release, which must be built: scripts/check_sources.sh [--alone].
+# No source compiles longer than 15 s; with --alone, every one compiles by itself.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+readonly source_budget=15
+alone=false
+case "${1:-}" in
+  '') ;;
+  --alone) alone=true ;;
+  *) echo "check_sources.sh: unknown option '$1'; it knows --alone" >&2; exit 2 ;;
+esac
+[ -f build/release/.ninja_log ] ||
+  { echo "check_sources.sh: build/release is not built; scripts/test.sh builds it" >&2; exit 2; }
+
+# What took longer than the budget beside other work is compiled once more by itself, and its
+# processor time counts; of several sources that were joined, each by itself: two at a time, and what
+# is over the budget then, alone. .ninja_log: start, end (ms), time stamp, output, command hash.
+mapfile -t candidates < <(awk -v limit=$((source_budget * 1000)) \
+  '$4 ~ /\.c(pp|xx)\.o$/ { took[$4] = $2 - $1 } END { for (o in took) if (took[o] > limit) print o }' \
+  build/release/.ninja_log)
+# Processor seconds of a compiler's command; "does not compile" where it fails.
+compile_seconds() {
+  local TIMEFORMAT=%U seconds
+  seconds=$({ time (cd build/release && CCACHE_DISABLE=1 bash -c "$1" >/dev/null 2>&1); } 2>&1) ||
+    seconds="does not compile by itself"
+  echo "$seconds"
+}
+export -f compile_seconds
+over_budget() { awk -v s="$1" -v limit="$source_budget" 'BEGIN { exit !(s + 0 != s || s > limit) }'; }
+# An object's sources, each with the command that compiles it by itself (tab between).
+sources_of() {
+  local command joined source
+  command=$(ninja -C build/release -t commands "$1" 2>/dev/null | tail -n 1)
+  [[ "$command" == *" -c "* ]] || return 0  # a source that is gone
+  joined=${command##* -c }
+  if [[ "$joined" != *_cxx.cxx ]]; then
+    printf '%s\t%s\n' "$joined" "$command"
+    return
+  fi
+  while read -r source; do
+    printf '%s\t%s\n' "$source" "${command%% -MD *} -o /dev/null -c $source"
+  done < <(cd build/release && sed -n 's/^#include "\(.*\)"$/\1/p' "$joined")
+}
+# What a joined source takes from its neighbours is missing one day: each compiles by itself.
+if $alone; then
+  echo "Compiling every source by itself ..."
+  missing=$(ninja -C build/release -t targets all |
+    sed -n 's/^\([^:]*_cxx\.cxx\.o\):.*/\1/p' | sort -u |
+    while read -r object; do sources_of "$object"; done |
+    while IFS=$'\t' read -r source command; do
+      printf '%s\0%s -fsyntax-only\0' "$source" "$command"
+    done |
+    (cd build/release && CCACHE_DISABLE=1 xargs -0 -r -n 2 -P 2 \
+       bash -c 'bash -c "$1" >/dev/null 2>&1 || echo "  $0"'))
+  if [ -n "$missing" ]; then
+    printf 'check_sources.sh: sources that do not compile by themselves:\n%s\n' "$missing" >&2
+    exit 1
+  fi
+fi
+checks=()  # source, command
+for object in "${candidates[@]}"; do
+  while IFS=$'\t' read -r source command; do checks+=("$source" "$command"); done < <(sources_of "$object")
+done
+echo "Timing $((${#checks[@]} / 2)) sources by themselves ..."
+slow=()
+if [ ${#checks[@]} -gt 0 ]; then
+  while IFS=$'\t' read -r seconds source command; do
+    over_budget "$seconds" || continue
+    seconds=$(compile_seconds "$command")
+    over_budget "$seconds" && slow+=("$seconds  $source")
+  done < <(printf '%s\0' "${checks[@]}" | xargs -0 -n 2 -P 2 bash -c \
+             'printf "%s\t%s\t%s\n" "$(compile_seconds "$2")" "$1" "$2"' _)
+fi
+if [ ${#slow[@]} -gt 0 ]; then
+  printf 'check_sources.sh: sources that compile longer than %s s:\n' "$source_budget" >&2
+  printf '  %s\n' "${slow[@]}" >&2
+  exit 1
+fi
