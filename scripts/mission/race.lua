@@ -8,7 +8,7 @@
 -- Every leg from gate to gate has a step of its own, which is a variable. Where the steps of a
 -- leg are too coarse for the motion they stand for, it gets twice as many and is solved again.
 local courses = require "mission.race_course"
-local problem = require "mission.race_problem"
+local flights = require "mission.race_flight"
 local search = require "mission.race_search"
 
 local M = {}
@@ -68,66 +68,6 @@ local DECLARATIONS = {
     default = "ipopt", summary = "trajectory solver; iqp suits timing = profile" },
 }
 
-local NEARLY = 1e-4     -- first barrier parameter from there
-local SOFTER = 8        -- times the weight of smoothness where the controller cannot follow
-local FOLLOWED = 100    -- times that weight where it has to, to begin with
-local COARSE = 0.7      -- share of the allowed defect beyond which a leg gets twice the stages
-
-local function solved(solution)
-  return solution.status == "optimal" or solution.status == "feasible"
-end
-
-local function plan_of(run, course, solution, notes)
-  return run:plan {
-    solution = solution, notes = notes, figures = { time = solution.duration },
-    players = run.options.players, budget = run.options.time,
-    task = { gates = course.task, closed_loop_required = run.options.closed_loop == "required" },
-  }
-end
-
--- Legs on which a check fails that more stages would mend: what passes its limit between stages.
-local function failing_legs(certificate, legs)
-  local found = {}
-  for _, check in ipairs(certificate.checks) do
-    local tracking = check.name:find("closed_loop", 1, true)
-    if check.pass == false and not check.skipped and not tracking and check.at then
-      local clock = 0
-      for i, time in ipairs(legs) do
-        if check.at >= clock - 1e-6 and check.at <= clock + time + 1e-6 then found[i] = true end
-        clock = clock + time
-      end
-    end
-  end
-  return found
-end
-
--- Whether the controller cannot follow: forces then change less quickly in the next round.
-local function strays(certificate)
-  for _, check in ipairs(certificate.checks) do
-    if check.name:find("closed_loop", 1, true) and check.required and check.pass == false
-       and not check.skipped then
-      return true
-    end
-  end
-  return false
-end
-
--- Twice the stages where they are too coarse; false when that is nowhere.
-local function refine(made, solution, certificate)
-  local finer, failing = false, failing_legs(certificate, solution.legs)
-  local defects = solution.defects
-  for i, time in ipairs(solution.legs) do
-    made.durations[i] = time
-    if defects[i] > COARSE or failing[i] then
-      made.intervals[i] = 2 * made.intervals[i]
-      finer = true
-    end
-  end
-  made.total = solution.duration
-  if strays(certificate) then made.softer, finer = SOFTER * made.softer, true end
-  return finer
-end
-
 -- Gates as the certificate asks for them: on a closed course the first one ends the lap.
 local function task_of(course)
   local list = {}
@@ -137,61 +77,6 @@ local function task_of(course)
     list[#list + 1] = first
   end
   return list
-end
-
-local function check_battery(run, made, vehicle)
-  local length = 0
-  for i = 2, #made.points do
-    length = length + courses.distance(made.points[i - 1], made.points[i])
-  end
-  local speed = math.sqrt(vehicle.speed_across ^ 2
-                          + math.max(vehicle.climb_speed, vehicle.descent_speed) ^ 2)
-  if length / speed > vehicle.flight_time then
-    run:fail("vehicle", string.format(
-      "a course of %.4g m takes at least %.4g s at %.4g m/s; the battery lasts %.4g s", length,
-      length / speed, speed, vehicle.flight_time))
-  end
-end
-
--- For a problem that begins from a solution of its own on fewer stages.
-local function finishing(solver)
-  if solver.type ~= "ipopt" then return solver end
-  local copy = {}
-  for key, value in pairs(solver) do copy[key] = value end
-  copy.first_barrier = math.min(copy.first_barrier, NEARLY)
-  return copy
-end
-
--- A flight of the course as these options ask for it, refined until it is certified: the plan, the
--- last solution, and the certificate of the plan where there is a solution. `say(round)` is told
--- before each round.
-local function flight(run, course, vehicle, o, say)
-  local made = problem.legs(course, vehicle, o)
-  check_battery(run, made, vehicle)
-  made.softer = o.closed_loop == "required" and FOLLOWED or 1
-  local solution, plan, certificate
-  if o.model == "quadrotor_full" then
-    -- A point mass finds the way and the times from straight lines in a few iterations; the whole
-    -- quadrotor begins from there.
-    local point = run:solve(problem.make(run, course, vehicle, made, o, "quadrotor"), o.solver)
-    if solved(point) then
-      problem.take_times(made, point, o)
-      solution = point
-    end
-  end
-  for round = 0, o.refinements do
-    say(round)
-    local p = problem.make(run, course, vehicle, made, o, o.model, solution)
-    local finer = run:solve(p, plan and finishing(o.solver) or o.solver)
-    if plan and not solved(finer) then break end  -- the coarser one stands
-    solution = finer
-    plan = plan_of(run, course, solution)
-    if not solved(solution) then break end
-    certificate = run:certify(plan)
-    if run:cancelled() or o.timing == "profile" then break end
-    if certificate.feasible or not refine(made, solution, certificate) then break end
-  end
-  return plan, solution, certificate
 end
 
 local function check_options(run, vehicle)
@@ -212,19 +97,18 @@ local function flown(run)
   check_options(run, vehicle)
   local course = courses.read(run)
   course.task = task_of(course)
-  local plan, solution, certificate = flight(run, course, vehicle, o, function(round)
-    run:phase(round == 0 and "race" or string.format("finer race %d", round))
-  end)
-  local notes = {}
-  if not solved(solution) then
+  local made = flights.flight(run, course, vehicle, o, function(words) run:phase(words) end)
+  local solution = made.solution
+  local notes = { made.note }
+  if not flights.solved(solution) then
     notes[1] = string.format("the solver ended %s: %s", solution.status, solution.message)
-  elseif strays(certificate) and o.advise and not run:cancelled() then
+  elseif flights.strays(made.certificate) and o.advise and not run:cancelled() then
     notes = search.advice(run, vehicle, solution.duration, function(tried)
-      local _, found, judged = flight(run, course, vehicle, tried, function() end)
-      return solved(found) and judged.feasible, found.duration
+      local found = flights.flight(run, course, vehicle, tried, function() end)
+      return flights.solved(found.solution) and found.certificate.feasible, found.solution.duration
     end)
   end
-  return #notes > 0 and plan_of(run, course, solution, notes) or plan
+  return #notes > 0 and flights.plan(run, course, solution, notes) or made.plan
 end
 
 ---@param given lapwing.race.course

@@ -8,6 +8,7 @@ local ABOVE = 1.15       -- times the share that carries the vehicle: the least 
 local STEP = 0.01        -- between shares
 local CLOSE = 0.03       -- no nearer to a share that fails
 local MOST_TRIES = 5
+local SPARED = { 0.95, 0.9, 0.8 }  -- shares of the thrust asked for that are tried
 local SLOW_TURNS = 0.3   -- share of the body rates, where no share of the thrust is enough
 
 -- The share of the thrust that carries the vehicle.
@@ -35,6 +36,27 @@ local function largest(run, follows, low, high)
     if followed then good, time = share, seconds else high = share end
   end
   return good, time
+end
+
+-- Where nothing of the thrust is left for the controller, it follows only a flight whose forces
+-- change slowly, and that can take much longer than one with a little less thrust: the faster of
+-- `softened`, which is such a flight, and the first that is followed with thrust to spare.
+-- `fly(options, words)`: the flight by these options, its forces free to change more quickly.
+function M.spared(run, vehicle, o, softened, fly)
+  local before = softened.solution.duration
+  for _, part in ipairs(SPARED) do
+    local share = part * o.thrust
+    if run:cancelled() or share <= ABOVE * M.least(vehicle, o) then break end
+    local words = string.format("race at thrust = %.3g", share)
+    local made = fly(with(o, { thrust = share }), words)
+    if made.certificate and made.certificate.feasible then
+      if made.solution.duration >= before then break end
+      made.note = string.format("the plan uses %.3g of the thrust and leaves the rest to the "
+        .. "controller: with %.3g it follows nothing faster than %.3g s", share, o.thrust, before)
+      return made
+    end
+  end
+  return softened
 end
 
 local function seconds_text(o, time, before)
