@@ -1,5 +1,7 @@
 # The corpus, replayed by an ordinary test: every NAME_fuzz.cpp of this folder with the inputs in the
-# folder NAME. With clang (preset fuzz) CMakeLists.txt beside this file makes the fuzzers themselves.
+# folder NAME. With clang (preset fuzz) CMakeLists.txt beside this file makes the fuzzers themselves;
+# here it sees that they would link.
+add_subdirectory(${CMAKE_CURRENT_LIST_DIR} fuzz)
 file(GLOB fuzzers CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*_fuzz.cpp)
 set(entries "")
 set(readers "")
