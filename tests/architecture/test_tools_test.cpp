@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -64,14 +66,91 @@ std::set<std::string> packages_of(const std::string& name) {
   return found;
 }
 
-// Each library that a list of the tests asks for, with the package that holds it: the program's
-// packages are there too.
+// What a test may need by name, and the Debian package that holds it; "": every Debian has it.
+const std::map<std::string, std::string> kPackages{// find_package and pkg_check_modules
+                                                   {"Eigen3", "libeigen3-dev"},
+                                                   {"GTest", "libgtest-dev"},
+                                                   {"PkgConfig", "pkg-config"},
+                                                   {"Torch", "libtorch-dev"},
+                                                   {"benchmark", "libbenchmark-dev"},
+                                                   {"ipopt", "coinor-libipopt-dev"},
+                                                   {"lapwing", ""},
+                                                   {"lua5.4-c++", "liblua5.4-dev"},
+                                                   {"nlohmann_json", "nlohmann-json3-dev"},
+                                                   {"octomap", "liboctomap-dev"},
+                                                   {"yaml-cpp", "libyaml-cpp-dev"},
+                                                   // #include <NAME/
+                                                   {"gmock", "libgmock-dev"},
+                                                   {"gtest", "libgtest-dev"},
+                                                   {"sys", ""},
+                                                   {"torch", "libtorch-dev"},
+                                                   // tool_on_path and installed
+                                                   {"chromium", "chromium"},
+                                                   {"cmake", "cmake"},
+                                                   {"fish", "fish"},
+                                                   {"groff", "groff-base"},
+                                                   {"make", "make"},
+                                                   {"nm", "binutils"},
+                                                   {"script", ""},
+                                                   {"zsh", "zsh"}};
+
+// What a file of the tests needs, by name: of several tools the first, which Debian has.
+std::set<std::string> needs_of(const std::string& text, bool cmake) {
+  static const std::vector<std::regex> lists{
+      std::regex(R"(find_package\((\S+?)[ )])"),
+      std::regex(R"(pkg_check_modules\(\w+ (?:REQUIRED |IMPORTED_TARGET )*([^ )]+))")};
+  static const std::vector<std::regex> sources{std::regex(R"re(#include <([a-z_]+)/)re"),
+                                               std::regex(R"re(tool_on_path\(\{([^,}]*))re"),
+                                               std::regex(R"re([^_]installed\("([^"]*)"\))re")};
+  std::set<std::string> needs;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    bool any = false;  // few lines ask for something, and expressions are slow
+    for (const char* word :
+         {"find_package", "pkg_check", "#include <", "tool_on_path", "installed("})
+      any |= line.find(word) != line.npos;
+    std::smatch match;
+    for (const std::regex& pattern : cmake ? lists : sources) {
+      if (!any || !std::regex_search(line, match, pattern)) continue;
+      std::string name = match[1];
+      std::erase(name, '"');
+      needs.insert(name);
+    }
+  }
+  return needs;
+}
+
+// Whatever a test finds, includes or calls is in a package that is installed before it is built:
+// those of the benchmarks and of the learned utility have lists of their own.
 TEST(TestTools, TheListsOfPackagesHoldWhatTestsNeed) {
+  std::set<std::string> known = packages_of("lapwing_packages");
+  known.merge(packages_of("lapwing_test_packages"));
+  std::set<std::string> seen;
+  for (const auto& item : fs::recursive_directory_iterator(kRoot / "tests")) {
+    const fs::path& path = item.path();
+    const std::string name = path.lexically_relative(kRoot / "tests").string();
+    const bool cmake = path.filename() == "CMakeLists.txt" || path.extension() == ".cmake";
+    if (!cmake && path.extension() != ".cpp" && path.extension() != ".h") continue;
+    if (name.starts_with("architecture/") || name == "tool.h") continue;
+    std::set<std::string> here = known;
+    if (name.starts_with("bench/")) here.merge(packages_of("lapwing_bench_packages"));
+    if (name.starts_with("plugins/")) here.merge(packages_of("lapwing_learn_packages"));
+    for (const std::string& need : needs_of(read_file(path), cmake)) {
+      seen.insert(need);
+      const auto found = kPackages.find(need);
+      if (found == kPackages.end())
+        ADD_FAILURE() << name << " needs '" << need << "': name its Debian package here";
+      else if (!found->second.empty())
+        EXPECT_TRUE(here.contains(found->second)) << name << ": " << found->second;
+    }
+  }
+  for (const char* need : {"GTest", "octomap", "gmock", "chromium", "nm", "zsh", "groff", "make"})
+    EXPECT_TRUE(seen.contains(need)) << need << " was overlooked";
+}
+
+TEST(TestTools, WhatOnlyTestsNeedIsNotBuiltWith) {
   const std::set<std::string> build = packages_of("lapwing_packages");
-  const std::set<std::string> test = packages_of("lapwing_test_packages");
   EXPECT_TRUE(build.contains("make")) << "the guide of plugins types `cmake -B build`";
-  for (const char* package : {"libgtest-dev", "libgmock-dev", "chromium", "binutils"})
-    EXPECT_TRUE(test.contains(package)) << package;
   for (const char* package : {"libgtest-dev", "libgmock-dev", "chromium", "libbenchmark-dev"})
     EXPECT_FALSE(build.contains(package)) << package << " is for tests";
   EXPECT_TRUE(packages_of("lapwing_fresh_packages").contains("debootstrap"));
