@@ -71,7 +71,7 @@ local function graph_of(run, known, vehicle, starts, finish)
   return run:scan_graph {
     prior = known, vehicle = vehicle, region = region,
     allowed = space.room(run, starts),
-    starts = starts, fixed = o.start ~= nil or o.exploration.images > 0, needed = finish,
+    starts = first.few(starts, finish, c.most), fixed = o.start ~= nil or o.exploration.images > 0, needed = finish,
     body = o.body, mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
@@ -167,6 +167,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     local tour, evaluations = solved(run, graph, finish, budget)
     local notes = notes_of(run, graph, known, explored)
     notes[#notes + 1] = first.warning(run)
+    notes[#notes + 1] = first.sparse(run)
     local little = little_used(run, graph, tour, budget)
     notes[#notes + 1] = little
     local legs = flown(run, vehicle, tour, notes, begin)

@@ -7,6 +7,7 @@ local space = require "mission.scan_space"
 local M = {}
 
 local warnings = setmetatable({}, { __mode = "k" })  -- of runs: what the user should know
+local sparse = setmetatable({}, { __mode = "k" })    -- likewise
 
 -- What is wrong before anything is flown.
 function M.check(run)
@@ -65,6 +66,9 @@ end
 
 -- What the user should know of the first flight, or nothing.
 function M.warning(run) return warnings[run] end
+
+-- That it has fewer images than overlap wants, or nothing.
+function M.sparse(run) return sparse[run] end
 
 -- The camera of depth images that are taken in simulation: the plan's, with fewer pixels where
 -- less effort is asked for.
@@ -126,6 +130,8 @@ function M.knowledge(run, seconds, vehicle)
   if files then known:load { map = files.map, mesh = files.mesh } end
   if surface and not (files and #o.flights == 0) then
     if not files then warnings[run] = check_range(run) end
+    sparse[run] = space.sparse(run)
+    if sparse[run] then print("note: " .. sparse[run]) end
     for _, flight in ipairs(space.flights_of(run)) do
       for _, pose in ipairs(space.poses_of(run, flight)) do poses[#poses + 1] = pose end
     end
@@ -154,6 +160,22 @@ function M.starts(run, poses)
   if not o.finish then return starts, 1 end
   table.insert(starts, 2, looking_in(o.finish))
   return starts, 2
+end
+
+local GIVEN = 1 / 3        -- share of the candidates that starts are at most
+local GOLDEN = 0.6180339887498949
+
+-- The first `needed` of the starts, and as many of the rest, evenly, as leave most of the
+-- candidates to be grown from them. What flies to and fro repeats itself: multiples of the golden
+-- section keep all its headings.
+function M.few(starts, needed, most)
+  if #starts <= GIVEN * most then return starts end
+  local share = (GIVEN * most - needed) / (#starts - needed)
+  local kept = {}
+  for k, view in ipairs(starts) do
+    if k <= needed or k * GOLDEN % 1 < share then kept[#kept + 1] = view end
+  end
+  return kept
 end
 
 return M

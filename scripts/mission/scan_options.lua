@@ -29,7 +29,7 @@ local PATTERN = {
   number("height", nil, "m", "of flight, world; absent: 15 m above safe_height, a crosshatch 5 m",
          { maximum = 1e5 }),
   integer("views", nil, 1, 10000,
-          "depth images; absent: 30, of a crosshatch as many as overlap wants"),
+          "depth images; absent: 30, of a crosshatch as many as overlap wants, 400 at most"),
   number("pitch_deg", nil, "deg", "of the camera; a circle's looks in, no higher than this; "
          .. "absent: -60, a crosshatch's -45", { minimum = -90, maximum = 0 }),
   number("reach", nil, "m", "beyond the region; absent: 5 m, a crosshatch half its height over "

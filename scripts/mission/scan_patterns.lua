@@ -56,8 +56,24 @@ end
 
 local SIDE, UP = math.rad(35), math.rad(30)  -- what an image surely holds round its middle
 
+-- Whether the middle of the image meets the box's floor or its top.
+local function aims_at(pose, box)
+  if pose.pitch >= 0 then return false end
+  for _, z in ipairs { box.lower[3], box.upper[3] } do
+    local far = (z - pose.position[3]) / math.tan(pose.pitch)
+    local x = pose.position[1] + far * math.cos(pose.yaw)
+    local y = pose.position[2] + far * math.sin(pose.yaw)
+    if far > 0 and x >= box.lower[1] and x <= box.upper[1] and y >= box.lower[2]
+       and y <= box.upper[2] then
+      return true
+    end
+  end
+  return false
+end
+
 -- Whether the image of a pose holds a place of the box: of nine by nine on its floor and its top.
 local function sees(pose, box)
+  if aims_at(pose, box) then return true end
   for i = 0, 8 do
     for j = 0, 8 do
       local x = box.lower[1] + i / 8 * (box.upper[1] - box.lower[1]) - pose.position[1]
@@ -72,15 +88,22 @@ local function sees(pose, box)
   return false
 end
 
--- Stops on a grid over the box, rows along one axis, `spacing` metres apart at most. At each the
--- camera looks forth and back along the rows, first the way that is flown; never past the box.
-local function oblique_grid(box, along, height, spacing, pitch, reach, poses)
-  local across = 3 - along
+-- How many stops less one lie along each axis, and how long the grid is, with `spacing` metres
+-- between stops at most.
+local function grid_of(box, spacing, reach)
   local counts, lengths = {}, {}
   for axis = 1, 2 do
     lengths[axis] = box.upper[axis] - box.lower[axis] + 2 * reach
     counts[axis] = math.max(1, math.ceil(lengths[axis] / spacing))
   end
+  return counts, lengths
+end
+
+-- Stops on a grid over the box, rows along one axis, `spacing` metres apart at most. At each the
+-- camera looks forth and back along the rows, first the way that is flown; never past the box.
+local function oblique_grid(box, along, height, spacing, pitch, reach, poses)
+  local across = 3 - along
+  local counts, lengths = grid_of(box, spacing, reach)
   for row = 0, counts[across] do
     for k = 0, counts[along] do
       local forth = row % 2 == 0
@@ -98,28 +121,43 @@ local function oblique_grid(box, along, height, spacing, pitch, reach, poses)
   end
 end
 
+local OVERLAP = 0.75  -- heights over the region's floor, between stops of a crosshatch
+local WIDER = 1.05    -- times, where they are too many
+local NEAR = 4        -- times the views that are asked for: so many are worth trying out
+
+-- The first spacing to be tried out: as overlap wants, or as wide as a number of poses that can be
+-- held asks for, however large the box is.
+local function first_spacing(box, height, views, reach)
+  local spacing = OVERLAP * (height - box.lower[3])
+  while true do
+    local counts = grid_of(box, spacing, reach)
+    if 4 * (counts[1] + 1) * (counts[2] + 1) <= math.max(NEAR * views, 16) then return spacing end
+    spacing = WIDER * spacing
+  end
+end
+
 -- Two oblique grids in crossing directions, as surveyors fly where walls count: every place is seen
 -- from four sides. Stops are `OVERLAP` times the height over the region's floor apart, or as much
--- farther as a smaller number of views asks for.
-local OVERLAP = 0.75
+-- farther as `views` at most asks for. With the poses, how many times farther.
 local function crosshatch(box, height, views, pitch, reach)
-  local spacing, poses = OVERLAP * (height - box.lower[3]), nil
+  local spacing, poses = first_spacing(box, height, views, reach), nil
   for _ = 1, 100 do
     poses = {}
     for along = 1, 2 do oblique_grid(box, along, height, spacing, pitch, reach, poses) end
-    if not views or #poses <= views then break end
-    spacing = 1.05 * spacing
+    if #poses <= views then break end
+    spacing = spacing * math.max(WIDER, 0.95 * math.sqrt(#poses / views))
   end
-  return poses
+  return poses, spacing / (OVERLAP * (height - box.lower[3]))
 end
 
 -- Poses of `pattern` (circle, crosshatch, ellipse, meander) over the box `region` at `height` (m,
 -- world), the camera at `pitch` (rad, a circle's and an ellipse's at most), `reach` metres beyond
--- the region. A crosshatch without `views` has as many as it wants, else at most so many.
+-- the region. A crosshatch has at most so many `views`; how many times farther apart they are than
+-- overlap wants comes second.
 function M.over(region, pattern, height, views, pitch, reach)
   if pattern == "crosshatch" then return crosshatch(region, height, views, pitch, reach) end
-  if pattern == "meander" then return meander(region, height, views, pitch, reach) end
-  return ellipse(region, height, views, pitch, reach, pattern == "circle")
+  if pattern == "meander" then return meander(region, height, views, pitch, reach), 1 end
+  return ellipse(region, height, views, pitch, reach, pattern == "circle"), 1
 end
 
 return M

@@ -6,9 +6,10 @@ local space = require "mission.scan_space"
 local M = {}
 
 local LOOK, MESH, WEIGH, TELL = 1.6e-6, 1.9e-6, 1.4e-7, 4e-7  -- s a pixel
-local EXPLORE, TOUR, LEG = 0.5, 0.008, 0.3                    -- s an image, a candidate, a leg
+local EXPLORE, JOIN, LEG = 0.5, 0.008, 0.3                    -- s an image, a candidate, a leg
+local TOUR = 4e-6          -- s a pair of candidates
 local VIEW = 8             -- s of flight that a view takes
-local CERTIFICATE = 0.05   -- s for a second of flight
+local CERTIFICATE = 0.01   -- s for a second of flight, in a map with voxels of 1 m
 local FILES = 2            -- s
 local BEGIN = 1            -- s of anything, however small
 
@@ -37,8 +38,8 @@ function M.expect(run, seconds)
   end
   for round = 1, o.rounds do
     local of = o.rounds > 1 and " of round " .. round or ""
-    add("views" .. of, WEIGH * few * o.candidates.most)
-    add("tour" .. of, TOUR * o.candidates.most)
+    add("views" .. of, (WEIGH * few + JOIN) * o.candidates.most)
+    add("tour" .. of, TOUR * o.candidates.most ^ 2)
     if o.flight.smooth then add("smooth legs" .. of, LEG * seconds / VIEW) end
     add("flight" .. of, TELL * all * seconds / VIEW)
     if round < o.rounds then
@@ -46,7 +47,7 @@ function M.expect(run, seconds)
       add("mesh" .. of, MESH * few * seconds / VIEW)
     end
   end
-  add("certificate", CERTIFICATE * seconds)
+  add("certificate", CERTIFICATE / o.resolution * seconds)
   add("files", FILES)
   run:phases(phases)
 end

@@ -12,6 +12,7 @@ local FLIGHT_ABOVE_ELSE = 15
 local VIEW = 4            -- m from a wall, to look along it: beside the body, round a mesh's bounds
 local DOWN_APART = 0.5    -- heights over the floor, between images that look down
 local FEWEST_DOWN, MOST_DOWN = 6, 200
+local MOST_CROSSED = 400  -- images of a crosshatch, unless said otherwise
 local OVERHEAD = 2        -- m of free air above the highest first flight
 
 local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
@@ -68,15 +69,20 @@ function M.safe_height(run)
   return run.options.safe_height or M.region_of(run).upper[3] + SAFE_ABOVE
 end
 
+-- Images that a grid looking down wants.
+local function down_wanted(run, height)
+  local region = M.region_of(run)
+  local area = (region.upper[1] - region.lower[1]) * (region.upper[2] - region.lower[2])
+  return math.ceil(area / (DOWN_APART * (height - region.lower[3])) ^ 2)
+end
+
 -- As given, or as surveyors fly: a crosshatch for what stands up, and a grid that looks down for
 -- roofs, grounds and narrow courts.
 function M.flights_of(run)
-  local o, region = run.options, M.region_of(run)
+  local o = run.options
   if #o.flights > 0 then return o.flights end
   local height = M.safe_height(run) + FLIGHT_ABOVE.crosshatch
-  local area = (region.upper[1] - region.lower[1]) * (region.upper[2] - region.lower[2])
-  local apart = DOWN_APART * (height - region.lower[3])
-  local views = math.max(FEWEST_DOWN, math.min(MOST_DOWN, math.ceil(area / apart ^ 2)))
+  local views = math.max(FEWEST_DOWN, math.min(MOST_DOWN, down_wanted(run, height)))
   return { { pattern = "crosshatch", height = height },
            { pattern = "meander", height = height, pitch_deg = -80, reach = 0, views = views } }
 end
@@ -95,26 +101,51 @@ function M.pitch_of(flight)
   return flight.pitch_deg or (flight.pattern == "crosshatch" and -45 or -60)
 end
 
--- Where a first flight takes its images.
+-- Where a first flight takes its images, and how many times farther apart than overlap wants.
 function M.poses_of(run, flight)
   local region, height = M.region_of(run), M.height_of(run, flight)
   local hatched = flight.pattern == "crosshatch"
   local reach = flight.reach
     or (hatched and math.min(run.options.reach, (height - region.lower[3]) / 2) or 5)
-  local views = flight.views or (not hatched and 30 or nil)
-  local poses = patterns.over(region, flight.pattern, height, views, math.rad(M.pitch_of(flight)),
-                              reach)
+  local views = flight.views or (hatched and MOST_CROSSED or 30)
+  local poses, times = patterns.over(region, flight.pattern, height, views,
+                                     math.rad(M.pitch_of(flight)), reach)
   if #poses == 0 then
     run:fail("flights", string.format(
       "no image of the %s would hold anything of the region: at a pitch of %.4g degrees and %.4g m "
       .. "over its floor it needs more reach", flight.pattern, M.pitch_of(flight),
       height - region.lower[3]))
   end
-  if views and #poses > views then
+  if hatched and #poses > views then
     run:fail("flights", string.format("a crosshatch here has %d views at least, and %d are asked "
                                       .. "for", #poses, views))
   end
-  return poses
+  return poses, times
+end
+
+-- What is said where a large region has fewer images than overlap wants, or nothing: only of
+-- flights whose number of images the user did not choose.
+function M.sparse(run)
+  local parts = {}
+  for _, flight in ipairs(M.flights_of(run)) do
+    if flight.pattern == "crosshatch" and not flight.views then
+      local poses, times = M.poses_of(run, flight)
+      if times > 1.01 then
+        parts[#parts + 1] = string.format(
+          "the crosshatch has %d images, %.2g times as far apart as overlap wants", #poses, times)
+      end
+    end
+  end
+  if #run.options.flights == 0 then
+    local down = M.flights_of(run)[2]
+    local wanted = down_wanted(run, down.height)
+    if wanted > down.views then
+      parts[#parts + 1] = string.format("%d images look down in place of %d", down.views, wanted)
+    end
+  end
+  if #parts == 0 then return nil end
+  return "the region is large: " .. table.concat(parts, "; ")
+         .. ". Flights with more views, or a smaller region, would see more of it"
 end
 
 -- The highest that anything flies.
