@@ -154,6 +154,12 @@ std::string percent(double part, double whole) {
   return number_text(whole > 0 ? 100 * part / whole : 0, 3);
 }
 
+// What nobody looked from is not considered: other free places may show more.
+std::string visible_in_words(const ScanRecord& record) {
+  return "visible from any of the " + std::to_string(record.candidates.size()) +
+         " views that were considered";
+}
+
 Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   double sum = 0;
   for (const VoxelShare& v : record.coverage) sum += v.share;
@@ -163,7 +169,7 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
       {"surface of the region, as far as it is known", square_metres(areas.known), "m^2"},
       {"of it seen by the tour", square_metres(areas.seen),
        "m^2, " + percent(areas.seen, areas.known) + " %"},
-      {"of it visible from some free place", square_metres(areas.visible),
+      {"of it " + visible_in_words(record), square_metres(areas.visible),
        "m^2, " + percent(areas.visible, areas.known) + " %"},
       {"unknown, not counted: edge of what was ever measured", square_metres(record.unknown),
        "m^2"},
@@ -182,7 +188,8 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   const MeshScene scene = colored_surface(record);
   const std::string caption =
       "What the tour tells of the known surface, from little (violet) to all (yellow). Red: seen "
-      "from a candidate, not by the tour. Dark: no candidate sees it. Light grey: outside the "
+      "from a view that was considered, not by the tour. Dark: from none of them. Light grey: "
+      "outside the "
       "region. Where there is no surface, none is known";
   TextBlock words;
   words.text = areas_in_words(record);
@@ -242,8 +249,8 @@ std::string areas_in_words(const ScanRecord& record) {
   const SurfaceAreas& areas = record.areas;
   std::string text = "surface: the tour sees " + percent(areas.seen, areas.known) + " % of the " +
                      square_metres(areas.known) + " m^2 that are known; " +
-                     percent(areas.visible, areas.known) +
-                     " % are visible from some free place; about " + square_metres(record.unknown) +
+                     percent(areas.visible, areas.known) + " % are " + visible_in_words(record) +
+                     "; about " + square_metres(record.unknown) +
                      " m^2 are unknown and not counted";
   if (record.unknown > kMuchUnknown * areas.known)
     text +=
