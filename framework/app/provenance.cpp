@@ -4,11 +4,12 @@
 
 #include "framework/app/plan_sources.h"
 #include "framework/config/shipped.h"
-#include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/core/log.h"
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
+#include "framework/export/run_folder.h"
 #include "framework/verify/provenance.h"
 #include "framework/verify/verify.h"
 
@@ -287,7 +288,9 @@ Plan read_plan_file(const fs::path& file, DigestFindings* digest) {
   if (file.extension() == ".lua")
     throw InputError("'" + file.string() + "' is a script, not a plan; `lapwing run " +
                      file.string() + "` makes one, plan.json in the folder that it names");
-  finish_exchange(file.has_parent_path() ? file.parent_path() : fs::path("."));
+  const std::string left =
+      complete_run_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+  if (!left.empty()) logging::warning(left);
   const Value document = from_json(read_file(file), file.string());
   Plan plan = plan_from_value(document);
   if (digest) *digest = check_digest(document);

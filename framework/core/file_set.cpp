@@ -20,17 +20,21 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReady = ".lapwing-exchange";  // a set that is whole and not yet in its place
+constexpr std::size_t kLargestList = 1 << 20;        // bytes
 constexpr const char* kOrders = ".orders";  // in it: "put NAME" and "drop NAME", a line each
 
 [[noreturn]] void cannot_exchange(const fs::path& path, const std::string& why) {
   throw InputError("cannot write '" + path.string() + "': " + why);
 }
 
+bool is_plain(const std::string& name) {
+  return !name.empty() && name[0] != '.' && name.find('/') == std::string::npos &&
+         name.find('\n') == std::string::npos && name.find('\0') == std::string::npos;
+}
+
 // A file's plain name, which no list of lines can mistake.
 void require_plain(const std::string& name) {
-  if (name.empty() || name[0] == '.' || fs::path(name).filename() != name ||
-      name.find('\n') != std::string::npos)
-    throw Error("a file of a set is named '" + name + "'");
+  if (!is_plain(name)) throw Error("a file of a set is named '" + name + "'");
 }
 
 void flush_directory(const fs::path& folder) {
@@ -95,27 +99,63 @@ void make_folder(const fs::path& folder) {
   if (!fs::is_directory(folder, code)) cannot_exchange(folder, "it is no folder");
 }
 
-}  // namespace
+struct Order {
+  bool put = false;  // else the file is removed
+  std::string name;
+};
 
-void finish_exchange(const fs::path& folder) {
-  const fs::path ready = folder / kReady;
+struct Descriptor {
+  explicit Descriptor(int opened) : number(opened) {}
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  const int number;
+};
+
+// The whole list, before any of it is done: the folder may come from anywhere.
+std::vector<Order> read_orders(const fs::path& ready, const NameTest& is_own) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError("'" + ready.string() + "' was not written by a run (" + what + "); delete it");
+  };
   std::error_code code;
-  if (!fs::is_directory(fs::symlink_status(ready, code))) return;
-  std::string orders;
-  // Without the list nothing is to be done any more: it is the last that is taken away.
-  if (fs::exists(ready / kOrders, code)) orders = read_file(ready / kOrders);
-  std::istringstream lines(orders);
+  const fs::path list = ready / kOrders;
+  const fs::file_status status = fs::symlink_status(list, code);
+  if (!fs::exists(status)) return {};
+  if (!fs::is_regular_file(status)) refuse("its list is no file");
+  std::vector<Order> orders;
+  std::istringstream lines(read_file(list, kLargestList));
   for (std::string line; std::getline(lines, line);) {
     const std::size_t space = line.find(' ');
     const std::string what = line.substr(0, space);
-    const std::string name = space == std::string::npos ? "" : line.substr(space + 1);
-    if (name.empty() || name[0] == '.' || fs::path(name).filename() != name)
-      throw InputError("'" + ready.string() + "' holds a list that nobody wrote; delete it");
+    const Order order{what == "put", space == std::string::npos ? "" : line.substr(space + 1)};
+    if (what != "put" && what != "drop") refuse("line '" + line + "'");
+    if (!is_plain(order.name)) refuse("'" + order.name + "' is no plain name of a file");
+    if (!is_own(order.name)) refuse("'" + order.name + "' is no file of its own");
+    for (const fs::path& path : {ready / order.name, ready.parent_path() / order.name}) {
+      const fs::file_status there = fs::symlink_status(path, code);
+      if (fs::exists(there) && !fs::is_regular_file(there) && !fs::is_symlink(there))
+        refuse("'" + order.name + "' is no file");
+    }
+    orders.push_back(order);
+  }
+  return orders;
+}
+
+}  // namespace
+
+void finish_exchange(const fs::path& folder, const NameTest& is_own) {
+  const fs::path ready = folder / kReady;
+  std::error_code code;
+  if (!fs::is_directory(fs::symlink_status(ready, code))) return;
+  // Without the list nothing is to be done any more: it is the last that is taken away.
+  for (const Order& order : read_orders(ready, is_own)) {
+    const fs::path made = ready / order.name, target = folder / order.name;
     // What is no longer there was moved before the change was ended.
-    const bool put = what == "put";
-    const int failed = put ? ::rename((ready / name).c_str(), (folder / name).c_str())
-                           : ::unlink((folder / name).c_str());
-    if (failed != 0 && errno != ENOENT) cannot_exchange(folder / name, std::strerror(errno));
+    const int failed =
+        order.put ? ::rename(made.c_str(), target.c_str()) : ::unlink(target.c_str());
+    if (failed != 0 && errno != ENOENT) cannot_exchange(target, std::strerror(errno));
   }
   flush_directory(folder);
   fs::remove(ready / kOrders, code);
@@ -123,12 +163,38 @@ void finish_exchange(const fs::path& folder) {
   if (code) cannot_exchange(ready, code.message());
 }
 
+std::string finish_exchange_to_read(const fs::path& folder, const NameTest& is_own) {
+  std::error_code code;
+  if (!fs::is_directory(fs::symlink_status(folder / kReady, code))) return "";
+  const std::string left = "'" + folder.string() + "' holds files of a run that was ended while " +
+                           "it put them in their places, and they were left as they are: ";
+  const Descriptor there(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (there.number < 0) return left + std::strerror(errno);
+  if (::flock(there.number, LOCK_EX | LOCK_NB) != 0)
+    return left + (errno == EWOULDBLOCK ? "another process is writing into the folder"
+                                        : std::strerror(errno));
+  try {
+    finish_exchange(folder, is_own);
+  } catch (const InputError& error) {
+    return left + error.what();
+  }
+  return "";
+}
+
 void write_files_together(const fs::path& folder, const FileSet& set) {
   for (const auto& [name, contents] : set.files) require_plain(name);
   for (const std::string& name : set.removed) require_plain(name);
   make_folder(folder);
   clear_dead_temporaries(folder);
-  finish_exchange(folder);
+  const NameTest is_listed = [&](const std::string& name) {
+    return std::count(set.removed.begin(), set.removed.end(), name) > 0 ||
+           std::any_of(set.files.begin(), set.files.end(),
+                       [&](const auto& file) { return file.first == name; });
+  };
+  const NameTest is_own = [&](const std::string& name) {
+    return is_listed(name) || (set.is_own && set.is_own(name));
+  };
+  finish_exchange(folder, is_own);
   std::string orders;
   for (const std::string& name : set.removed) {
     const bool written = std::any_of(set.files.begin(), set.files.end(),
@@ -150,7 +216,7 @@ void write_files_together(const fs::path& folder, const FileSet& set) {
     cannot_exchange(folder, std::strerror(errno));
   staging.keep();
   flush_directory(folder);
-  finish_exchange(folder);
+  finish_exchange(folder, is_own);
 }
 
 FolderClaim::FolderClaim(const fs::path& folder) {

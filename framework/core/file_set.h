@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,13 @@
 
 namespace lapwing {
 
+// Whether a name is one that the writers of a folder give their files.
+using NameTest = std::function<bool(const std::string& name)>;
+
 struct FileSet {
   NamedContents files;
   std::vector<std::string> removed = {};  // names that an older set had; whatever is not there, too
+  NameTest is_own = nullptr;  // further names that a change ended earlier may put and remove
 };
 
 // Writes all files into a hidden folder within `folder` (the same file system), flushes them, puts
@@ -25,9 +30,15 @@ struct FileSet {
 void write_files_together(const std::filesystem::path& folder, const FileSet& set);
 
 // Completes a change of `write_files_together` that was ended in its last step, and does nothing
-// where there is none. To be called before files of such a folder are read. Throws InputError when
-// it cannot.
-void finish_exchange(const std::filesystem::path& folder);
+// where there is none. For the one writer of a folder, before it reads files there. The list of
+// what is to be done is checked as a whole first: only names that `is_own` knows are put or
+// removed. Throws InputError where the list holds anything else, and when it cannot be completed.
+void finish_exchange(const std::filesystem::path& folder, const NameTest& is_own);
+
+// The same for who only reads the folder. Nothing is changed while another process has the folder
+// (FolderClaim), or where the list is not one of a writer's: then a sentence says so. Empty where
+// there was nothing to do or all was done. Never throws InputError.
+std::string finish_exchange_to_read(const std::filesystem::path& folder, const NameTest& is_own);
 
 // Keeps a folder for one process as long as it lives. Makes the folder; when nothing was put into
 // it, takes it away again. Where the file system has no locks, nobody is refused.

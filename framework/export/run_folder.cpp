@@ -32,6 +32,11 @@ bool names_obstacle(const std::string& name) {
          (name.substr(end) == ".ply" || name.substr(end) == ".ot");
 }
 
+// A name that runs give their files.
+bool names_run_file(const std::string& name) {
+  return names_obstacle(name) || std::count(std::begin(kRunFiles), std::end(kRunFiles), name) > 0;
+}
+
 // What of the folder bears names that runs give their files.
 std::vector<std::string> run_files_in(const fs::path& folder) {
   std::vector<std::string> found;
@@ -46,7 +51,7 @@ std::vector<std::string> run_files_in(const fs::path& folder) {
 }
 
 FileSet set_of(const fs::path& folder, const RunFiles& files) {
-  FileSet set{files.obstacles, run_files_in(folder)};
+  FileSet set{files.obstacles, run_files_in(folder), names_run_file};
   const std::optional<std::string>* contents[] = {
       &files.log, &files.map, &files.long_exposure, &files.report, &files.trajectory, &files.plan};
   for (std::size_t i = 0; i < std::size(kRunFiles); ++i) {
@@ -149,12 +154,16 @@ std::optional<std::string> mission_in(const std::filesystem::path& folder) {
 void require_run_folder(const std::filesystem::path& folder) {
   std::error_code code;
   if (!fs::exists(folder, code)) return;
-  finish_exchange(folder);
+  finish_exchange(folder, names_run_file);
   if (mission_in(folder)) return;
   const std::vector<std::string> found = run_files_in(folder);
   if (!found.empty())
     throw InputError("'" + folder.string() + "' holds '" + found.front() +
                      "', which no run wrote and which would be lost; choose another folder");
+}
+
+std::string complete_run_folder(const std::filesystem::path& folder) {
+  return finish_exchange_to_read(folder, names_run_file);
 }
 
 void require_keepable(const std::filesystem::path& folder) {

@@ -42,6 +42,10 @@ std::optional<std::string> mission_in(const std::filesystem::path& folder);
 // them. Completes the files of a run that was ended over them (core/file_set.h).
 void require_run_folder(const std::filesystem::path& folder);
 
+// For who only reads a run's folder: completes such files, unless another process is writing there
+// or what is there is not a run's. Then a sentence says so; else it is empty.
+std::string complete_run_folder(const std::filesystem::path& folder);
+
 // InputError where an older run's folder could not be renamed: it is named by its place alone
 // ("."), or the folder that it lies in cannot be written.
 void require_keepable(const std::filesystem::path& folder);

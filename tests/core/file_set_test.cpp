@@ -1,5 +1,7 @@
 #include "framework/core/file_set.h"
 
+#include <gmock/gmock.h>
+
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -47,6 +49,11 @@ std::string refusal_of(const fs::path& folder, const FileSet& set) {
     return error.what();
   }
   return "written";
+}
+
+// All names that these tests give to files of their sets.
+bool is_of_a_set(const std::string& name) {
+  return name == "a.txt" || name == "b.txt" || name == "c.txt" || name == "old.txt";
 }
 
 // Three files that say which version they are of.
@@ -156,7 +163,7 @@ TEST_F(FileSets, AreOfOneVersionAfterAnyKill) {
     ::usleep(500 + random() % 20000);
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
-    finish_exchange(base_);
+    finish_exchange(base_, is_of_a_set);
     const int found = version_in(base_, kSize);
     ASSERT_GE(found, last) << "killed the " << kill << "th time";
     last = found;
@@ -179,17 +186,48 @@ TEST_F(FileSets, AChangeThatWasDecidedIsCompleted) {
     const char* names[] = {"a.txt", "b.txt", "c.txt"};
     if (moved > 0) fs::remove(folder / "old.txt");
     for (int k = 0; k < moved; ++k) fs::rename(ready / names[k], folder / names[k]);
-    finish_exchange(folder);
+    finish_exchange(folder, is_of_a_set);
     EXPECT_EQ(version_in(folder, 10), 2) << moved;
     EXPECT_EQ(names_in(folder), (std::vector<std::string>{"a.txt", "b.txt", "c.txt"})) << moved;
   }
 }
 
-TEST_F(FileSets, AListThatNamesOtherFoldersIsRefused) {
-  write_file_atomically(base_ / "run" / ".lapwing-exchange" / ".orders", "drop ../precious\n");
+// None of a list is done where one line of it is not a writer's.
+TEST_F(FileSets, AListThatNoWriterWroteIsRefusedAsAWhole) {
+  const fs::path folder = base_ / "run", orders = folder / ".lapwing-exchange" / ".orders";
   write_file_atomically(base_ / "precious", "!");
-  EXPECT_THROW(finish_exchange(base_ / "run"), InputError);
-  EXPECT_EQ(read_file(base_ / "precious"), "!");
+  write_file_atomically(folder / "notes.txt", "!");
+  write_file_atomically(folder / "a.txt", "1");
+  fs::create_directory(folder / "b.txt");
+  for (const char* line :
+       {"drop ../precious", "bogus a.txt", "bogus notes.txt", "drop notes.txt", "put notes.txt",
+        "drop", "drop ", "drop .", "drop ..", "drop .hidden", "drop b.txt", "rubbish"}) {
+    write_file_atomically(orders, std::string("drop a.txt\n") + line + "\n");
+    EXPECT_THROW(finish_exchange(folder, is_of_a_set), InputError) << line;
+    EXPECT_NE(finish_exchange_to_read(folder, is_of_a_set), "") << line;
+    EXPECT_TRUE(fs::exists(base_ / "precious")) << line;
+    EXPECT_EQ(names_in(folder),
+              (std::vector<std::string>{".lapwing-exchange", "a.txt", "b.txt", "notes.txt"}))
+        << line;
+  }
+  fs::remove(orders);
+  fs::create_symlink("/dev/zero", orders);
+  EXPECT_THROW(finish_exchange(folder, is_of_a_set), InputError);
+}
+
+TEST_F(FileSets, WhoReadsCompletesNothingOfALiveWriter) {
+  write_file_atomically(base_ / "a.txt", "1");
+  write_file_atomically(base_ / ".lapwing-exchange" / "a.txt", "2");
+  write_file_atomically(base_ / ".lapwing-exchange" / ".orders", "put a.txt\n");
+  {
+    const FolderClaim writer(base_);
+    EXPECT_THAT(finish_exchange_to_read(base_, is_of_a_set),
+                testing::HasSubstr("another process is writing"));
+    EXPECT_EQ(read_file(base_ / "a.txt"), "1");
+  }
+  EXPECT_EQ(finish_exchange_to_read(base_, is_of_a_set), "");
+  EXPECT_EQ(read_file(base_ / "a.txt"), "2");
+  EXPECT_EQ(names_in(base_), std::vector<std::string>{"a.txt"});
 }
 
 TEST_F(FileSets, TemporariesOfTheDeadAreClearedThoseOfTheLivingNot) {

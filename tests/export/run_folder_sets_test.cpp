@@ -33,6 +33,24 @@ TEST_F(RunSets, TellWhoseTheyAre) {
   EXPECT_EQ(mission_in(folder_), std::nullopt);
 }
 
+// A folder from elsewhere may hold any list: nothing but a run's own files is touched.
+TEST_F(RunSets, AListInAFolderTakesAwayOnlyWhatRunsWrite) {
+  const fs::path orders = folder_ / ".lapwing-exchange" / ".orders";
+  write_file_atomically(folder_ / "notes.txt", "mine");
+  write_file_atomically(folder_ / "plan.json", "{}");
+  for (const char* list :
+       {"bogus notes.txt\n", "drop notes.txt\n", "drop plan.json\ndrop notes.txt\n"}) {
+    write_file_atomically(orders, list);
+    EXPECT_NE(complete_run_folder(folder_), "") << list;
+    EXPECT_THROW(require_run_folder(folder_), InputError) << list;
+    EXPECT_EQ(read_file(folder_ / "notes.txt"), "mine") << list;
+    EXPECT_EQ(read_file(folder_ / "plan.json"), "{}") << list;
+  }
+  write_file_atomically(orders, "drop plan.json\ndrop obstacle_3.ply\n");
+  EXPECT_EQ(complete_run_folder(folder_), "");
+  EXPECT_FALSE(fs::exists(folder_ / "plan.json"));
+}
+
 TEST_F(RunSets, ForeignFilesOfTheSameNamesAreRefused) {
   require_run_folder(folder_);
   write_file_atomically(folder_ / "obstacle_course.ply", "mine");
