@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <optional>
+#include <thread>
 
 #include "framework/core/error.h"
 #include "framework/core/temporary_names.h"
@@ -119,15 +121,47 @@ void require_access(const fs::path& path, const fs::path& folder, int access) {
     cannot_write(path, "folder '" + folder.string() + "': " + reason(errno));
 }
 
-// A pipe may have nobody at its other end, and would be waited for without end.
-void wait_for_a_writer(const fs::path& path, int descriptor) {
-  constexpr int kPatience = 5000;  // ms
-  pollfd waiting{descriptor, POLLIN, 0};
-  int ready = 0;
-  while ((ready = ::poll(&waiting, 1, kPatience)) < 0 && errno == EINTR) {
+// Something that can be waited for: a pipe, a terminal. Opened so that nothing blocks.
+class Source {
+ public:
+  Source(const fs::path& path, int descriptor, bool pipe)
+      : path_(path), descriptor_(descriptor), pipe_(pipe) {}
+
+  // Bytes read; 0 at the end. A pipe may have nobody at its other end, and would be waited for
+  // without end. Where somebody has it open, what comes is waited for, however long that takes.
+  std::size_t read(char* buffer, std::size_t size) {
+    for (int waited = 0; waited <= kPatience;) {
+      const ssize_t count = ::read(descriptor_, buffer, size);
+      if (count > 0) begun_ = true;
+      if (count > 0 || (count == 0 && (!pipe_ || begun_ || was_left()))) {
+        return static_cast<std::size_t>(count);
+      } else if (count == 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(kStep));
+        waited += kStep;
+      } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+        begun_ = true;  // somebody has it open
+        pollfd state{descriptor_, POLLIN, 0};
+        ::poll(&state, 1, -1);
+      } else if (errno != EINTR) {
+        cannot_read(path_, reason(errno));
+      }
+    }
+    cannot_read(path_, "nobody has written into it for 5 s");
   }
-  if (ready == 0) cannot_read(path, "nobody has written into it for 5 s");
-}
+
+ private:
+  static constexpr int kPatience = 5000, kStep = 20;  // ms
+
+  // Somebody had the pipe open for writing and closed it.
+  bool was_left() const {
+    pollfd state{descriptor_, POLLIN, 0};
+    return ::poll(&state, 1, 0) > 0 && (state.revents & POLLHUP);
+  }
+
+  const fs::path& path_;
+  int descriptor_;
+  bool pipe_, begun_ = false;
+};
 
 }  // namespace
 
@@ -175,17 +209,14 @@ std::string read_file(const fs::path& path, std::size_t limit_bytes) {
     contents.reserve(std::min(static_cast<std::size_t>(info.st_size), limit_bytes));
   }
   char buffer[1 << 16];
-  for (;;) {
-    if (!S_ISREG(info.st_mode)) wait_for_a_writer(path, descriptor);
-    const ssize_t count = ::read(descriptor, buffer, sizeof buffer);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) cannot_read(path, reason(errno));
-    if (count == 0) return contents;
-    if (contents.size() + static_cast<std::size_t>(count) > limit_bytes) {
+  Source source(path, descriptor, S_ISFIFO(info.st_mode));
+  while (const std::size_t count = source.read(buffer, sizeof buffer)) {
+    if (contents.size() + count > limit_bytes) {
       cannot_read(path, "it is larger than " + std::to_string(limit_bytes) + " bytes");
     }
-    contents.append(buffer, static_cast<std::size_t>(count));
+    contents.append(buffer, count);
   }
+  return contents;
 }
 
 }  // namespace lapwing

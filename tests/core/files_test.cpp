@@ -221,6 +221,23 @@ TEST_F(FilesTest, APipeIsReadButNotWaitedForWithoutEnd) {
   writer.join();
 }
 
+// A program that takes its time to write is not nobody.
+TEST_F(FilesTest, AWriterThatPausesIsWaitedFor) {
+  const fs::path pipe = folder_ / "slow";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] {
+    std::FILE* file = std::fopen(pipe.c_str(), "w");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5600));
+    std::fputs("late", file);
+    std::fclose(file);
+  });
+  EXPECT_EQ(read_file(pipe), "late");
+  writer.join();
+  std::thread nothing([&] { std::fclose(std::fopen(pipe.c_str(), "w")); });
+  EXPECT_EQ(read_file(pipe), "");
+  nothing.join();
+}
+
 TEST_F(FilesTest, ReadersSeeOldOrNewNeverHalf) {
   const fs::path path = folder_ / "plan.json";
   const std::string a(1 << 16, 'a'), b(1 << 16, 'b');
