@@ -48,6 +48,18 @@ local function broken_limit(run, shot, failing, leg)
   return failing.verdict.failures[1] or failing.solution.message
 end
 
+-- For a film that misses a keyframe: which option says how near is near enough. Else "".
+local function tolerance(verdict, hard)
+  for _, failure in ipairs(verdict.failures) do
+    if failure:find("^keyframe_miss") then
+      return string.format("; keyframes may be missed by %g m: hard = METRES %s",
+                           hard or problem.MISS,
+                           hard and "sets that" or "holds them within another distance")
+    end
+  end
+  return ""
+end
+
 -- The script's own constraints that a verdict breaks: sentences; and whether it breaks nothing
 -- else.
 local function broken_constraints(verdict)
@@ -179,7 +191,7 @@ local function at_given_times(run, shot)
   end
   why = constraint or broken_limit(run, shot, first, why)
   if hopeless or not o.hard and not auto then
-    notes[#notes + 1] = why
+    notes[#notes + 1] = why .. tolerance(first.verdict, o.hard)
     return finished(run, shot, first, notes)
   end
   local good = smallest_stretch(run, shot, first, least)
@@ -187,7 +199,7 @@ local function at_given_times(run, shot)
     or string.format("%s; no stretch up to %g is certified", why, LARGEST_STRETCH)
   if run:cancelled() then note = why .. "; the search for a stretch was cancelled" end
   if auto and good then return finished(run, shot, good, { note }, good.stretch, nil, notes) end
-  notes[#notes + 1] = note
+  notes[#notes + 1] = note .. tolerance(first.verdict, o.hard)
   return finished(run, shot, first, notes, good and good.stretch or nil)
 end
 

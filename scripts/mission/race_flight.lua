@@ -1,5 +1,5 @@
--- The flight of a course: planned in rounds until it is certified, each with more stages where those
--- of a leg are too coarse, and with forces that change less quickly where the controller strays.
+-- The flight of a course: planned in rounds until it is certified, each with more stages where
+-- those of a leg are too coarse, and with slower forces where the controller strays.
 local courses = require "mission.race_course"
 local problem = require "mission.race_problem"
 local search = require "mission.race_search"

@@ -102,6 +102,9 @@ TEST_F(Helping, AFailureIsPrintedOnce) {
             std::string::npos)
       << finished.out;
   EXPECT_EQ(count(finished.out, "keyframe_miss"), 1) << finished.out;
+  // And which option decides how near is near enough.
+  EXPECT_EQ(count(finished.out, "keyframes may be missed by 0.5 m: hard = METRES"), 1)
+      << finished.out;
   const Finished quiet = run({"run", "shot.lua", "--quiet"});
   EXPECT_EQ(count(quiet.err, "keyframe_miss"), 1) << quiet.err;
 }
