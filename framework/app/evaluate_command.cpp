@@ -15,6 +15,7 @@
 #include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/parallel.h"
+#include "framework/core/visible_text.h"
 #include "framework/mission/data_files.h"
 #include "framework/mission/scan_objects.h"
 
@@ -174,7 +175,7 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
                    interruption.token());
   };
   const auto say = [&](const std::string& line) {
-    if (!invocation.quiet) std::cerr << line << std::endl;
+    if (!invocation.quiet) std::cerr << visible_text(line) << std::endl;
   };
   const fs::path folder =
       invocation.out.empty() ? fs::path("out") / "evaluate_scan" : invocation.out;
@@ -198,7 +199,8 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
     for (const ScanRow& row : rows) list.push_back(to_value(row));
     print_json(object);
   } else if (!invocation.quiet) {
-    std::cout << tables << "\nreport: " << (folder / "report.html").string() << std::endl;
+    std::cout << visible_text(tables)
+              << "\nreport: " << visible_line((folder / "report.html").string()) << std::endl;
   }
   return ExitStatus::done;
 }

@@ -11,6 +11,7 @@
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/parallel.h"
+#include "framework/core/visible_text.h"
 #include "framework/mission/explore_library.h"
 
 namespace lapwing {
@@ -230,8 +231,8 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
       return;
     const auto [ended, expected] = in_use.end(*name);
     if (!invocation.quiet)
-      std::cerr << trial.world + ": " + std::to_string(ended) + " of " + std::to_string(expected) +
-                       " episodes\n";
+      std::cerr << visible_line(trial.world) + ": " + std::to_string(ended) + " of " +
+                       std::to_string(expected) + " episodes\n";
   });
   if (interruption.token().cancelled()) throw Cancelled();
   std::call_once(stated_once, write_settings);  // nothing was missing, but worlds may have joined
@@ -250,13 +251,12 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     object.set("rows", tables.rows);
     print_json(object);
   } else if (!invocation.quiet) {
-    std::cout << tables.text;
+    std::cout << visible_text(tables.text);
     for (const auto& [world, own] : records.moves.as_map())
       std::cout << "\n"
-                << world
-                << " was explored by the moves that its scene recommends: " << settings_text(own)
-                << " (--moves KEY=VALUE sets others)";
-    std::cout << "\nreport: " << report << std::endl;
+                << visible_line(world) << " was explored by the moves that its scene recommends: "
+                << visible_line(settings_text(own)) << " (--moves KEY=VALUE sets others)";
+    std::cout << "\nreport: " << visible_line(report) << std::endl;
   }
   return ExitStatus::done;
 }

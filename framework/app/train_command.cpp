@@ -10,6 +10,7 @@
 #include "framework/config/overrides.h"
 #include "framework/core/files.h"
 #include "framework/core/parallel.h"
+#include "framework/core/visible_text.h"
 #include "framework/explore/trainable.h"
 #include "framework/mission/explore_library.h"
 
@@ -162,7 +163,7 @@ ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocatio
     write_samples(set, request.target / file_name(names[w].text(), episode));
     const auto [ended, expected] = in_use.end(names[w]);
     if (!invocation.quiet)
-      std::cerr << names[w].text() + ": " + std::to_string(ended) + " of " +
+      std::cerr << visible_line(names[w].text()) + ": " + std::to_string(ended) + " of " +
                        std::to_string(expected) + " episodes, this one of " +
                        std::to_string(set.size()) + " samples\n";
   });
@@ -195,7 +196,7 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
   fit.threads = invocation.threads;
   fit.cancellation = &interruption.token();
   fit.log = [&](const std::string& line) {
-    if (!invocation.quiet) std::cerr << line << std::endl;
+    if (!invocation.quiet) std::cerr << visible_text(line) << std::endl;
   };
   const Value figures =
       trainable.fit(training_parameters(trainable.fit_parameters(), invocation), fit);
@@ -229,7 +230,8 @@ ExitStatus score_model(const TrainRequest& request, const Invocation& invocation
     entry.set("samples", static_cast<std::int64_t>(count));
     entry.set("rho", std::isfinite(rho) ? Value(rho) : Value());
     entry.set("loss", loss);
-    if (!invocation.json) std::printf("%-24s %8zu %8.3f %8.3f\n", name.c_str(), count, rho, loss);
+    if (!invocation.json)
+      std::printf("%-24s %8zu %8.3f %8.3f\n", visible_line(name).c_str(), count, rho, loss);
   }
   if (invocation.json) print_json(object);
   return ExitStatus::done;
