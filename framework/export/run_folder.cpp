@@ -32,11 +32,6 @@ bool names_obstacle(const std::string& name) {
          (name.substr(end) == ".ply" || name.substr(end) == ".ot");
 }
 
-// A name that runs give their files.
-bool names_run_file(const std::string& name) {
-  return names_obstacle(name) || std::count(std::begin(kRunFiles), std::end(kRunFiles), name) > 0;
-}
-
 // What of the folder bears names that runs give their files.
 std::vector<std::string> run_files_in(const fs::path& folder) {
   std::vector<std::string> found;
