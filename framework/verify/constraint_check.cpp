@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 
+#include "framework/core/number_text.h"
 #include "framework/verify/checks.h"
 #include "framework/verify/constraint_evaluation.h"
 
@@ -59,6 +60,14 @@ class ConstraintJudge {
   }
 
   Check check() {
+    if (const auto outside = time_outside()) {
+      Check check = named_check(constraint_);
+      check.at = *outside;
+      check.detail = "it is asked at " + plain_number(*outside) + " s, and the flight lasts from " +
+                     plain_number(points_.front().motion.time) + " to " +
+                     plain_number(points_.back().motion.time) + " s";
+      return check;  // with nothing to report, and failed
+    }
     if (constraint_.times.empty())
       judge_samples();
     else
@@ -154,6 +163,15 @@ class ConstraintJudge {
     }
     return std::min(tolerances::kConstraintBend * bend / 8,
                     tolerances::kConstraintBetween * ranges_[row]);
+  }
+
+  // A time at which it is asked and there is no flight, if there is one.
+  std::optional<double> time_outside() const {
+    const double first = points_.front().motion.time, last = points_.back().motion.time;
+    for (const double time : constraint_.times)
+      if (!(time >= first - tolerances::kSpanTime && time <= last + tolerances::kSpanTime))
+        return time;
+    return std::nullopt;
   }
 
   void judge_times() {

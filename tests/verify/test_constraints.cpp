@@ -322,5 +322,26 @@ TEST(StatedConstraints, ADocumentThatIsMalformedIsRefusedWithItsKey) {
   refused("\"required\": true", "\"required\": 1", "constraints[1].required");
 }
 
+// Where there is no flight there is nothing that could meet it.
+TEST(StatedConstraints, ATimeOutsideTheFlightFails) {
+  const double end = reference_plan().trajectory.duration();
+  StatedConstraint constraint = west(1e6);
+  constraint.times = {end};
+  EXPECT_TRUE(judged_constraint(with(constraint)).pass);
+  constraint.times = {end + 1e-7};  // rounding
+  EXPECT_TRUE(judged_constraint(with(constraint)).pass);
+  for (const double time : {end + 1e-3, end + 100, -0.5}) {
+    constraint.times = {1, time};
+    const Certificate certificate = verify(with(constraint));
+    const Check& check = certificate.checks.back();
+    EXPECT_FALSE(check.pass) << time;
+    EXPECT_TRUE(check.skipped.empty()) << time;
+    EXPECT_EQ(check.at, time);
+    EXPECT_NE(check.detail.find("and the flight lasts from 0 to"), std::string::npos)
+        << check.detail;
+    EXPECT_FALSE(certificate.feasible()) << time;
+  }
+}
+
 }  // namespace
 }  // namespace lapwing
