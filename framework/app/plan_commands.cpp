@@ -22,7 +22,7 @@ void print_check(const Check& check) {
   verdict = tinted(!made ? Tone::faint : check.pass ? Tone::good : Tone::bad, verdict);
   const bool above = check.name == "provenance" && check.pass;  // in the lines before the checks
   const std::string result = above ? "as its sources say, see above" : result_of(check);
-  std::printf("  %s  %-22s %s%s\n", verdict.c_str(), check.name.c_str(),
+  std::printf("  %s  %-22s %s%s\n", verdict.c_str(), visible_line(check.name).c_str(),
               visible_line(result).c_str(),
               check.required || !check.skipped.empty() ? "" : " (reported only)");
 }
@@ -37,14 +37,14 @@ void warn_of_changes(const JudgedPlan& judged, const Judges& judges) {
     sections += (sections.empty() ? "" : ", ") + section.as_text();
   if (!sections.empty())
     std::fprintf(stderr, "lapwing: the plan was changed after it was planned: %s\n",
-                 sections.c_str());
+                 visible_line(sections).c_str());
   else if (own && stored && stored->type() == Value::Type::boolean && stored->as_boolean() != now)
     std::fprintf(stderr,
                  "lapwing: the plan says of itself that it is %scertified; its numbers say that "
                  "it is %scertified\n",
                  stored->as_boolean() ? "" : "not ", now ? "" : "not ");
   for (const std::string& change : judged.changes)
-    std::fprintf(stderr, "lapwing: %s\n", change.c_str());
+    std::fprintf(stderr, "lapwing: %s\n", visible_line(change).c_str());
 }
 
 }  // namespace
@@ -63,10 +63,10 @@ ExitStatus verify_plan(const std::filesystem::path& file, const Judges& judges,
     print_json(object);
   } else {
     const bool feasible = certificate.feasible();
-    std::printf("%s: %s\n%s", visible_line(judged.plan.mission).c_str(),
-                tinted(feasible ? Tone::good : Tone::bad, feasible ? "certified" : "not certified")
-                    .c_str(),
-                visible_text(judged.lines).c_str());
+    std::printf(
+        "%s: %s\n%s", visible_line(judged.plan.mission).c_str(),
+        tinted(feasible ? Tone::good : Tone::bad, feasible ? "certified" : "not certified").c_str(),
+        visible_text(judged.lines).c_str());
     for (const Check& check : certificate.checks) print_check(check);
   }
   return certificate.feasible() ? ExitStatus::done : ExitStatus::not_certified;
@@ -81,8 +81,10 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
   const JudgedPlan judged = judge_file(file);
   if (!judged.certificate.feasible()) {
     std::string failures;
-    for (const Check& check : judged.certificate.failures()) failures += "\n  " + to_line(check);
-    std::fprintf(stderr, "lapwing: '%s' is not certified%s%s\n", file.c_str(),
+    for (const Check& check : judged.certificate.failures())
+      failures += "\n  " + visible_line(to_line(check));
+    std::fprintf(stderr, "lapwing: '%s' is not certified%s%s\n",
+                 visible_line(file.string()).c_str(),
                  uncertified ? ", and exported all the same:" : ":", failures.c_str());
     if (!uncertified) {
       std::fprintf(stderr, "  nothing was written; --uncertified exports it all the same\n");
@@ -101,7 +103,7 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
   }
   for (const std::string& remark :
        in_plugin(*exporter, "remarks", [&] { return exporter->remarks(plan); }))
-    std::cerr << "lapwing: warning: " << remark << "\n";
+    std::cerr << "lapwing: warning: " << visible_line(remark) << "\n";
   return ExitStatus::done;
 }
 

@@ -140,6 +140,23 @@ TEST_F(Helping, EscapeSequencesAreShownAsText) {
   finished = run({"verify", "named.json"});
   EXPECT_EQ(finished.out.rfind("h\\x1b]0;pwned\\x07op: not certified\n", 0), 0u)  // it was changed
       << finished.out;
+  // Keys, constraints and certificates of an edited plan.
+  plan = read_file(folder_ / "out/hop/plan.json");
+  plan.replace(plan.find("\"stretch\""), 9, "\"\\u001b[31mRED\\u001b[2J\": 1, \"stretch\"");
+  plan.insert(plan.find("\"configuration\""),
+              "\"constraints\": [{\"name\": \"\\u001b[32mgreen\", \"required\": true, "
+              "\"operations\": [{\"op\": \"input\", \"block\": \"position\", \"component\": 0, "
+              "\"later\": 0}], \"results\": [{\"of\": 0, \"upper\": -5}]}],\n  ");
+  write("edited.json", plan);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"verify", "edited.json"},
+        std::vector<std::string>{"export", "edited.json", "--format", "csv", "-o", "x.csv"}}) {
+    finished = run(words);
+    EXPECT_EQ(finished.status, 1) << finished.err;
+    EXPECT_EQ((finished.out + finished.err).find('\x1b'), std::string::npos) << finished.err;
+    EXPECT_NE((finished.out + finished.err).find("\\x1b[31mRED"), std::string::npos);
+    EXPECT_NE((finished.out + finished.err).find("\\x1b[32mgreen"), std::string::npos);
+  }
   write("bad.lua", "error('a\\27[2Jb')");
   refused({"run", "bad.lua"}, {"a\\x1b[2Jb"});
   refused({"run", "a\x1b[2J.lua"}, {"a\\x1b[2J.lua"});
