@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/app/stated_values.h"
 #include "framework/config/lookup.h"
 #include "framework/config/yaml.h"
 #include "framework/core/checksum.h"
@@ -19,10 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestFile = std::size_t{1} << 30;  // bytes, as the verifier reads
 constexpr const char* kOwnTable = "the plan's configuration";
-
-bool same_number(double a, double b) {
-  return std::abs(a - b) <= 1e-12 * std::max({1.0, std::abs(a), std::abs(b)});
-}
 
 bool same_value(const Value& a, const Value& b) {
   if (a.is_number() && b.is_number()) return same_number(a.as_number(), b.as_number());
@@ -52,184 +49,6 @@ void add_differences(const Value& plan, const Value& source, const std::string& 
   found.push_back(key + " is " + shown(plan) + " in the plan and " + shown(source) + " in " +
                   source_name);
 }
-
-// Of a list in the configuration, the numbers of one key; nothing where it is none.
-std::optional<std::vector<double>> stated_numbers(const Value& table, const char* key) {
-  const Value* list = table.find(key);
-  if (!list || !list->is_list()) return std::nullopt;
-  std::vector<double> numbers;
-  for (const Value& entry : list->as_list()) {
-    if (!entry.is_number()) return std::nullopt;
-    numbers.push_back(entry.as_number());
-  }
-  return numbers;
-}
-std::optional<double> stated_number(const Value& table, const char* key) {
-  const Value* value = table.find(key);
-  return value && value->is_number() ? std::optional(value->as_number()) : std::nullopt;
-}
-std::string stated_text(const Value& table, const char* key) {
-  const Value* value = table.find(key);
-  return value && value->is_text() ? value->as_text() : "";
-}
-const Value::List& stated_tables(const Value& configuration, const char* key) {
-  static const Value::List none;
-  const Value* list = configuration.find(key);
-  if (!list || !list->is_list()) return none;
-  return list->as_list();
-}
-
-template <class Vector>
-bool same_vector(const std::vector<double>& given, const Vector& v) {
-  if (given.size() != static_cast<std::size_t>(v.size())) return false;
-  for (std::size_t i = 0; i < given.size(); ++i)
-    if (!same_number(given[i], v[static_cast<Eigen::Index>(i)])) return false;
-  return true;
-}
-
-bool same_zone(const Value& stated, const Zone& zone) {
-  const auto corners = stated_numbers(stated, "corners");
-  if (!corners || corners->size() != 2 * zone.corners.size()) return false;
-  for (std::size_t i = 0; i < zone.corners.size(); ++i)
-    if (!same_number((*corners)[2 * i], zone.corners[i].x()) ||
-        !same_number((*corners)[2 * i + 1], zone.corners[i].y()))
-      return false;
-  const Zone open;
-  const auto bound = [&](const char* key, double there, double absent) {
-    const double asked = stated_number(stated, key).value_or(absent);
-    return asked == there || same_number(asked, there);
-  };
-  return bound("floor", zone.floor, open.floor) && bound("ceiling", zone.ceiling, open.ceiling);
-}
-
-// Compares what a plan has with what its configuration asks for.
-class Configured {
- public:
-  explicit Configured(const Plan& plan) : plan_(plan), asked_(plan.configuration) {}
-
-  std::vector<std::string> weaker() {
-    if (!asked_.is_map() || plan_.kind != "film") return {};
-    obstacles();
-    zones();
-    keyframes();
-    subjects();
-    at_least("margin", plan_.environment.margin, "margin");
-    if (!plan_.task.framing.empty())
-      at_least("framing", plan_.task.framing_share, "share of framing");
-    const auto battery = stated_number(asked_, "battery");
-    if (battery && !(plan_.budget && *plan_.budget <= *battery * (1 + 1e-12)))
-      add("the budget is " + (plan_.budget ? plain_number(*plan_.budget) + " s" : "not stated"),
-          plain_number(*battery) + " s");
-    return std::move(found_);
-  }
-
- private:
-  void add(const std::string& here, const std::string& asked) {
-    found_.push_back(here + " in the plan and " + asked + " in its configuration");
-  }
-
-  void at_least(const char* key, double here, const std::string& what) {
-    const auto asked = stated_number(asked_, key);
-    if (asked && here < *asked && !same_number(here, *asked))
-      add("the " + what + " is " + plain_number(here), plain_number(*asked));
-  }
-
-  bool has(const Value& obstacle) const {
-    const Environment& e = plan_.environment;
-    const std::string type = stated_text(obstacle, "type");
-    const auto any = [](const auto& list, const auto& is) {
-      return std::any_of(list.begin(), list.end(), is);
-    };
-    if (type == "sphere") {
-      const auto center = stated_numbers(obstacle, "center");
-      const auto radius = stated_number(obstacle, "radius");
-      return !center || !radius || any(e.spheres, [&](const Sphere& s) {
-        return same_vector(*center, s.center) && same_number(*radius, s.radius);
-      });
-    }
-    if (type == "box") {
-      const auto lower = stated_numbers(obstacle, "lower"),
-                 upper = stated_numbers(obstacle, "upper");
-      return !lower || !upper || any(e.boxes, [&](const Box& b) {
-        return same_vector(*lower, b.lower) && same_vector(*upper, b.upper);
-      });
-    }
-    if (type == "no_fly_zone")
-      return any(e.zones, [&](const Zone& zone) { return same_zone(obstacle, zone); });
-    return true;  // files: they are counted
-  }
-
-  void obstacles() {
-    std::size_t meshes = 0, maps = 0, index = 0;
-    for (const Value& obstacle : stated_tables(asked_, "obstacles")) {
-      ++index;
-      if (!obstacle.is_map()) continue;
-      meshes += stated_text(obstacle, "type") == "mesh";
-      maps += stated_text(obstacle, "type") == "map";
-      if (!has(obstacle))
-        found_.push_back("obstacles[" + std::to_string(index) + "] of its configuration (" +
-                         stated_text(obstacle, "type") + " '" + stated_text(obstacle, "name") +
-                         "') is not in the plan as stated there");
-    }
-    const auto count = [&](const char* what, std::size_t here, std::size_t asked) {
-      if (here < asked)
-        add("there are " + std::to_string(here) + " " + what, std::to_string(asked));
-    };
-    count("meshes", plan_.environment.meshes.size(), meshes);
-    count("maps", plan_.environment.maps.size(), maps);
-  }
-
-  void zones() {
-    std::size_t index = 0;
-    for (const Value& zone : stated_tables(asked_, "flight_zones")) {
-      ++index;
-      const auto& zones = plan_.environment.flight_zones;
-      if (zone.is_map() && std::none_of(zones.begin(), zones.end(),
-                                        [&](const Zone& z) { return same_zone(zone, z); }))
-        found_.push_back("flight_zones[" + std::to_string(index) +
-                         "] of its configuration is not in the plan as stated there");
-    }
-  }
-
-  void keyframes() {
-    const Value::List& asked = stated_tables(asked_, "keyframes");
-    const auto& here = plan_.task.keyframes;
-    if (asked.empty()) return;
-    if (here.size() != asked.size())
-      return add("there are " + std::to_string(here.size()) + " keyframes",
-                 std::to_string(asked.size()));
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      const auto position = stated_numbers(asked[i], "position");
-      if (position && !same_vector(*position, here[i].position))
-        found_.push_back("keyframe " + std::to_string(i + 1) +
-                         " is elsewhere in the plan than in its configuration");
-    }
-    const auto hard = stated_number(asked_, "hard");
-    for (std::size_t i = 0; hard && i < here.size(); ++i)
-      if (here[i].tolerance > *hard && !same_number(here[i].tolerance, *hard))
-        return add("the tolerance of keyframe " + std::to_string(i + 1) + " is " +
-                       plain_number(here[i].tolerance) + " m",
-                   plain_number(*hard) + " m");
-  }
-
-  void subjects() {
-    for (const Value& asked : stated_tables(asked_, "subjects")) {
-      if (!asked.is_map() || !stated_number(asked, "distance")) continue;
-      const double distance = *stated_number(asked, "distance");
-      const std::string name = stated_text(asked, "name");
-      for (const Subject& subject : plan_.environment.subjects)
-        if (subject.name == name && subject.distance < distance &&
-            !same_number(subject.distance, distance))
-          add("the distance from subject '" + name + "' is " + plain_number(subject.distance) +
-                  " m",
-              plain_number(distance) + " m");
-    }
-  }
-
-  const Plan& plan_;
-  const Value& asked_;
-  std::vector<std::string> found_;
-};
 
 template <class Obstacle>
 std::vector<Obstacle> files_from(const Parameters& given, const char* list, const fs::path& file) {
@@ -335,10 +154,6 @@ std::vector<std::string> differences(const Value& plan, const Value& source,
   std::vector<std::string> found;
   add_differences(plan, source, source_name, "", found);
   return found;
-}
-
-std::vector<std::string> weaker_than_configured(const Plan& plan) {
-  return Configured(plan).weaker();
 }
 
 }  // namespace lapwing

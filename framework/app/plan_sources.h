@@ -1,5 +1,5 @@
-// Where a plan's vehicle, obstacles and task come from: the file that it names, its own
-// configuration, or files of whoever judges it.
+// Where a plan's vehicle and obstacles come from: the file that it names, its own configuration, or
+// files of whoever judges it.
 #pragma once
 
 #include <filesystem>
@@ -39,10 +39,5 @@ Plan with_environment(Plan plan, const std::filesystem::path& file);
 // in configs/...". Numbers count as equal to twelve digits.
 std::vector<std::string> differences(const Value& plan, const Value& source,
                                      const std::string& source_name);
-
-// What of its obstacles, margin, zones, keyframes, subjects, framing and budget a plan has weaker
-// than its own configuration asks for; it may have more. As far as the configuration states them in
-// the form that films have.
-std::vector<std::string> weaker_than_configured(const Plan& plan);
 
 }  // namespace lapwing

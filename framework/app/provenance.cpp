@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/app/configured_task.h"
 #include "framework/app/plan_sources.h"
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
@@ -127,10 +128,14 @@ class Examination {
     else
       take_vehicle(plan);
     if (judges.environment.empty()) {
-      for (std::string& fault : weaker_than_configured(plan)) faults_.push_back(std::move(fault));
+      ConfigurationComparison found = compare_with_configuration(plan);
+      for (std::string& fault : found.faults) faults_.push_back(std::move(fault));
+      not_compared_ = std::move(found.not_compared);
     } else {
       judged_ = with_environment(std::move(judged_), judges.environment);
+      not_compared_.push_back("obstacles and task: --environment judges");
     }
+    if (!compared_) not_compared_.insert(not_compared_.begin(), "the vehicle: it has no file");
     if (digest) compare_digest();
   }
 
@@ -159,6 +164,7 @@ class Examination {
       document.set("changed", texts(digest_->changed));
     }
     object.set("faults", texts(faults_));
+    object.set("not_compared", texts(not_compared_));
     object.set("remarks", texts(remarks_));
     return object;
   }
@@ -179,6 +185,7 @@ class Examination {
                : digest_->changed.empty() ? ", as it was written"
                                           : ", changed since it was written") +
               "\n";
+    for (const std::string& left : not_compared_) text += "  not compared  " + left + "\n";
     for (const std::string& remark : remarks_) text += "  note        " + remark + "\n";
     return text;
   }
@@ -258,7 +265,7 @@ class Examination {
   fs::path configs_;
   std::string source_;
   bool compared_ = false;  // its numbers were compared with a source's
-  std::vector<std::string> faults_, remarks_;
+  std::vector<std::string> faults_, remarks_, not_compared_;
 };
 
 // Of the plan as it was planned, not of what a judge put into it.

@@ -94,11 +94,11 @@ TEST_F(ProvenanceTest, EveryEditIsToldAndNamed) {
        true},
       {"task.keyframes",
        [](Value& d) { d.find("task")->find("keyframes")->as_list()[0].set("tolerance", 0.7); },
-       false},
+       true},
       {"task.keyframes", [](Value& d) { d.find("task")->find("keyframes")->as_list().pop_back(); },
        true},
       {"task.closed_loop_required (added)",
-       [](Value& d) { d.find("task")->set("closed_loop_required", false); }, false},
+       [](Value& d) { d.find("task")->set("closed_loop_required", false); }, true},
       {"mission", [](Value& d) { d.set("mission", "another"); }, false},
       {"configuration.margin", [](Value& d) { d.find("configuration")->set("margin", 0.2); },
        false},
@@ -235,7 +235,8 @@ TEST_F(ProvenanceTest, WhatAnotherCertificateSaidIsToldWhereTheVerdictStays) {
   changed.find("task")->find("keyframes")->as_list()[1].set("tolerance", 0.7);
   save(changed, true);
   const Finished judged = run({"verify", plan_.string()});
-  EXPECT_EQ(judged.status, 0);
+  EXPECT_EQ(judged.status, 1);
+  EXPECT_THAT(judged.out, HasSubstr("the tolerance of keyframe 1 is 0.7 m in the plan and 0.5 m"));
   EXPECT_THAT(judged.err, HasSubstr("keyframe_miss was judged by a limit of 0.5 when it was "
                                     "planned, and is now by 0.7 m"));
 }

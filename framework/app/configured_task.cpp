@@ -1,0 +1,166 @@
+#include "framework/app/configured_task.h"
+
+#include "framework/app/stated_values.h"
+#include "framework/core/number_text.h"
+
+namespace lapwing {
+namespace {
+
+struct Kind {
+  const char* name;
+  std::vector<const char*> options;  // that missions of this kind alone have, all of them
+  void (*compare)(const Plan&, ConfigurationComparison&);
+};
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all{
+      {"film", {"passages", "path_tolerance", "stretch", "timing"}, compare_film},
+      {"race", {"closed_loop", "laps", "rate_share", "refinements"}, compare_race},
+      {"scan", {"candidates", "closed_loop", "motions", "tour"}, compare_scan},
+      {"light_painting", {"reorder", "rounding", "slowest", "origin"}, compare_light_painting}};
+  return all;
+}
+
+bool has_all(const Value& configuration, const std::vector<const char*>& options) {
+  return std::all_of(options.begin(), options.end(),
+                     [&](const char* option) { return configuration.find(option) != nullptr; });
+}
+
+bool same_zone(const Value& stated, const Zone& zone) {
+  const auto corners = stated_numbers(stated, "corners");
+  if (!corners || corners->size() != 2 * zone.corners.size()) return false;
+  for (std::size_t i = 0; i < zone.corners.size(); ++i)
+    if (!same_number((*corners)[2 * i], zone.corners[i].x()) ||
+        !same_number((*corners)[2 * i + 1], zone.corners[i].y()))
+      return false;
+  const Zone open;
+  return same_number(stated_number(stated, "floor").value_or(open.floor), zone.floor) &&
+         same_number(stated_number(stated, "ceiling").value_or(open.ceiling), zone.ceiling);
+}
+
+template <class List, class Is>
+bool any(const List& list, const Is& is) {
+  return std::any_of(list.begin(), list.end(), is);
+}
+
+// A mesh or a map bears its name, or its file's.
+template <class List>
+bool has_file(const Value& obstacle, const List& list) {
+  const std::string own = stated_text(obstacle, "name");
+  const std::string name = own.empty() ? stated_text(obstacle, "file") : own;
+  return any(list, [&](const auto& one) { return one.name == name; });
+}
+
+bool has_obstacle(const Value& obstacle, const Environment& e) {
+  const std::string type = stated_text(obstacle, "type");
+  if (type == "sphere") {
+    const auto center = stated_numbers(obstacle, "center");
+    const auto radius = stated_number(obstacle, "radius");
+    return !center || !radius || any(e.spheres, [&](const Sphere& s) {
+      return same_vector(*center, s.center) && same_number(*radius, s.radius);
+    });
+  }
+  if (type == "box") {
+    const auto lower = stated_numbers(obstacle, "lower"), upper = stated_numbers(obstacle, "upper");
+    return !lower || !upper || any(e.boxes, [&](const Box& b) {
+      return same_vector(*lower, b.lower) && same_vector(*upper, b.upper);
+    });
+  }
+  if (type == "no_fly_zone")
+    return any(e.zones, [&](const Zone& zone) { return same_zone(obstacle, zone); });
+  if (type == "mesh") return has_file(obstacle, e.meshes);
+  if (type == "map") return has_file(obstacle, e.maps);
+  return true;
+}
+
+void compare_obstacles(const Plan& plan, ConfigurationComparison& found) {
+  const Environment& e = plan.environment;
+  std::size_t meshes = 0, maps = 0, index = 0;
+  for (const Value& obstacle : stated_tables(plan.configuration, "obstacles")) {
+    ++index;
+    meshes += stated_text(obstacle, "type") == "mesh";
+    maps += stated_text(obstacle, "type") == "map";
+    if (!has_obstacle(obstacle, e))
+      found.faults.push_back("obstacles[" + std::to_string(index) + "] of its configuration (" +
+                             stated_text(obstacle, "type") + " '" + stated_text(obstacle, "name") +
+                             "') is not in the plan as stated there");
+  }
+  const auto count = [&](const char* what, std::size_t here, std::size_t asked) {
+    if (here < asked)
+      found.faults.push_back(otherwise(std::string("the number of ") + what, std::to_string(here),
+                                       std::to_string(asked)));
+  };
+  count("meshes", e.meshes.size(), meshes);
+  count("maps", e.maps.size(), maps);
+  if (meshes + maps > 0)
+    found.not_compared.push_back(
+        "what the files of meshes and maps hold: they are compared by name and number");
+}
+
+void compare_zones(const Plan& plan, ConfigurationComparison& found) {
+  const std::vector<Zone>& zones = plan.environment.flight_zones;
+  std::size_t index = 0;
+  for (const Value& zone : stated_tables(plan.configuration, "flight_zones")) {
+    ++index;
+    if (!any(zones, [&](const Zone& z) { return same_zone(zone, z); }))
+      found.faults.push_back("flight_zones[" + std::to_string(index) +
+                             "] of its configuration is not in the plan as stated there");
+  }
+  const Value* volume = plan.configuration.find("volume");
+  if (!volume || !volume->is_map()) return;
+  const auto low = stated_numbers(*volume, "lower"), high = stated_numbers(*volume, "upper");
+  if (!low || !high || low->size() != 3 || high->size() != 3) return;
+  const std::vector<double>&l = *low, &h = *high;
+  Value box = Value::map();
+  Value::List corners;
+  for (const double c : {l[0], l[1], h[0], l[1], h[0], h[1], l[0], h[1]}) corners.push_back(c);
+  box.set("corners", Value(corners));
+  box.set("floor", l[2]);
+  box.set("ceiling", h[2]);
+  if (!any(zones, [&](const Zone& z) { return same_zone(box, z); }))
+    found.faults.push_back("the volume of its configuration is not in the plan as stated there");
+}
+
+}  // namespace
+
+std::string otherwise(const std::string& what, const std::string& here, const std::string& asked) {
+  return what + " is " + here + " in the plan and " + asked + " in its configuration";
+}
+
+void compare_number(const std::string& what, double here, std::optional<double> asked,
+                    const std::string& unit, Than wrong, ConfigurationComparison& found) {
+  if (!asked || same_number(here, *asked)) return;
+  if ((wrong == Than::above && here < *asked) || (wrong == Than::below && here > *asked)) return;
+  found.faults.push_back(otherwise(what, plain_number(here) + unit, plain_number(*asked) + unit));
+}
+
+void compare_surroundings(const Plan& plan, ConfigurationComparison& found) {
+  compare_obstacles(plan, found);
+  compare_zones(plan, found);
+  compare_number("the margin", plan.environment.margin, stated_number(plan.configuration, "margin"),
+                 " m", Than::below, found);
+}
+
+ConfigurationComparison compare_with_configuration(const Plan& plan) {
+  ConfigurationComparison found;
+  if (!plan.configuration.is_map()) {
+    found.not_compared.push_back("obstacles and task: the plan states no configuration");
+    return found;
+  }
+  for (const Kind& kind : kinds()) {
+    // The options tell the kind where another name was put on the plan.
+    const bool by_options = has_all(plan.configuration, kind.options);
+    if (by_options && plan.kind != kind.name)
+      found.faults.push_back("the kind is '" + plan.kind +
+                             "' in the plan, and its configuration has the options of '" +
+                             kind.name + "'");
+    if (!by_options && plan.kind != kind.name) continue;
+    kind.compare(plan, found);
+    return found;
+  }
+  found.not_compared.push_back("obstacles and task: missions of kind '" + plan.kind +
+                               "' are not compared with their configuration");
+  return found;
+}
+
+}  // namespace lapwing

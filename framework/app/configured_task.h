@@ -1,0 +1,39 @@
+// What a plan's own configuration says of its obstacles and its task.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/trajectory/plan.h"
+
+namespace lapwing {
+
+struct ConfigurationComparison {
+  std::vector<std::string> faults;        // where the plan asks for less, a sentence each
+  std::vector<std::string> not_compared;  // what was left out and why, a phrase each
+};
+
+// Compares a plan with its configuration: obstacles, zones, margin, keyframes with their times,
+// yaws and tolerances, subjects, framing, cuts, bystanders, constraints and budget of films; gates
+// of races; region, camera, margin, budget and tolerances of scans; tolerance and view of light
+// paintings. A plan may ask for more. What the configuration leaves to a file or to the script, and
+// missions of other kinds, are said to be not compared.
+ConfigurationComparison compare_with_configuration(const Plan& plan);
+
+// ---- parts, by the kind of mission --------------------------------------------------------------
+
+void compare_film(const Plan& plan, ConfigurationComparison& found);
+void compare_race(const Plan& plan, ConfigurationComparison& found);
+void compare_scan(const Plan& plan, ConfigurationComparison& found);
+void compare_light_painting(const Plan& plan, ConfigurationComparison& found);
+void compare_surroundings(const Plan& plan, ConfigurationComparison& found);
+
+// "the margin is 0.1 m in the plan and 0.5 m in its configuration"
+std::string otherwise(const std::string& what, const std::string& here, const std::string& asked);
+// The fault that a number is above, below, or not what the configuration states; none where it
+// states nothing.
+enum class Than { above, below, other };
+void compare_number(const std::string& what, double here, std::optional<double> asked,
+                    const std::string& unit, Than wrong, ConfigurationComparison& found);
+
+}  // namespace lapwing
