@@ -1,6 +1,7 @@
 // Snippets of the guides: what a README tells its reader to type.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -40,6 +41,33 @@ inline std::vector<Snippet> snippets_of(const std::filesystem::path& readme,
     }
   }
   return snippets;
+}
+
+// Every README and guide of the project, sorted.
+inline std::vector<std::filesystem::path> guides_in(const std::filesystem::path& source) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> files;
+  for (auto at = fs::recursive_directory_iterator(source); at != fs::end(at); ++at) {
+    const std::string name = at->path().filename().string();
+    if (at->is_directory() && (name[0] == '.' || name == "build" || name == "out"))
+      at.disable_recursion_pending();
+    else if (at->path().extension() == ".md")
+      files.push_back(at->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// The folder of `configs/` whose `small` makes a mission quick that takes minutes as it stands; ""
+// for Lua that does not.
+inline std::string slow_kind(const std::string& lua) {
+  constexpr const char* kKinds[][2] = {
+      {"mission.map", "mapping"}, {"mission.scan", "scan"}, {"mission.explore", "explore"}};
+  for (const auto& [module, kind] : kKinds)
+    if (lua.find("\"" + std::string(module) + "\"") != lua.npos ||
+        lua.find("'" + std::string(module) + "'") != lua.npos)
+      return kind;
+  return "";
 }
 
 }  // namespace lapwing

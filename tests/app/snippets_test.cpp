@@ -76,11 +76,9 @@ class Snippets : public CommandLine {
     }
     const bool fields = !has(text, "return ") || text.rfind("costs", 0) == 0;
     write("snippet.lua", fields ? kFilm + text + "}" : text);
-    // Maps, scans and explorations take minutes; their options are checked all the same.
-    const bool quick = fields || has(text, "mission.film") || has(text, "mission.race") ||
-                       has(text, "mission.light_painting");
+    // Maps, scans and explorations take minutes: tests/missions/long runs them.
     expect({"config", "snippet.lua"}, 0, "");
-    if (quick) expect({"run", "snippet.lua"}, 0, ": certified");
+    if (fields || slow_kind(text).empty()) expect({"run", "snippet.lua"}, 0, ": certified");
   }
 
   // A configuration of whichever kind of mission has the key.
@@ -127,16 +125,7 @@ constexpr std::size_t kMostExcerpts = 8;
 TEST_F(Snippets, OfEveryReadmeHold) {
   const fs::path source(LAPWING_SOURCE_DIR);
   std::size_t excerpts = 0, run = 0;
-  std::vector<fs::path> files;
-  for (auto at = fs::recursive_directory_iterator(source); at != fs::end(at); ++at) {
-    const std::string name = at->path().filename().string();
-    if (at->is_directory() && (name[0] == '.' || name == "build" || name == "out"))
-      at.disable_recursion_pending();
-    else if (at->path().extension() == ".md")
-      files.push_back(at->path());
-  }
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) {
+  for (const fs::path& file : guides_in(source)) {
     const std::string name = file.lexically_relative(source).string();
     if (std::find(std::begin(kFollowed), std::end(kFollowed), name) != std::end(kFollowed))
       continue;
