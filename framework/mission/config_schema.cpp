@@ -163,7 +163,10 @@ class SchemaWriter {
   // A list of tables: by its `type` of one plugin, or without one the mission's own entries.
   Value plugins_schema_of(const Value& entry) {
     const std::string kind = text_at(entry, "kind");
-    Value::List forms{object_of(properties_of(entry.at("table")))};
+    Value function = entry.at("table");
+    if (const Value* more = entry.find("functions"))
+      for (const Value& one : more->as_list()) function.push_back(one);
+    Value::List forms{object_of(properties_of(function))};
     for (const PluginEntry& plugin : registry_.entries()) {
       if (plugin.kind != kind) continue;
       Value properties = properties_of(plugin.parameters.to_value()), constant = Value::map();

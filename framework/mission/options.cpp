@@ -103,12 +103,14 @@ OptionDeclarations OptionDeclarations::from_value(const Value& list) {
     if (!declaration.find("summary")) declaration.set("summary", "");
     if (const Value* settled = declaration.find("settled")) option.settled = *settled;
     if (const Value* under = declaration.find("under")) option.under = under->as_text();
+    if (const Value* functions = declaration.find("functions")) option.functions = *functions;
     if (!option.plugin_kind.empty()) {
       if (const Value* own = declaration.find("table")) option.own = *own;
       declaration = without(declaration, {"table"});
     }
     if (const Value* also = declaration.find("also")) option.also = also->as_text();
-    option.declaration = without(declaration, {"kind", "words", "settled", "under", "also"});
+    option.declaration =
+        without(declaration, {"kind", "words", "settled", "under", "also", "functions"});
     plain.push_back(option.declaration);
     declarations.options_.push_back(std::move(option));
   }
@@ -126,6 +128,7 @@ Value OptionDeclarations::to_value() const {
       if (!option.plugins) entry.set("under", option.under);
       if (option.settled.is_map()) entry.set("settled", option.settled);
       if (option.own.is_list()) entry.set("table", option.own);
+      if (option.functions.is_list()) entry.set("functions", option.functions);
     }
     if (option.vehicle) entry.set("type", "vehicle");
     if (!option.also.empty()) entry.set("also", option.also);
@@ -260,6 +263,8 @@ Value OptionDeclarations::checked_plugins(const Option& option, const Value* giv
       for (const Value& one : of_plugin.as_list())
         if (!own.find(one.at("name").as_text())) parameters.push_back(one);
       table = std::move(parameters);
+    } else if (option.functions.is_list()) {
+      for (const Value& one : option.functions.as_list()) table.push_back(one);
     }
     all.push_back(lapwing::check(ParameterTable::from_value(table), entry, what, errors).value());
   }

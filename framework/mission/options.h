@@ -10,7 +10,8 @@
 //       table = {...}: entries of the mission's own beside the plugin's parameters
 //   type = "plugins", kind = "cost_term", table = {...}
 //       a list of tables, each with a plugin's `type`, its parameters and the mission's own
-//       entries; one without `type` has the mission's own entries alone
+//       entries; one without `type`, a function of the script, has the mission's own entries and
+//       functions = {...}: entries of functions alone
 //   type = "vehicle"               a vehicle file's name, or a table as in such a file
 //   words = {"auto"}               on a number: these texts are allowed as well
 //   also = "string"                a short form that the kind itself writes out, for annotations
@@ -44,6 +45,7 @@ inline constexpr BoundField kDeclarationKeys[] = {
     {"words?", "string[]", "texts that are allowed in place of a number"},
     {"settled?", "table<string, string>", "parameters of a plugin that cannot be set, and why"},
     {"under?", "string", "the key that names a plugin, in place of `type`"},
+    {"functions?", "lapwing.option[]", "of plugins: entries of those that are functions alone"},
     {"also?", "string", "what else a script may give, for editors: a type as LuaLS writes it"}};
 
 class OptionDeclarations {
@@ -74,6 +76,7 @@ class OptionDeclarations {
     Value settled;               // of a plugin: parameters that cannot be set, and why
     std::string under = "type";  // of a plugin: the key that names it
     Value own;                   // of a plugin: entries of the mission's own; null or a list
+    Value functions;             // of plugins: entries of functions alone; null or a list
     std::string also;            // a short form, for annotations
     bool vehicle = false;
     bool plugins = false;  // a list of them

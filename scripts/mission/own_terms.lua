@@ -6,9 +6,10 @@
 --             { type = "input_effort", weight = 0.1 } },
 --   constraints = { { name = "west", upper = 4, value = function(s) return s.position.x end } },
 --
--- All parameters of a plugin are options, and so are the name and the weight of a function
--- (`--set costs[1].weight=2`, `--set costs[2].height=6`); the rest of a function is handed on to
--- the problem, which checks it.
+-- All parameters of a plugin are options, and so are the name and the weight of a function, and the
+-- bounds and the certificate of a constraint (`--set costs[1].weight=2`, `--set costs[2].height=6`,
+-- `--set constraints[1].upper=5`); the rest of a function is handed on to the problem, which checks
+-- it.
 local own = {}
 
 local name = { name = "name", type = "text", summary = "for messages and reports" }
@@ -18,9 +19,21 @@ own.declared = {
     table = { name, { name = "weight", type = "number", default = 1, minimum = 0, maximum = 1e9,
                       summary = "of its squares" } } },
   { name = "constraints", type = "plugins", kind = "constraint", also = "lapwing.own_constraint[]",
-    summary = "constraints beside those of the mission", table = { name } },
+    summary = "constraints beside those of the mission", table = { name },
+    functions = {
+      { name = "lower", type = "number", summary = "every value at least; a script may list them" },
+      { name = "upper", type = "number", summary = "every value at most; a script may list them" },
+      { name = "certificate", type = "choice", choices = { "required", "reported" },
+        default = "required", summary = "what a broken one comes to" } } },
 }
-local settled = { name = true, weight = true }
+
+-- What of a function is an option. Lists of bounds are the script's alone.
+local function settled(list, key, value)
+  if key == "lower" or key == "upper" then
+    return list == "constraints" and type(value) == "number" and math.abs(value) < math.huge
+  end
+  return key == "name" or key == "weight" or list == "constraints" and key == "certificate"
+end
 
 -- Takes out of `options`, which is changed, what is no plain data, and returns it.
 function own.taken(options)
@@ -38,7 +51,8 @@ function own.taken(options)
       end
       local kept, other = {}, {}
       for key, value in pairs(entry) do
-        local plain = settled[key] or entry.type ~= nil and type(value) ~= "function"
+        local plain = entry.type ~= nil and type(value) ~= "function"
+                      or settled(list, key, value)
         if plain then kept[key] = value else other[key] = value end
       end
       if kept.weight and list == "constraints" then

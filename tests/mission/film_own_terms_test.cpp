@@ -152,6 +152,49 @@ TEST_F(FilmOwnTerms, ParametersOfPluginsAreOptions) {
          "shot.lua:1: costs[1].hight: unknown key; did you mean 'height'?");
 }
 
+TEST_F(FilmOwnTerms, BoundsAndCertificateOfAFunctionAreOptions) {
+  const std::string text = west("upper = 4");
+  const auto mission = load(text);
+  mission->configure({},
+                     std::vector<std::string>{"constraints[1].upper=9", "constraints[1].lower=-0.5",
+                                              "constraints[1].certificate=reported"});
+  const Value& set = mission->configuration().at("constraints").as_list()[0];
+  EXPECT_EQ(set.at("upper").as_number(), 9);
+  EXPECT_EQ(set.at("upper").origin().source, "--set");
+  const MissionResult result = mission->plan();
+  ASSERT_EQ(result.plan.constraints.size(), 1u);
+  EXPECT_EQ(result.plan.constraints[0].results[0].upper, 9);
+  EXPECT_EQ(result.plan.constraints[0].results[0].lower, -0.5);
+  EXPECT_FALSE(result.plan.constraints[0].required);
+  const auto plain = load(text);
+  plain->configure({}, {});
+  const Value& own = plain->configuration().at("constraints").as_list()[0];
+  EXPECT_EQ(own.at("upper").as_number(), 4);
+  EXPECT_EQ(own.at("certificate").as_text(), "required");
+  EXPECT_EQ(own.find("lower"), nullptr);
+  // A bound for every result takes the place of a list.
+  const std::string list = shot(
+      "constraints = { { name = 'place', upper = {9, 9}, value = function(s) return s.position.x, "
+      "s.position.z end } }");
+  EXPECT_EQ(flown(list).plan.constraints[0].results[1].upper, 9);
+  EXPECT_EQ(flown(list, {"constraints[1].upper=20"}).plan.constraints[0].results[1].upper, 20);
+  // A bound that the script leaves open can be given.
+  EXPECT_EQ(flown(west("parameters = {}"), {"constraints[1].upper=9"})
+                .plan.constraints[0]
+                .results[0]
+                .upper,
+            9);
+  expect(text, "constraints[1].uper: unknown key; did you mean 'upper'?",
+         {"constraints[1].uper=5"});
+  expect(text, "constraints[1].upper: expected", {"constraints[1].upper=high"});
+  expect(text, "constraints[1].certificate", {"constraints[1].certificate=never"});
+  // Those of a plugin are the plugin's own.
+  expect(shot("constraints = { { type = 'input_limits', upper = 4 } }"),
+         "constraints[1].upper: unknown key");
+  expect(shot("constraints = { { type = 'input_limits' } }"), "constraints[1].certificate",
+         {"constraints[1].certificate=reported"});
+}
+
 TEST_F(FilmOwnTerms, ASpeedTimesTheKeyframes) {
   const MissionResult result = flown(
       "return require('mission.film').shot { speed = 4, speed_limit = 4.5, keyframes = { "
