@@ -37,6 +37,20 @@ Eigen::AlignedBox3d planning_bounds(const Environment& environment, const Eigen:
   return {lower, box.max() + Eigen::Vector3d::Constant(kRoom)};
 }
 
+// With bystanders that stand still as spheres of the distance that is kept from them, beside the
+// margin that every obstacle has. One who stands so near to an end of the way that no way there
+// keeps the distance is left to the solver.
+Environment with_bystanders(Environment environment, const Eigen::Vector3d& from,
+                            const Eigen::Vector3d& to) {
+  for (const Subject& subject : environment.subjects) {
+    if (subject.filmed || subject.positions.size() != 1) continue;
+    const Eigen::Vector3d& middle = subject.positions[0];
+    if (std::min((from - middle).norm(), (to - middle).norm()) < subject.distance) continue;
+    environment.spheres.push_back({subject.name, middle, subject.distance - environment.margin});
+  }
+  return environment;
+}
+
 Way way_of(const Value& given, const Origin& origin, const std::string& what) {
   Way way;
   for (const Value& place : given.is_list() ? given.as_list() : Value::List{}) {
@@ -88,12 +102,13 @@ int plan_way(lua_State* state) {
   const PluginChoice chosen = plugin_choice(state, -1, "planner");
   const auto planner =
       run.settings.registry->create<PathPlanner>(chosen.type, chosen.parameters, "planner");
-  const Environment& environment = object.problem->environment();
-  const auto space = free_space_of(environment, given.number("more"));
   PathProblem problem;
-  problem.space = space.get();
   problem.start = Eigen::Vector3d(given.numbers("from").data());
   problem.goal = Eigen::Vector3d(given.numbers("to").data());
+  const Environment environment =
+      with_bystanders(object.problem->environment(), problem.start, problem.goal);
+  const auto space = free_space_of(environment, given.number("more"));
+  problem.space = space.get();
   problem.bounds = planning_bounds(environment, problem.start, problem.goal);
   PathRequest request;
   request.seed = run.settings.seed;
@@ -124,7 +139,8 @@ int grow_corridor_of_problem(lua_State* state) {
   lua_getfield(state, 2, "way");
   const Way way =
       way_of(value_from_lua(state, -1, origin, "grow_corridor.way"), origin, "grow_corridor.way");
-  const Environment& environment = object.problem->environment();
+  const Environment environment =
+      with_bystanders(object.problem->environment(), way.front(), way.back());
   std::vector<CorridorBox> boxes;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));

@@ -34,6 +34,9 @@ local function obstructed(environment)
   for _, form in ipairs { "spheres", "boxes", "zones", "meshes", "maps", "flight_zones" } do
     count = count + #environment[form]
   end
+  for _, subject in ipairs(environment.subjects or {}) do  -- bystanders that stand still
+    if subject.filmed == false and #subject.track == 1 then count = count + 1 end
+  end
   return count > 0
 end
 

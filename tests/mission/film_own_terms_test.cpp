@@ -247,6 +247,29 @@ TEST_F(FilmOwnTerms, BystandersAreKeptAwayFrom) {
   expect(shot("keep_away = { { distance = 4 } }"), "keep_away[1]: expected a position");
 }
 
+// On the straight way, under a ceiling: no direction is better than the other there, so that the
+// solver alone finds none.
+TEST_F(FilmOwnTerms, OneWhoStandsInTheWayIsFlownRound) {
+  const MissionResult result = flown(
+      "return require('mission.film').shot { hard = 0.3, volume = { lower = {-40, -40, 0.5}, upper "
+      "= {60, 40, 7} }, keyframes = { { time = 0, position = {-12, 0, 2} }, { time = 40, position "
+      "= {12, 0, 2} } }, keep_away = { { position = {0, 0, 1.7}, distance = 10 } } }");
+  const Certificate certificate = verify(result.plan);
+  for (const Check& check : certificate.failures()) ADD_FAILURE() << to_line(check);
+  EXPECT_GE(*find(certificate, "subject_distance")->worst, 9.999);
+  EXPECT_TRUE(result.notes.empty()) << result.notes[0];
+  EXPECT_EQ(result.plan.task.keyframes.back().time, 40);
+}
+
+// A keyframe may lie a little within the distance: the flight misses it by as much.
+TEST_F(FilmOwnTerms, OneWhoStandsAtAnEndIsLeftToTheSolver) {
+  const MissionResult result =
+      flown(shot("keep_away = { { position = {8, 0, 3}, distance = 2.2 } }"));
+  const Certificate certificate = verify(result.plan);
+  for (const Check& check : certificate.failures()) ADD_FAILURE() << to_line(check);
+  EXPECT_EQ(result.plan.task.keyframes.back().time, 10);
+}
+
 TEST_F(FilmOwnTerms, AnOrbitIsEven) {
   for (const double ramp : {2.0, 0.0}) {
     const MissionResult result = flown(
