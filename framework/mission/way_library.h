@@ -12,8 +12,9 @@ inline constexpr BoundField kWayObjects[] = {
 inline constexpr BoundField kCorridorWay[] = {{"way", "number[][]", "places, m, world"}};
 
 // problem:plan_way{from =, to =, planner =, more =, excluded = {way, ...}, tries =}: {{x, y, z},
-// ...}, a free way that keeps the margin and `more` metres and goes through a passage that none of
-// the excluded ways has; or nothing and why there is none.
+// ...}, a free way that keeps the margin, the distance to bystanders that stand still, and `more`
+// metres, and goes through a passage that none of the excluded ways has; or nothing and why there
+// is none.
 int plan_way(lua_State* state);
 
 // problem:grow_corridor{way = {{x, y, z}, ...}}: {{from =, to =, lower =, size =}, ...}, free boxes
