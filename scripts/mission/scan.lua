@@ -71,8 +71,8 @@ local function graph_of(run, known, vehicle, starts, finish)
   return run:scan_graph {
     prior = known, vehicle = vehicle, region = region,
     allowed = space.room(run, starts),
-    starts = first.few(starts, finish, c.most), fixed = o.start ~= nil or o.exploration.images > 0, needed = finish,
-    body = o.body, mesh_room = o.mesh_room,
+    starts = first.few(starts, finish, c.most), needed = finish,
+    fixed = o.start ~= nil or o.exploration.images > 0, body = o.body, mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
       step_growth = c.step_growth,
