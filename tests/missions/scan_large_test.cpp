@@ -33,8 +33,9 @@ return require("mission.scan").of_mesh {
     return run("--set input=field.obj --data '" + folder_.string() + "' " + more, "field.lua");
   }
   std::string notes() const {
+    const Value said = answer();
     std::string notes;
-    for (const Value& note : answer().at("notes").as_list()) notes += note.as_text() + "\n";
+    for (const Value& note : said.at("notes").as_list()) notes += note.as_text() + "\n";
     return notes;
   }
 };
