@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "framework/core/units.h"
 
@@ -44,8 +46,12 @@ constexpr Range kLevelSpeed{0.01, 200};     // m/s; the fastest made flies 160
 constexpr Range kAcceleration{0.01, 1000};  // m/s^2
 constexpr Range kYawRate{0.1, 1e4};         // deg/s
 constexpr Range kFlightTime{5, 1e6};        // s; on a cable there is no end
-constexpr Range kFocal{0.1, 1000};          // focal length in widths of the image: 157 to 0.06 deg
-constexpr Range kSquareness{0.5, 2};        // of a pixel
+// The narrowest and slowest gimbals made turn by tens of degrees. In radians, half a turn is 3.
+constexpr Range kGimbalPitch{3.2, 181};  // deg, from end to end
+constexpr Range kGimbalYaw{6.3, 361};    // deg, likewise
+constexpr Range kGimbalRate{2, 1e4};     // deg/s
+constexpr Range kFocal{0.1, 1000};       // focal length in widths of the image: 157 to 0.06 deg
+constexpr Range kSquareness{0.5, 2};     // of a pixel
 
 std::string shown(double value) {
   char buffer[32];
@@ -55,6 +61,16 @@ std::string shown(double value) {
 
 std::string shown(double value, const char* unit) {
   return shown(value) + (*unit ? " " : "") + unit;
+}
+
+// The significant digits of a figure, 16 where it is not a short decimal.
+int digits_of(double value) {
+  for (int digits = 1; digits < 12; ++digits) {
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%.*e", digits - 1, value);
+    if (std::abs(std::atof(buffer) - value) <= 1e-12 * std::abs(value)) return digits;
+  }
+  return 16;
 }
 
 class Plausibility {
@@ -70,18 +86,37 @@ class Plausibility {
     if (mass && arm) inertia();
     if (mass) thrust();
     limits();
+    if (v_.gimbal) {
+      const GimbalLimits& g = *v_.gimbal;
+      gimbal("yaw", g.yaw_min, g.yaw_max, g.yaw_rate_max, kGimbalYaw);
+      gimbal("pitch", g.pitch_min, g.pitch_max, g.pitch_rate_max, kGimbalPitch);
+    }
     camera();
   }
 
  private:
-  // "; is it mm? Then write '230 mm'", of the first unit in which the value is one that real
-  // vehicles have.
-  static std::string unit_hint(double value, const Range& range, std::span<const OtherUnit> units) {
-    for (const OtherUnit& unit : units) {
-      if (!range.holds(value * unit.size)) continue;
-      return std::string("; is it ") + unit.name + "? Then write '" + shown(value, unit.name) + "'";
+  // "; is it mm? Then write '230 mm'": the number that was written, with the first unit in which it
+  // is one that real vehicles have. A file may have written another unit than `base`, in which the
+  // value comes: the one that gives the shortest number, 900 h rather than 3.24e6 s.
+  static std::string unit_hint(double value, const Range& range, std::span<const OtherUnit> units,
+                               const char* base) {
+    std::vector<OtherUnit> all{{base, 1}};
+    all.insert(all.end(), units.begin(), units.end());
+    int fewest = 17;
+    std::string hint;
+    for (const OtherUnit& written : all) {
+      const double number = value / written.size;
+      const int digits = digits_of(number);
+      if (digits >= fewest) continue;
+      for (const OtherUnit& meant : all) {
+        if (!range.holds(number * meant.size)) continue;
+        fewest = digits;
+        hint = std::string("; is it ") + meant.name + "? Then write '" + shown(number, meant.name) +
+               "'";
+        break;
+      }
     }
-    return "";
+    return hint;
   }
 
   // Whether a figure lies in its range.
@@ -89,7 +124,8 @@ class Plausibility {
              std::span<const OtherUnit> units, std::optional<Range> likely = {}) {
     if (range.holds(value)) return true;
     add_(key, shown(value, unit) + " is not what a multirotor has (" + shown(range.low) + " to " +
-                  shown(range.high, unit) + ")" + unit_hint(value, likely.value_or(range), units));
+                  shown(range.high, unit) + ")" +
+                  unit_hint(value, likely.value_or(range), units, unit));
     return false;
   }
 
@@ -110,7 +146,7 @@ class Plausibility {
       add_("inertia", shown(value, "kg m^2") + " for a mass of " + shown(v_.mass, "kg") +
                           " on arms of " + shown(v_.rotors.arm_length, "m") + ": expected " +
                           shown(range.low) + " to " + shown(range.high, "kg m^2") +
-                          unit_hint(value, range, kInertias));
+                          unit_hint(value, range, kInertias, "kg m^2"));
       return;
     }
   }
@@ -123,7 +159,7 @@ class Plausibility {
     add_("rotors.thrust", shown(value, "N") + " a rotor is " + shown(4 * value / weight) +
                               " times the weight of " + shown(v_.mass, "kg") +
                               " in all; expected at most " + shown(kThrust.high) +
-                              unit_hint(value, range, kForces));
+                              unit_hint(value, range, kForces, "N"));
   }
 
   void limits() {
@@ -142,6 +178,19 @@ class Plausibility {
     if (v_.tilt_rate_max)
       plain("limits.tilt_rate_deg", degrees(*v_.tilt_rate_max), "deg/s", kYawRate, kAngularRates);
     plain("flight_time", v_.flight_time, "s", kFlightTime, kTimes);
+  }
+
+  // One axis of the gimbal, which turns unless its ends are equal. rad, rad/s; `span` in deg.
+  void gimbal(const std::string& axis, double low, double high, double rate, const Range& span) {
+    if (!(low < high)) return;
+    const std::string key = "gimbal." + axis;
+    if (degrees(high - low) < span.low) {
+      add_(key + "_deg", shown(degrees(low)) + " to " + shown(degrees(high), "degrees") +
+                             " is narrower than any gimbal's range (" + shown(span.low) +
+                             " degrees); is it rad? Then write '[" + shown(degrees(low), "rad") +
+                             ", " + shown(degrees(high), "rad") + "]'");
+    }
+    plain(key + "_rate_deg", degrees(rate), "deg/s", kGimbalRate, kAngularRates);
   }
 
   void camera() {

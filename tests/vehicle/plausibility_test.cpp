@@ -89,6 +89,42 @@ TEST(Plausibility, WhatIsSuggestedIsAccepted) {
   EXPECT_EQ(message_of("flight_time", "4 min"), "accepted");
 }
 
+// The number that was written is suggested, not the one that it was converted to.
+TEST(Plausibility, ASlipFromAnotherUnitIsNamedAsWritten) {
+  EXPECT_THAT(message_of("flight_time", "900 h"), HasSubstr("is it s? Then write '900 s'"));
+  EXPECT_THAT(message_of("flight_time", "9e5 min"), HasSubstr("Then write '9e+05 s'"));
+  EXPECT_THAT(message_of("  arm_length", "0.15 mm"), HasSubstr("Then write '0.15 m'"));
+  EXPECT_THAT(message_of("mass", "0.9 g"), HasSubstr("Then write '0.9 kg'"));
+}
+
+std::string gimbal_message(const std::string& gimbal) {
+  try {
+    read_vehicle(from_yaml(small_racer("", "") + "gimbal: {" + gimbal + "}\n", "racer.yaml"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Plausibility, RadiansInDegreesOfAGimbalAreNamed) {
+  const std::string still = "yaw_deg: [0, 0], yaw_rate_deg: 0, ";
+  const std::string level = "pitch_deg: [0, 0], pitch_rate_deg: 0, ";
+  EXPECT_THAT(gimbal_message(still + "pitch_deg: [-1.57, 0], pitch_rate_deg: 1.05"),
+              AllOf(HasSubstr("racer.yaml:16: gimbal.pitch_deg: -1.57 to 0 degrees is narrower"),
+                    HasSubstr("is it rad? Then write '[-1.57 rad, 0 rad]'"),
+                    HasSubstr("gimbal.pitch_rate_deg: 1.05 deg/s"),
+                    HasSubstr("is it rad/s? Then write '1.05 rad/s'")));
+  EXPECT_EQ(gimbal_message(still + "pitch_deg: [-1.57 rad, 0 rad], pitch_rate_deg: 1.05 rad/s"),
+            "accepted");
+  EXPECT_THAT(gimbal_message(level + "yaw_deg: [-3.14, 3.14], yaw_rate_deg: 90"),
+              HasSubstr("gimbal.yaw_deg"));
+  // Real ones: of camera drones, of cinema, one that only levels, a slow one.
+  for (const char* real :
+       {"pitch_deg: [-90, 30], pitch_rate_deg: 100", "pitch_deg: [-15, 15], pitch_rate_deg: 10",
+        "pitch_deg: [-5, 5], pitch_rate_deg: 3", "pitch_deg: [-90, -90], pitch_rate_deg: 0"})
+    EXPECT_EQ(gimbal_message(still + real), "accepted") << real;
+}
+
 // Figures of multirotors from 20 g to 150 kg, each as its maker or a paper gives it, rounded.
 TEST(Plausibility, RealMultirotorsAreAccepted) {
   struct Real {
