@@ -158,7 +158,10 @@ local function painted(run)
   local vehicle = run:vehicle(o.vehicle)
   local drawn, unit, undrawn = drawings.read(run)
   drawn = drawings.without_repeats(drawn)
-  if #drawn == 0 then lapwing.fail("the drawing has no line of any length") end
+  if #drawn == 0 then
+    lapwing.fail("the drawing has no line of any length"
+                 .. (undrawn and #undrawn > 0 and ": " .. table.concat(undrawn, "; ") or ""))
+  end
   if o.reorder then drawn = order.short(drawn) end
   local strokes = drawings.placed(drawn, unit, o)
   local path, lit = drawings.joined(strokes)

@@ -1,5 +1,6 @@
 -- An SVG picture as strokes: lists of {x, y}, y down as in the file, curves as short straight
 -- pieces. What a light cannot draw, or what is not read, is said; nothing is left out in silence.
+local frames = require "mission.svg_frame"
 local path = require "mission.svg_path"
 local shapes = require "mission.svg_shapes"
 local styles = require "mission.svg_style"
@@ -67,30 +68,74 @@ local function drawing(root)
   local D = { strokes = {}, notes = notes, note = note, rules = styles.rules(root, note),
               named = identified(root), uses = 0, open = {} }
 
-  function D.shape(element, style, matrix)
-    local seen = styles.seen_by(style)
-    if not seen then
-      return note(element.line, "a shape that is not seen (neither line nor face) is not drawn")
-    end
+  -- Strokes of a shape in the picture's units; none where it has no length.
+  local function strokes_of(element, matrix)
     local data = shapes.data[element.name](element.attributes)
-    if not data then return note(element.line, "a shape of no size is not drawn") end
+    local strokes, long = data and path.strokes(data) or {}, false
+    for _, stroke in ipairs(strokes) do
+      for i, p in ipairs(stroke) do
+        long = long or i > 1 and (p[1] ~= stroke[1][1] or p[2] ~= stroke[1][2])
+      end
+    end
+    if not long then return {} end
+    for _, stroke in ipairs(strokes) do
+      for i, p in ipairs(stroke) do
+        stroke[i] = { matrix[1] * p[1] + matrix[3] * p[2] + matrix[5],
+                      matrix[2] * p[1] + matrix[4] * p[2] + matrix[6] }
+      end
+    end
+    return strokes
+  end
+
+  -- What of them the picture shows; half of a line is as good as all of it.
+  local function within_frame(strokes, element, style, matrix, seen)
+    if not D.frame then return strokes end
+    local scale = math.sqrt(math.abs(matrix[1] * matrix[4] - matrix[2] * matrix[3]))
+    local margin = 1e-6 * (D.frame[3] - D.frame[1])
+    if margin == math.huge then margin = 1e-6 end
+    if seen == "stroke" then margin = math.max(margin, styles.line_width(style) * scale / 2) end
+    local kept, cut = frames.cut(strokes, D.frame, margin)
+    local what = #kept == 0 and "<%s> lies outside the picture and is not drawn"
+                 or "what of <%s> lies outside the picture is cut off"
+    if cut then note(D.use_line or element.line, what:format(element.name)) end
+    return kept
+  end
+
+  local function how_seen(element, style)
+    if styles.invisible(style) then
+      note(not element.attributes.visibility and D.use_line or element.line,
+           ("<%s> is hidden and not drawn"):format(element.name))
+      return nil
+    end
+    local seen = styles.seen_by(style, D.named, function(reference)
+      note(style.stroke_from or element.line,
+           ("url(%s) names no gradient or pattern of this file"):format(reference))
+    end)
+    if not seen then
+      note(element.line, "a shape that is not seen (neither line nor face) is not drawn")
+    end
+    return seen
+  end
+
+  function D.shape(element, style, matrix)
+    local seen = how_seen(element, style)
+    if not seen then return end
+    local strokes = strokes_of(element, matrix)
+    if #strokes == 0 then return note(element.line, "a shape of no size is not drawn") end
+    strokes = within_frame(strokes, element, style, matrix, seen)
+    if #strokes == 0 then return end
     if seen == "fill" then
       note(element.line, "a filled shape without a line is drawn by its outline")
     end
     local colour = seen == "stroke" and styles.colour(style)
     if colour then
-      note(element.line, ("the colour %s is not flown: the light has one colour"):format(colour))
+      note(style.stroke_from or element.line,
+           ("the colour %s is drawn in the light's one colour"):format(colour))
     end
     if style["stroke-dasharray"] and style["stroke-dasharray"] ~= "none" then
       note(element.line, "stroke-dasharray is not honoured: " .. UNREAD["stroke-dasharray"])
     end
-    for _, stroke in ipairs(path.strokes(data)) do
-      for i, p in ipairs(stroke) do
-        stroke[i] = { matrix[1] * p[1] + matrix[3] * p[2] + matrix[5],
-                      matrix[2] * p[1] + matrix[4] * p[2] + matrix[6] }
-      end
-      D.strokes[#D.strokes + 1] = stroke
-    end
+    table.move(strokes, 1, #strokes, #D.strokes + 1, D.strokes)
   end
 
   function D.children(element, style, matrix)
@@ -107,6 +152,9 @@ local function drawing(root)
       error(D.open[target] and "it uses itself" or "more than 10000 uses of elements", 0)
     end
     D.open[target] = true
+    local outer_line = D.use_line
+    D.use_line = outer_line or element.line
+    style.stroke_from = style.stroke_from or element.line
     matrix = shapes.times(matrix, shapes.viewport({ x = a.x, y = a.y }))
     if target.name == "symbol" or target.name == "svg" then
       local own = styles.of(target, style, D.rules)
@@ -117,7 +165,7 @@ local function drawing(root)
     else
       D.element(target, style, matrix)
     end
-    D.open[target] = nil
+    D.open[target], D.use_line = nil, outer_line
   end
 
   local function drawn(element, parent, matrix)
@@ -143,6 +191,7 @@ local function drawing(root)
         note(element.line, "preserveAspectRatio is not honoured: the picture is fitted in")
       end
       local inner = parent.inner and a or { viewBox = nil }
+      if not parent.inner then D.frame = style.overflow ~= "visible" and shapes.frame(a) or nil end
       style.inner = true
       return D.children(element, style, shapes.times(matrix, shapes.viewport(inner, a)))
     end

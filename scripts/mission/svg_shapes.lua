@@ -101,6 +101,36 @@ M.data = {
   ellipse = function(a) return ellipse(a, "rx", "ry") end,
 }
 
+-- A length of a root, or nil where it says none: shares and other units are the window's.
+local function stated(a, key)
+  local good, value = pcall(M.length, a, key)
+  return good and value and value > 0 and value or nil
+end
+
+local SHARES = { Min = 0, Mid = 0.5, Max = 1 }
+
+-- What the root <svg> shows, { left, top, right, bottom } in its own units; nil where it states
+-- neither a viewBox nor a size. A window of another shape than the viewBox shows more of it.
+function M.frame(a)
+  local good, box = pcall(numbers_of, a.viewBox or "")
+  local w, h = stated(a, "width"), stated(a, "height")
+  if not good or #box ~= 4 or box[3] <= 0 or box[4] <= 0 then
+    if not w and not h then return nil end
+    return { 0, 0, w or math.huge, h or math.huge }
+  end
+  local x, y, seen_w, seen_h = table.unpack(box)
+  local fit = a.preserveAspectRatio or "xMidYMid"
+  if w and h and not fit:find("none", 1, true) then
+    local nearest = fit:find("slice", 1, true) and math.max or math.min
+    local scale = nearest(w / seen_w, h / seen_h)
+    local at_x, at_y = fit:match("x(M%a%a)Y(M%a%a)")
+    x = x - (w / scale - seen_w) * (SHARES[at_x] or 0.5)
+    y = y - (h / scale - seen_h) * (SHARES[at_y] or 0.5)
+    seen_w, seen_h = w / scale, h / scale
+  end
+  return { x, y, x + seen_w, y + seen_h }
+end
+
 -- From the units within a viewBox to those around it: <svg> and <symbol> with a size. The picture
 -- is fitted in and stands in the middle, as SVG has it where nothing else is said.
 function M.viewport(a, size)

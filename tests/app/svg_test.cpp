@@ -8,7 +8,7 @@ class Svg : public CommandLine {
  protected:
   // First the ends of every stroke, one a line, then the notes; or the error.
   std::string read(const std::string& inside) {
-    write("p.svg", "<svg xmlns='http://www.w3.org/2000/svg'>\n" + inside + "\n</svg>");
+    write("p.svg", "<svg xmlns='http://www.w3.org/2000/svg'" + root_ + ">\n" + inside + "\n</svg>");
     write("read.lua",
           "local strokes, notes = require('mission.svg').strokes(lapwing.read_text('p.svg'))\n"
           "local out = {''}\n"
@@ -28,6 +28,8 @@ class Svg : public CommandLine {
   void gives(const std::string& inside, const std::string& result) {
     EXPECT_EQ(read(inside), "\n" + result + (result.empty() ? "" : "\n")) << inside;
   }
+  std::string root_;  // attributes of the root
+
   void refuses(const std::string& inside, const std::string& fragment) {
     const std::string message = read(inside);
     EXPECT_NE(message.find(fragment), std::string::npos) << inside << "\ngave: " << message;
@@ -41,16 +43,15 @@ TEST_F(Svg, WhatIsNotDrawnIsSaidWithItsLines) {
       "line 4: <image> is not drawn: trace it to paths\n"
       "line 4: <odd> is not drawn: only paths, basic shapes and their groups are");
   gives("<path d='M0,0 L1,0' stroke='red'/>\n<path d='M0,0 L2,0' style='stroke:#00F'/>",
-        "0,0 to 1,0\n0,0 to 2,0\nline 2: the colour red is not flown: the light has one colour\n"
-        "line 3: the colour #00F is not flown: the light has one colour");
+        "0,0 to 1,0\n0,0 to 2,0\nline 2: the colour red is drawn in the light's one colour\n"
+        "line 3: the colour #00F is drawn in the light's one colour");
   gives("<path d='M0,0 L1,0'/><path fill='none' d='M0,0 L2,0'/>",
         "0,0 to 1,0\nline 2: a filled shape without a line is drawn by its outline\n"
         "line 2: a shape that is not seen (neither line nor face) is not drawn");
   gives(
       "<g stroke='black'><g style='display : none'><path d='M0,0 L1,0'/></g>\n"
       "<path opacity='0' d='M0,0 L1,0'/><path visibility='hidden' d='M0,0 L1,0'/></g>",
-      "line 2: <g> is hidden and not drawn\nline 3: <path> is hidden and not drawn\n"
-      "line 3: a shape that is not seen (neither line nor face) is not drawn");
+      "line 2: <g> is hidden and not drawn\nline 3: <path> is hidden and not drawn");
   gives(
       "<path stroke='black' d='M0,0 L1,0' clip-path='url(#c)' stroke-dasharray='3' "
       "marker-end='url(#m)'/>",
@@ -61,6 +62,101 @@ TEST_F(Svg, WhatIsNotDrawnIsSaidWithItsLines) {
 
 TEST_F(Svg, ShapesOfNoSizeAreSaid) {
   gives("<circle r='0'/><rect width='3' height='0'/>", "line 2: a shape of no size is not drawn");
+}
+
+TEST_F(Svg, WhatLiesOutsideThePictureIsLeftOutOrCutOff) {
+  const std::string inside =
+      "<rect fill='none' stroke='black' x='10' y='10' width='80' height='80'/>\n"
+      "<path stroke='black' d='M500 500 l9 0'/>\n<path stroke='black' d='M50,50 h100 v9 h-90'/>";
+  const std::string cut = "line 4: what of <path> lies outside the picture is cut off";
+  const std::string left_out = "line 3: <path> lies outside the picture and is not drawn\n";
+  root_ = " viewBox='0 0 100 100'";
+  gives(inside, "10,10 to 10,10\n50,50 to 100,50\n100,59 to 60,59\n" + left_out + cut);
+  // A window wider than the viewBox shows more on both sides, or where the alignment puts it.
+  root_ = " viewBox='0 0 100 100' width='400' height='200'";
+  gives(inside, "10,10 to 10,10\n50,50 to 60,59\n" + left_out.substr(0, left_out.size() - 1));
+  root_ += " preserveAspectRatio='xMaxYMid'";
+  const std::string shifted = read(inside);
+  EXPECT_NE(shifted.find("50,50 to 100,50"), std::string::npos) << shifted;
+  root_ = " width='100mm' height='5cm'";
+  EXPECT_NE(read(inside).find(left_out), std::string::npos);
+  root_ = " overflow='visible' viewBox='0 0 100 100'";
+  EXPECT_NE(read(inside).find("500,500 to 509,500"), std::string::npos);
+  root_ = " width='100%' height='100%'";  // of a window that nobody knows
+  EXPECT_NE(read(inside).find("500,500 to 509,500"), std::string::npos);
+}
+
+TEST_F(Svg, AtTheEdgeHalfOfALineIsEnough) {
+  root_ = " viewBox='0 0 100 100'";
+  gives("<rect fill='none' stroke='black' width='100' height='100'/>", "0,0 to 0,0");
+  gives("<path stroke='black' stroke-width='4' d='M0,-1.5 H100'/>", "0,-1.5 to 100,-1.5");
+  gives("<path stroke='black' stroke-width='1' d='M0,-1.5 H100'/>",
+        "line 2: <path> lies outside the picture and is not drawn");
+  gives(
+      "<g transform='scale(10)'><path stroke='black' d='M0,5 L20,5 M-5,-5 L15,15'/></g>\n"
+      "<defs><path id='p' stroke='black' d='M0,0 H1'/></defs>\n<use href='#p' x='-90'/>",
+      "0,50 to 105,50\n-5,-5 to 105,105\n"
+      "line 2: what of <path> lies outside the picture is cut off\n"
+      "line 4: <path> lies outside the picture and is not drawn");
+}
+
+TEST_F(Svg, InvisibleColoursAreNotDrawn) {
+  const std::string unseen =
+      "line 2: a shape that is not seen (neither line nor face) is not drawn";
+  for (const char* clear : {"#00000000", "#0000", "#FFF0", "rgba(0,0,0,0)", "rgba(9, 9, 9, 0%)",
+                            "rgb(0 0 0 / 0)", "hsla(9,9%,9%,0.0)", "Transparent", "NONE"}) {
+    gives("<path fill='none' stroke='" + std::string(clear) + "' d='M0,0 L1,0'/>", unseen);
+    gives("<rect fill='" + std::string(clear) + "' width='2' height='2'/>", unseen);
+  }
+  for (const char* seen : {"#0001", "#00000001", "#000000", "#100", "rgba(0,0,0,0.5)"})
+    EXPECT_EQ(
+        read("<path fill='none' stroke='" + std::string(seen) + "' d='M0,0 L1,0'/>").substr(0, 12),
+        "\n0,0 to 1,0\n");
+  gives("<path fill='none' stroke='currentColor' color='#0000' d='M0,0 L1,0'/>", unseen);
+  gives("<g stroke-opacity='0' stroke='black'><path fill='none' d='M0,0 L1,0'/></g>", unseen);
+  gives("<path fill='none' stroke='url(#missing)' d='M0,0 L1,0'/>",
+        "line 2: url(#missing) names no gradient or pattern of this file\n" + unseen);
+  gives("<path fill='none' stroke='url(#missing) #000' d='M0,0 L1,0'/>",
+        "0,0 to 1,0\nline 2: url(#missing) names no gradient or pattern of this file\n"
+        "line 2: the colour url(#missing)#000 is drawn in the light's one colour");
+  gives("<linearGradient id='grad'/><path fill='none' stroke='url(#grad)' d='M0,0 L1,0'/>",
+        "0,0 to 1,0\nline 2: the colour url(#grad) is drawn in the light's one colour");
+}
+
+TEST_F(Svg, NotesNameWhatAUserWouldChange) {
+  gives(
+      "<defs><path id='p' d='M0,0 L1,0'/></defs>\n\n<use href='#p' stroke='green'/>\n"
+      "<use href='#p' visibility='hidden'/>",
+      "0,0 to 1,0\nline 4: the colour green is drawn in the light's one colour\n"
+      "line 5: <path> is hidden and not drawn");
+  gives("<path visibility='hidden' d='M0,0 L1,0'/>", "line 2: <path> is hidden and not drawn");
+  gives(
+      "<path d=''/>\n<path d='M 5 5'/>\n<polyline points=''/>\n<polygon points='1,1'/>\n"
+      "<path stroke='red' d='M5 5 l0 0'/>\n<line x1='3' x2='3'/>",
+      "lines 2, 3, 4, 5, 6 and 1 more: a shape of no size is not drawn");
+}
+
+TEST_F(Svg, RulesForAScreenHoldAndOthersAreSaid) {
+  gives(
+      "<style>@import 'a.css'; @media screen { .a { display: none } }\n"
+      "@media print { .b { display: none } } path { stroke: black }</style>\n"
+      "<path class='a' d='M0,0 L1,0'/><path class='b' d='M0,0 L2,0'/>",
+      "0,0 to 2,0\nline 2: the style rules of '@media print' are not read\n"
+      "line 4: <path> is hidden and not drawn");
+}
+
+// Why nothing is left to draw is said with it.
+TEST_F(Svg, ADrawingOfNothingGivesTheNotesAsItsReason) {
+  write("p.svg",
+        "<svg><style>@media screen { .a { display: none } }</style>\n"
+        "<path class='a' d='M0,0 L10,0'/>\n<path d='M3,3 L3.0000001,3'/></svg>");
+  write("paint.lua", "return require('mission.light_painting').picture { svg = 'p.svg' }");
+  const Finished finished = run({"run", "paint.lua"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("the drawing has no line of any length: p.svg, line 2: <path> is "
+                              "hidden and not drawn"),
+            std::string::npos)
+      << finished.err;
 }
 
 TEST_F(Svg, StyleRulesAreRead) {
