@@ -52,8 +52,12 @@ std::string cure_of_plugin(std::string_view plugin) {
 PluginError plugin_failure(std::string_view plugin, std::string_view call,
                            const std::string& what) {
   const bool scarce = what == std::bad_alloc().what();
-  return PluginError("plugin '" + std::string(plugin) + "' failed in " + std::string(call) + ": " +
-                     (scarce ? "out of memory" : what) + cure_of_plugin(plugin));
+  const std::string where = "plugin '" + std::string(plugin) + "' failed in " + std::string(call);
+  if (scarce)
+    return PluginError(where +
+                       ": out of memory: this needs more than the system or a limit "
+                       "(ulimit -v) gives");
+  return PluginError(where + ": " + what + cure_of_plugin(plugin));
 }
 
 }  // namespace lapwing

@@ -22,6 +22,7 @@ void JournalLines::flush() {
 
 void JournalLines::line(const std::string& text) {
   if (text.empty() || text.find("CPU secs") != text.npos) return;
+  out_of_memory_ = out_of_memory_ || text.find("out of memory") != text.npos;
   logging::debug("ipopt: " + text);
 }
 

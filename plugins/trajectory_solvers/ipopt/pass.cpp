@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <mutex>
+#include <new>
 
 #include <coin/IpIpoptApplication.hpp>
 #include <coin/IpIpoptCalculatedQuantities.hpp>
@@ -32,6 +33,7 @@ constexpr double kLargestTurn = 4.0;   // rad, of an orientation from its refere
 class LogJournal final : public ::Ipopt::Journal {
  public:
   LogJournal() : Journal("lapwing", ::Ipopt::J_ITERSUMMARY) {}
+  bool out_of_memory() const { return lines_.out_of_memory(); }
 
  private:
   void PrintImpl(::Ipopt::EJournalCategory, ::Ipopt::EJournalLevel, const char* text) override {
@@ -302,7 +304,8 @@ void run_pass(const PassRequest& request, Program& program, SolveRecord& record,
   static std::mutex one_at_a_time;  // MUMPS keeps state of its own
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   ::Ipopt::SmartPtr<::Ipopt::IpoptApplication> app = new ::Ipopt::IpoptApplication(false);
-  app->Jnlst()->AddJournal(new LogJournal);
+  const ::Ipopt::SmartPtr<LogJournal> journal = new LogJournal;
+  app->Jnlst()->AddJournal(GetRawPtr(journal));
   set_options(*app->Options(), request, program.problem().quadratic());
   auto status = app->Initialize("");  // no option file of the working directory
   if (status == ::Ipopt::Solve_Succeeded) {
@@ -310,6 +313,7 @@ void run_pass(const PassRequest& request, Program& program, SolveRecord& record,
         new Bridge(program, request.request, request.settings, record, outcome);
     status = app->OptimizeTNLP(GetRawPtr(bridge));
   }
+  if (status == ::Ipopt::Insufficient_Memory || journal->out_of_memory()) throw std::bad_alloc();
   outcome.end = end_of(status);
   outcome.name = name_of(status);
 }

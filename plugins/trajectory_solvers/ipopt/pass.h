@@ -52,7 +52,8 @@ struct PassOutcome {
   double best_cost = std::numeric_limits<double>::infinity();
 };
 
-// Runs Ipopt from the program's start and updates `outcome`. One at a time in a process.
+// Runs Ipopt from the program's start and updates `outcome`. One at a time in a process. Throws
+// std::bad_alloc where memory ran short, whatever Ipopt made of it.
 void run_pass(const PassRequest& request, Program& program, SolveRecord& record,
               PassOutcome& outcome);
 
