@@ -330,7 +330,7 @@ TEST(StatedConstraints, ATimeOutsideTheFlightFails) {
   EXPECT_TRUE(judged_constraint(with(constraint)).pass);
   constraint.times = {end + 1e-7};  // rounding
   EXPECT_TRUE(judged_constraint(with(constraint)).pass);
-  for (const double time : {end + 1e-3, end + 100, -0.5}) {
+  for (const double time : {end + 1e-3, end + 100}) {  // the document refuses times below 0
     constraint.times = {1, time};
     const Certificate certificate = verify(with(constraint));
     const Check& check = certificate.checks.back();
