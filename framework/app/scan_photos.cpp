@@ -24,9 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPhotoRange = 300;            // m, beyond which a photograph shows sky
-constexpr const char* kMostFeatures = "2000";  // of an image: matching takes their square
-constexpr useconds_t kPatience = 20'000;       // between looks at a running program
+constexpr double kPhotoRange = 300;             // m, beyond which a photograph shows sky
+constexpr const char* kMostFeatures = "2000";   // of an image: matching takes their square
+constexpr useconds_t kColmapPatience = 20'000;  // between looks at a running program
 
 std::string number(double value) {
   char text[32];
@@ -63,7 +63,7 @@ int run_program(std::vector<std::string> words, const fs::path& log,
       ::waitpid(child, &status, 0);
       throw Cancelled();
     }
-    ::usleep(kPatience);
+    ::usleep(kColmapPatience);
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
