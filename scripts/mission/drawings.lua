@@ -43,10 +43,12 @@ function M.read(run)
       strokes, missing = fonts.strokes(o.text)
     end
     if not strokes then
-      run:fail("text", string.format("the font has no glyph for '%s'", missing))
+      run:fail("text", "the font has no glyph for " .. missing
+                       .. (o.font and "" or "; it has " .. fonts.CHARACTERS))
     end
     if #strokes == 0 then run:fail("text", "there is nothing to draw") end
-    return strokes, 1
+    local lower = not o.font and o.text:find("%l")
+    return strokes, 1, lower and { "lower case letters are painted as capitals" } or nil
   elseif o.strokes and #o.strokes > 0 then
     local strokes = {}
     for i, stroke in ipairs(o.strokes) do

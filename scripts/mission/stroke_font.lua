@@ -78,16 +78,24 @@ local function own_glyph(character)
   return strokes
 end
 
--- Places glyphs side by side; `glyph_of` gives {strokes, left, right}.
+-- A character as it can be read in a message: '#', or U+000A of one that has no picture.
+local function shown(character)
+  local code = utf8.codepoint(character)
+  if code < 32 or code >= 127 and code < 160 then return ("U+%04X"):format(code) end
+  return "'" .. character .. "'"
+end
+
+-- Places glyphs side by side; `glyph_of` gives {strokes, left, right}. Nothing, and the missing
+-- characters as a text, where the font lacks any.
 local function line_of(text, height, gap, space, glyph_of)
-  local strokes, cursor = {}, 0
+  local strokes, cursor, missing, named = {}, 0, {}, {}
+  if not utf8.len(text) then return nil, "bytes that are not UTF-8" end
   for _, code in utf8.codes(text) do
     local character = utf8.char(code)
+    local glyph = character ~= " " and glyph_of(character)
     if character == " " then
       cursor = cursor + space
-    else
-      local glyph = glyph_of(character)
-      if not glyph then return nil, character end
+    elseif glyph then
       for _, stroke in ipairs(glyph.strokes) do
         local placed = {}
         for i, p in ipairs(stroke) do
@@ -96,13 +104,20 @@ local function line_of(text, height, gap, space, glyph_of)
         strokes[#strokes + 1] = placed
       end
       cursor = cursor + glyph.right - glyph.left + gap
+    elseif not named[character] then
+      named[character] = true
+      missing[#missing + 1] = shown(character)
     end
   end
+  if #missing > 0 then return nil, table.concat(missing, ", ") end
   return strokes
 end
 
--- Strokes of a text, its capitals 1 high, on a line that begins at 0, 0. Nothing and the character
--- where a glyph is missing.
+-- What can be written, for messages.
+M.CHARACTERS = "A to Z (lower case is painted as capitals), 0 to 9, blank and - . ! ?"
+
+-- Strokes of a text, its capitals 1 high, on a line that begins at 0, 0. Nothing and the characters
+-- that have no glyph, as a text, where there are any.
 function M.strokes(text)
   return line_of(text, HEIGHT, GAP, SPACE, function(character)
     local strokes = own_glyph(character)

@@ -203,6 +203,24 @@ TEST_F(Svg, WhatCannotBeReadIsRefusedWithItsLine) {
       "nested more than 60 deep");
 }
 
+TEST_F(Svg, TextsOfOtherCharactersAreRefusedWithAllOfThem) {
+  write("paint.lua", "return require('mission.light_painting').text { text = 'A#b\\n#\\u{e9}' }");
+  const Finished finished = run({"run", "paint.lua"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("no glyph for '#', U+000A, '\u00e9'; it has A to Z (lower case is "
+                              "painted as capitals), 0 to 9, blank and - . ! ?"),
+            std::string::npos)
+      << finished.err;
+}
+
+TEST_F(Svg, LowerCaseIsSaidToBePaintedAsCapitals) {
+  write("paint.lua", "return require('mission.light_painting').text { text = 'l', height = 1 }");
+  const Finished finished = run({"run", "paint.lua"});
+  EXPECT_NE((finished.out + finished.err).find("lower case letters are painted as capitals"),
+            std::string::npos)
+      << finished.out << finished.err;
+}
+
 // Notes stand in the report and in the answer to machines.
 TEST_F(Svg, NotesAreOfTheRun) {
   write("p.svg", "<svg><text>hm</text>\n<path stroke='red' d='M0,0 L10,0 L10,10'/></svg>");
