@@ -30,18 +30,72 @@ Value to_value(const FlownPath& path) {
   return value;
 }
 
+Value to_value(const FlightConditions& conditions) {
+  Value value = Value::map();
+  value.set("wind", conditions.wind_mean);
+  value.set("gusts", conditions.wind_gust);
+  value.set("wind_yaw", conditions.wind_yaw);
+  value.set("mass_error", conditions.mass_error);
+  value.set("seed", static_cast<std::int64_t>(conditions.seed));
+  return value;
+}
+
+Value to_value(const Check& check) {
+  Value value = Value::map();
+  value.set("check", check.name);
+  if (check.worst) value.set("least", *check.worst);
+  value.set("to_keep", check.limit);
+  value.set("at", check.at);
+  value.set("kept", check.pass);
+  value.set("detail", check.detail);
+  return value;
+}
+
 // Within what the certificate asks of a flight in still air.
 bool kept(const FlownPath& path) {
   return !path.lost && path.position_error_worst <= tolerances::kTracking &&
          path.yaw_error_worst <= tolerances::kTrackingYaw;
 }
 
-void print(const Plan& plan, const FlownPath& path) {
+// The flown path against obstacles and subjects, judged as a plan of the model `path` is.
+std::vector<Check> distances_of(const Plan& plan, const FlownPath& path,
+                                const std::filesystem::path& folder) {
+  Plan flown = plan;
+  flown.task = {};
+  flown.constraints.clear();
+  flown.cuts.clear();
+  flown.lights.clear();
+  flown.trajectory = {};
+  flown.trajectory.model = MotionModel::path;
+  for (const FlownSample& sample : path.samples) {
+    if (!sample.state.position.allFinite()) break;
+    Sample& kept = flown.trajectory.samples.emplace_back();
+    kept.time = sample.time;
+    kept.position = sample.state.position;
+  }
+  std::vector<Check> found;
+  if (flown.trajectory.samples.empty()) return found;
+  const Certificate certificate = verify(flown, folder);
+  for (const char* name : {"clearance", "subject_distance"}) {
+    const Check* check = certificate.find(name);
+    if (check->skipped.empty()) found.push_back(*check);
+  }
+  return found;
+}
+
+void print(const Plan& plan, const Simulation& simulation) {
+  const FlownPath& path = simulation.path;
+  const bool near = simulation.too_near();
   std::printf("%s: %s\n", visible_line(plan.mission).c_str(),
-              tinted(kept(path) ? Tone::good : Tone::bad, path.lost    ? "lost"
-                                                          : kept(path) ? "flown"
-                                                                       : "strays")
+              tinted(kept(path) && !near ? Tone::good : Tone::bad, path.lost     ? "lost"
+                                                                   : !kept(path) ? "strays"
+                                                                   : near        ? "too near"
+                                                                                 : "flown")
                   .c_str());
+  std::printf("  conditions              %s\n", simulation.conditions_in_words().c_str());
+  for (const Check& check : simulation.distances)
+    std::printf("  %-22s  %s\n", check.name.c_str(),
+                visible_line(distance_in_words(check)).c_str());
   std::printf("  distance from the plan  worst %.3f m at %.4g s, mean %.3f m\n",
               path.position_error_worst, path.position_error_at, path.position_error_mean);
   std::printf("  yaw against the plan    worst %.2f degrees at %.4g s\n",
@@ -73,15 +127,22 @@ ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditio
   const Plan plan = read_plan_file(file);
   require_a_sound_plan(plan, file.parent_path());
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
-  const FlownPath path = fly(plan.trajectory, vehicle, conditions);
+  const std::filesystem::path folder = file.parent_path();
+  Simulation flown{conditions, fly(plan.trajectory, vehicle, conditions), {}};
+  const FlownPath& path = flown.path;
+  flown.distances = distances_of(plan, path, folder);
   if (!target.empty())
-    write_file_atomically(target, render_html(simulation_report(plan, vehicle, path)));
+    write_file_atomically(target, render_html(simulation_report(plan, vehicle, flown, folder)));
   if (invocation.json) {
     Value object = Value::map();
     object.set("plan", file.string());
     object.set("mission", plan.mission);
     Value& simulation = object.set("simulation", to_value(path));
     simulation.set("kept", kept(path));
+    simulation.set("conditions", to_value(conditions));
+    simulation.set("too_near", flown.too_near());
+    Value& distances = simulation.set("distances", Value::list());
+    for (const Check& check : flown.distances) distances.push_back(to_value(check));
     if (!plan.task.strokes.empty()) {
       const DrawingError error = drawing_error(plan, path);
       simulation.set("drawing_error_worst", error.worst);
@@ -89,7 +150,7 @@ ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditio
     }
     print_json(object);
   } else {
-    print(plan, path);
+    print(plan, flown);
   }
   return !kept(path) ? ExitStatus::not_certified : ExitStatus::done;
 }

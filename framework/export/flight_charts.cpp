@@ -85,7 +85,15 @@ Projection better_side(const Trajectory& trajectory) {
   return extent.x() >= extent.y() ? Projection::from_south : Projection::from_east;
 }
 
-// All that is drawn beside the path: what the flight was asked for, and what surrounds it.
+std::vector<Block> views_of(const Drawing& drawing, const std::string& title, Projection side) {
+  const std::string from = side == Projection::from_south ? "south" : "east";
+  return {PathView{title + " from above", Projection::above, drawing},
+          PathView{title + " from the " + from, side, drawing},
+          Scene3D{title + " in space", drawing}};
+}
+
+}  // namespace
+
 void add_task(const Plan& plan, const std::filesystem::path& folder, Drawing& drawing) {
   for (std::size_t i = 0; i < plan.task.keyframes.size(); ++i) {
     drawing.points.push_back({std::to_string(i + 1), plan.task.keyframes[i].position});
@@ -97,15 +105,6 @@ void add_task(const Plan& plan, const std::filesystem::path& folder, Drawing& dr
     if (drawn.insert(gate.name).second) add_gate(gate, drawing);
   for (const Subject& subject : plan.environment.subjects) add_track(plan, subject, drawing);
 }
-
-std::vector<Block> views_of(const Drawing& drawing, const std::string& title, Projection side) {
-  const std::string from = side == Projection::from_south ? "south" : "east";
-  return {PathView{title + " from above", Projection::above, drawing},
-          PathView{title + " from the " + from, side, drawing},
-          Scene3D{title + " in space", drawing}};
-}
-
-}  // namespace
 
 Section path_section(const Plan& plan, const std::filesystem::path& folder) {
   Drawing drawing;

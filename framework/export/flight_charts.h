@@ -19,6 +19,9 @@ Section path_section(const Plan& plan, const std::filesystem::path& folder);
 // of the first, whose meshes lie in `folder`.
 Section paths_section(const std::vector<std::pair<std::string, const Plan*>>& plans,
                       const std::filesystem::path& folder);
+// All that is drawn beside a path: what the flight was asked for, and what surrounds it, with the
+// bystanders and the distances kept from them. `folder` holds the meshes of its environment.
+void add_task(const Plan& plan, const std::filesystem::path& folder, Drawing& drawing);
 // Position, speeds and accelerations against the vehicle's limits; of a `path`, position alone.
 Section motion_section(const Plan& plan, const Vehicle& vehicle);
 // Thrust and yaw torque (model force) or rotor thrusts (model rotors); empty for a `path`.

@@ -1,11 +1,21 @@
 #include "framework/export/simulation_report.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 
 #include "framework/core/units.h"
+#include "framework/export/flight_charts.h"
 
 namespace lapwing {
 namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
 
 Series series_of(const char* name, const FlownPath& path, auto value_of) {
   Series series{name, {}, {}, false};
@@ -24,7 +34,7 @@ Chart chart_over_time(std::string title, std::string quantity, std::string unit)
   return chart;
 }
 
-Drawing paths(const Plan& plan, const FlownPath& path) {
+Drawing paths(const Plan& plan, const FlownPath& path, const std::filesystem::path& folder) {
   Drawing drawing;
   drawing.along = {"time", "s"};
   drawing.value = {"distance from the plan", "m"};
@@ -37,22 +47,59 @@ Drawing paths(const Plan& plan, const FlownPath& path) {
     flown.values.push_back(sample.position_error);
   }
   drawing.lines = {planned, flown};
-  drawing.spheres = plan.environment.spheres;
-  drawing.boxes = plan.environment.boxes;
-  drawing.zones = plan.environment.zones;
+  add_task(plan, folder, drawing);
   return drawing;
+}
+
+Facts facts_of(const Simulation& simulation) {
+  const FlightConditions& c = simulation.conditions;
+  Facts facts;
+  facts.facts = {{"wind", number(c.wind_mean), "m/s"},
+                 {"it blows to", number(degrees(c.wind_yaw)), "\u00b0"},
+                 {"gusts", number(c.wind_gust), "m/s"},
+                 {"mass above the plan's", number(100 * c.mass_error), "%"},
+                 {"seed of the gusts", std::to_string(c.seed), ""}};
+  for (const Check& check : simulation.distances)
+    facts.facts.push_back(
+        {check.name, distance_in_words(check), "", check.pass ? Mark::pass : Mark::fail});
+  return facts;
 }
 
 }  // namespace
 
-Report simulation_report(const Plan& plan, const Vehicle& vehicle, const FlownPath& path) {
+bool Simulation::too_near() const {
+  return std::any_of(distances.begin(), distances.end(), [](const Check& c) { return !c.pass; });
+}
+
+std::string Simulation::conditions_in_words() const {
+  const FlightConditions& c = conditions;
+  std::string text = "still air";
+  if (c.wind_mean != 0 || c.wind_gust != 0)
+    text = "wind " + number(c.wind_mean) + " m/s towards " + number(degrees(c.wind_yaw)) +
+           " degrees, gusts " + number(c.wind_gust) + " m/s, seed " + std::to_string(c.seed);
+  const double more = 100 * c.mass_error;
+  return text + "; mass " +
+         (more == 0
+              ? "as planned"
+              : number(std::abs(more)) + " % " + (more > 0 ? "above" : "below") + " the plan's");
+}
+
+std::string distance_in_words(const Check& check) {
+  return (check.worst ? number(*check.worst) : std::string("?")) + " m at " + number(check.at) +
+         " s, " + number(check.limit) + " m are to be kept: " + check.detail;
+}
+
+Report simulation_report(const Plan& plan, const Vehicle& vehicle, const Simulation& simulation,
+                         const std::filesystem::path& folder) {
+  const FlownPath& path = simulation.path;
   Report report;
   report.title = plan.mission;
   report.subtitle = "flown in simulation by vehicle '" + vehicle.name + "'";
-  report.status = path.lost ? "lost" : "flown";
-  report.status_mark = path.lost ? Mark::fail : Mark::pass;
+  report.status = path.lost ? "lost" : simulation.too_near() ? "too near" : "flown";
+  report.status_mark = path.lost || simulation.too_near() ? Mark::fail : Mark::pass;
+  report.sections.push_back({"Conditions and distances", {facts_of(simulation)}});
 
-  const Drawing drawing = paths(plan, path);
+  const Drawing drawing = paths(plan, path, folder);
   report.sections.push_back({"Path",
                              {PathView{"Path from above", Projection::above, drawing},
                               PathView{"Path from the south", Projection::from_south, drawing}}});

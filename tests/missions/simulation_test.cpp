@@ -53,6 +53,42 @@ TEST_F(Simulation, WindMassAndSeedCount) {
   EXPECT_NE(read_file(page).find("Rotor thrusts"), std::string::npos);
 }
 
+TEST_F(Simulation, WhatWasSimulatedIsSaid) {
+  const fs::path plan = fly("hello.lua").folder / "plan.json";
+  const std::string page = (folder_ / "page.html").string();
+  ASSERT_EQ(simulate(plan, "--wind 5,1,90 --mass-error 10 --seed 7 -o '" + page + "'"), 0)
+      << error();
+  const Value said = from_json(read_file(folder_ / "simulated.json"), "stdout").at("simulation");
+  const Value& conditions = said.at("conditions");
+  EXPECT_EQ(conditions.at("wind").as_number(), 5);
+  EXPECT_EQ(conditions.at("gusts").as_number(), 1);
+  EXPECT_NEAR(degrees(conditions.at("wind_yaw").as_number()), 90, 1e-9);
+  EXPECT_NEAR(conditions.at("mass_error").as_number(), 0.1, 1e-12);
+  EXPECT_EQ(conditions.at("seed").as_number(), 7);
+  for (const char* text : {"it blows to", "gusts", "seed of the gusts", "mass above the plan"})
+    EXPECT_NE(read_file(page).find(text), std::string::npos) << text;
+}
+
+TEST_F(Simulation, AFlightNearerThanPlannedIsNoPlainFlown) {
+  write_file_atomically(
+      folder_ / "near.lua",
+      "return require 'mission.film'.shot { name = 'near', keyframes = { { position "
+      "= {0, 0, 3}, time = 0 }, { position = {8, 0, 3}, time = 8 } }, keep_away = { { name = "
+      "'bob', position = {4, 0, 0.6}, distance = 2.395 } } }");
+  const Flown flown = fly((folder_ / "near.lua").string());
+  ASSERT_EQ(flown.status, 0) << to_json(flown.result);
+  const fs::path plan = flown.folder / "plan.json";
+  const std::string page = (folder_ / "page.html").string();
+  ASSERT_LE(simulate(plan, "--mass-error 60 -o '" + page + "'"), 1) << error();
+  const Value said = from_json(read_file(folder_ / "simulated.json"), "stdout").at("simulation");
+  EXPECT_TRUE(said.at("too_near").as_boolean()) << to_json(said);
+  const Value& bob = said.at("distances").as_list().at(0);
+  EXPECT_LT(bob.at("least").as_number(), 2.394);
+  EXPECT_EQ(bob.at("to_keep").as_number(), 2.395);
+  EXPECT_NE(read_file(page).find("too near"), std::string::npos);
+  EXPECT_NE(read_file(page).find("bob, distance kept"), std::string::npos);
+}
+
 TEST_F(Simulation, WhatMakesNoSenseIsRefused) {
   const fs::path plan = fly("hello.lua").folder / "plan.json";
   for (const char* more : {"--wind 5", "--wind a,b", "--wind 1,2,3,4", "--wind 5,-1",
