@@ -33,7 +33,7 @@ TEST_F(CommandLine, ASolverWithoutMemoryIsNoBadFlight) {
         "refinements = 0, closed_loop = 'reported', gates = { { shape = 'ball', position = {0, 0, "
         "2}, radius = 1 }, { shape = 'ball', position = {8, 5, 3}, radius = 1 } } }");
   int refused = 0;
-  for (int megabytes = 110; megabytes <= 190; megabytes += 8) {
+  for (int megabytes = 122; megabytes <= 162; megabytes += 4) {
     write("limited.sh",
           "cd '" + folder_.string() + "' && ulimit -v " + std::to_string(megabytes * 1024) +
               " && '" LAPWING_BUILD_DIR
