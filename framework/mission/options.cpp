@@ -109,8 +109,9 @@ OptionDeclarations OptionDeclarations::from_value(const Value& list) {
       declaration = without(declaration, {"table"});
     }
     if (const Value* also = declaration.find("also")) option.also = also->as_text();
-    option.declaration =
-        without(declaration, {"kind", "words", "settled", "under", "also", "functions"});
+    if (const Value* other = declaration.find("replaced_by")) option.replaced_by = other->as_text();
+    option.declaration = without(
+        declaration, {"kind", "words", "settled", "under", "also", "functions", "replaced_by"});
     plain.push_back(option.declaration);
     declarations.options_.push_back(std::move(option));
   }
@@ -132,6 +133,7 @@ Value OptionDeclarations::to_value() const {
     }
     if (option.vehicle) entry.set("type", "vehicle");
     if (!option.also.empty()) entry.set("also", option.also);
+    if (!option.replaced_by.empty()) entry.set("replaced_by", option.replaced_by);
     if (!option.words.empty()) {
       Value& words = entry.set("words", Value::list());
       for (const std::string& word : option.words) words.push_back(word);
@@ -298,7 +300,13 @@ Value OptionDeclarations::check(const Value& given, const Registry& registry,
   const ParameterTable table = table_for(plain, registry);
   const Parameters checked = lapwing::check(table, plain, what, errors);
   result.with_origin(checked.value().origin());
+  const auto replaced = [&](const Option& option) {
+    const Value* other =
+        option.replaced_by.empty() ? nullptr : checked.value().find(option.replaced_by);
+    return other && !other->is_null();
+  };
   for (const Option& option : options_) {
+    if (replaced(option)) continue;
     if (option.plugins)
       result.set(option.name, checked_plugins(option, lists.find(option.name), registry, errors));
     else if (const Value* value = checked.value().find(option.name))

@@ -13,6 +13,7 @@
 //       entries; one without `type`, a function of the script, has the mission's own entries and
 //       functions = {...}: entries of functions alone
 //   type = "vehicle"               a vehicle file's name, or a table as in such a file
+//   replaced_by = "input"          left out of what the options come to where `input` is set
 //   words = {"auto"}               on a number: these texts are allowed as well
 //   also = "string"                a short form that the kind itself writes out, for annotations
 #pragma once
@@ -46,6 +47,7 @@ inline constexpr BoundField kDeclarationKeys[] = {
     {"settled?", "table<string, string>", "parameters of a plugin that cannot be set, and why"},
     {"under?", "string", "the key that names a plugin, in place of `type`"},
     {"functions?", "lapwing.option[]", "of plugins: entries of those that are functions alone"},
+    {"replaced_by?", "string", "an option that takes this one's place where it is set"},
     {"also?", "string", "what else a script may give, for editors: a type as LuaLS writes it"}};
 
 class OptionDeclarations {
@@ -77,6 +79,7 @@ class OptionDeclarations {
     std::string under = "type";  // of a plugin: the key that names it
     Value own;                   // of a plugin: entries of the mission's own; null or a list
     Value functions;             // of plugins: entries of functions alone; null or a list
+    std::string replaced_by;     // another option, or ""
     std::string also;            // a short form, for annotations
     bool vehicle = false;
     bool plugins = false;  // a list of them

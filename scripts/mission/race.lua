@@ -20,8 +20,10 @@ local function number(name, default, unit, summary, more)
 end
 
 local DECLARATIONS = {
-  { name = "gates", type = "tables", table = courses.GATE, summary = "in the order of flight" },
-  { name = "keyframes", type = "tables", summary = "places to pass, as balls of `tolerance`",
+  { name = "gates", type = "tables", table = courses.GATE, summary = "in the order of flight",
+    replaced_by = "input" },
+  { name = "keyframes", type = "tables", replaced_by = "input",
+    summary = "places to pass, as balls of `tolerance`",
     table = { { name = "position", type = "numbers", size = 3, unit = "m", required = true,
                 summary = "world" } } },
   { name = "input", type = "text", summary = "a course from a YAML or JSON file" },
@@ -30,8 +32,10 @@ local DECLARATIONS = {
               number("curvature", 0.1, "", "largest, 1/m", { minimum = 0, maximum = 10 }),
               number("spacing", 8, "m", "between its keyframes", { above = 0 }),
               number("height", 3, "m", "of flight, within half of itself", { above = 0 }) } },
-  { name = "start", type = "numbers", size = 3, unit = "m", summary = "at rest; else the first" },
-  { name = "finish", type = "numbers", size = 3, unit = "m", summary = "at rest; else the last" },
+  { name = "start", type = "numbers", size = 3, unit = "m", replaced_by = "input",
+    summary = "at rest; else the first" },
+  { name = "finish", type = "numbers", size = 3, unit = "m", replaced_by = "input",
+    summary = "at rest; else the last" },
   { name = "closed", type = "boolean", default = false,
     summary = "flown round and round: the end closes onto the start" },
   { name = "laps", type = "integer", default = 1, minimum = 1, maximum = 1000, summary = "rounds" },

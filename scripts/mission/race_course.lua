@@ -192,7 +192,7 @@ local function read(run)
   local o = run.options
   local ways = {}
   for _, way in ipairs { "gates", "keyframes" } do
-    if #o[way] > 0 then ways[#ways + 1] = way end
+    if o[way] and #o[way] > 0 then ways[#ways + 1] = way end
   end
   if o.free_form.length then ways[#ways + 1] = "free_form" end
   if #ways > 1 then
