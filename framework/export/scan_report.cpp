@@ -20,7 +20,8 @@ constexpr Pinhole kOverview{720, 450, 720, 720, 359.5, 224.5};
 constexpr int kMostMapPixels = 700, kMostMotions = 2500, kMostCubes = 60'000;
 constexpr Rgb kPlainSurface = {176, 174, 168}, kCameraLines = {214, 60, 40};
 constexpr Rgb kNotSeen = {196, 70, 60}, kNeverSeen = {70, 70, 74};
-constexpr double kMuchUnknown = 0.1;  // of what is known
+constexpr double kMuchUnknown = 0.1;   // of what is known
+constexpr double kMuchOutside = 0.03;  // likewise
 const Vector3d kGap = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 // From dark violet over green to yellow (viridis, a few stops of it).
@@ -160,6 +161,17 @@ std::string visible_in_words(const ScanRecord& record) {
          " views that were considered";
 }
 
+// "12 m^2 of the known surface lie outside the region (above it) and are not counted", or "".
+std::string outside_in_words(const SurfaceAreas& areas) {
+  const double outside = areas.above + areas.below;
+  if (outside == 0 || outside < kMuchOutside * areas.known) return "";
+  const char* where = areas.below < 0.1 * outside   ? "above it"
+                      : areas.above < 0.1 * outside ? "below it"
+                                                    : "above and below it";
+  return square_metres(outside) + " m^2 of the known surface lie outside the region (" + where +
+         ") and are not counted";
+}
+
 Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   double sum = 0;
   for (const VoxelShare& v : record.coverage) sum += v.share;
@@ -176,6 +188,9 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
       {"on average the tour tells", number_text(100 * sum / all, 3),
        "% of what there is to know of a voxel that some candidate sees"},
   }};
+  if (!outside_in_words(areas).empty())
+    facts.facts.push_back({"known above or below the region, not counted",
+                           square_metres(areas.above + areas.below), "m^2"});
   if (record.truth) {
     const TrueAreas& truth = *record.truth;
     facts.facts.push_back(
@@ -252,6 +267,7 @@ std::string areas_in_words(const ScanRecord& record) {
                      percent(areas.visible, areas.known) + " % are " + visible_in_words(record) +
                      "; about " + square_metres(record.unknown) +
                      " m^2 are unknown and not counted";
+  if (const std::string outside = outside_in_words(areas); !outside.empty()) text += "; " + outside;
   if (record.unknown > kMuchUnknown * areas.known)
     text +=
         ". That is much: the first flight never saw behind it. Fly it lower, more obliquely or "
@@ -275,6 +291,7 @@ Value areas_as_value(const ScanRecord& record) {
   value.set("visible", areas.visible);
   value.set("seen", areas.seen);
   value.set("unknown", record.unknown);
+  value.set("outside", areas.above + areas.below);
   value.set("visible_share", share(areas.visible, areas.known));
   value.set("seen_share", share(areas.seen, areas.known));
   if (!record.truth) return value;

@@ -126,11 +126,18 @@ std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const Eigen::Al
   return shares;
 }
 
-SurfaceAreas areas_of(const TriangleMesh& mesh, std::span<const float> shares) {
+SurfaceAreas areas_of(const TriangleMesh& mesh, std::span<const float> shares,
+                      const Eigen::AlignedBox3d& region) {
   SurfaceAreas areas;
   for (std::size_t t = 0; t < shares.size(); ++t) {
-    if (shares[t] <= kOutsideRegion) continue;
     const double area = mesh.area(t);
+    if (shares[t] <= kOutsideRegion) {
+      const Vector3d middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
+      const Vector3d beside(middle.x(), middle.y(), region.center().z());
+      if (region.contains(beside))
+        (middle.z() > region.max().z() ? areas.above : areas.below) += area;
+      continue;
+    }
     areas.known += area;
     if (shares[t] >= 0) areas.visible += area;
     if (shares[t] > 0) areas.seen += area;

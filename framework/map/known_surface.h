@@ -30,10 +30,13 @@ struct SurfaceAreas {
   double known = 0;    // m^2 of the mesh in the region
   double visible = 0;  // m^2 of it that some listed voxel belongs to
   double seen = 0;     // m^2 of it of which more than nothing is told
+  // m^2 of the mesh over and under the region, of triangles whose middles lie in its footprint
+  double above = 0, below = 0;
 };
 
-// Of what shares_of_triangles says.
-SurfaceAreas areas_of(const TriangleMesh& mesh, std::span<const float> shares);
+// Of what shares_of_triangles says for the same region.
+SurfaceAreas areas_of(const TriangleMesh& mesh, std::span<const float> shares,
+                      const Eigen::AlignedBox3d& region);
 
 // m^2 of the edge of what was ever measured: where air of the region meets voxels that no ray came
 // to, not beside a voxel with a surface in it nor within one and a half voxels of `mesh`, which may

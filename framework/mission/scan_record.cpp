@@ -93,7 +93,7 @@ std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int thr
   const SightSettings& sight = work.visible->settings();
   record->shares = shares_of_triangles(record->prior->mesh(), sight.region, record->map->grid(),
                                        record->coverage);
-  record->areas = areas_of(record->prior->mesh(), record->shares);
+  record->areas = areas_of(record->prior->mesh(), record->shares, sight.region);
   record->unknown = unknown_edge(*record->map, record->prior.get(), sight.region, threads);
   record->truth = true_areas(work, views, threads);
   ScoreState state(*graph.score);

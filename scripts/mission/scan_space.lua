@@ -41,12 +41,15 @@ function M.prior_files(run)
   return files
 end
 
+-- How far up or down the map and the reconstruction may move a surface.
+local function moved(run) return run.options.resolution + run.options.surface.cell end
+
 -- Round the bounds of a mesh of the user's, so that its outermost walls belong to it and are seen
--- from outside.
+-- from outside, and roof and ground as they are reconstructed belong to it too.
 local function around(run, bounds)
   local o, lower, upper = run.options, {}, {}
   for axis = 1, 3 do
-    local more = axis == 3 and o.resolution or math.max(o.body[1], o.body[2]) + o.mesh_room + VIEW
+    local more = axis == 3 and moved(run) or math.max(o.body[1], o.body[2]) + o.mesh_room + VIEW
     lower[axis], upper[axis] = bounds.lower[axis] - more, bounds.upper[axis] + more
   end
   return { lower = lower, upper = upper }
@@ -63,6 +66,13 @@ function M.region_of(run)
                        .. "region = { lower = {x, y, z}, upper = {x, y, z} }")
   end
   return run.options.input and around(run, surface.region) or surface.region
+end
+
+-- What the lowest flight is measured from: the region's lower corner as given, or a mesh's lowest.
+local function lowest(run)
+  local o, region = run.options, M.region_of(run)
+  if o.input and not o.region.lower then return region.lower[3] + moved(run) end
+  return region.lower[3]
 end
 
 function M.safe_height(run)
@@ -177,7 +187,7 @@ function M.room(run, poses)
       upper[axis] = math.max(upper[axis], pose.position[axis])
     end
   end
-  lower[3], upper[3] = region.lower[3] + o.floor, M.ceiling_of(run)
+  lower[3], upper[3] = lowest(run) + o.floor, M.ceiling_of(run)
   if lower[3] >= upper[3] then
     run:fail("region", string.format("the tour would have to fly over %.4g m (region and floor) "
                                      .. "and below %.4g m (ceiling)", lower[3], upper[3]))

@@ -98,10 +98,18 @@ TEST(SurfaceAreas, AreOfTrianglesByTheVoxelsThatTheyPass) {
   const std::vector<float> shares = shares_of_triangles(mesh, kRegion, grid, voxels);
   EXPECT_EQ(shares, (std::vector<float>{0.5f, 0.5f, 0, 0, kNeverVisible, kNeverVisible,
                                         kOutsideRegion, kOutsideRegion}));
-  const SurfaceAreas areas = areas_of(mesh, shares);
+  const SurfaceAreas areas = areas_of(mesh, shares, kRegion);
   EXPECT_DOUBLE_EQ(areas.known, 12);
   EXPECT_DOUBLE_EQ(areas.visible, 8);
   EXPECT_DOUBLE_EQ(areas.seen, 4);
+  // What lies beside the region is another place; what lies over or under it is missing.
+  EXPECT_DOUBLE_EQ(areas.above + areas.below, 0);
+  const Eigen::AlignedBox3d low(Vector3d(1, 1, 1), Vector3d(15, 15, 4));
+  const SurfaceAreas cut = areas_of(mesh, shares_of_triangles(mesh, low, grid, voxels), low);
+  EXPECT_DOUBLE_EQ(cut.above, 12);
+  EXPECT_DOUBLE_EQ(cut.below, 0);
+  const Eigen::AlignedBox3d high(Vector3d(1, 1, 5), Vector3d(15, 15, 9));
+  EXPECT_DOUBLE_EQ(areas_of(mesh, shares_of_triangles(mesh, high, grid, voxels), high).below, 12);
 }
 
 }  // namespace
