@@ -2,43 +2,12 @@
 #include <gmock/gmock.h>
 
 #include "framework/core/error.h"
-#include "tests/missions/race_fixture.h"
+#include "tests/missions/race_advice.h"
 
 namespace lapwing {
 namespace {
 
 using testing::HasSubstr;
-
-class RaceAdvice : public Race {
- protected:
-  // Stands between two gates that ask the whole quadrotor for more than its controller can follow.
-  static std::string turns(const std::string& more) {
-    return "model = 'quadrotor_full', thrust = 1, refinements = 1, start = {0, 0, 2}, finish = "
-           "{12, 4, 2}, gates = { { shape = 'ball', position = {6, 0, 2}, radius = 0.3 }, { shape "
-           "= 'ball', position = {6, 6, 3}, radius = 0.3 } }, " +
-           more;
-  }
-  static std::vector<std::string> notes(const Flown& flown) {
-    std::vector<std::string> list;
-    if (const Value* notes = flown.result.find("notes"))
-      for (const Value& note : notes->as_list()) list.push_back(note.as_text());
-    return list;
-  }
-  // "--set thrust=0.5 --set rate_share=0.3" at the end of a note.
-  static std::string settings(const std::string& note) { return note.substr(note.find("--set ")); }
-};
-
-TEST_F(RaceAdvice, TheThrustThatIsNamedIsFollowed) {
-  const Flown flown = race(turns(""));
-  ASSERT_EQ(flown.status, 1) << to_json(flown.result);
-  const std::vector<std::string> said = notes(flown);
-  ASSERT_FALSE(said.empty());
-  EXPECT_THAT(said[0], HasSubstr("the closed loop follows this course at thrust = 0."));
-  EXPECT_THAT(said[0], HasSubstr(" s instead of "));
-  const Flown followed = race(turns(""), settings(said[0]));
-  expect_certified(followed);
-  EXPECT_GT(time_of(followed), time_of(flown));
-}
 
 TEST_F(RaceAdvice, NothingIsTriedWhereNobodyAsks) {
   EXPECT_TRUE(notes(race(turns("advise = false"))).empty());

@@ -1,54 +1,9 @@
 // What a scan says of its coverage, held against the true surface and against what was not seen.
-#include "tests/missions/scan_hut.h"
+#include "tests/missions/scan_house.h"
 
 namespace lapwing {
 namespace {
 
-// A house whose walls are the edge of the mesh.
-constexpr const char* kHouseMesh = R"(v -6 -5 0
-v 6 -5 0
-v 6 5 0
-v -6 5 0
-v -6 -5 7
-v 6 -5 7
-v 6 5 7
-v -6 5 7
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-)";
-
-class Covering : public Scanning {
- protected:
-  void SetUp() override {
-    Scanning::SetUp();
-    write_file_atomically(folder_ / "house.obj", kHouseMesh);
-    write_file_atomically(folder_ / "house.lua", R"(
-return require("mission.scan").of_mesh {
-  name = "house", resolution = 0.4, tour = { budget = 120, iterations = 60 },
-  camera = { width = 80, height = 60, focal = 46 }, surface = { spacing = 0.8, cell = 1, trim = 2 },
-  candidates = { most = 80, step = 2.5, distance_apart = 2 },
-  motions = { alpha = 0.3, coarse = 40 },
-}
-)");
-  }
-  // With the mesh in place of a scene, and all defaults of flights and region.
-  Value of_house(const std::string& more, const std::string& out = "out") {
-    EXPECT_EQ(
-        run("--set input=house.obj --set ground=true --data '" + folder_.string() + "' " + more,
-            "house.lua", out),
-        0)
-        << error();
-    return answer();
-  }
-  static double number(const Value& surface, const char* name) {
-    return surface.at(name).as_number();
-  }
-};
-
-// 264 m^2 of walls stand at the edge of the mesh's bounds, and the ground round them.
 TEST_F(Covering, DefaultsSeeTheOutermostWallsOfAMesh) {
   const Value answer = of_house("");
   const Value& surface = answer.at("tour").at("surface");
@@ -102,22 +57,6 @@ TEST_F(Covering, TheTerminalThePlanAndTheReportSayTheSame) {
   EXPECT_THAT(plan(), HasSubstr("camera.focal"));
 }
 
-TEST_F(Covering, ACrosshatchLooksFourWaysAndTakesNoMoreThanIsAsked) {
-  const Value all = of_house("--set 'flights=[{pattern: crosshatch}]'", "all");
-  const Value fewer = of_house("--set 'flights=[{pattern: crosshatch, views: 24}]'", "fewer");
-  const auto images = [](const Value& answer) {
-    return std::stoi(answer.at("notes").as_list().front().as_text());
-  };
-  EXPECT_GT(images(all), 24);
-  EXPECT_LE(images(fewer), 24);
-  EXPECT_GT(images(fewer), 8);
-  EXPECT_EQ(run("--set input=house.obj --set ground=true --data '" + folder_.string() +
-                    "' --set 'flights=[{pattern: crosshatch, views: 2}]'",
-                "house.lua", "two"),
-            2);
-  EXPECT_THAT(error(), HasSubstr("a crosshatch here has"));
-}
-
 // Quick looks change effort, never the task.
 TEST_F(Covering, ASmallScanKeepsBudgetRegionCameraAndRange) {
   const auto options = [&](const std::string& more) {
@@ -132,16 +71,6 @@ TEST_F(Covering, ASmallScanKeepsBudgetRegionCameraAndRange) {
   for (const char* task : {"tour", "camera", "range", "region", "flights", "vehicle", "reach"})
     EXPECT_EQ(to_json(small.at(task)), to_json(stated.at(task))) << task;
   EXPECT_NE(to_json(small.at("effort")), to_json(stated.at("effort")));
-}
-
-// The images that are planned are those of the camera, whatever effort is made.
-TEST_F(Covering, LessEffortLeavesTheCameraOfThePlan) {
-  of_house(
-      "--set camera.width=160 --set camera.height=120 --set camera.focal=92 "
-      "--set effort.pixels=80");
-  const Plan made = read_plan(folder_ / "out/plan.json");
-  EXPECT_EQ(made.task.scan->camera.width, 160);
-  EXPECT_EQ(made.task.scan->camera.focal_x, 92);
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ inline Plan reference_plan(const ReferenceOptions& options = {}) {
     builder.add(options.step, drive(options.held ? t + options.step / 2 : t),
                 drive(t + options.step));
   }
-  Plan plan = builder.finish({.gimbal_yaw_rate = 0.03, .gimbal_pitch_rate = -0.05});
+  Plan plan = builder.finish({.gimbal_yaw_rate = 0.04, .gimbal_pitch_rate = -0.05});
   plan.trajectory.has_gimbal = true;
   const auto& samples = plan.trajectory.samples;
   const Sample& middle = samples[samples.size() / 2];

@@ -81,7 +81,7 @@ const std::vector<Mutation>& mutations() {
       {"gimbal_yaw", vehicle([](Vehicle& v) { v.gimbal->yaw_max = 0.1; })},
       {"gimbal_pitch", vehicle([](Vehicle& v) { v.gimbal->pitch_max = -0.4; })},
       {"gimbal_pitch", vehicle([](Vehicle& v) { v.gimbal->pitch_min = -0.5; })},
-      {"gimbal_yaw_rate", vehicle([](Vehicle& v) { v.gimbal->yaw_rate_max = 0.02; })},
+      {"gimbal_yaw_rate", vehicle([](Vehicle& v) { v.gimbal->yaw_rate_max = 0.036; })},
       {"gimbal_pitch_rate", vehicle([](Vehicle& v) { v.gimbal->pitch_rate_max = 0.04; })},
       {"clearance", [](Plan& p) { p.environment.spheres[0].radius = 2.51; }},
       {"clearance", [](Plan& p) { p.environment.boxes[0].upper.y() = -0.49; }},
