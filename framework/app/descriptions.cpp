@@ -1,5 +1,5 @@
-#include "framework/app/output_target.h"
 #include "framework/app/descriptions.h"
+#include "framework/app/output_target.h"
 
 #include <cstdio>
 

@@ -153,8 +153,7 @@ void print_summary(const RunOutcome& outcome, bool verbose) {
             << (ok ? visible_text(reported_misses(outcome.certificate)) : "") << "\n"
             << line << "\n";
   const bool details = verbose || !ok;
-  for (const std::string& finding :
-       findings(outcome, details ? all_notes(result) : result.notes))
+  for (const std::string& finding : findings(outcome, details ? all_notes(result) : result.notes))
     std::cout << "  " << visible_text(finding) << "\n";
   if (outcome.status == "ok" && result.report.status == SolveStatus::iteration_limit)
     std::cout << "  the solver came to its iteration limit: every check holds, a slightly better "
