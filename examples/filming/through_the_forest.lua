@@ -25,6 +25,7 @@ return film.shot {
   duration  = 40,  -- s
   subject   = { track = { { time = 0, position = { -14, 0, 1 } },
                           { time = 40, position = { 16, 0, 1 } } }, height = 1.8 },
+  line_of_sight = "reported",  -- trunks pass before the runner, as they do in a forest
   keyframes = {
     { time =  0, position = { -26, -16, 3 } },  -- m
     { time = 20, position = {   0,   6, 3 } },

@@ -7,6 +7,7 @@ return film.shot {
   name      = "through the gap",
   duration  = 24,                                      -- s
   subject   = { name = "well", position = {16, 3, 0.6}, height = 1.2, width = 1.5 },
+  line_of_sight = "reported",                          -- the trees may pass before the well
   keyframes = {
     { time =  0, position = {-16, -1, 2.0} },
     { time = 12, position = {  0,  1, 2.5} },

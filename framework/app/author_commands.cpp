@@ -10,7 +10,7 @@ namespace lapwing {
 
 void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& name,
                          Description& described, PluginCheck& asked, Command& command) {
-  CLI::App* plugins = app.add_subcommand("plugins", "what plugins there are");
+  CLI::App* plugins = app.add_subcommand("plugins", "list, show and check plugins");
   plugins->require_subcommand(1);
   CLI::App* list = plugins->add_subcommand("list", "every plugin, by kind");
   add_json(*list, invocation);
@@ -19,7 +19,7 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
   add_text(*show, "name", "[KIND/]NAME", "its name", [&](const std::string& given) {
     name = given;
   })->required();
-  show->add_flag("--markdown", described.markdown, "its parameters as a table of a README");
+  show->add_flag("--markdown", described.markdown, "parameters as a Markdown table");
   add_json(*show, invocation);
   show->callback(
       [&] { command = [&] { return show_plugin(name, described.markdown, invocation); }; });
@@ -27,13 +27,13 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
   add_json(*path, invocation);
   path->callback([&] { command = [&] { return show_plugin_path(invocation); }; });
   CLI::App* check = plugins->add_subcommand(
-      "check", "what every plugin of its kind must pass, each test in a process of its own");
+      "check", "run the checks of its kind, each test in a process of its own");
   add_text(*check, "plugin", "FILE.so|[KIND/]NAME", "a library, or the name of a plugin",
            [&](const std::string& given) { asked.target = given; })
       ->required();
   add_repeated(*check, "--only", "TEST", asked.only,
-               "this test alone; repeatable; default: all of them");
-  add_text(*check, "--limit", "S", "s that one test may take; default: 60",
+               "run this test only; repeatable; default: all");
+  add_text(*check, "--limit", "S", "time limit of a test in s; default: 60",
            [&](const std::string& text) {
              asked.limit = read_number("--limit", text);
              if (!(asked.limit > 0))
@@ -47,13 +47,13 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
 void add_description_commands(CLI::App& app, Invocation& invocation, Description& asked,
                               Command& command) {
   CLI::App* annotations = app.add_subcommand(
-      "annotations", "what scripts may call and set, for editors with a Lua language server");
+      "annotations", "write functions and options for the Lua language server of an editor");
   CLI::App* schema =
-      app.add_subcommand("schema", "a JSON schema of configurations, for editors that check YAML");
+      app.add_subcommand("schema", "write a JSON schema of configurations, for editors");
   for (CLI::App* one : {annotations, schema})
     add_text(*one, "-o,--output", "FILE", "the file to write; default: standard output",
              [&](const std::string& path) { asked.target = path; });
-  annotations->add_flag("--markdown", asked.markdown, "the calls alone, as a table of a README");
+  annotations->add_flag("--markdown", asked.markdown, "functions only, as a Markdown table");
   add_text(*schema, "kind", "KIND", "a kind of mission, or vehicle; default: all missions",
            [&](const std::string& given) { asked.kind = given; });
   annotations->callback([&] { command = [&] { return write_annotations(asked, invocation); }; });
@@ -61,11 +61,11 @@ void add_description_commands(CLI::App& app, Invocation& invocation, Description
 }
 
 void add_new_commands(CLI::App& app, Invocation& invocation, NewFiles& wanted, Command& command) {
-  CLI::App* made = app.add_subcommand("new", "files to begin from");
+  CLI::App* made = app.add_subcommand("new", "write files to start from");
   made->require_subcommand(1);
-  CLI::App* plugin = made->add_subcommand(
-      "plugin", "a folder with a plugin that builds, passes its tests and says what it does");
-  CLI::App* mission = made->add_subcommand("mission", "a mission script with comments that teach");
+  CLI::App* plugin = made->add_subcommand("plugin", "write a working plugin with tests and README");
+  CLI::App* mission =
+      made->add_subcommand("mission", "write a mission script with explanatory comments");
   for (CLI::App* one : {plugin, mission}) {
     add_text(*one, "kind", "KIND", one == plugin ? "cost_term, constraint, ..." : "film, race, ...",
              [&](const std::string& given) { wanted.kind = given; })

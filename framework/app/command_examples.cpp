@@ -112,7 +112,8 @@ std::string footer_of(const std::string& path) {
 
 void add_footers_below(CLI::App& app, const std::string& path) {
   app.footer(footer_of(path));
-  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+  for (CLI::App* command :
+       app.get_subcommands([](const CLI::App* below) { return !below->get_group().empty(); }))
     add_footers_below(*command, path + " " + command->get_name());
 }
 

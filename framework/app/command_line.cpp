@@ -45,11 +45,11 @@ void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& scrip
   run->add_flag("--keep", invocation.keep, "keep an older run in the folder as DIR.1, DIR.2, ...");
   add_threads(*run, invocation, "threads to use; default: one per core");
   run->add_flag("--quiet", invocation.quiet, "no progress, no summary");
-  run->add_flag("--verbose", invocation.verbose, "say what was tried and came to nothing, too");
+  run->add_flag("--verbose", invocation.verbose, "print failed attempts too");
   add_json(*run, invocation);
   run->callback([&] { command = [&] { return run_mission(script, invocation); }; });
 
-  CLI::App* config = app.add_subcommand("config", "effective options and where each came from");
+  CLI::App* config = app.add_subcommand("config", "print effective options with their origins");
   add_mission(*config, script);
   add_configuration(*config, invocation);
   add_json(*config, invocation);
@@ -57,8 +57,7 @@ void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& scrip
 }
 
 void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& command) {
-  CLI::App* sweep =
-      app.add_subcommand("sweep", "run a mission with several values of its options, in a table");
+  CLI::App* sweep = app.add_subcommand("sweep", "run a mission with several values of its options");
   add_mission(*sweep, asked.script);
   add_configuration(*sweep, invocation);
   add_repeated(*sweep, "--vary", "KEY=VALUE,VALUE,...", asked.varied,
@@ -67,8 +66,7 @@ void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& com
             [&](std::uint64_t jobs) { asked.jobs = static_cast<int>(jobs); });
   add_text(*sweep, "-o,--out", "DIR", "folder of the results; default: out/sweep",
            [&](const std::string& path) { invocation.out = path; });
-  sweep->add_flag("--resume", asked.resume,
-                  "go on with a sweep that was ended: run what is missing");
+  sweep->add_flag("--resume", asked.resume, "continue an interrupted sweep: run what is missing");
   sweep->add_flag("--quiet", invocation.quiet, "no progress, no table");
   add_json(*sweep, invocation);
   sweep->callback([&] { command = [&] { return sweep_missions(asked, invocation); }; });
@@ -103,16 +101,16 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
   verify->callback([&] { command = [&] { return verify_plan(plan, judges, invocation); }; });
 
   CLI::App* simulate =
-      app.add_subcommand("simulate", "fly a plan by the whole quadrotor under control");
+      app.add_subcommand("simulate", "simulate a plan with the full quadrotor under control");
   add_plan(*simulate, plan);
   add_text(*simulate, "--wind", "MEAN,GUST[,TO]",
-           "wind and gusts in m/s, and where it blows to in degrees (0: east); default: calm",
+           "mean wind and gusts in m/s, direction of flow in degrees (0: east); default: calm",
            [&](const std::string& text) { read_wind(text, conditions); });
   add_text(*simulate, "--mass-error", "PERCENT",
-           "by which the true mass exceeds the plan's; default: 0", [&](const std::string& text) {
+           "mass error, in percent of the planned mass; default: 0", [&](const std::string& text) {
              conditions.mass_error = read_number("--mass-error", text) / 100;
            });
-  add_seed(*simulate, conditions.seed, "of the gusts; default: 1");
+  add_seed(*simulate, conditions.seed, "seed of the gusts; default: 1");
   add_page(*simulate, target);
   add_json(*simulate, invocation);
   simulate->callback(
@@ -120,13 +118,13 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
 
   CLI::App* exported = app.add_subcommand("export", "write a plan in another format");
   add_plan(*exported, plan);
-  add_text(*exported, "--format", "NAME", "an exporter's name", [&](const std::string& name) {
+  add_text(*exported, "--format", "NAME", "name of an exporter", [&](const std::string& name) {
     format = name;
   })->required();
   add_text(*exported, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
     target = path;
   })->required();
-  exported->add_flag("--uncertified", uncertified, "export a plan that is not certified, too");
+  exported->add_flag("--uncertified", uncertified, "also export a plan that is not certified");
   exported->callback([&] {
     command = [&] { return export_plan(plan, format, target, uncertified, invocation); };
   });
@@ -143,7 +141,7 @@ void add_map_commands(CLI::App& app, Invocation& invocation, std::filesystem::pa
     })->required();
     return made;
   };
-  CLI::App* info = add("info", "what a map holds");
+  CLI::App* info = add("info", "print the content of a map");
   add_json(*info, invocation);
   info->callback([&] { command = [&] { return show_map(file, invocation); }; });
   CLI::App* convert = add("convert", "write a map in another format: .ot, .bt, .ply");
@@ -165,10 +163,9 @@ void add_scene_commands(CLI::App& app, Invocation& invocation, std::filesystem::
            [&](const std::string& path) { file = path; })
       ->required();
   add_page(*view, target)->required();
-  add_count(*view, "--seed", 0, kLargestSeed, "of a Lua scene; default: the scene's own",
+  add_count(*view, "--seed", 0, kLargestSeed, "seed of a Lua scene; default: that of the scene",
             [&](std::uint64_t seed) { stated.seed = seed; });
-  add_text(*view, "--unit", "M",
-           "metres that one unit of a mesh file is; default: what the file says",
+  add_text(*view, "--unit", "M", "m per unit of a mesh file; default: what the file says",
            [&](const std::string& text) { stated.unit = read_number("--unit", text); });
   add_text(*view, "--up", "x|y|z",
            "the axis of a mesh file that points up; default: what the file says",
@@ -179,17 +176,17 @@ void add_scene_commands(CLI::App& app, Invocation& invocation, std::filesystem::
 void add_race_command(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
                       std::vector<std::string>& pilots, RaceRules& rules,
                       std::filesystem::path& target, Command& command) {
-  CLI::App* race = app.add_subcommand("race", "fly a course by hand, from logs of pilots' sticks");
+  CLI::App* race = app.add_subcommand("race", "fly a course by hand, from stick logs of pilots");
   add_plan(*race, plan);
   add_repeated(*race, "--pilot", "LOG[:KEY=VALUE,...]", pilots,
-               "a stick log (CSV: time,forward,left), and of its pilot: name, weight, strength, "
-               "reach, speed, handicap; repeatable, at least one; no default");
+               "a stick log (CSV: time,forward,left) with settings of its pilot: name, weight, "
+               "strength, reach, speed, handicap; repeatable, at least one; no default");
   add_text(*race, "--deviation-price", "S",
-           "s per metre of mean distance from the course; default: 5",
+           "penalty in s per m of mean deviation from the course; default: 5",
            [&](const std::string& text) {
              rules.deviation_price = read_number("--deviation-price", text);
            });
-  add_text(*race, "--gate-price", "S", "s per gate that is missed; default: 10",
+  add_text(*race, "--gate-price", "S", "penalty in s per missed gate; default: 10",
            [&](const std::string& text) { rules.gate_price = read_number("--gate-price", text); });
   add_page(*race, target);
   add_json(*race, invocation);
@@ -296,11 +293,11 @@ void declare_commands(CLI::App& app, Requests& asked) {
   add_description_commands(app, invocation, asked.described, command);
   add_new_commands(app, invocation, asked.wanted, command);
   add_train_commands(app, invocation, asked.training, command);
-  CLI::App* evaluate = app.add_subcommand("evaluate", "studies: methods against each other");
+  CLI::App* evaluate = app.add_subcommand("evaluate", "studies that compare methods");
   evaluate->require_subcommand(1);
   add_evaluate_scan(*evaluate, invocation, asked.scanning, command);
   add_evaluate_explore(*evaluate, invocation, asked.exploring, command);
-  add_help_commands(app, asked.help, command);
+  add_help_commands(app, invocation, asked.help, command);
   add_footers(app);
 }
 
@@ -335,7 +332,7 @@ int run_command_line(int argc, const char* const* argv) {
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
     std::cerr << tinted_error(Tone::bad, "lapwing:") << " "
-              << visible_text(usage_error(app, error.what())) << "\n";
+              << visible_text(usage_error(app, error)) << "\n";
     return static_cast<int>(ExitStatus::bad_input);
   }
   return static_cast<int>(guarded_command(asked.command, asked.invocation));

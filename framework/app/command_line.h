@@ -20,6 +20,7 @@ enum class ExitStatus {
   bad_input = 2,
   defect = 3,  // an internal error, or output that could not be written
   interrupted = 130,
+  reader_gone = 141,  // standard output was a pipe that nobody read to its end: 128 + SIGPIPE
 };
 
 // What several commands understand.
@@ -105,8 +106,9 @@ ExitStatus show_plugin_path(const Invocation& invocation);
 // Writes one object and a line end to standard output.
 void print_json(const Value& value);
 
-// `status`, or `defect` with a message on standard error when something that was written to
-// standard output did not arrive. To be called last.
+// `status`; or, when something that was written to standard output did not arrive, `defect` with a
+// message on standard error. Of a pipe that nobody reads from any more nothing is said: a status
+// that tells of a failure stays, else it is `reader_gone`. To be called last.
 int finish_output(int status);
 
 }  // namespace lapwing

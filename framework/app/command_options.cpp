@@ -79,7 +79,7 @@ void add_configuration(CLI::App& command, Invocation& invocation) {
                "set one option; repeatable, later ones win; default: none");
   add_repeated(command, "--data", "DIR", invocation.data,
                "a folder that the script may read; repeatable; default: those of LAPWING_DATA");
-  add_seed(command, invocation.seed, "of all random numbers; default: 1");
+  add_seed(command, invocation.seed, "seed of all random numbers; default: 1");
 }
 
 void add_mission(CLI::App& command, std::filesystem::path& script) {

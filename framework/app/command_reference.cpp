@@ -1,13 +1,28 @@
 #include "framework/app/command_reference.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <sstream>
+
+#include "framework/app/completion_names.h"
 
 namespace lapwing {
 
 namespace {
 
-OptionEntry entry_of_option(const CLI::Option& option) {
+// Which names are completed where this value is typed.
+void find_names(const std::string& command, OptionEntry& entry) {
+  if (entry.value.empty()) return;
+  for (const NamedValue& value : named_values()) {
+    const bool here = *value.command == '\0' || command == value.command;
+    if (!here || std::count(entry.names.begin(), entry.names.end(), value.option) == 0) continue;
+    entry.names_list = value.names;
+    entry.or_files = value.files;
+    return;
+  }
+}
+
+OptionEntry entry_of_option(const CLI::Option& option, const std::string& command) {
   OptionEntry entry;
   entry.positional = option.get_positional();
   if (entry.positional) {
@@ -21,10 +36,15 @@ OptionEntry entry_of_option(const CLI::Option& option) {
   entry.required = option.get_required();
   entry.repeatable =
       option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll && !entry.value.empty();
+  find_names(command, entry);
   return entry;
 }
 
 }  // namespace
+
+std::vector<const CLI::App*> shown_commands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
 
 CommandEntry entry_of(const CLI::App& app, const std::string& path) {
   CommandEntry entry;
@@ -33,8 +53,8 @@ CommandEntry entry_of(const CLI::App& app, const std::string& path) {
   entry.summary = app.get_description();
   entry.footer = app.get_footer();
   for (const CLI::Option* option : app.get_options())
-    entry.options.push_back(entry_of_option(*option));
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    entry.options.push_back(entry_of_option(*option, path));
+  for (const CLI::App* command : shown_commands(app))
     entry.commands.push_back(entry_of(*command, path + " " + command->get_name()));
   return entry;
 }

@@ -14,6 +14,8 @@ struct OptionEntry {
   std::vector<std::string> names;  // "-o", "--out"; of a positional its one name
   std::string value;               // "DIR", "auto|always|never"; empty: a flag
   std::string help;
+  std::string names_list;  // of app/completion_names.h; empty: none
+  bool or_files = false;   // beside these names
   bool positional = false;
   bool required = false;
   bool repeatable = false;
@@ -32,6 +34,8 @@ struct CommandEntry {
 // those of the first entry.
 CommandEntry command_tree();  // defined beside the parsing (command_line.cpp)
 CommandEntry entry_of(const CLI::App& app, const std::string& path);
+// The commands below, without those of no group, which are not for people.
+std::vector<const CLI::App*> shown_commands(const CLI::App& app);
 
 // Every command of the tree, the tree itself first.
 std::vector<const CommandEntry*> every_command(const CommandEntry& tree);

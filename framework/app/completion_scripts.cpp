@@ -1,5 +1,6 @@
 // Completion for bash, zsh and fish. All three walk the typed words from command to command, skip
 // options and their values, and offer what may come next; the tables are the declared commands.
+// Names of plugins, configurations and the like are asked of the program that is typed.
 #include <algorithm>
 
 #include "framework/app/command_reference.h"
@@ -9,11 +10,24 @@ namespace lapwing {
 
 namespace {
 
-struct CompletedValue {
-  std::string pattern;  // "lapwing run --out"
+// What may stand at one place.
+struct Offer {
   ValueKind kind = ValueKind::none;
   std::vector<std::string> words;
+  std::string names;  // a list that `lapwing complete` prints; empty: none
 };
+
+struct CompletedValue {
+  std::string pattern;  // "lapwing run --out"
+  Offer offer;
+};
+
+Offer offer_of(const OptionEntry& option) {
+  Offer offer{kind_of_value(option.value), {}, option.names_list};
+  if (offer.kind == ValueKind::words) offer.words = words_of_value(option.value);
+  if (!offer.names.empty()) offer.kind = option.or_files ? ValueKind::files : ValueKind::none;
+  return offer;
+}
 
 // Within single quotes of a shell.
 std::string shell_quoted(const std::string& text, const std::string& quote = "'\\''") {
@@ -49,31 +63,26 @@ std::vector<CompletedValue> values_of(const CommandEntry& command, const Command
   for (const OptionEntry& option : options_of(command, tree))
     if (!option.value.empty())
       for (const std::string& name : option.names)
-        values.push_back(
-            {command.path + " " + name, kind_of_value(option.value), words_of_value(option.value)});
+        values.push_back({command.path + " " + name, offer_of(option)});
   return values;
 }
 
-// What stands after a command without an option before it: commands below, words of its
-// positionals, or files.
-std::vector<std::string> words_after(const CommandEntry& command, const CommandEntry& tree) {
-  std::vector<std::string> words;
+// What stands after a command without an option before it: commands below, and what its positionals
+// may be.
+Offer offer_after(const CommandEntry& command, const CommandEntry& tree) {
+  Offer all;
   const CommandEntry& offered = command.path == "lapwing help" ? tree : command;
-  for (const CommandEntry& below : offered.commands) words.push_back(below.name);
-  for (const OptionEntry& option : command.options)
-    if (option.positional && kind_of_value(option.value) == ValueKind::words)
-      for (const std::string& word : words_of_value(option.value)) words.push_back(word);
-  return words;
-}
-
-ValueKind files_after(const CommandEntry& command) {
-  for (const OptionEntry& option : command.options)
-    if (option.positional && kind_of_value(option.value) == ValueKind::files)
-      return ValueKind::files;
-  for (const OptionEntry& option : command.options)
-    if (option.positional && kind_of_value(option.value) == ValueKind::folders)
-      return ValueKind::folders;
-  return ValueKind::none;
+  for (const CommandEntry& below : offered.commands) all.words.push_back(below.name);
+  for (const OptionEntry& option : command.options) {
+    if (!option.positional) continue;
+    const Offer one = offer_of(option);
+    all.words.insert(all.words.end(), one.words.begin(), one.words.end());
+    if (all.names.empty()) all.names = one.names;
+    const bool files = one.kind == ValueKind::files;
+    if (files || (one.kind == ValueKind::folders && all.kind == ValueKind::none))
+      all.kind = one.kind;
+  }
+  return all;
 }
 
 // The walk through the typed words, which bash and zsh write alike: `at` becomes the command.
@@ -100,45 +109,49 @@ std::string walk_of_words(const CommandEntry& tree, const std::string& first,
          "  done\n";
 }
 
+// A statement of bash that fills COMPREPLY.
+std::string bash_offer(const Offer& offer) {
+  std::string text;
+  if (!offer.words.empty())
+    text += "_lapwing_words " + shell_quoted(joined(offer.words, " ")) + "; ";
+  if (!offer.names.empty()) text += "_lapwing_words \"$(_lapwing_names " + offer.names + ")\"; ";
+  if (offer.kind == ValueKind::files) text += "_lapwing_files -f; ";
+  if (offer.kind == ValueKind::folders) text += "_lapwing_files -d; ";
+  return text;
+}
+
 std::string bash_script(const CommandEntry& tree) {
   std::string text =
       "# Completion of lapwing for bash: source <(lapwing completion bash)\n"
+      "_lapwing_words() {\n"
+      "  mapfile -t -O \"${#COMPREPLY[@]}\" COMPREPLY < <(compgen -W \"$1\" -- \"$cur\")\n"
+      "}\n"
+      "_lapwing_names() {\n"
+      "  \"${COMP_WORDS[0]}\" complete \"$1\" 2>/dev/null\n"
+      "}\n"
       "_lapwing_files() {\n"
-      "  compopt -o filenames 2>/dev/null\n"
-      "  mapfile -t COMPREPLY < <(compgen \"$1\" -- \"$2\")\n"
+      "  local before=${#COMPREPLY[@]}\n"
+      "  mapfile -t -O \"$before\" COMPREPLY < <(compgen \"$1\" -- \"$cur\")\n"
+      "  ((before == 0)) && compopt -o filenames 2>/dev/null\n"
       "}\n"
       "_lapwing() {\n"
-      "  local words=(\"${COMP_WORDS[@]}\") cur=${COMP_WORDS[COMP_CWORD]} offered=\n"
+      "  local words=(\"${COMP_WORDS[@]}\") cur=${COMP_WORDS[COMP_CWORD]}\n"
       "  COMPREPLY=()\n" +
       walk_of_words(tree, "1", "COMP_CWORD") + "  case \"$at ${words[COMP_CWORD - 1]}\" in\n";
   for (const CommandEntry* command : every_command(tree))
-    for (const CompletedValue& value : values_of(*command, tree)) {
-      text += "    " + shell_quoted(value.pattern) + ") ";
-      if (value.kind == ValueKind::files) text += "_lapwing_files -f \"$cur\"; ";
-      if (value.kind == ValueKind::folders) text += "_lapwing_files -d \"$cur\"; ";
-      if (value.kind == ValueKind::words)
-        text += "mapfile -t COMPREPLY < <(compgen -W " + shell_quoted(joined(value.words, " ")) +
-                " -- \"$cur\"); ";
-      text += "return ;;\n";
-    }
+    for (const CompletedValue& value : values_of(*command, tree))
+      text += "    " + shell_quoted(value.pattern) + ") " + bash_offer(value.offer) + "return ;;\n";
   text += "  esac\n  case \"$at\" in\n";
   for (const CommandEntry* command : every_command(tree)) {
     std::vector<std::string> options;
     for (const OptionEntry& option : options_of(*command, tree))
       options.insert(options.end(), option.names.begin(), option.names.end());
-    text += "    " + shell_quoted(command->path) +
-            ")\n      if [[ $cur == -* ]]; then offered=" + shell_quoted(joined(options, " ")) +
-            "\n      else ";
-    if (const ValueKind kind = files_after(*command); kind != ValueKind::none)
-      text += std::string("_lapwing_files ") + (kind == ValueKind::files ? "-f" : "-d") +
-              " \"$cur\"; return\n      fi ;;\n";
-    else
-      text +=
-          "offered=" + shell_quoted(joined(words_after(*command, tree), " ")) + "\n      fi ;;\n";
+    text += "    " + shell_quoted(command->path) + ")\n      if [[ $cur == -* ]]; then " +
+            bash_offer({ValueKind::none, options, ""}) + "\n      else " +
+            bash_offer(offer_after(*command, tree)) + ":\n      fi ;;\n";
   }
   return text +
          "  esac\n"
-         "  mapfile -t COMPREPLY < <(compgen -W \"$offered\" -- \"$cur\")\n"
          "}\n"
          "complete -F _lapwing lapwing\n";
 }
@@ -148,6 +161,16 @@ std::string described(const std::string& name, const std::string& help) {
   std::string safe;
   for (const char c : name + ":" + help) safe += c == '\n' ? ' ' : c;
   return shell_quoted(safe);
+}
+
+// Statements of zsh that offer names and files; words have descriptions where they are commands.
+std::string zsh_offer(const Offer& offer) {
+  std::string text;
+  if (!offer.names.empty())
+    text += "compadd -- ${(f)\"$(${(Q)words[1]} complete " + offer.names + " 2>/dev/null)\"}; ";
+  if (offer.kind == ValueKind::files) text += "_files; ";
+  if (offer.kind == ValueKind::folders) text += "_files -/; ";
+  return text;
 }
 
 std::string zsh_script(const CommandEntry& tree) {
@@ -160,14 +183,12 @@ std::string zsh_script(const CommandEntry& tree) {
   for (const CommandEntry* command : every_command(tree))
     for (const CompletedValue& value : values_of(*command, tree)) {
       text += "    " + shell_quoted(value.pattern) + ") ";
-      if (value.kind == ValueKind::files) text += "_files; ";
-      if (value.kind == ValueKind::folders) text += "_files -/; ";
-      if (value.kind == ValueKind::words) {
+      if (!value.offer.words.empty()) {
         text += "compadd --";
-        for (const std::string& word : value.words) text += " " + shell_quoted(word);
+        for (const std::string& word : value.offer.words) text += " " + shell_quoted(word);
         text += "; ";
       }
-      text += "return ;;\n";
+      text += zsh_offer(value.offer) + "return ;;\n";
     }
   text += "  esac\n  case \"$at\" in\n";
   for (const CommandEntry* command : every_command(tree)) {
@@ -176,25 +197,20 @@ std::string zsh_script(const CommandEntry& tree) {
     for (const OptionEntry& option : options_of(*command, tree))
       for (const std::string& name : option.names)
         text += "\n        " + described(name, option.help);
-    text += ")\n      else ";
-    if (const ValueKind kind = files_after(*command); kind != ValueKind::none) {
-      text += kind == ValueKind::files ? "_files; return\n" : "_files -/; return\n";
-    } else {
-      text += "offered=(";
-      const CommandEntry& from = command->path == "lapwing help" ? tree : *command;
-      for (const std::string& word : words_after(*command, tree)) {
-        std::string help = word;
-        for (const CommandEntry& below : from.commands)
-          if (below.name == word) help = below.summary;
-        text += "\n        " + described(word, help);
-      }
-      text += ")\n";
+    const Offer after = offer_after(*command, tree);
+    text += ")\n      else " + zsh_offer(after) + "offered=(";
+    const CommandEntry& from = command->path == "lapwing help" ? tree : *command;
+    for (const std::string& word : after.words) {
+      std::string help = word;
+      for (const CommandEntry& below : from.commands)
+        if (below.name == word) help = below.summary;
+      text += "\n        " + described(word, help);
     }
-    text += "      fi ;;\n";
+    text += ")\n      fi ;;\n";
   }
   return text +
          "  esac\n"
-         "  _describe -t lapwing lapwing offered\n"
+         "  (( $#offered )) && _describe -t lapwing lapwing offered\n"
          "}\n"
          "if [[ $funcstack[1] == _lapwing ]]; then _lapwing \"$@\"; else compdef _lapwing lapwing; "
          "fi\n";
@@ -206,6 +222,18 @@ std::string fish_quoted(const std::string& text) {
   return shell_quoted(safe, "\\'");
 }
 
+// The arguments of `complete` that offer it. Of an option: -x takes nothing else, -r -F files too.
+std::string fish_offer(const Offer& offer, bool of_option) {
+  std::string words = joined(offer.words, " ");
+  if (!offer.names.empty())
+    words += (words.empty() ? "" : " ") + ("(__lapwing_names " + offer.names + ")");
+  if (offer.kind == ValueKind::folders)
+    words += (words.empty() ? "" : " ") + std::string("(__fish_complete_directories)");
+  const bool files = offer.kind == ValueKind::files;
+  const std::string how = files ? (of_option ? " -r -F" : " -F") : (of_option ? " -x" : "");
+  return how + (words.empty() ? "" : " -a " + fish_quoted(words));
+}
+
 std::string fish_options(const CommandEntry& command, const CommandEntry& tree,
                          const std::string& head) {
   std::string text;
@@ -213,19 +241,7 @@ std::string fish_options(const CommandEntry& command, const CommandEntry& tree,
     text += head;
     for (const std::string& name : option.names)
       text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-    switch (option.value.empty() ? ValueKind::none : kind_of_value(option.value)) {
-      case ValueKind::files:
-        text += " -r -F";
-        break;
-      case ValueKind::folders:
-        text += " -x -a '(__fish_complete_directories)'";
-        break;
-      case ValueKind::words:
-        text += " -x -a " + fish_quoted(joined(words_of_value(option.value), " "));
-        break;
-      case ValueKind::none:
-        if (!option.value.empty()) text += " -x";
-    }
+    if (!option.value.empty()) text += fish_offer(offer_of(option), true);
     text += " -d " + fish_quoted(option.help) + "\n";
   }
   return text;
@@ -261,21 +277,25 @@ std::string fish_script(const CommandEntry& tree) {
       "  end\n"
       "  test \"$at\" = \"$argv[1]\"\n"
       "end\n"
+      "function __lapwing_names\n"
+      "  set -l typed (commandline -opc)\n"
+      "  command $typed[1] complete $argv[1] 2>/dev/null\n"
+      "end\n"
       "complete -c lapwing -f\n";
   for (const CommandEntry* command : every_command(tree)) {
     const std::string head =
         "complete -c lapwing -n " + fish_quoted("__lapwing_at \"" + command->path + "\"");
     const CommandEntry& from = command->path == "lapwing help" ? tree : *command;
-    for (const std::string& word : words_after(*command, tree)) {
+    Offer after = offer_after(*command, tree);
+    for (const std::string& word : after.words) {
       std::string help;
       for (const CommandEntry& below : from.commands)
         if (below.name == word) help = " -d " + fish_quoted(below.summary);
       text += head + " -a " + fish_quoted(word) + help + "\n";
     }
-    if (const ValueKind kind = files_after(*command); kind == ValueKind::files)
-      text += head + " -F\n";
-    else if (kind == ValueKind::folders)
-      text += head + " -a '(__fish_complete_directories)'\n";
+    after.words.clear();
+    if (const std::string rest = fish_offer(after, false); !rest.empty())
+      text += head + rest + "\n";
     text += fish_options(*command, tree, head);
   }
   return text;

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "framework/app/command_options.h"
+#include "framework/app/completion_names.h"
 #include "framework/config/overrides.h"
 #include "framework/config/shipped.h"
 #include "framework/core/checksum.h"
@@ -132,7 +133,7 @@ void require_world(const WorldName& name, const std::string& up) {
     throw InputError("--up is for mesh files, and '" + name.scene + "' is none");
   if (fs::exists(name.file())) return;
   if (name.is_mesh()) throw InputError("'" + name.file().string() + "' not found");
-  throw InputError("'" + name.scene + "' is no scene of scripts/scene and no file");
+  throw InputError(no_scene(name.scene) + " and no file");
 }
 
 World load_world(const WorldName& name, const std::string& up, const Registry& registry,

@@ -4,19 +4,16 @@
 #include <iostream>
 
 #include "framework/app/command_reference.h"
+#include "framework/app/completion_names.h"
 #include "framework/app/terminal.h"
 
 namespace lapwing {
 
 namespace {
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App*) { return true; });
-}
-
 std::vector<std::string> names_of_commands(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  for (const CLI::App* command : shown_commands(app)) names.push_back(command->get_name());
   return names;
 }
 
@@ -56,6 +53,8 @@ std::string unknown_word(const CLI::App& app, const ReachedCommand& reached) {
   for (const std::string& word : app.remaining(true)) {
     if (!word.starts_with("-") || word == "-" || word == "--") continue;
     const std::string option = word.substr(0, word.find('='));
+    if (std::count(known.begin(), known.end(), option) > 0)
+      return "'" + option + "' is an option of '" + reached.path + "': write it behind that";
     return "'" + reached.path + "' has no option '" + option + "'" + did_you_mean(option, known);
   }
   const std::vector<std::string> rest = app.remaining(true);
@@ -66,13 +65,32 @@ std::string unknown_word(const CLI::App& app, const ReachedCommand& reached) {
   return "unknown command '" + rest.front() + "'" + did_you_mean(rest.front(), commands);
 }
 
+// CLI11 says "mission is required" and "--world: 1 required NAME missing".
+std::string what_is_missing(const ReachedCommand& reached, const CLI::ParseError& error) {
+  const std::string reason = error.what();
+  if (error.get_name() == "RequiredError") {
+    for (const CLI::Option* option : reached.app->get_options())
+      if (option->get_required() && option->count() == 0)
+        return "'" + reached.path + "' wants " +
+               (option->get_positional() ? "" : option->get_name() + " ") +
+               option->get_type_name() + ": " + option->get_description();
+  } else if (error.get_name() == "ArgumentMismatch") {
+    const CLI::Option* option =
+        reached.app->get_option_no_throw(reason.substr(0, reason.find(':')));
+    if (option)
+      return "'" + option->get_name() + "' wants " + option->get_type_name() + ": " +
+             option->get_description();
+  }
+  return reason;
+}
+
 ExitStatus print_help(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* at = &app;
   std::string path = "lapwing";
   for (const std::string& word : words) {
     const std::vector<std::string> known = names_of_commands(*at);
     const CLI::App* next = nullptr;
-    for (const CLI::App* command : commands_of(*at))
+    for (const CLI::App* command : shown_commands(*at))
       if (command->get_name() == word) next = command;
     if (!next)
       throw InputError("'" + path + "' has no command '" + word + "'" + did_you_mean(word, known));
@@ -86,7 +104,8 @@ ExitStatus print_help(const CLI::App& app, const std::vector<std::string>& words
 
 }  // namespace
 
-void add_help_commands(CLI::App& app, HelpRequest& asked, Command& command) {
+void add_help_commands(CLI::App& app, const Invocation& invocation, HelpRequest& asked,
+                       Command& command) {
   CLI::App* version = app.add_subcommand("version", "the program's version");
   version->callback([&] {
     command = [] {
@@ -94,8 +113,9 @@ void add_help_commands(CLI::App& app, HelpRequest& asked, Command& command) {
       return ExitStatus::done;
     };
   });
-  CLI::App* help = app.add_subcommand("help", "the commands, or what one of them takes");
-  add_text(*help, "command", "COMMAND...", "such as run, or map info; default: all commands",
+  CLI::App* help = app.add_subcommand("help", "list the commands, or describe one");
+  add_text(*help, "command", "COMMAND...",
+           "a command such as run, or map info; default: all commands",
            [&](const std::string& word) { asked.words.push_back(word); })
       ->expected(-1)
       ->take_all();
@@ -111,6 +131,12 @@ void add_help_commands(CLI::App& app, HelpRequest& asked, Command& command) {
       return ExitStatus::done;
     };
   });
+  CLI::App* names = app.add_subcommand("complete", "the names of a list, for completion");
+  names->group("");  // for scripts of shells alone
+  add_text(*names, "list", "LIST", "which list", [&](const std::string& name) {
+    asked.names = name;
+  })->required();
+  names->callback([&] { command = [&] { return print_names(asked.names, invocation); }; });
   CLI::App* man = app.add_subcommand("man", "the manual page, in roff");
   man->callback([&] {
     command = [] {
@@ -136,10 +162,11 @@ void add_colour(CLI::App& app) {
            });
 }
 
-std::string usage_error(const CLI::App& app, const std::string& reason) {
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const ReachedCommand reached = reached_command(app);
   std::string message = unknown_word(app, reached);
-  const std::vector<const CLI::App*> below = commands_of(*reached.app);
+  const std::string reason = what_is_missing(reached, error);
+  const std::vector<const CLI::App*> below = shown_commands(*reached.app);
   if (!message.empty() || below.empty())
     return (message.empty() ? reason : message) + "\nRun '" + reached.path +
            " --help' for what it takes.";

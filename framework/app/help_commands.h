@@ -6,20 +6,26 @@
 
 #include "framework/app/command_options.h"
 
+namespace CLI {
+class ParseError;
+}
+
 namespace lapwing {
 
 struct HelpRequest {
   std::vector<std::string> words;  // of `help`: the command
   std::string shell;               // of `completion`
+  std::string names;               // of `complete`: the list
 };
 
-// version, help, completion, man. `app` is the whole program's.
-void add_help_commands(CLI::App& app, HelpRequest& asked, Command& command);
+// version, help, completion, man, and complete, which no help shows. `app` is the whole program's.
+void add_help_commands(CLI::App& app, const Invocation& invocation, HelpRequest& asked,
+                       Command& command);
 // --color
 void add_colour(CLI::App& app);
 
 // Why the words of a command line cannot be parsed: the unknown command or option with the nearest
-// known one, else `reason`; then what to type for help.
-std::string usage_error(const CLI::App& app, const std::string& reason);
+// known one, what is missing, or what `error` says; then what to type for help.
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace lapwing

@@ -39,6 +39,32 @@ std::vector<fs::path> data_folders(const Invocation& invocation) {
   return folders;
 }
 
+// A file of another sort in a configuration's place would be a page of unknown keys.
+Value mission_config(const std::string& name, const ConfigSearch& search) {
+  Value config = read_config(name, search);
+  if (config.find("mass") && config.find("rotors"))
+    throw InputError("--config " + name +
+                     ": this is a vehicle, not a configuration of a mission; " +
+                     "expected --set vehicle=" + name);
+  return config;
+}
+
+void require_script(const fs::path& script) {
+  const std::string file = script.string();
+  if (script.extension() == ".json")
+    throw InputError("'" + file +
+                     "' is no mission script, NAME.lua; a plan is judged by `lapwing "
+                     "verify " +
+                     file + "`");
+  if (script.extension() == ".yaml")
+    throw InputError("'" + file +
+                     "' is no mission script, NAME.lua; a configuration is laid over "
+                     "one by --config " +
+                     file);
+  if (!fs::exists(script) && fs::exists(file + ".lua"))
+    throw InputError("cannot read '" + file + "'; did you mean '" + file + ".lua'?");
+}
+
 }  // namespace
 
 std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& invocation,
@@ -46,13 +72,14 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
                                       const CancellationToken* cancellation, Progress* progress,
                                       std::function<void()> before_print,
                                       const MissionObservers& observers) {
+  require_script(script);
   MissionSettings settings;
   settings.scripts = shipped_folder("scripts");
   settings.configs = shipped_folder("configs");
   ConfigSearch search;
   search.folders = {settings.configs};
   std::vector<Value> layers;
-  for (const std::string& name : invocation.configs) layers.push_back(read_config(name, search));
+  for (const std::string& name : invocation.configs) layers.push_back(mission_config(name, search));
   settings.limits = sandbox_limits(layers, invocation.overrides);
   settings.seed = invocation.seed;
   settings.threads = invocation.threads > 0

@@ -27,10 +27,12 @@ void expect_kind(const std::string& kind, const std::vector<std::string>& known,
   if (std::find(known.begin(), known.end(), kind) != known.end()) return;
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-  const std::string nearest = nearest_name(kind, known);
+  std::string nearest = nearest_name(kind, known);
+  for (const std::string& one : known)  // "cost" begins "cost_term"
+    if (nearest.empty() && kind.size() > 2 && one.starts_with(kind)) nearest = one;
   throw InputError("there is no kind of " + what + " '" + kind + "'" +
                    (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") +
-                   " There are: " + all);
+                   "; there are: " + all);
 }
 
 constexpr std::size_t kLongestPluginName = 64;  // file systems take 255 bytes, endings included

@@ -28,6 +28,9 @@ int finish_output(int status) {
   // The first failure was met by whoever printed, who kept no reason; a closed pipe still shows.
   pollfd state{STDOUT_FILENO, POLLOUT, 0};
   if (reason == 0 && ::poll(&state, 1, 0) > 0 && (state.revents & POLLERR) != 0) reason = EPIPE;
+  // Whoever read has seen enough, as `head` has: no fault to tell of. The status says all the same
+  // that not all arrived, and says it as shells do of other tools that a closed pipe ends.
+  if (reason == EPIPE) return status != 0 ? status : static_cast<int>(ExitStatus::reader_gone);
   std::fprintf(stderr, "lapwing: cannot write to standard output%s%s\n", reason ? ": " : "",
                reason ? std::strerror(reason) : "; is the disk full?");
   return static_cast<int>(ExitStatus::defect);

@@ -27,6 +27,26 @@ void print_check(const Check& check) {
               check.required || !check.skipped.empty() ? "" : " (reported only)");
 }
 
+// All but the failures. What could not be checked because the document failed is counted.
+void print_others(const Certificate& certificate) {
+  const Check* document = certificate.find("document");
+  const bool readable = document && document->pass;
+  int not_made = 0;
+  for (const Check& check : certificate.checks) {
+    const bool failed = check.required && check.skipped.empty() && !check.pass;
+    const bool follows = !readable && !check.skipped.empty();
+    not_made += follows;
+    if (!failed && !follows) print_check(check);
+  }
+  if (not_made > 0)
+    std::printf("  the other %d checks were not made: they need a document that holds together\n",
+                not_made);
+}
+
+void print_failures(const Certificate& certificate) {
+  for (const Check& check : certificate.failures()) print_check(check);
+}
+
 // A plan carries the verdict of its run; a plan changed since may no longer deserve it.
 void warn_of_changes(const JudgedPlan& judged, const Judges& judges) {
   const Value* stored = judged.plan.certificate.find("feasible");
@@ -63,11 +83,12 @@ ExitStatus verify_plan(const std::filesystem::path& file, const Judges& judges,
     print_json(object);
   } else {
     const bool feasible = certificate.feasible();
-    std::printf(
-        "%s: %s\n%s", visible_line(judged.plan.mission).c_str(),
-        tinted(feasible ? Tone::good : Tone::bad, feasible ? "certified" : "not certified").c_str(),
-        visible_text(judged.lines).c_str());
-    for (const Check& check : certificate.checks) print_check(check);
+    std::printf("%s: %s\n", visible_line(judged.plan.mission).c_str(),
+                tinted(feasible ? Tone::good : Tone::bad, feasible ? "certified" : "not certified")
+                    .c_str());
+    print_failures(certificate);
+    std::printf("%s", visible_text(judged.lines).c_str());
+    print_others(certificate);
   }
   return certificate.feasible() ? ExitStatus::done : ExitStatus::not_certified;
 }

@@ -268,6 +268,15 @@ class Examination {
   std::vector<std::string> faults_, remarks_, not_compared_;
 };
 
+Value plan_document(const std::string& text, const std::string& name) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin == text.npos || text[begin] != '{')
+    throw InputError("'" + name +
+                     "' is no plan; expected a document such as plan.json in the "
+                     "folder of a run");
+  return from_json(text, name);
+}
+
 // Of the plan as it was planned, not of what a judge put into it.
 bool judged_by_others(const Judges& judges) {
   return !judges.vehicle.empty() || !judges.environment.empty();
@@ -295,10 +304,16 @@ Plan read_plan_file(const fs::path& file, DigestFindings* digest) {
   if (file.extension() == ".lua")
     throw InputError("'" + file.string() + "' is a script, not a plan; `lapwing run " +
                      file.string() + "` makes one, plan.json in the folder that it names");
+  if (fs::is_directory(file)) {
+    const bool of_a_run = fs::exists(file / "plan.json");
+    throw InputError("'" + file.string() + "' is a folder; " +
+                     (of_a_run ? "its plan is '" + (file / "plan.json").string() + "'"
+                               : "expected a plan, such as plan.json in the folder of a run"));
+  }
   const std::string left =
       complete_run_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
   if (!left.empty()) logging::warning(left);
-  const Value document = from_json(read_file(file), file.string());
+  const Value document = plan_document(read_file(file), file.string());
   Plan plan = plan_from_value(document);
   if (digest) *digest = check_digest(document);
   return plan;

@@ -41,9 +41,16 @@ struct RunOutcome {
   std::string not_raced = {};  // why players did not fly; empty: they did, or there are none
 };
 
+// With what only the simulator of a scan knows, which is told and no part of the plan.
+std::vector<std::string> told_notes(const MissionResult& result) {
+  std::vector<std::string> all = result.notes;
+  if (result.scan && result.scan->truth) all.push_back(truth_in_words(*result.scan));
+  return all;
+}
+
 // With what was tried on the way: for the report, the log and --json.
 std::vector<std::string> all_notes(const MissionResult& result) {
-  std::vector<std::string> all = result.notes;
+  std::vector<std::string> all = told_notes(result);
   all.insert(all.end(), result.details.begin(), result.details.end());
   return all;
 }
@@ -153,7 +160,8 @@ void print_summary(const RunOutcome& outcome, bool verbose) {
             << (ok ? visible_text(reported_misses(outcome.certificate)) : "") << "\n"
             << line << "\n";
   const bool details = verbose || !ok;
-  for (const std::string& finding : findings(outcome, details ? all_notes(result) : result.notes))
+  for (const std::string& finding :
+       findings(outcome, details ? all_notes(result) : told_notes(result)))
     std::cout << "  " << visible_text(finding) << "\n";
   if (outcome.status == "ok" && result.report.status == SolveStatus::iteration_limit)
     std::cout << "  the solver came to its iteration limit: every check holds, a slightly better "
@@ -266,8 +274,9 @@ void fly_pilots(RunOutcome& outcome, const CancellationToken& token) {
 void complete_plan(RunOutcome& outcome) {
   Plan& plan = outcome.result.plan;
   plan.certificate = outcome.certificate.to_value();
-  if (const auto all = all_notes(outcome.result); !all.empty())
-    plan.solver.set("notes", Value(Value::List(all.begin(), all.end())));
+  std::vector<std::string> all = outcome.result.notes;
+  all.insert(all.end(), outcome.result.details.begin(), outcome.result.details.end());
+  if (!all.empty()) plan.solver.set("notes", Value(Value::List(all.begin(), all.end())));
   if (outcome.status == "cancelled") plan.solver.set("cancelled", true);
 }
 

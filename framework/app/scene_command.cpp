@@ -1,9 +1,11 @@
 // lapwing scene view: a mesh file, or a scene that a Lua script makes.
 #include "framework/app/command_line.h"
+#include "framework/app/completion_names.h"
 #include "framework/app/exploration_worlds.h"
 #include "framework/app/output_target.h"
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
+#include "framework/core/number_text.h"
 #include "framework/export/scene_report.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/mission/scene_script.h"
@@ -21,11 +23,22 @@ fs::path script_of(const fs::path& file) {
   return !file.has_extension() && fs::exists(shipped) ? shipped : fs::path();
 }
 
+UpAxis axis_of_option(const std::string& up) {
+  try {
+    return up_axis(up);
+  } catch (const InputError& error) {
+    throw InputError(std::string("--") + error.what());
+  }
+}
+
 MeshFileOptions mesh_options(const SceneStatement& stated) {
   if (stated.seed) throw InputError("--seed is of scenes that a script makes, not of a mesh file");
   MeshFileOptions options;
+  if (stated.unit && !(*stated.unit > 0))
+    throw InputError("--unit: expected a number of metres above 0, got " +
+                     plain_number(*stated.unit));
   options.unit = stated.unit;
-  if (!stated.up.empty()) options.up = up_axis(stated.up);
+  if (!stated.up.empty()) options.up = axis_of_option(stated.up);
   return options;
 }
 
@@ -33,9 +46,7 @@ MeshFileOptions mesh_options(const SceneStatement& stated) {
 void require_an_ending(const fs::path& file) {
   if (file.extension() == ".lua") throw InputError("'" + file.string() + "' not found");
   if (file.has_extension()) return;
-  throw InputError("'" + file.string() +
-                   "' is no scene of scripts/scene (street, church, courtyard, suburb, downtown, "
-                   "office), no script and no mesh file");
+  throw InputError(no_scene(file.string()) + ", no script and no mesh file");
 }
 
 }  // namespace

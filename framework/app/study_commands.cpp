@@ -11,14 +11,14 @@ namespace lapwing {
 namespace {
 
 constexpr const char* kWorldHelp =
-    "a scene of scripts/scene with its seeds, a mesh file, which gets a floor, or FILE@X,Y,Z: the "
-    "space within a mesh that holds that place; repeatable, at least one; no default";
+    "a scene of scripts/scene with its seeds; a mesh file, which gets a ground plane; or "
+    "FILE@X,Y,Z, the space inside a mesh around that point; repeatable, at least one; no default";
 constexpr const char* kMovesHelp =
-    "step, turn_deg, body or clear, as a mission's `moves`; repeatable; default: the mission's";
+    "step, turn_deg, body or clear, as in `moves` of a mission; repeatable; default: those of the "
+    "mission";
 constexpr const char* kMappingHelp =
     "width, height, view_deg, pitch_deg or range of the camera, resolution, hit or miss of the "
-    "map, as a mission has them: a learned utility is good for one of these alone; repeatable; "
-    "default: the mission's";
+    "map, as in a mission; a model fits one set of them; repeatable; default: those of the mission";
 
 std::uint64_t read_seed(const std::string& text) {
   std::uint64_t seed = 0;
@@ -33,7 +33,7 @@ std::uint64_t read_seed(const std::string& text) {
 void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluation& asked,
                        Command& command) {
   CLI::App* scan = evaluate.add_subcommand(
-      "scan", "scan tours and their rivals, judged by the models that their images would make");
+      "scan", "compare scan tours by the surface models that their images give");
   add_text(*scan, "missions", "MISSION.lua...", "scans to plan by every method",
            [&](const std::string& path) { asked.missions.emplace_back(path); })
       ->required()
@@ -42,19 +42,20 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
   add_repeated(*scan, "--method", "NAME", asked.methods,
                "a tour solver (milp, milp:nodes=100, cost_benefit+local_search) or a pattern "
                "(circle_50, ellipse_60x40, meander_85x100, hemisphere_60); default: all");
-  add_text(
-      *scan, "--seeds", "N,N,...", "of the missions; default: 1", [&](const std::string& text) {
-        asked.seeds.clear();
-        read_list(text, [&](const std::string& part) { asked.seeds.push_back(read_seed(part)); });
-      });
-  add_text(*scan, "--budgets", "S,S,...", "of flight; default: each mission's own",
+  add_text(*scan, "--seeds", "N,N,...", "seeds of the missions; default: 1",
+           [&](const std::string& text) {
+             asked.seeds.clear();
+             read_list(text,
+                       [&](const std::string& part) { asked.seeds.push_back(read_seed(part)); });
+           });
+  add_text(*scan, "--budgets", "S,S,...", "flight times in s; default: that of each mission",
            [&](const std::string& text) {
              read_list(text, [&](const std::string& part) {
                asked.budgets.push_back(read_number("--budgets", part));
              });
            });
   add_text(*scan, "--noise", "SIGMA[,DROPPED]",
-           "of the judged depth: m, and the share of pixels without any; default: ideal",
+           "noise of the evaluated depth in m, and share of dropped pixels; default: ideal",
            [&](const std::string& text) {
              std::vector<double> numbers;
              read_list(text, [&](const std::string& part) {
@@ -64,11 +65,11 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
                throw CLI::ValidationError("--noise", "expected SIGMA or SIGMA,DROPPED");
              asked.noise = DepthNoise{numbers.size() > 1 ? numbers[1] : 0, numbers[0]};
            });
-  add_text(*scan, "--guard", "S", "of wall clock that one solver may take; default: 300",
+  add_text(*scan, "--guard", "S", "wall-clock limit of a solver in s; default: 300",
            [&](const std::string& text) { asked.guard = read_number("--guard", text); });
   scan->add_flag("--photos", asked.photos,
-                 "render photographs along each tour and ask COLMAP how many fit into one model");
-  scan->add_flag("--resume", asked.resume, "go on with a study that was ended");
+                 "render photographs along each tour and register them with COLMAP");
+  scan->add_flag("--resume", asked.resume, "continue an interrupted study");
   add_repeated(
       *scan, "--config", "FILE", invocation.configs,
       "a configuration file or its name in configs/, of all missions; repeatable; default: none");
@@ -86,7 +87,7 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
 
 void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& request,
                         Command& command) {
-  CLI::App* train = app.add_subcommand("train", "learned utilities: samples, training, judging");
+  CLI::App* train = app.add_subcommand("train", "learned utilities: samples, training, evaluation");
   train->require_subcommand(1);
   const auto add = [&](const char* name, const char* help) {
     CLI::App* made = train->add_subcommand(name, help);
@@ -101,9 +102,9 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
     })->required();
     add_repeated(made, "--set", "KEY=VALUE", invocation.overrides,
                  "set one parameter of the network or its training; repeatable; default: none");
-    add_seed(made, invocation.seed, "of all random numbers; default: 1");
+    add_seed(made, invocation.seed, "seed of all random numbers; default: 1");
     made.add_flag("--quiet", invocation.quiet, "no lines of progress");
-    made.add_flag("--resume", request.resume, "go on with what is there");
+    made.add_flag("--resume", request.resume, "continue an interrupted run");
   };
   const auto add_samples = [&](CLI::App& made) {
     add_text(made, "samples", "DIR|FILE...", "files of samples, and folders of them",
@@ -126,9 +127,9 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
            [&](const std::string& axis) { request.up = axis; });
   add_repeated(*dataset, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
   add_repeated(*dataset, "--mapping", "KEY=VALUE", request.mapping, kMappingHelp);
-  add_count(*dataset, "--episodes", 1, 100'000, "of each world; default: 4",
+  add_count(*dataset, "--episodes", 1, 100'000, "episodes per world; default: 4",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
-  add_count(*dataset, "--steps", 1, 100'000, "of each episode; default: 200",
+  add_count(*dataset, "--steps", 1, 100'000, "images per episode; default: 200",
             [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
   CLI::App* fit = add("fit", "train a model");
   add_making(*fit, "the model's file");
@@ -136,7 +137,7 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   add_repeated(*fit, "--validation", "DIR|FILE", request.validation,
                "samples of other worlds or episodes; repeatable, at least one; no default");
   CLI::App* score = add("score", "rank correlation and loss of a model");
-  add_text(*score, "--model", "FILE", "that is judged", [&](const std::string& path) {
+  add_text(*score, "--model", "FILE", "the model to evaluate", [&](const std::string& path) {
     request.model = path;
   })->required();
   add_samples(*score);
@@ -147,40 +148,41 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
 
 void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,
                           Command& command) {
-  CLI::App* made =
-      evaluate.add_subcommand("explore", "utilities against the oracle, tables 5.1 on");
+  CLI::App* made = evaluate.add_subcommand(
+      "explore", "compare utilities with the oracle (thesis, table 5.1 and later)");
   add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds, kWorldHelp);
-  add_repeated(*made, "--utility", "NAME", request.utilities, "repeatable; default: every one");
+  add_repeated(*made, "--utility", "NAME", request.utilities,
+               "a utility to compare; repeatable; default: all");
   add_text(*made, "--up", "x|y|z",
            "the axis of mesh files that points up; default: what the files say",
            [&](const std::string& axis) { request.up = axis; });
   add_repeated(*made, "--moves", "KEY=VALUE", request.moves, kMovesHelp);
   add_repeated(*made, "--mapping", "KEY=VALUE", request.mapping, kMappingHelp);
-  add_count(*made, "--episodes", 1, 10'000, "of each world; default: 10",
+  add_count(*made, "--episodes", 1, 10'000, "episodes per world; default: 10",
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
-  add_count(*made, "--steps", 1, 100'000, "of each episode; default: 200",
+  add_count(*made, "--steps", 1, 100'000, "images per episode; default: 200",
             [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
-  add_count(*made, "--lookahead", 1, 4, "views of the ways that are valued; default: 1",
+  add_count(*made, "--lookahead", 1, 4, "length of the evaluated view sequences; default: 1",
             [&](std::uint64_t count) { request.lookahead = static_cast<int>(count); });
-  add_text(*made, "--sigma", "M", "noise of the depth; the views are replayed without; default: 0",
+  add_text(*made, "--sigma", "M", "depth noise in m; views are evaluated without it; default: 0",
            [&](const std::string& text) { request.sigma = read_within("--sigma", text, 100); });
-  add_text(*made, "--dropped", "SHARE", "of the pixels without a measurement; default: 0",
+  add_text(*made, "--dropped", "SHARE", "share of pixels without a measurement; default: 0",
            [&](const std::string& text) { request.dropped = read_within("--dropped", text, 1); });
   add_text(*made, "--stereo", "M",
-           "depth by a pair of cameras so far apart, likewise; default: a depth camera",
+           "depth from a stereo pair with this baseline in m; default: a depth camera",
            [&](const std::string& text) { request.stereo = read_within("--stereo", text, 100); });
   add_repeated(*made, "--set", "UTILITY.KEY=VALUE", invocation.overrides,
                "set one parameter of a utility; repeatable; default: none");
   add_text(*made, "--against", "DIR",
-           "another evaluation's folder: efficiency over that there, start by start (table 5.4); "
-           "default: none",
+           "folder of another evaluation: efficiency relative to it from the same starts (table "
+           "5.4); default: none",
            [&](const std::string& path) { request.against = path; });
   add_text(*made, "-o,--out,--output", "DIR",
            "folder of the results; default: out/evaluate_explore",
            [&](const std::string& path) { request.folder = path; });
   add_threads(*made, invocation, "threads to use; default: one per core");
-  add_seed(*made, invocation.seed, "of the starts; default: 1");
-  made->add_flag("--resume", request.resume, "keep the episodes that are there");
+  add_seed(*made, invocation.seed, "seed of the starts; default: 1");
+  made->add_flag("--resume", request.resume, "keep existing episodes");
   add_json(*made, invocation);
   made->add_flag("--quiet", invocation.quiet, "no progress, no tables");
   made->callback([&] { command = [&] { return evaluate_explore(request, invocation); }; });

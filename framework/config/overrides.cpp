@@ -63,7 +63,11 @@ std::vector<Step> parse_path(std::string_view rest, const std::string& text) {
     const auto end = std::find_if_not(rest.begin(), rest.end(), is_key_letter);
     const auto length = static_cast<std::size_t>(end - rest.begin());
     if (length == 0) malformed(text, "a key is missing; expected key.path=value");
-    path.push_back({std::string(rest.substr(0, length)), 0});
+    const std::string key(rest.substr(0, length));
+    if (!path.empty() && key.find_first_not_of("0123456789") == key.npos)
+      malformed(text, "'." + key + "' is no key; an entry of a list is written " + path.back().key +
+                          "[" + key + "]");
+    path.push_back({key, 0});
     rest.remove_prefix(length);
     while (!rest.empty() && rest.front() == '[') path.push_back(read_index(rest, text));
     if (rest.empty()) return path;

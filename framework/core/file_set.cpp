@@ -219,6 +219,46 @@ void write_files_together(const fs::path& folder, const FileSet& set) {
   finish_exchange(folder, is_own);
 }
 
+namespace {
+
+[[noreturn]] void refuse_claimed(const fs::path& folder) {
+  throw InputError("another process is writing into '" + folder.string() +
+                   "'; wait until it has ended, or choose another folder");
+}
+
+// False where another process has it. A file system without locks refuses nobody.
+bool lock_or_none(int descriptor) {
+  return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+// ".NAME.lock" beside the folder, whatever way leads to it; empty for a folder without a name.
+fs::path lock_file_of(const fs::path& folder) {
+  std::error_code code;
+  const fs::path named = fs::absolute(folder, code).lexically_normal();
+  const fs::path plain = named.filename().empty() ? named.parent_path() : named;
+  const fs::path parent = fs::canonical(plain.parent_path(), code);
+  const std::string name = plain.filename().string();
+  if (code || name.empty() || name == "." || name == "..") return {};
+  return parent / ("." + name + ".lock");
+}
+
+// Not through a link; -1 where it cannot be opened. Of somebody else's it may only be read.
+int open_lock_file(const fs::path& file) {
+  constexpr int kFlags = O_RDONLY | O_CLOEXEC | O_NOFOLLOW;
+  const int made = ::open(file.c_str(), kFlags | O_CREAT, 0666);
+  return made >= 0 ? made : ::open(file.c_str(), kFlags);
+}
+
+// Whether the path still leads to what was opened: whoever held it before may have removed it.
+bool is_still_there(const fs::path& file, int descriptor) {
+  struct stat opened {
+  }, there{};
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(file.c_str(), &there) == 0 &&
+         opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
+}
+
+}  // namespace
+
 FolderClaim::FolderClaim(const fs::path& folder) {
   std::error_code code;
   fs::path at = folder;
@@ -227,17 +267,46 @@ FolderClaim::FolderClaim(const fs::path& folder) {
   make_folder(folder);
   descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) cannot_exchange(folder, std::strerror(errno));
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  ::close(descriptor_);
-  throw InputError("another process is writing into '" + folder.string() +
-                   "'; wait until it has ended, or choose another folder");
+  try {
+    if (!lock_or_none(descriptor_)) refuse_claimed(folder);
+    lock_beside(folder);
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+void FolderClaim::lock_beside(const fs::path& folder) {
+  const fs::path file = lock_file_of(folder);
+  while (!file.empty()) {
+    const int opened = open_lock_file(file);
+    if (opened < 0) return;
+    if (!lock_or_none(opened)) {
+      ::close(opened);
+      refuse_claimed(folder);
+    }
+    if (is_still_there(file, opened)) {
+      beside_ = file;
+      beside_descriptor_ = opened;
+      return;
+    }
+    ::close(opened);
+  }
+}
+
+void FolderClaim::release() {
+  if (!beside_.empty()) ::unlink(beside_.c_str());  // before its lock goes: it is still ours
+  if (beside_descriptor_ >= 0) ::close(beside_descriptor_);
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 FolderClaim::~FolderClaim() {
+  if (!beside_.empty()) ::unlink(beside_.c_str());  // or the parent would not be empty
   // Only what is empty goes.
   for (auto at = made_.rbegin(); at != made_.rend(); ++at)
     if (::rmdir(at->c_str()) != 0) break;
-  ::close(descriptor_);
+  beside_.clear();
+  release();
 }
 
 }  // namespace lapwing

@@ -41,7 +41,10 @@ void finish_exchange(const std::filesystem::path& folder, const NameTest& is_own
 std::string finish_exchange_to_read(const std::filesystem::path& folder, const NameTest& is_own);
 
 // Keeps a folder for one process as long as it lives. Makes the folder; when nothing was put into
-// it, takes it away again. Where the file system has no locks, nobody is refused.
+// it, takes it away again. Two locks hold it: one on the folder, which a reader looks for too, and
+// one on the file ".NAME.lock" beside it, which stays where it is when the folder is renamed or
+// exchanged. The file is gone afterwards; one that a killed process left holds nothing. It is left
+// out where the parent cannot be written. Where the file system has no locks, nobody is refused.
 class FolderClaim {
  public:
   // InputError when another process has it, or when the folder cannot be made.
@@ -51,8 +54,12 @@ class FolderClaim {
   FolderClaim& operator=(const FolderClaim&) = delete;
 
  private:
+  void lock_beside(const std::filesystem::path& folder);
+  void release();
+
   std::vector<std::filesystem::path> made_;  // outermost first
-  int descriptor_ = -1;
+  std::filesystem::path beside_;             // the lock file; empty: there is none
+  int descriptor_ = -1, beside_descriptor_ = -1;
 };
 
 }  // namespace lapwing

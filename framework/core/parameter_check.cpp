@@ -91,6 +91,7 @@ class ParameterChecker {
     if (!given.is_map()) return;
     std::vector<std::string> known;
     for (const ParameterSpec& spec : table.specs()) known.push_back(spec.name);
+    bool listed = false;  // once is enough
     for (const auto& [key, value] : given.as_map()) {
       if (table.find(key)) continue;
       const std::string nearest = nearest_name(key, known);
@@ -99,7 +100,7 @@ class ParameterChecker {
         message += "; did you mean " + in_quotes(nearest) + "?";
       else if (known.empty())
         message += "; no key is accepted here";
-      else
+      else if (!std::exchange(listed, true))
         message += "; known: " + joined(known);
       errors_.add(value.origin(), child_path(path, key), message);
     }

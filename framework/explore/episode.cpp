@@ -1,3 +1,9 @@
+// How: each step takes an image into the map, adds the neighbours of the viewpoint to the graph,
+// and takes the next view from a queue by value. Values may be of older maps. They usually fall as
+// the map grows, so an old value counts as an upper bound: the top entries are valued anew, four at
+// a time, until an entry of this step is on top (lazy evaluation). The way there is searched in the
+// graph of viewpoints. Motions whose voxels are no longer free are left out. When the best value is
+// 0, all others are valued anew before the episode ends.
 #include "framework/explore/episode.h"
 
 #include <algorithm>

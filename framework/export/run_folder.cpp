@@ -1,6 +1,11 @@
 #include "framework/export/run_folder.h"
 
+#include <fcntl.h>
+#include <stdio.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <system_error>
 
 #include "framework/core/error.h"
@@ -78,12 +83,44 @@ fs::path free_name_beside(const fs::path& folder) {
   throw InputError("'" + folder.string() + "': too many older runs are kept beside it");
 }
 
-void rename_folder(const fs::path& from, const fs::path& to) {
-  std::error_code code;
-  fs::rename(from, to, code);
-  if (code)
-    throw InputError("cannot rename '" + from.string() + "' to '" + to.string() +
-                     "': " + code.message());
+// What of Linux's renames a file system does.
+enum class Renamed { done, unknown };
+
+// `how`: RENAME_EXCHANGE, RENAME_NOREPLACE or 0.
+Renamed rename_folder(const fs::path& from, const fs::path& to, unsigned how) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), how) == 0) return Renamed::done;
+  if (how != 0 && (errno == EINVAL || errno == ENOSYS)) return Renamed::unknown;
+  throw InputError("cannot rename '" + from.string() + "' to '" + to.string() +
+                   "': " + std::strerror(errno));
+}
+
+// Where folders cannot be exchanged: for a moment nothing bears the folder's name. A kill then
+// leaves the older set as NAME.1, and the new one as a temporary.
+void take_place_by_turns(const fs::path& made, const fs::path& folder, const fs::path& kept) {
+  rename_folder(folder, kept, 0);
+  try {
+    rename_folder(made, folder, 0);
+  } catch (...) {
+    rename_folder(kept, folder, 0);
+    throw;
+  }
+}
+
+// The new set gets the name that is free, then the two folders change places. A kill in between
+// leaves the older set where it was, and the new one beside it.
+void take_place(const fs::path& made, const fs::path& folder, const fs::path& kept) {
+  if (rename_folder(made, kept, RENAME_NOREPLACE) == Renamed::unknown)
+    return take_place_by_turns(made, folder, kept);
+  Renamed exchanged = Renamed::unknown;
+  try {
+    exchanged = rename_folder(kept, folder, RENAME_EXCHANGE);
+    if (exchanged == Renamed::unknown) rename_folder(kept, made, 0);
+  } catch (...) {
+    std::error_code ignored;
+    fs::rename(kept, made, ignored);  // whoever made it removes it
+    throw;
+  }
+  if (exchanged == Renamed::unknown) take_place_by_turns(made, folder, kept);
 }
 
 // The new files are written before the old folder is touched.
@@ -92,13 +129,7 @@ fs::path write_beside_old(const fs::path& given, const RunFiles& files) {
   const fs::path made = folder.parent_path() / temporary_name(folder.filename().string());
   try {
     write_files_together(made, set_of(made, files));
-    rename_folder(folder, kept);
-    try {
-      rename_folder(made, folder);
-    } catch (...) {
-      rename_folder(kept, folder);
-      throw;
-    }
+    take_place(made, folder, kept);
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(made, ignored);

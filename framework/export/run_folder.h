@@ -52,8 +52,10 @@ void require_keepable(const std::filesystem::path& folder);
 
 // Creates the folder and puts all files of a run into it at once, in place of an older run's: on
 // any error, and after a kill, all of the old or all of the new ones are there. Other files stay.
-// With `keep_old` an older run's folder is renamed to NAME.1, or the first number that is free, and
-// that path returned; else an empty one. Throws InputError naming the path and the reason.
+// With `keep_old` an older run's folder becomes NAME.1, or the first number that is free, and that
+// path is returned; else an empty one. A kill leaves a whole run under NAME, the old or the new
+// one, where the file system can exchange folders (ext4, xfs, btrfs, tmpfs); elsewhere nothing
+// bears the name for a moment. Throws InputError naming the path and the reason.
 std::filesystem::path write_run_folder(const std::filesystem::path& folder, const RunFiles& files,
                                        bool keep_old = false);
 

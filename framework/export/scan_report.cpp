@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "framework/export/map_pictures.h"
@@ -19,7 +20,7 @@ using Eigen::Vector3d;
 constexpr Pinhole kOverview{720, 450, 720, 720, 359.5, 224.5};
 constexpr int kMostMapPixels = 700, kMostMotions = 2500, kMostCubes = 60'000;
 constexpr Rgb kPlainSurface = {176, 174, 168}, kCameraLines = {214, 60, 40};
-constexpr Rgb kNotSeen = {196, 70, 60}, kNeverSeen = {70, 70, 74};
+constexpr Rgb kNotSeen = {196, 70, 60}, kNeverSeen = {70, 70, 74}, kOpening = {226, 62, 205};
 constexpr double kMuchUnknown = 0.1;   // of what is known
 constexpr double kMuchOutside = 0.03;  // likewise
 const Vector3d kGap = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -103,6 +104,14 @@ void add_camera(const PlannedView& view, const Pinhole& camera, double deep, Mes
   }
 }
 
+// Without its colours.
+void append(const TriangleMesh& more, TriangleMesh& mesh) {
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const auto& t : more.triangles)
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
 // The prior in grey, and cubes in the colours of their shares.
 MeshScene colored_voxels(const ScanRecord& record, const std::vector<VoxelShare>& voxels,
                          const ScanTask& scan) {
@@ -117,11 +126,7 @@ MeshScene colored_voxels(const ScanRecord& record, const std::vector<VoxelShare>
   }
   add_camera(record.shown, scan.camera, 0.12 * scan.region.diagonal().norm(), builder);
   TriangleMesh mesh = builder.take();
-  const TriangleMesh& prior = record.prior->mesh();
-  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), prior.vertices.begin(), prior.vertices.end());
-  for (const auto& t : prior.triangles)
-    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  append(record.prior->mesh(), mesh);
   mesh.colors.resize(mesh.triangles.size(), kPlainSurface);
   return MeshScene(std::move(mesh));
 }
@@ -135,7 +140,7 @@ Section view_section(const ScanRecord& record, const ScanTask& scan) {
                           "know of a voxel (yellow); grey is the prior mesh")}};
 }
 
-// The prior mesh, every triangle by what the tour tells of it.
+// The prior mesh, every triangle by what the tour tells of it, and openings to what nobody saw.
 MeshScene colored_surface(const ScanRecord& record) {
   TriangleMesh mesh = record.prior->mesh();
   mesh.colors.assign(mesh.triangles.size(), kPlainSurface);
@@ -145,6 +150,19 @@ MeshScene colored_surface(const ScanRecord& record) {
     if (share == 0) mesh.colors[t] = kNotSeen;
     if (share == kNeverVisible) mesh.colors[t] = kNeverSeen;
   }
+  const VoxelGrid& grid = record.map->grid();
+  const Vector3d half = Vector3d::Constant(0.5 * grid.resolution());
+  MeshBuilder builder;
+  std::size_t count = 0;
+  for (const Opening& opening : record.openings) count += opening.voxels.size();
+  const std::size_t every = count / kMostCubes + 1;
+  for (const Opening& opening : record.openings)
+    for (std::size_t k = 0; k < opening.voxels.size(); k += every) {
+      const Vector3d middle = grid.center(opening.voxels[k]);
+      builder.box(middle - half, middle + half);
+    }
+  append(builder.take(), mesh);
+  mesh.colors.resize(mesh.triangles.size(), kOpening);
   return MeshScene(std::move(mesh));
 }
 
@@ -153,6 +171,51 @@ std::string square_metres(double area) {
 }
 std::string percent(double part, double whole) {
   return number_text(whole > 0 ? 100 * part / whole : 0, 3);
+}
+
+// Two significant digits, rounded down: "at least" stays true.
+std::string lower_bound_text(double area) {
+  if (!(area > 0)) return "0";
+  const double unit = std::pow(10, std::floor(std::log10(area)) - 1);
+  return number_text(unit * std::floor(area / unit * (1 + 1e-12)), 2);
+}
+
+// "14 m^2 at (12.3, -4, 1.5)"
+std::string opening_in_words(const Opening& opening) {
+  const auto at = [](double metres) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.1f", std::round(10 * metres) / 10 + 0.0);  // no "-0.0"
+    return std::string(text);
+  };
+  const Vector3d& p = opening.place;
+  return lower_bound_text(opening.area) + " m^2 at (" + at(p.x()) + ", " + at(p.y()) + ", " +
+         at(p.z()) + ")";
+}
+
+// "3 openings, the largest of 14 m^2 at (12.3, -4.0, 1.5)"
+std::string openings_in_words(const std::vector<Opening>& openings) {
+  const std::string largest = opening_in_words(openings.front());
+  if (openings.size() == 1) return "an opening of " + largest;
+  return std::to_string(openings.size()) + " openings, the largest of " + largest;
+}
+
+// What a flight can do about it, "" where there is no need.
+std::string unknown_warning(const ScanRecord& record) {
+  std::string text;
+  if (unknown_area(record) > kMuchUnknown * record.areas.known)
+    text += ". That is much: the first flight never saw behind it";
+  const auto passable = std::find_if(record.openings.begin(), record.openings.end(),
+                                     [](const Opening& o) { return o.passable; });
+  if (passable != record.openings.end()) {
+    const bool largest = passable == record.openings.begin();
+    text += ". The vehicle (" + number_text(record.body_width, 3) + " m wide) would pass through " +
+            (largest ? "the largest opening" : "the opening of " + opening_in_words(*passable)) +
+            ": what hides behind it may be far larger";
+  }
+  if (text.empty()) return "";
+  return text +
+         ". Fly the first flight lower, more obliquely or wider (flights), or plan once more on "
+         "what this tour sees (rounds = 2)";
 }
 
 // What nobody looked from is not considered: other free places may show more.
@@ -183,11 +246,13 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
        "m^2, " + percent(areas.seen, areas.known) + " %"},
       {"of it " + visible_in_words(record), square_metres(areas.visible),
        "m^2, " + percent(areas.visible, areas.known) + " %"},
-      {"unknown, not counted: edge of what was ever measured", square_metres(record.unknown),
-       "m^2"},
+      {"unknown, not counted: behind openings in what was measured, at least",
+       lower_bound_text(unknown_area(record)), "m^2"},
       {"on average the tour tells", number_text(100 * sum / all, 3),
        "% of what there is to know of a voxel that some candidate sees"},
   }};
+  if (!record.openings.empty())
+    facts.facts.push_back({"behind", openings_in_words(record.openings), ""});
   if (!outside_in_words(areas).empty())
     facts.facts.push_back({"known above or below the region, not counted",
                            square_metres(areas.above + areas.below), "m^2"});
@@ -204,10 +269,11 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   const std::string caption =
       "What the tour tells of the known surface, from little (violet) to all (yellow). Red: seen "
       "from a view that was considered, not by the tour. Dark: from none of them. Light grey: "
-      "outside the "
-      "region. Where there is no surface, none is known";
+      "outside the region. Magenta: openings to what the first flight never saw. Where there is no "
+      "surface, none is known";
   TextBlock words;
   words.text = areas_in_words(record);
+  if (record.truth) words.text += "\n\n" + truth_in_words(record);
   return {"Coverage",
           {std::move(words), std::move(facts), overview_image(scene, scan.region, 1.05, caption),
            overview_image(scene, scan.region, 1.05 + 3.14159, "The same from the other side")}};
@@ -260,19 +326,25 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
 
 }  // namespace
 
+double unknown_area(const ScanRecord& record) {
+  double area = 0;
+  for (const Opening& opening : record.openings) area += opening.area;
+  return area;
+}
+
 std::string areas_in_words(const ScanRecord& record) {
   const SurfaceAreas& areas = record.areas;
   std::string text = "surface: the tour sees " + percent(areas.seen, areas.known) + " % of the " +
                      square_metres(areas.known) + " m^2 that are known; " +
                      percent(areas.visible, areas.known) + " % are " + visible_in_words(record) +
-                     "; about " + square_metres(record.unknown) +
-                     " m^2 are unknown and not counted";
+                     "; unknown and not counted: ";
+  if (record.openings.empty())
+    text += "none was found";
+  else
+    text += "at least " + lower_bound_text(unknown_area(record)) + " m^2, behind " +
+            openings_in_words(record.openings);
   if (const std::string outside = outside_in_words(areas); !outside.empty()) text += "; " + outside;
-  if (record.unknown > kMuchUnknown * areas.known)
-    text +=
-        ". That is much: the first flight never saw behind it. Fly it lower, more obliquely or "
-        "wider (flights), or plan once more on what this tour sees (rounds = 2)";
-  return text;
+  return text + unknown_warning(record);
 }
 
 std::string truth_in_words(const ScanRecord& record) {
@@ -290,7 +362,16 @@ Value areas_as_value(const ScanRecord& record) {
   value.set("known", areas.known);
   value.set("visible", areas.visible);
   value.set("seen", areas.seen);
-  value.set("unknown", record.unknown);
+  value.set("unknown", unknown_area(record));
+  value.set("openings", static_cast<std::int64_t>(record.openings.size()));
+  if (!record.openings.empty()) {
+    const Opening& largest = record.openings.front();
+    const Vector3d& p = largest.place;
+    Value& opening = value.set("largest_opening", Value::map());
+    opening.set("area", largest.area);
+    opening.set("position", Value(Value::List{p.x(), p.y(), p.z()}));
+    opening.set("passable", largest.passable);
+  }
   value.set("outside", areas.above + areas.below);
   value.set("visible_share", share(areas.visible, areas.known));
   value.set("seen_share", share(areas.seen, areas.known));

@@ -11,6 +11,7 @@
 #include "framework/geometry/mesh_scene.h"
 #include "framework/geometry/render.h"
 #include "framework/map/known_surface.h"
+#include "framework/map/unknown_edge.h"
 #include "framework/trajectory/plan.h"
 
 namespace lapwing {
@@ -35,15 +36,20 @@ struct ScanRecord {
   std::vector<VoxelShare> coverage;          // of all voxels that any candidate tells of
   std::vector<float> shares;                 // of the prior's triangles, see shares_of_triangles
   SurfaceAreas areas;                        // of those
-  double unknown = 0;                        // m^2, see unknown_edge
+  std::vector<Opening> openings;             // to what nobody saw, largest first
+  double body_width = 0;                     // m; what passes through passable ones
   std::optional<TrueAreas> truth;
   std::vector<double> seconds, score;  // after every view of the tour
   double reachable = 0;                // score of all views within the budget
   double upper_bound = 0;              // no tour scores more
 };
 
-// The areas in words: what is known, visible and seen, and what is not known and so not counted; a
-// second sentence where that is much.
+// m^2 of all openings: a lower bound of the surface behind them.
+double unknown_area(const ScanRecord& record);
+// The areas in words: what is known, visible and seen, and what is not known and so not counted,
+// with the largest opening to it. A second sentence where that is more than a tenth of what is
+// known, or where the vehicle's box would pass through an opening: a view from there shows what is
+// behind it, and that may be far larger than the opening.
 std::string areas_in_words(const ScanRecord& record);
 // The same of the true surface; "" where there is none.
 std::string truth_in_words(const ScanRecord& record);

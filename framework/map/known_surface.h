@@ -1,12 +1,12 @@
-// How much surface a region has, as far as a map and a mesh know it, and how much is not known.
+// How much surface a region has, as far as a map and a mesh know it.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "framework/geometry/mesh_scene.h"
-#include "framework/map/map.h"
+#include "framework/geometry/triangle_mesh.h"
+#include "framework/map/voxel.h"
 
 namespace lapwing {
 
@@ -37,14 +37,5 @@ struct SurfaceAreas {
 // Of what shares_of_triangles says for the same region.
 SurfaceAreas areas_of(const TriangleMesh& mesh, std::span<const float> shares,
                       const Eigen::AlignedBox3d& region);
-
-// m^2 of the edge of what was ever measured: where air of the region meets voxels that no ray came
-// to, not beside a voxel with a surface in it nor within one and a half voxels of `mesh`, which may
-// be null. Surface that nobody saw hides behind it. A plane over a corner that was not looked into
-// has at most the area of the corner's sides. Faces of voxels are added as vectors in cubes of 8 x
-// 8 x 8 voxels, so that a slope counts as a slope and not as stairs, and specks do not count. The
-// same for any number of threads. InputError for a region of more than 2^28 voxels.
-double unknown_edge(const Map& map, const MeshScene* mesh, const Eigen::AlignedBox3d& region,
-                    int threads);
 
 }  // namespace lapwing

@@ -6,27 +6,26 @@ ParameterTable map_parameters() {
   return ParameterTable{}
       .number("resolution", 0.2, "m", "edge of a voxel", between(0.001, 100))
       .choice("mode", "discretised", {"discretised", "exact"},
-              "one ray for every voxel that holds a point, or one for every point")
-      .number("hit", 0.7, "", "probability that a voxel with a measured point is occupied",
+              "one ray per voxel that contains a point, or one per point")
+      .number("hit", 0.7, "", "occupancy probability of a voxel with a measured point",
               between(0.501, 0.999))
-      .number("miss", 0.4, "", "probability that a voxel that a ray passed is occupied",
+      .number("miss", 0.4, "", "occupancy probability of a voxel that a ray passed",
               between(0.001, 0.499))
-      .number("clamp_min", 0.1192, "", "the least probability that a voxel keeps",
+      .number("clamp_min", 0.1192, "", "lower clamp of the occupancy probability",
               between(0.001, 0.2))
-      .number("clamp_max", 0.971, "", "the greatest probability that a voxel keeps",
+      .number("clamp_max", 0.971, "", "upper clamp of the occupancy probability",
               between(0.8, 0.999))
-      .number("free_below", 0.25, "", "a voxel less probably occupied is free", between(0.2, 0.5))
-      .number("occupied_above", 0.75, "", "a voxel more probably occupied is occupied",
+      .number("free_below", 0.25, "", "a voxel with a lower probability is free", between(0.2, 0.5))
+      .number("occupied_above", 0.75, "", "a voxel with a higher probability is occupied",
               between(0.5, 0.8))
-      .optional_number("maximum_range", "m",
-                       "rays clear up to it and hit nothing beyond; none: no limit", above(0))
-      .integer("pixel_step", 1, "of depth images every n-th pixel of every n-th row is used",
+      .optional_number("maximum_range", "m", "beyond it rays clear and add no hit; none: no limit",
+                       above(0))
+      .integer("pixel_step", 1, "use every n-th pixel of every n-th row of depth images",
                between(1, 64))
-      .boolean("observations", false,
-               "count how often each voxel was measured; its uncertainty follows from it")
-      .number("information", 0.5, "", "eta of (5.1): what one measurement takes off uncertainty",
-              between(0.01, 10))
-      .number("memory_limit", 4096, "", "MiB that the map may take", between(16, 1048576));
+      .boolean("observations", false, "count the measurements of each voxel, for its uncertainty")
+      .number("information", 0.5, "",
+              "eta of (5.1): uncertainty is exp(-eta n) after n measurements", between(0.01, 10))
+      .number("memory_limit", 4096, "", "largest memory of the map, MiB", between(16, 1048576));
 }
 
 MapSettings map_settings(const Parameters& parameters) {

@@ -5,7 +5,6 @@
 #include <lua.hpp>
 
 #include "framework/core/log.h"
-#include "framework/export/scan_report.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -387,7 +386,6 @@ int plan(lua_State* state) {
 
 constexpr BoundField kPlanFields[] = {
     {"duration", "number", "s"},
-    {"truth", "string", "of a scan: how much of the surface that it simulates is seen, or nothing"},
     {"views", "table[]", "of a scan: {position, yaw, pitch}, m and rad"}};
 
 int plan_field(lua_State* state) {
@@ -405,7 +403,6 @@ int plan_field(lua_State* state) {
     }
   fields.set("views", std::move(views));
   fields.set("duration", plan.trajectory.duration());
-  fields.set("truth", made.scan ? truth_in_words(*made.scan) : "");
   const std::string field = text_argument(state, 2, "plan");
   return push_field(state, "a plan", field, fields, kPlanFields);
 }

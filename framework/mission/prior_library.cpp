@@ -118,6 +118,7 @@ int look(lua_State* state) {
     prior.mapping.map->integrate(image);
     prior.fusion->add(image);
     prior.views.push_back(view);
+    prior.rays.images.push_back({view.camera(), pinhole, range});
     ++done;
   }
   prior.mapping.source = std::to_string(prior.views.size()) + " depth images";
@@ -213,11 +214,16 @@ int open_air(lua_State* state) {
 
 ParameterTable earlier_table() {
   ParameterTable table;
-  table.required_text("map", ".ot or .bt").required_text("mesh", "a mesh, in metres with z up");
+  table.required_text("map", ".ot or .bt")
+      .required_text("mesh", "a mesh, in metres with z up")
+      .table("camera", pinhole_table(), "of that flight's images, as far as is known")
+      .number("range", 60, "m", "of them", above(0));
   return table;
 }
 
-// prior:load{map = "a file", mesh = "a file"}: of an earlier flight.
+// prior:load{map = "a file", mesh = "a file", camera =, range =}: of an earlier flight. From where
+// it took its images is not known, so that gaps between rays are taken to be as wide as at the
+// range.
 int load_prior(lua_State* state) {
   MissionRun& run = run_of(state);
   Prior& prior = prior_argument(state);
@@ -232,6 +238,7 @@ int load_prior(lua_State* state) {
                          " m, the mission of " + std::to_string(resolution) + " m");
   prior.mapping.map->import(file.leaves);
   prior.mapping.source = "file '" + name + "'";
+  prior.rays.elsewhere = gap_between_rays(pinhole_of(given.table("camera")), given.number("range"));
   MeshFile read = read_mesh(run.files.find(mesh, "meshes"));
   const auto known = prior.mapping.map->bounds();
   if (!known) throw InputError(given.origin("map"), "'" + name + "' knows no voxel");

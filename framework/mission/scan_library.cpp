@@ -286,6 +286,7 @@ int scan_graph_of_run(lua_State* state) {
       free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")), *space,
                   settings.candidates);
   work->allowed = settings.candidates.allowed;
+  work->body = settings.candidates.half;
   sight.across = static_cast<int>(given.integer("across"));
   const VisibleVoxels coarser(work->prior->mapping.map, work->prior->mesh, sight);
   work->graph =

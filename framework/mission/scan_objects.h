@@ -9,6 +9,7 @@
 
 #include "framework/geometry/point_fusion.h"
 #include "framework/geometry/render.h"
+#include "framework/map/ray_gaps.h"
 #include "framework/mission/map_objects.h"
 #include "framework/vehicle/pursuit.h"
 #include "framework/vehicle/smooth_leg.h"
@@ -26,6 +27,7 @@ struct Prior {
   std::vector<FusedPoint> earlier;         // of the mesh of an earlier flight
   std::shared_ptr<const MeshScene> mesh;   // null until it is made or read
   std::vector<Viewpoint> views;            // from which depth images were taken
+  MapRays rays;                            // of those images, and of files
   std::optional<Picture> scene;            // of the scene flown in, for the report alone
   std::shared_ptr<const MeshScene> truth;  // that scene, for the report's figures alone
 };
@@ -56,6 +58,7 @@ struct ScanWork : LegFlight {
   std::vector<int> island;      // of the views that are joined by motions, per view
   int home = 0;                 // of the views, where tours begin
   Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
+  Eigen::Vector3d body;         // half edges of the vehicle's box, m
 
   // The place of the motion between two views; Error where there is none.
   std::size_t motion_between(int a, int b) const;

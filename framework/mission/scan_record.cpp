@@ -94,7 +94,10 @@ std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int thr
   record->shares = shares_of_triangles(record->prior->mesh(), sight.region, record->map->grid(),
                                        record->coverage);
   record->areas = areas_of(record->prior->mesh(), record->shares, sight.region);
-  record->unknown = unknown_edge(*record->map, record->prior.get(), sight.region, threads);
+  record->body_width = 2 * work.body.maxCoeff();
+  record->openings =
+      unknown_openings(*record->map, record->prior.get(),
+                       {sight.region, work.prior->rays, record->body_width, threads});
   record->truth = true_areas(work, views, threads);
   ScoreState state(*graph.score);
   double clock = 0;

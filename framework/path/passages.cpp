@@ -1,3 +1,11 @@
+// How find_passage leaves the passages of failed ways: the first try plans in the true space. Each
+// further try closes a ball about the narrowest place of every failed way, larger each time but
+// never over an end, and takes another seed. A path found there is compared with the failed ways in
+// the true space (same_passage) and returned if it differs from all of them.
+//
+// How grow_corridor makes boxes: each straight piece of the way is halved until the bounding box of
+// a part is free. That box grows face by face, by 1 m and then by halved steps, until every face is
+// stopped. A part that the box before contains gets no box of its own.
 #include "framework/path/passages.h"
 
 #include <algorithm>

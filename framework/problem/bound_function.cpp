@@ -1,3 +1,19 @@
+// Evaluates a stage function of a plugin in the columns of a problem.
+//
+// How: the constructor lists the instances and, for each, the columns of its inputs. An evaluation
+// gathers the inputs of up to 64 instances and calls the plugin once for them. The plugin returns
+// values and derivatives J with respect to its inputs x. The chain rule gives derivatives with
+// respect to the columns d:
+//   plain, only line blocks     x = columns                       J is copied (`direct_`)
+//   plain, with quaternions     x = q (+) d                       J E(q)
+//   at a time between stages    x = flow of the stage before,     J dx/d(both stages)
+//                                   free blocks interpolated
+// An integral cost is multiplied by sqrt(h). Where h is free, h is one more column.
+//
+// Second derivatives of lambda' value have up to four parts: the plugin's own, C' H C with the
+// chain C; those of the flow (add_flow_curvature); those of q (+) d = q + E d - |d|^2 q / 8
+// (add_retraction_curvature); and those of sqrt(h). A function that is affine in the columns has
+// one Jacobian, computed at the start.
 #include "framework/problem/bound_function.h"
 
 #include <cmath>

@@ -18,9 +18,9 @@ const Subject& subject_named(const Environment& environment, const std::string& 
 
 ParameterTable FilmedPoint::table(Has has) {
   ParameterTable table;
-  table.optional_text("subject", "name of the subject looked at; absent: the block 'target'");
+  table.optional_text("subject", "name of the subject; absent: the block 'target'");
   if (has == Has::place_and_height)
-    table.optional_number("height", "m", "from foot to top; absent: the subject's", above(0));
+    table.optional_number("height", "m", "height; absent: that of the subject", above(0));
   return table;
 }
 

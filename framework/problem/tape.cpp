@@ -1,3 +1,14 @@
+// How: the constructor drops unused nodes of the graph and numbers the others as registers:
+// constants, parameters, inputs, then one per instruction. For each row it lists the instructions
+// between the row and its inputs (`reach`, last first).
+//   forward    fills the registers of eight instances. Slopes that cannot be read off a register
+//              again (division, functions) are kept.
+//   backward   reverse mode, row by row: the adjoint of the output is 1; each instruction of
+//              `reach` adds adjoint times slope to its operands. The adjoints of inputs are the
+//              Jacobian.
+//   curvature  one instance: forward with second derivatives, then the adjoints of sum_r lambda_r
+//              row_r, then eight tangent directions at once (`bend`): tangents forward, and the
+//              tangents of the adjoints backward. Those of the inputs are columns of the Hessian.
 #include "framework/problem/tape.h"
 
 #include <algorithm>

@@ -18,8 +18,8 @@ void expect_inside(const std::vector<TimeSpan>& spans, const Horizon& horizon) {
 
 ParameterTable time_span_table() {
   return ParameterTable{}
-      .required_number("start", "s", "first moment", at_least(0))
-      .required_number("finish", "s", "last moment", at_least(0));
+      .required_number("start", "s", "start of the span", at_least(0))
+      .required_number("finish", "s", "end of the span", at_least(0));
 }
 
 std::vector<TimeSpan> time_spans(const Parameters& parameters, std::string_view name) {

@@ -1,3 +1,19 @@
+// Builds a trajectory problem and translates between its points and trajectories.
+//
+// How: while models, blocks and terms are added, they are only stored. `finish` then
+//   1. appends the blocks `time` and `step` and numbers the columns: one for each number of a
+//      stage's tangent space, none for constants (add_clock);
+//   2. collects bounds on columns from the models and the clock. `tighten` keeps the tighter bound
+//      and its owner, so that messages can name who set it;
+//   3. binds each term to the stages that it reads (BoundFunction). A constraint that is an
+//      identity on line blocks becomes bounds on columns instead of rows (bind_terms);
+//   4. computes the sparsity patterns of Jacobian and Hessian (problem_pattern.cpp).
+// Evaluation is in problem_evaluation.cpp, periodic flights in problem_closure.cpp.
+//
+// A point is a matrix `Stages` with one column per stage. The first guess is made of samples:
+// positions and yaw from the path guess, velocities by differences, hovering force; or all of it
+// from an earlier motion, leg by leg. Each model converts a sample into its own blocks. Free blocks
+// are interpolated from their guesses.
 #include "framework/problem/trajectory_problem.h"
 
 #include <cmath>

@@ -6,7 +6,7 @@
 //   [ P + D_x + rho    A'              ] [ dx ]
 //   [ A               -D_s^-1 - delta  ] [-dy ]
 //
-// factored as LDL^T (Eigen, AMD ordering) after Ruiz equilibration. rho and delta are static
+// factored as LDL^T (kkt_system.h, AMD ordering) after Ruiz equilibration. rho and delta are static
 // regularisation, taken back by iterative refinement. The symbolic analysis is kept from one solve
 // to the next while the sparsity stays the same.
 #pragma once

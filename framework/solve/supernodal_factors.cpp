@@ -1,3 +1,17 @@
+// How, in the terms of the multifrontal method:
+//   1. analyse: the elimination tree gives the pattern of L. Neighbouring columns of similar
+//      pattern are merged into supernodes (supernodal_tree.h). A supernode has a dense panel: its
+//      columns, by its own rows and the rows below. Children come before parents.
+//   2. factorise, one supernode after the other: put the entries of the matrix into the panel, add
+//      the update matrices of the children (assemble), factor the panel densely (eliminate), and
+//      compute its own update matrix - L21 D L21' for the parent (update, assemble).
+//   3. solve: forward through all panels, divide by the pivots, backward through all panels.
+//
+// Update matrices are on two stacks, by the parity of the depth in the tree. A parent writes to one
+// stack while it reads its children from the other, so nothing is moved. A supernode of one column
+// without children stores no update matrix: its parent multiplies the column out (`thin`).
+// Inner loops take two target columns and up to four source columns at once and keep the factors in
+// registers. The templates over the number of columns exist for that.
 #include "framework/solve/supernodal_factors.h"
 
 #include <algorithm>

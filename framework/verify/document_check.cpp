@@ -82,14 +82,18 @@ class Reader {
            sound(s.rotor_thrusts[2]) && sound(s.rotor_thrusts[3]);
   }
 
-  // Where the flight comes, as far as clearance is told apart; of the map in which a scan's views
-  // see also the region, and the places of the views.
+  // Where the flight comes, as far as clearance is told apart, and what it films; of the map in
+  // which a scan's views see also the region, and the places of the views.
   Eigen::AlignedBox3d surroundings(const Vehicle& vehicle, const std::string& map) const {
     Motion motion(plan_.trajectory, vehicle);
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i <= motion.intervals(); ++i) box.extend(motion.stated(i).position);
     for (std::size_t i = 0; i < motion.intervals(); ++i)
       for (const MotionPoint& point : motion.integrate(i)) box.extend(point.position);
+    for (const FramingTask& asked : plan_.task.framing)
+      for (const Subject& subject : plan_.environment.subjects)
+        if (subject.name == asked.subject)
+          for (const Eigen::Vector3d& place : subject.positions) box.extend(place);
     const Eigen::Vector3d room = Eigen::Vector3d::Constant(
         std::max(plan_.environment.margin + tolerances::kMapReach, map_reach()));
     box = Eigen::AlignedBox3d(box.min() - room, box.max() + room);

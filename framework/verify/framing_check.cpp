@@ -50,13 +50,84 @@ bool blocks(const Box& box, const Eigen::Vector3d& a, const Eigen::Vector3d& b) 
   return enter < leave;
 }
 
+// Whether a point lies inside a zone and not on its surface: within its polygon, by the even-odd
+// rule, and within its heights.
+bool holds(const Zone& zone, const Eigen::Vector3d& p) {
+  if (!(zone.floor < p.z() && p.z() < zone.ceiling)) return false;
+  bool inside = false;
+  for (std::size_t i = 0, j = zone.corners.size() - 1; i < zone.corners.size(); j = i++) {
+    const Eigen::Vector2d &a = zone.corners[j], &b = zone.corners[i];
+    const double side = (b - a).x() * (p.y() - a.y()) - (b - a).y() * (p.x() - a.x());
+    if (side == 0 && (p.head<2>() - a).dot(p.head<2>() - b) <= 0) return false;  // on the edge
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    if ((side > 0) == (b.y() > a.y())) inside = !inside;
+  }
+  return inside;
+}
+
+// The way is cut where it crosses the floor, the ceiling or the line through an edge; the middle of
+// each part says whether it lies inside.
+bool blocks(const Zone& zone, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d way = b - a;
+  std::vector<double> cuts{0, 1};
+  const auto cut = [&](double share) {
+    if (share > 0 && share < 1) cuts.push_back(share);
+  };
+  for (const double height : {zone.floor, zone.ceiling})
+    if (way.z() != 0) cut((height - a.z()) / way.z());
+  for (std::size_t i = 0, j = zone.corners.size() - 1; i < zone.corners.size(); j = i++) {
+    const Eigen::Vector2d edge = zone.corners[i] - zone.corners[j];
+    const Eigen::Vector2d to_edge = zone.corners[j] - a.head<2>();
+    const double turn = way.x() * edge.y() - way.y() * edge.x();
+    if (turn != 0) cut((to_edge.x() * edge.y() - to_edge.y() * edge.x()) / turn);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t k = 1; k < cuts.size(); ++k)
+    if (holds(zone, a + 0.5 * (cuts[k - 1] + cuts[k]) * way)) return true;
+  return false;
+}
+
+bool contains(const Sphere& sphere, const Eigen::Vector3d& p) {
+  return blocks(sphere, p, p);
+}
+bool contains(const Box& box, const Eigen::Vector3d& p) {
+  return blocks(box, p, p);
+}
+bool contains(const Zone& zone, const Eigen::Vector3d& p) {
+  return holds(zone, p);
+}
+
 // An obstacle that contains the subject is part of it.
 template <class Obstacle>
 bool any_blocks(const std::vector<Obstacle>& obstacles, const Eigen::Vector3d& camera,
                 const Eigen::Vector3d& middle) {
   return std::any_of(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) {
-    return !blocks(obstacle, middle, middle) && blocks(obstacle, camera, middle);
+    return !contains(obstacle, middle) && blocks(obstacle, camera, middle);
   });
+}
+
+constexpr double kTouching = 1e-9;  // m, from a voxel, is on it
+
+// Whether anything stands between the camera and the middle of a subject. Meshes and maps have no
+// inside: what of them is nearer to the middle than the subject's own size is taken for a part of
+// it.
+bool hidden(const Flight& flight, const Eigen::Vector3d& camera, const Eigen::Vector3d& middle,
+            const Subject& subject) {
+  const Environment& environment = flight.plan.environment;
+  if (any_blocks(environment.spheres, camera, middle) ||
+      any_blocks(environment.boxes, camera, middle) ||
+      any_blocks(environment.zones, camera, middle))
+    return true;
+  const double own = std::max(subject.height, subject.width) / 2;
+  const double length = (middle - camera).norm() - own;
+  if (!(length > 0)) return false;
+  const Eigen::Vector3d direction = (middle - camera).normalized();
+  for (const MeshScene& mesh : flight.meshes)
+    if (mesh.blocked({camera, direction, length})) return true;
+  for (const BlockedVoxels& map : flight.maps)
+    if (map.nearest(camera, camera + length * direction, kTouching).distance < kTouching)
+      return true;
+  return false;
 }
 
 // The ways of seeing a subject that are judged.
@@ -65,13 +136,10 @@ constexpr std::array kSights{Sight::middle, Sight::whole, Sight::free};
 constexpr std::array kFramingNames{"framing", "whole_subject", "line_of_sight"};
 
 bool seen(Sight sight, const CameraView& view, const Subject& subject, double time,
-          const Environment& environment) {
+          const Flight& flight) {
   const Eigen::Vector3d middle = subject.position(time);
   if (sight == Sight::middle) return view.sees(middle);
-  if (sight == Sight::free) {
-    return !any_blocks(environment.spheres, view.position, middle) &&
-           !any_blocks(environment.boxes, view.position, middle);
-  }
+  if (sight == Sight::free) return !hidden(flight, view.position, middle, subject);
   const auto box = view.box_of(middle, subject.height, subject.width);
   return box && box->left >= -0.5 && box->top >= -0.5 && box->right < view.pinhole.width - 0.5 &&
          box->bottom < view.pinhole.height - 0.5;
@@ -87,12 +155,11 @@ struct Lasting {
 class Framing {
  public:
   explicit Framing(const Flight& flight)
-      : environment_(flight.plan.environment),
-        pinhole_(flight.vehicle.camera.pinhole()),
-        cuts_(flight.plan.cuts) {
+      : flight_(flight), pinhole_(flight.vehicle.camera.pinhole()), cuts_(flight.plan.cuts) {
+    const auto& subjects = flight.plan.environment.subjects;
     for (const FramingTask& task : flight.plan.task.framing) {
       const auto subject =
-          std::find_if(environment_.subjects.begin(), environment_.subjects.end(),
+          std::find_if(subjects.begin(), subjects.end(),
                        [&](const Subject& candidate) { return candidate.name == task.subject; });
       asked_.push_back({&*subject, task.span});
       add_ends(task.span);
@@ -127,7 +194,7 @@ class Framing {
   const Subject* unseen(Sight sight, const Moment& m, const std::vector<const Subject*>& subjects) {
     const CameraView view{pinhole_, m.position, camera_axes(m.yaw, m.pitch)};
     for (const Subject* subject : subjects) {
-      if (!seen(sight, view, *subject, m.time, environment_)) return subject;
+      if (!seen(sight, view, *subject, m.time, flight_)) return subject;
     }
     return nullptr;
   }
@@ -170,7 +237,7 @@ class Framing {
     lasting.lost_at = first ? from : high;
   }
 
-  const Environment& environment_;
+  const Flight& flight_;
   const Pinhole pinhole_;
   const std::vector<TimeSpan>& cuts_;
   std::vector<Asked> asked_;
@@ -178,6 +245,12 @@ class Framing {
   double asked_seconds_ = 0;
   std::array<Lasting, kSights.size()> lasting_;
 };
+
+// A film is to show its subjects, unless its own options say that this is told and not asked for.
+bool sight_required(const Plan& plan) {
+  const Value* stated = plan.configuration.find("line_of_sight");
+  return !stated || !stated->is_text() || stated->as_text() != "reported";
+}
 
 void skip(const char* reason, Certificate& certificate) {
   for (const char* name : kFramingNames) certificate.checks.push_back(skipped_check(name, reason));
@@ -204,7 +277,9 @@ void check_framing(const Flight& flight, Certificate& certificate) {
   for (std::size_t k = 0; k < kFramingNames.size(); ++k) {
     const Lasting& lasting = framing.lasting(k);
     const double share = lasting.seconds / framing.asked_seconds();
-    Check check = judged(make_check(kFramingNames[k]), share, task.framing_share,
+    Check asked = make_check(kFramingNames[k]);
+    if (kSights[k] == Sight::free) asked.required = sight_required(flight.plan);
+    Check check = judged(std::move(asked), share, task.framing_share,
                          tolerance_of(task.framing_share), lasting.lost_at, true);
     if (lasting.lost) {
       check.detail += (check.detail.empty() ? "" : "; ") + ("subject '" + lasting.lost->name + "'");

@@ -1,3 +1,13 @@
+// How: part(list, a, b, B) appends the tour from view a to view b within B seconds.
+//   1. Find the view m with the largest gain of those with leg(a, m) + leg(m, b) <= B. Gains only
+//      shrink as the tour grows. So the list is sorted by old gains: the first possible entry is
+//      evaluated anew and moved to its place; if it stays first, it is the best (lazy evaluation).
+//   2. Without such an m, append the shortest way from a to b; the views on it count as seen.
+//   3. Else solve part(a, m) with a share of B, limited by what leg(m, b) needs. Then solve
+//      part(m, b) with all that is left; its gains include what the first part added.
+// `list` is passed by value: each part starts from the gains known when it was split off.
+// With a limit of images, visits_ counts how often each view is on the tour, with shortest ways for
+// parts that are still open. A middle that would exceed the limit is not admitted.
 #include "framework/view/recursive_growth.h"
 
 #include <algorithm>

@@ -71,27 +71,28 @@ function M.of(run, options, keyframes)
   return environment
 end
 
--- The environment that a film states, subjects and bystanders included; sets shot.bystanders.
-function M.state(run, shot, options, camera, stretch)
-  local environment = M.of(run, options, shot.keyframes)
+-- The environment that a request states, subjects and bystanders included; and the bystanders.
+function M.state(run, request, camera)
+  local options = run.options
+  local environment = M.of(run, options, request.keyframes)
   environment.subjects = {}
   for i, subject in ipairs(camera and camera.list or {}) do
     environment.subjects[i] = { name = subject.name, height = subject.height,
                                 width = subject.width, distance = subject.distance,
                                 track = subject.track }
   end
-  shot.bystanders = tracks.checked(run, options.keep_away, stretch or 1, "keep_away", "bystander")
-  for i, bystander in ipairs(shot.bystanders) do
+  local bystanders = tracks.checked(run, options.keep_away, request.stretch, "keep_away",
+                                    "bystander")
+  for i, bystander in ipairs(bystanders) do
     for _, subject in ipairs(environment.subjects) do
       if subject.name == bystander.name then
         run:fail("keep_away[" .. i .. "].name", "'" .. subject.name .. "' is taken")
       end
     end
-    bystander.bystander = true
     environment.subjects[#environment.subjects + 1] = { name = bystander.name, filmed = false,
       distance = bystander.distance, track = bystander.track }
   end
-  return environment
+  return environment, bystanders
 end
 
 -- Constraints that keep a problem clear of its environment; or within a corridor.
@@ -121,14 +122,10 @@ end
 
 -- The speeds that keyframes are timed by, wanted in between them as well: along the straight leg,
 -- which keeps the term convex where the flight goes round something.
-function M.add_cruise(p, shot, weight, stretch)
-  for i, leg in ipairs(shot.cruise or {}) do
-    local speed, way, length = leg.speed / stretch, {}, 0
-    for c = 1, 3 do
-      way[c] = leg.to[c] - leg.from[c]
-      length = length + way[c] ^ 2
-    end
-    for c = 1, 3 do way[c] = way[c] / math.sqrt(length) end
+function M.add_cruise(p, request, weight)
+  local stretch = request.stretch
+  for i, leg in ipairs(request.cruise) do
+    local speed, way = leg.speed / stretch, lapwing.normalize(lapwing.vector(leg.to) - leg.from)
     p:add_cost { name = "cruise " .. i, weight = weight,
                  spans = { { start = leg.start * stretch, finish = leg.finish * stretch } },
                  residual = function(s) return lapwing.dot(s.velocity, way) - speed end }

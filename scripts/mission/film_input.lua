@@ -25,13 +25,11 @@ local function sampled(track, duration, what)
     list[i + 1] = { time = time, position = at(time) }
     local before = list[i]
     if before then
-      local middle, off = at((before.time + time) / 2), 0
-      for k = 1, 3 do
-        off = off + (middle[k] - (before.position[k] + list[i + 1].position[k]) / 2) ^ 2
-      end
-      if math.sqrt(off) > OFF_TRACK then
+      local middle = (lapwing.vector(before.position) + list[i + 1].position) / 2
+      local off = lapwing.norm(lapwing.vector(at((before.time + time) / 2)) - middle)
+      if off > OFF_TRACK then
         lapwing.fail(string.format("%s: leaves the straight way between %.4g and %.4g s by %.3g m; "
-          .. "give a list of times and positions", what, before.time, time, math.sqrt(off)))
+          .. "give a list of times and positions", what, before.time, time, off))
       end
     end
   end
@@ -112,7 +110,7 @@ function input.written_out(given)
 end
 
 local track = { name = "track", type = "tables", also = "fun(time: number): number[]",
-  summary = "where it is, and when, straight in between",
+  summary = "positions and times, with straight lines between them",
   table = {
     { name = "time", type = "number", unit = "s", required = true, summary = "of the film" },
     { name = "position", type = "numbers", size = 3, unit = "m", required = true,
@@ -121,14 +119,14 @@ local track = { name = "track", type = "tables", also = "fun(time: number): numb
 input.bystander = {
   { name = "name", type = "text", summary = "for messages" },
   { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
-    summary = "where it stands still" },
+    summary = "fixed position" },
   track,
   { name = "distance", type = "number", unit = "m", required = true, above = 0, maximum = 1e5,
-    summary = "kept from it along the whole path" },
+    summary = "distance of the whole path from it" },
 }
 
 input.subject = {
-  { name = "name", type = "text", summary = "by which keyframes ask for it" },
+  { name = "name", type = "text", summary = "name used by keyframes" },
   { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
     summary = "of its middle, where it stands still" },
   track,
@@ -137,36 +135,36 @@ input.subject = {
   { name = "width", type = "number", unit = "m", default = 0, minimum = 0, maximum = 1e5,
     summary = "diameter" },
   { name = "distance", type = "number", unit = "m", minimum = 0,
-    summary = "the camera keeps this far from its middle; absent: as it likes" },
+    summary = "distance of the camera from its centre; absent: free" },
   { name = "place", type = "numbers", size = 2, minimum = 0, maximum = 1,
-    summary = "in the image, from the upper left corner: {0.33, 0.5} is the left third" },
+    summary = "place in the image, from the upper left corner: {0.33, 0.5} is the left third" },
   { name = "size", type = "number", above = 0, maximum = 1,
-    summary = "its height as a share of the image's; absent: any" },
+    summary = "wanted height as a share of the image height; absent: any" },
 }
 
 input.keyframe = {
   { name = "time", type = "number", unit = "s", minimum = 0,
-    summary = "absent: evenly between the others, or as timing says" },
+    summary = "time; absent: evenly between the others, or set by timing" },
   { name = "speed", type = "number", unit = "m/s", above = 0, maximum = 1e3,
-    summary = "of the leg that leads to it; absent: the film's" },
+    summary = "speed on the leg to it; absent: that of the film" },
   { name = "time_weight", type = "number", above = 0,
-    summary = "free timing: prefers the time; times its squared miss, s of flight" },
+    summary = "free timing: weight of the squared time error, in s of flight" },
   { name = "earliest", type = "number", unit = "s", minimum = 0,
-    summary = "free timing: not before" },
-  { name = "latest", type = "number", unit = "s", minimum = 0, summary = "free timing: not after" },
+    summary = "free timing: earliest" },
+  { name = "latest", type = "number", unit = "s", minimum = 0, summary = "free timing: latest" },
   { name = "position", type = "numbers", size = 3, unit = "m", required = true,
     minimum = -1e6, maximum = 1e6, summary = "world: east, north, up" },
-  { name = "yaw_deg", type = "number", unit = "deg", summary = "0 east, counter-clockwise" },
+  { name = "yaw_deg", type = "number", unit = "deg", summary = "0 is east, counter-clockwise" },
   { name = "look_at", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
     also = "string",
     summary = "a point, or a subject's name; absent: as the keyframe before" },
-  { name = "subject", type = "text", summary = "the subject looked at, by name" },
+  { name = "subject", type = "text", summary = "name of the filmed subject" },
 }
 
 input.cut = {
   { name = "start", type = "number", unit = "s", required = true, minimum = 0, summary = "" },
   { name = "finish", type = "number", unit = "s", minimum = 0,
-    summary = "absent: as soon as the camera can be on what comes next" },
+    summary = "end; absent: as soon as the camera can film what follows" },
 }
 
 input.obstacle = {

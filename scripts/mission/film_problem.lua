@@ -2,9 +2,10 @@
 -- its plan is judged by (thesis 3.5).
 local surroundings = require "mission.film_environment"
 local own = require "mission.own_terms"
-local passages = require "mission.passages"
+local point_mass = require "mission.point_mass"
 local subjects = require "mission.subjects"
 local tracks = require "mission.tracks"
+local ways = require "mission.ways"
 
 local problem = {}
 
@@ -21,32 +22,26 @@ local function boundary(options, stretch, yaw)
     state[name] = options[name]
     local velocity = options[name .. "_velocity"]
     if velocity then
-      state[name .. "_velocity"] = {}
-      for i = 1, 3 do state[name .. "_velocity"][i] = velocity[i] / stretch end
+      state[name .. "_velocity"] = tracks.list(lapwing.vector(velocity) / stretch)
     end
   end
   return state
 end
 
--- Jerk and snap are derivatives of the force over the mass: the same as of the position, but a
--- fourth difference of positions has rounding errors 1 / step^2 larger.
-local function smoothness(options, vehicle)
-  local cost = { type = "derivative", name = "smoothness", order = options.order,
-                 weight = options.weights.smoothness }
-  if options.order > 2 then
-    cost.block, cost.order = "force", options.order - 2
-    cost.weight = cost.weight / vehicle.mass ^ 2
-  end
-  return cost
+-- How the vehicle flies: what its motion costs, and with `inputs` its limits.
+local function motion_of(options, inputs)
+  local weights = options.weights
+  return { smoothness = { order = options.order, weight = weights.smoothness },
+           yaw = { weight = weights.yaw }, effort = weights.effort, inputs = inputs }
 end
 
 -- Keyframes with all times multiplied: places, yaws, task, and a straight guess through them.
-local function keyframes_of(shot, stretch, options)
+local function keyframes_of(request, options)
   local made = { places = {}, yaws = {}, task = {}, times = {}, positions = {}, headings = {} }
   local heading = 0
-  for _, k in ipairs(shot.keyframes) do heading = k.yaw or heading if k.yaw then break end end
-  for i, k in ipairs(shot.keyframes) do
-    local time = k.time * stretch
+  for _, k in ipairs(request.keyframes) do heading = k.yaw or heading if k.yaw then break end end
+  for i, k in ipairs(request.keyframes) do
+    local time = k.time * request.stretch
     heading = k.yaw or heading
     made.places[i] = { time = time, value = k.position }
     if k.yaw then made.yaws[#made.yaws + 1] = { time = time, value = { k.yaw } } end
@@ -59,21 +54,24 @@ local function keyframes_of(shot, stretch, options)
 end
 
 -- A keyframe so deep in an obstacle, or so near to a subject, that it cannot be met.
-local function check_keyframes(run, p, shot, options, stretch, camera)
+local function check_keyframes(run, p, request, camera, bystanders)
+  local options = run.options
   local reach = options.hard or problem.MISS
-  local people = table.move(camera and camera.list or {}, 1, camera and #camera.list or 0, 1, {})
-  table.move(shot.bystanders, 1, #shot.bystanders, #people + 1, people)
-  for i, k in ipairs(shot.keyframes) do
+  for i, k in ipairs(request.keyframes) do
     local distance, name = p:nearest_obstacle(k.position)
-    for _, subject in ipairs(people) do
-      local at, squares = tracks.at(subject.track, k.time * stretch), 0
-      for c = 1, 3 do squares = squares + (k.position[c] - at[c]) ^ 2 end
-      if subject.distance and math.sqrt(squares) + reach < subject.distance then
-        run:fail("keyframes[" .. i .. "].position", string.format(
-          "%.3g m from %s '%s', and %g m are to be kept", math.sqrt(squares),
-          subject.bystander and "bystander" or "subject", subject.name, subject.distance))
+    local function check_people(what, people)
+      for _, person in ipairs(people) do
+        local at = tracks.at(person.track, k.time * request.stretch)
+        local away = lapwing.norm(lapwing.vector(k.position) - at)
+        if person.distance and away + reach < person.distance then
+          run:fail("keyframes[" .. i .. "].position", string.format(
+            "%.3g m from %s '%s', and %g m are to be kept", away, what, person.name,
+            person.distance))
+        end
       end
     end
+    check_people("subject", camera and camera.list or {})
+    check_people("bystander", bystanders)
     local outside, zone = p:flight_zone_distance(k.position)
     if outside + reach < options.margin then
       run:fail("keyframes[" .. i .. "].position", string.format(
@@ -146,46 +144,38 @@ local function guess(keyframes, camera, path)
   return { times = camera.guess.times, positions = positions, yaws = camera.guess.yaws }
 end
 
--- Problem, task and camera of a film with all times multiplied by `stretch`. `only`: "unlimited",
--- as if the vehicle could do anything; "flight", without the camera; "unconstrained", with the
--- script's own constraints judged and not held.
-function problem.state(run, shot, stretch, only)
-  local o = run.options
-  local duration = shot.duration * stretch
-  local camera = only ~= "flight" and shot.vehicle.gimbal
-    and subjects.plan(run, shot, stretch, duration, shot.vehicle)
-  local keyframes = keyframes_of(shot, stretch, o)
-  local environment = surroundings.state(run, shot, o, camera, stretch)
+-- What a request asks for, as {problem, task, camera, legs}; `legs` as the request's, with the ways
+-- that were planned here.
+function problem.state(run, request)
+  local o, vehicle, scope = run.options, request.vehicle, request.scope
+  local duration = request.duration * request.stretch
+  local camera = scope ~= "flight" and vehicle.gimbal and subjects.plan(run, request, duration)
+  local keyframes = keyframes_of(request, o)
+  local environment, bystanders = surroundings.state(run, request, camera)
   local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
                                   duration / FEWEST_INTERVALS)
-  local p = run:problem { vehicle = shot.vehicle, duration = duration, step = step,
+  local p = run:problem { vehicle = vehicle, duration = duration, step = step,
                           environment = environment }
-  check_keyframes(run, p, shot, o, stretch, camera)
-  local path, corridor = passages.path(p, shot, keyframes, environment, o.planner)
-  if shot.track then
+  check_keyframes(run, p, request, camera, bystanders)
+  local way = ways.planned(p, keyframes, environment, o.planner, request.legs, request.corridor)
+  local limited, path, track = scope ~= "unlimited", way.path, request.track
+  if track then
     path = {}
-    for i, place in ipairs(shot.track) do
+    for i, place in ipairs(track.places) do
       path[i] = { time = place.time, position = place.value }
     end
   end
-  p:add_model { type = "quadrotor" }
   p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }
-  p:add_cost(smoothness(o, shot.vehicle))
-  p:add_cost { type = "yaw_derivative", name = "yaw", weight = o.weights.yaw }
-  p:add_cost { type = "input_effort", name = "effort", weight = o.weights.effort }
-  if only ~= "unlimited" then
-    p:add_constraint { type = "input_limits", across = "extent" }
-    p:add_constraint { type = "state_limits" }
-    surroundings.add(p, environment, camera, corridor)
-  end
-  surroundings.add_cruise(p, shot, o.weights.speed, stretch)
-  surroundings.add_speed_limit(p, o, only ~= "unlimited")
-  if shot.track and only ~= "flight" then  -- of timing.lua
-    p:add_cost { type = "keyframe", name = "path", weight = shot.track_weight,
-                 keyframes = shot.track }
+  point_mass.add(p, vehicle, motion_of(o, limited and { across = "extent" } or nil))
+  if limited then surroundings.add(p, environment, camera, way.corridor) end
+  surroundings.add_cruise(p, request, o.weights.speed)
+  surroundings.add_speed_limit(p, o, limited)
+  if track and scope ~= "flight" then
+    p:add_cost { type = "keyframe", name = "path", weight = track.weight,
+                 keyframes = track.places }
   end
   local yaws = keyframes.yaws
-  p:add_constraint(boundary(o, stretch, not camera and #yaws == 0 and 0 or nil))
+  p:add_constraint(boundary(o, request.stretch, not camera and #yaws == 0 and 0 or nil))
   if #yaws > 0 then
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
                  weight = o.weights.keyframe, keyframes = yaws }
@@ -206,13 +196,15 @@ function problem.state(run, shot, stretch, only)
     end
     task.framing_share = #task.framing > 0 and o.framing or nil
   end
-  if not only or only == "unconstrained" then own.add(p, o, shot.terms, not only) end
+  if scope == "film" or scope == "unconstrained" then
+    own.add(p, o, request.terms, scope == "film")
+  end
   p:guess_path(guess(keyframes, camera, path))
   p:finish()
-  return p, task, camera
+  return { problem = p, task = task, camera = camera or nil, legs = way.legs }
 end
 
 -- For problems that share some of it.
-problem.parts = { boundary = boundary, smoothness = smoothness, guess = guess }
+problem.parts = { boundary = boundary, motion = motion_of, guess = guess }
 
 return problem

@@ -7,6 +7,7 @@
 -- `origin`, the middle of their lower edge; spectators look along `view_yaw_deg`.
 local drawings = require "mission.drawings"
 local order = require "mission.stroke_order"
+local point_mass = require "mission.point_mass"
 
 local M = {}
 
@@ -19,33 +20,33 @@ local LONGEST_STEP = 0.2    -- s; coarser stages round off what is drawn
 local MOST_STAGES = 3000
 
 local DECLARATIONS = {
-  { name = "text", type = "text", summary = "what to write" },
-  { name = "font", type = "text", summary = "a Hershey font, .jhf; absent: our own capitals" },
-  { name = "svg", type = "text", summary = "a picture whose paths are drawn" },
-  { name = "input", type = "text", summary = "the same, from the command line" },
-  { name = "strokes", type = "tables", summary = "lists of points of one's own", table = {
+  { name = "text", type = "text", summary = "the text to draw" },
+  { name = "font", type = "text", summary = "a Hershey font, .jhf; absent: the built-in capitals" },
+  { name = "svg", type = "text", summary = "an SVG picture whose paths are drawn" },
+  { name = "input", type = "text", summary = "the same from the command line" },
+  { name = "strokes", type = "tables", summary = "lists of points", table = {
     { name = "points", type = "numbers", summary = "x, y, x, y, ... y up" } } },
   { name = "height", type = "number", unit = "m", default = 2, minimum = 0.01,
     summary = "of a capital letter, or of the picture" },
   { name = "origin", type = "numbers", size = 3, unit = "m", default = { 0, 0, 2 },
-    summary = "middle of the drawing's lower edge, world" },
+    summary = "centre of the lower edge of the drawing, world" },
   { name = "view_yaw_deg", type = "number", unit = "deg", default = 90,
-    summary = "where spectators look; 90: from south to north" },
+    summary = "viewing direction of the spectators; 90: from south to north" },
   { name = "reorder", type = "boolean", default = true,
-    summary = "draw strokes in the order that is shortest to fly" },
+    summary = "reorder strokes to shorten the flight" },
   { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "a vehicle file" },
   { name = "speed", type = "number", unit = "m/s", default = 1.5, minimum = 0.01,
-    summary = "largest; the vehicle's own limits hold too" },
+    summary = "largest value; the limits of the vehicle hold too" },
   { name = "acceleration", type = "number", unit = "m/s^2", default = 2, minimum = 0.01,
     summary = "largest, along and across the path together" },
   { name = "rounding", type = "number", unit = "m", default = 0.015, minimum = 0, maximum = 1,
     summary = "of sharp corners" },
   { name = "tolerance", type = "number", unit = "m", minimum = 1e-4,
-    summary = "mean distance between light and any stroke; absent: 1 % of the height" },
+    summary = "mean distance between light and stroke; absent: 1 % of the height" },
   { name = "slowest", type = "number", default = 0.1, minimum = 0.01, maximum = 1,
-    summary = "share of the speed below which no slower flight is tried" },
+    summary = "smallest factor on the speed that is tried" },
   { name = "step", type = "number", unit = "s", minimum = 0.005, maximum = LONGEST_STEP,
-    summary = "between stages; absent: 0.05, more where 3000 stages are too few" },
+    summary = "time between stages; absent: 0.05, larger if 3000 stages are not enough" },
   { name = "weights", type = "table", summary = "of the cost", table = {
     weight("drawing", 1e4, "places along the strokes"),
     weight("smoothness", 1e-4, "snap: more rounds the strokes (fig. 3.8 B)"),
@@ -104,14 +105,10 @@ local function solved(run, timed, vehicle)
   local places = places_of(timed, count, duration)
   local p = run:problem { vehicle = vehicle, duration = duration, step = duration / (count - 1),
                           environment = {} }
-  p:add_model { type = "quadrotor" }
   p:add_cost { type = "keyframe", name = "drawing", weight = o.weights.drawing / count,
                keyframes = places }
-  p:add_cost { type = "derivative", name = "smoothness", block = "force", order = 2,
-               weight = o.weights.smoothness / vehicle.mass ^ 2 }
-  p:add_cost { type = "yaw_derivative", name = "yaw", weight = 1 }
-  p:add_cost { type = "input_effort", name = "effort", weight = o.weights.effort }
-  for _, limit in ipairs { "input_limits", "state_limits" } do p:add_constraint { type = limit } end
+  point_mass.add(p, vehicle, { smoothness = { order = 4, weight = o.weights.smoothness },
+                               yaw = { weight = 1 }, effort = o.weights.effort, inputs = {} })
   local first, last = places[1].value, places[count].value
   p:add_constraint { type = "boundary_state", start_yaw = 0, start_position = first,
                      finish_position = last }

@@ -17,11 +17,11 @@ local SHARED = {  -- as the backends' own defaults
   { name = "resolution", type = "number", unit = "m", default = 0.2, minimum = 0.001,
     maximum = 100, summary = "edge of a voxel" },
   { name = "mode", type = "choice", choices = { "discretised", "exact" }, default = "discretised",
-    summary = "a ray for every voxel that holds a point, or for every point" },
+    summary = "one ray per voxel that contains a point, or one per point" },
   { name = "pixel_step", type = "integer", default = 1, minimum = 1, maximum = 64,
-    summary = "every so many pixels and rows of an image are used" },
+    summary = "use every n-th pixel of every n-th row" },
   { name = "observations", type = "boolean", default = false,
-    summary = "count how often each voxel was measured, for its uncertainty" },
+    summary = "count the measurements of each voxel, for its uncertainty" },
 }
 -- What the mission settles for every backend: who sets `map.resolution` learns where it belongs.
 local SCANS = { resolution = "every map takes it: set resolution instead",
@@ -43,7 +43,7 @@ local INPUT = { name = "input", type = "text", summary = "the user's own data" }
 
 local FOLDER = { INPUT, {
   name = "range", type = "number", unit = "m", minimum = 0.01, maximum = 1000,
-  summary = "beyond it a ray clears and hits nothing; absent: none" } }
+  summary = "beyond it a ray clears and adds no hit; absent: none" } }
 
 local SENSOR = {
   { name = "width", type = "integer", default = 160, minimum = 1, maximum = 10000,
@@ -55,7 +55,7 @@ local SENSOR = {
   { name = "range", type = "number", unit = "m", default = 20, minimum = 0.01, maximum = 1000,
     summary = "largest depth" },
   { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
-    summary = "share of the pixels without a measurement" },
+    summary = "share of pixels without a measurement" },
   { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
     summary = "noise of the depth" },
 }
@@ -93,7 +93,7 @@ function M.of_scene(given)
       summary = "of the scene" },
     { name = "sensor", type = "table", table = SENSOR, summary = "the depth camera" },
     { name = "views", type = "integer", default = 400, minimum = 1, maximum = 100000,
-      summary = "how many images" },
+      summary = "number of images" },
   }
   local name = given.name
   given.name = nil

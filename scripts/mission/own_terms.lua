@@ -21,10 +21,10 @@ own.declared = {
   { name = "constraints", type = "plugins", kind = "constraint", also = "lapwing.own_constraint[]",
     summary = "constraints beside those of the mission", table = { name },
     functions = {
-      { name = "lower", type = "number", summary = "every value at least; a script may list them" },
-      { name = "upper", type = "number", summary = "every value at most; a script may list them" },
+      { name = "lower", type = "number", summary = "lower bound; a script may list bounds" },
+      { name = "upper", type = "number", summary = "upper bound; a script may list bounds" },
       { name = "certificate", type = "choice", choices = { "required", "reported" },
-        default = "required", summary = "what a broken one comes to" } } },
+        default = "required", summary = "effect of a violation on the certificate" } } },
 }
 
 -- What of a function is an option. Lists of bounds are the script's alone.
@@ -63,6 +63,18 @@ function own.taken(options)
   end
   return rest
 end
+
+-- The names of the certificate's checks of the constraints that are functions, as a set.
+function own.checks(options)
+  local names = {}
+  for _, entry in ipairs(options.constraints) do
+    if not entry.type then names[own.check(entry.name)] = true end
+  end
+  return names
+end
+
+-- The name of the certificate's check of one constraint.
+function own.check(constraint) return string.format('constraint "%s"', constraint) end
 
 -- Adds them to a problem; `rest` is what own.taken returned. Where they are not `held`, constraints
 -- are left to the certificate alone, and those of plugins out.

@@ -24,7 +24,7 @@ course.GATE = {
   { name = "shape", type = "choice", required = true, summary = "of the opening",
     choices = { "ball", "rectangle", "triangle", "pentagon", "hexagon" } },
   { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-    summary = "middle, world" },
+    summary = "centre, world" },
   number("normal_yaw", "", "direction of flight, degrees; a ball has none"),
   number("normal_pitch", "", "the same, degrees upwards"),
   number("width", "m", "of a rectangle or a triangle"),

@@ -1,6 +1,7 @@
 -- A course as a trajectory problem: legs from gate to gate, each with a step of its own, limits,
 -- gates, and a straight first guess (thesis 3.7.2).
 local courses = require "mission.race_course"
+local point_mass = require "mission.point_mass"
 
 local problem = {}
 
@@ -18,7 +19,7 @@ local MARGIN_SHARE = 0.1    -- of a small opening, where the margin would take m
 -- What the vehicle may use, by the model: speeds up, down and across, acceleration.
 local function strength(vehicle, o)
   local thrust = o.model == "quadrotor_full" and 4 * vehicle.rotor_thrust_max or vehicle.thrust_max
-  local free = math.max(0.2, o.thrust * thrust / vehicle.mass - 9.80665)
+  local free = math.max(0.2, o.thrust * thrust / vehicle.mass - point_mass.GRAVITY)
   return { across = vehicle.speed_across, up = vehicle.climb_speed, down = vehicle.descent_speed,
            acceleration = math.min(free, vehicle.acceleration_across, vehicle.acceleration_up,
                                    vehicle.acceleration_down) }
@@ -137,23 +138,19 @@ local function floor_of(made, floor)
                          high[1] + AROUND, high[2] + AROUND, low[1] - AROUND, high[2] + AROUND } } }
 end
 
-local function add_model(p, o, model, softer)
-  local profile = o.timing == "profile"
+local function add_model(p, vehicle, o, model, softer)
   local smoothness = softer * o.weights.smoothness * (o.time and IN_TIME or 1)
+  local lower = o.floor and { -FAR, -FAR, o.floor + o.margin }
   if model == "quadrotor_full" then
     p:add_model { type = "quadrotor_full", thrust_share = o.thrust, rate_share = o.rate_share }
     p:add_cost { type = "derivative", name = "smoothness", block = "rotor_thrusts", order = 1,
                  weight = smoothness }
+    p:add_constraint { type = "state_limits", lower = lower }
   else
-    p:add_model { type = "quadrotor" }
-    p:add_constraint { type = "input_limits", norm = not profile, share = o.thrust }
-    p:add_cost { type = "derivative", name = "smoothness", block = "force", order = 1,
-                 weight = smoothness }
-    p:add_cost { type = "yaw_derivative", name = "yaw", order = 1, weight = 1e-3 }
+    point_mass.add(p, vehicle, { force = { order = 1, weight = smoothness },
+                                 yaw = { order = 1, weight = 1e-3 }, lower = lower,
+                                 inputs = { norm = o.timing ~= "profile", share = o.thrust } })
   end
-  local limits = { type = "state_limits" }
-  if o.floor then limits.lower = { -FAR, -FAR, o.floor + o.margin } end
-  p:add_constraint(limits)
 end
 
 local function add_gates(p, course, made, o)
@@ -201,7 +198,7 @@ function problem.make(run, course, vehicle, made, o, model, coarse)
   end
   local p = run:problem { vehicle = vehicle, legs = legs, periodic = course.closed,
                           environment = { zones = floor_of(made, o.floor) } }
-  add_model(p, o, model, made.softer or 1)
+  add_model(p, vehicle, o, model, made.softer or 1)
   if free then p:add_cost { type = "flight_time", weight = 1 } end
   if free and o.time then
     p:add_constraint { type = "hard_keyframe", name = "time", block = "time",

@@ -1,9 +1,10 @@
 -- What would fly, where the controller cannot follow the fastest flight: the largest share of the
 -- thrust at which the whole quadrotor stays on the course, found by trying. Every try is the flight
 -- that a run with the printed settings makes.
+local point_mass = require "mission.point_mass"
+
 local M = {}
 
-local GRAVITY = 9.80665
 local ABOVE = 1.15       -- times the share that carries the vehicle: the least one that is tried
 local STEP = 0.01        -- between shares
 local CLOSE = 0.03       -- no nearer to a share that fails
@@ -14,7 +15,7 @@ local SLOW_TURNS = 0.3   -- share of the body rates, where no share of the thrus
 -- The share of the thrust that carries the vehicle.
 function M.least(vehicle, o)
   local most = o.model == "quadrotor_full" and 4 * vehicle.rotor_thrust_max or vehicle.thrust_max
-  return GRAVITY * vehicle.mass / most
+  return point_mass.hovering_share(vehicle, most)
 end
 
 local function with(options, more)

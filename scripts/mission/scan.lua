@@ -43,15 +43,15 @@ local function check(run)
   local o = run.options
   local tour = o.tour
   if tour.budget and tour.budget_metres then
-    run:fail("tour", string.format(
+    run:fail("tour.budget_metres", string.format(
       "budget is %.6g s and budget_metres %.6g m, which is %.6g s: give one of them",
       tour.budget, tour.budget_metres, tour.budget_metres / METRES_A_SECOND))
   end
-  if tour.images == 1 then run:fail("tour", "images: a tour has two at least; 0 is any number") end
+  if tour.images == 1 then run:fail("tour.images", "a tour has two at least; 0 is any number") end
   if tour.begin ~= "none" then run:expect_plugin("tour.begin", "tour_solver") end
   if tour.begin and tour.begin ~= "none" and tour.solver ~= "local_search" then
-    run:fail("tour", string.format("begin: '%s' does not begin with another solver's tour, only "
-                                   .. "local_search does", tour.solver))
+    run:fail("tour.begin", string.format("'%s' does not begin with another solver's tour, only "
+                                         .. "local_search does", tour.solver))
   end
   if o.rounds > 1 and not (o.scene or o.input) then
     run:fail("rounds", "a round after the first sees what the one before flew over in simulation: "
@@ -186,7 +186,6 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     local over = plan.duration - asked
     if over <= 0 or round == TIGHTER then
       if little then print("warning: " .. little) end
-      if plan.truth ~= "" then print(plan.truth) end
       return plan, tour
     end
     budget = budget - 1.5 * over

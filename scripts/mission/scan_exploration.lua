@@ -5,25 +5,26 @@ local patterns = require "mission.scan_patterns"
 local M = {}
 
 -- What a learned utility was trained with (reading 5.2); the scan's map is made the same way.
+M.RESOLUTION = 0.4  -- m, unless said otherwise
 local HIT, MISS, PITCH_DEG, VIEW_DEG = 0.9, 0.1, -10, 90
 local WIDTH, HEIGHT = 160, 120
 
 M.DECLARATION = { name = "exploration", type = "table",
-  summary = "in place of the first flight: nothing is known before it", table = {
+  summary = "exploration without prior knowledge, instead of the first flight", table = {
     { name = "images", type = "integer", default = 0, minimum = 0, maximum = 100000,
-      summary = "depth images at most; 0: no exploration" },
+      summary = "largest number of depth images; 0: no exploration" },
     { name = "budget", type = "number", unit = "s", above = 0,
-      summary = "of its flight; absent: what the tour leaves of one battery" },
+      summary = "flight time; absent: what the tour leaves of one battery" },
     { name = "range", type = "number", unit = "m", default = 20, minimum = 1, maximum = 1000,
       summary = "of its depth camera" },
     { name = "speed", type = "number", unit = "m/s", default = 2, above = 0,
-      summary = "between viewpoints" },
+      summary = "speed between viewpoints" },
     { name = "clear", type = "number", unit = "m", default = 6, minimum = 1, maximum = 100,
-      summary = "edge of the box that is taken to be free where it begins" },
+      summary = "edge of the box at the start that is assumed free" },
     { name = "start", type = "numbers", size = 3, unit = "m",
-      summary = "where it begins; absent: drawn by the run's seed" },
+      summary = "start position; absent: drawn with the seed of the run" },
     { name = "start_yaw_deg", type = "number", unit = "deg", minimum = -360,
-      maximum = 360, summary = "heading there; absent: 0" },
+      maximum = 360, summary = "heading at the start; absent: 0" },
   } }
 
 function M.wanted(run)
@@ -85,7 +86,7 @@ local function map_of(o, range)
   for key, value in pairs(type(o.map) == "table" and o.map or { type = o.map }) do
     map[key] = value
   end
-  map.resolution, map.maximum_range = o.resolution, range
+  map.resolution, map.maximum_range = o.resolution or M.RESOLUTION, range
   map.hit, map.miss = HIT, MISS
   return map
 end

@@ -9,6 +9,28 @@ local M = {}
 local warnings = setmetatable({}, { __mode = "k" })  -- of runs: what the user should know
 local sparse = setmetatable({}, { __mode = "k" })    -- likewise
 
+-- What files of an earlier flight leave open: all of it at once, with where the mesh is.
+local function check_prior(run)
+  local o, files = run.options, space.prior_files(run)
+  if not files or exploration.wanted(run) then return end
+  local flown_in = o.scene or o.input
+  local lacks, give = {}, {}
+  if not (o.start or flown_in and #o.flights > 0) then
+    lacks[1], give[1] = "where the tour begins", "start = {x, y, z}"
+  end
+  if not (flown_in or o.region.lower and o.region.upper) then
+    lacks[#lacks + 1] = "which region is of interest"
+    give[#give + 1] = "region = { lower = {x, y, z}, upper = {x, y, z} }"
+  end
+  if #lacks == 0 then return end
+  local mesh = run:read_surface { file = files.mesh }
+  local from, to = mesh.lower, mesh.upper
+  run:fail("prior", string.format(
+    "files of an earlier flight do not say %s: give %s. The mesh '%s' lies between "
+    .. "{%.4g, %.4g, %.4g} and {%.4g, %.4g, %.4g}", table.concat(lacks, " and "),
+    table.concat(give, " and "), files.mesh, from[1], from[2], from[3], to[1], to[2], to[3]))
+end
+
 -- What is wrong before anything is flown.
 function M.check(run)
   local o = run.options
@@ -21,6 +43,7 @@ function M.check(run)
              "is of an input, a mesh file to be flown over, and there is none (a prior's mesh is "
              .. "in its map's frame)")
   end
+  check_prior(run)
   local region = o.region
   if region.lower and region.upper then
     for axis = 1, 3 do
@@ -90,7 +113,7 @@ end
 local function new_prior(run)
   local o = run.options
   local map = type(o.map) == "table" and o.map or { type = o.map }
-  map.resolution, map.maximum_range = o.resolution, o.range
+  map.resolution, map.maximum_range = space.resolution(run), o.range
   return run:prior { map = map, spacing = o.surface.spacing, range = o.range,
                      stride = o.surface.stride }
 end
@@ -127,7 +150,9 @@ function M.knowledge(run, seconds, vehicle)
     return known, poses, surface, done
   end
   local known, poses = new_prior(run), {}
-  if files then known:load { map = files.map, mesh = files.mesh } end
+  if files then
+    known:load { map = files.map, mesh = files.mesh, camera = depth_camera(run), range = o.range }
+  end
   if surface and not (files and #o.flights == 0) then
     if not files then warnings[run] = check_range(run) end
     sparse[run] = space.sparse(run)
@@ -154,9 +179,6 @@ function M.starts(run, poses)
   end
   if o.start then starts[1] = looking_in(o.start) end
   for _, pose in ipairs(poses) do starts[#starts + 1] = pose end
-  if #starts == 0 then
-    run:fail("start", "with files of an earlier flight alone, say where the tour begins")
-  end
   if not o.finish then return starts, 1 end
   table.insert(starts, 2, looking_in(o.finish))
   return starts, 2

@@ -18,6 +18,8 @@ end
 
 local POSITIVE, NOT_NEGATIVE = { above = 0, maximum = 1e6 }, { minimum = 0, maximum = 1e6 }
 
+local VOXEL = { minimum = 0.01, maximum = 10 }
+
 local CAMERA = {
   integer("width", 600, 1, 10000, "pixels"), integer("height", 450, 1, 10000, "pixels"),
   number("focal", 345, "px", "focal length", { above = 0, maximum = 1e5 }),
@@ -37,15 +39,15 @@ local PATTERN = {
 }
 
 local DECLARATIONS = {
-  { name = "scene", type = "text", summary = "a scene of scripts/scene to be flown in" },
+  { name = "scene", type = "text", summary = "a scene of scripts/scene for the flight" },
   integer("scene_seed", 1, 0, 9007199254740991, "of the scene"),
   { name = "input", type = "text", summary = "a mesh file in place of a scene" },
   { name = "ground", type = "boolean", default = false,
-    summary = "put a plane under the mesh file" },
+    summary = "add a ground plane under the mesh" },
   number("unit", nil, "m", "that one unit of the mesh file is; absent: what it says", POSITIVE),
   { name = "up", type = "choice", default = "file", choices = { "file", "x", "y", "z" },
-    summary = "the axis of the mesh file that points up; file: the one that it says" },
-  { name = "prior", type = "table", summary = "files of an earlier flight", table = {
+    summary = "axis of the mesh file that points up; file: as the file says" },
+  { name = "prior", type = "table", summary = "map and mesh of an earlier flight", table = {
     { name = "map", type = "text", summary = "a map, .ot or .bt" },
     { name = "mesh", type = "text", summary = "a mesh in the map's frame" } } },
   { name = "region", type = "table", summary = "of interest; absent: the "
@@ -69,22 +71,24 @@ local DECLARATIONS = {
     .. "that looks down" },
   exploration.DECLARATION,
   { name = "utility", type = "plugin", kind = "utility", default = "learned",
-    summary = "of an exploration: how useful a view is" },
+    summary = "value of a view in an exploration" },
   { name = "camera", type = "table", table = CAMERA, summary = "of all images" },
   { name = "noise", type = "table", summary = "of measured depth", table = {
     number("dropped", 0, "", "share of pixels without a measurement", { minimum = 0, maximum = 1 }),
     number("sigma", 0, "m", "deviation", { minimum = 0, maximum = 100 }) } },
   number("range", 60, "m", "of depth and of rays", POSITIVE),
-  { name = "effort", type = "table", summary = "of computing; the plan's camera stays", table = {
+  { name = "effort", type = "table", summary = "of computing; the plan keeps its camera", table = {
     integer("pixels", 0, 0, 10000, "a row, of the smaller images that the first flight takes and "
-            .. "views are weighed by; 0: the camera's") } },
-  number("resolution", 0.2, "m", "edge of a voxel", { minimum = 0.01, maximum = 10 }),
+            .. "views are weighed by; 0: the camera's"),
+    number("resolution", 0.2, "m", "edge of a voxel, where nothing else settles it", VOXEL) } },
+  number("resolution", nil, "m", "edge of a voxel; absent: that of the prior's map, 0.4 m of an "
+         .. "exploration, else effort.resolution", VOXEL),
   { name = "surface", type = "table", summary = "the prior mesh", table = {
     number("spacing", 0.4, "m", "between fused points", POSITIVE),
     number("cell", 0.5, "m", "of the reconstruction", POSITIVE),
     number("trim", 1, "m", "surface farther from every point is left out", POSITIVE),
     integer("stride", 2, 1, 64, "every so many pixels are fused") } },
-  { name = "candidates", type = "table", summary = "views worth considering", table = {
+  { name = "candidates", type = "table", summary = "candidate views", table = {
     integer("most", 2000, 1, 100000, "views"),
     integer("least", 0, 0, 100000, "where growing finds fewer, free places are drawn as well"),
     integer("directions", 3, 1, 1000, "of each place, where there are many places"),
@@ -93,7 +97,7 @@ local DECLARATIONS = {
     number("distance_apart", 1, "m", "or so far in angle", POSITIVE),
     number("angle_apart_deg", 15, "deg", "or so far in distance",
            { minimum = 0, maximum = 180 }) } },
-  { name = "motions", type = "table", summary = "ways between views", table = {
+  { name = "motions", type = "table", summary = "motions between views", table = {
     integer("neighbours", 12, 1, 1000, "that each view is joined with"),
     integer("among", 120, 1, 100000, "nearest views, of those whose images match"),
     number("alpha", 0.4, "", "share that matchable views see in common", { minimum = 0,
@@ -107,22 +111,22 @@ local DECLARATIONS = {
     number("view_seconds", 3, "s", "that a view costs at least", { minimum = 0, maximum = 60 }),
     number("acceleration", 2, "m/s^2", "largest that is asked for", POSITIVE),
     { name = "smooth", type = "boolean", default = false,
-      summary = "legs by the solver, in place of pure pursuit" },
+      summary = "legs by a trajectory solver, instead of pure pursuit" },
     number("stray", 0.1, "m", "that smooth legs may leave their ways at corners", POSITIVE) } },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
     summary = "of smooth legs" },
   { name = "closed_loop", type = "choice", default = "required",
-    choices = { "required", "reported" }, summary = "whether tracking under control must hold" },
+    choices = { "required", "reported" }, summary = "whether the controlled flight must pass" },
   integer("rounds", 1, 1, 5, "of planning; each but the first sees what the one before flew"),
   { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "file or table" },
-  { name = "map", type = "plugin", kind = "map", default = "brick", summary = "the map's backend",
+  { name = "map", type = "plugin", kind = "map", default = "brick", summary = "map plugin",
     settled = { resolution = "set resolution instead", maximum_range = "set range instead" } },
   { name = "information", type = "plugin", kind = "information", default = "fronto_parallel",
-    summary = "what a view tells of a voxel" },
+    summary = "information of a view about a voxel" },
   { name = "planner", type = "plugin", kind = "path_planner", default = "rrt_connect",
-    summary = "where the straight way between two views is blocked" },
+    summary = "path planner, if the straight line between two views is blocked" },
   { name = "tour", type = "plugin", kind = "tour_solver", under = "solver",
-    default = "local_search", summary = "how the tour is found", table = {
+    default = "local_search", summary = "solver of the tour and its parameters", table = {
       number("budget", nil, "s", "of flight; absent: 300", POSITIVE),
       number("budget_metres", nil, "m", "in place of seconds, at 3 m/s", POSITIVE),
       integer("images", 0, 0, 100000, "most images; 0 for any number"),

@@ -47,7 +47,7 @@ function M.expect(run, seconds)
       add("mesh" .. of, MESH * few * seconds / VIEW)
     end
   end
-  add("certificate", CERTIFICATE / o.resolution * seconds)
+  add("certificate", CERTIFICATE / space.resolution(run) * seconds)
   add("files", FILES)
   run:phases(phases)
 end

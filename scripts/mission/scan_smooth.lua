@@ -1,6 +1,8 @@
 -- Legs of a tour by a trajectory solver, in place of pure pursuit: from rest to rest, with little
 -- jerk, past the corners of ways round obstacles instead of stopping at them. Each leg is a problem
 -- of its own.
+local point_mass = require "mission.point_mass"
+
 local M = {}
 
 local STEP = 0.1           -- s, between stages
@@ -43,13 +45,9 @@ local function solved(run, vehicle, leg, duration, pull)
   local places, n = places_of(run, vehicle, leg, duration), #leg.points
   local first = { leg.points[1], leg.points[2], leg.points[3] }
   local last = { leg.points[n - 2], leg.points[n - 1], leg.points[n] }
-  p:add_model { type = "quadrotor" }
   p:add_cost { type = "keyframe", name = "way", weight = pull / #places, keyframes = places }
-  p:add_cost { type = "derivative", name = "jerk", block = "force", order = 1,
-               weight = JERK / vehicle.mass ^ 2 }
-  p:add_cost { type = "yaw_derivative", name = "yaw", weight = 0.02 }
-  p:add_constraint { type = "input_limits", across = "extent" }
-  p:add_constraint { type = "state_limits" }
+  point_mass.add(p, vehicle, { smoothness = { name = "jerk", order = 3, weight = JERK },
+                               yaw = { weight = 0.02 }, inputs = { across = "extent" } })
   p:add_constraint { type = "boundary_state", start_position = first, finish_position = last,
                      start_yaw = leg.yaw_from, finish_yaw = leg.yaw_to }
   local times, positions, yaws = {}, {}, {}

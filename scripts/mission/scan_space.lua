@@ -41,8 +41,28 @@ function M.prior_files(run)
   return files
 end
 
+local resolutions = setmetatable({}, { __mode = "k" })  -- of runs
+
+-- The edge of the map's voxels: files of an earlier flight have theirs, whatever a quick look asks.
+function M.resolution(run)
+  if resolutions[run] then return resolutions[run] end
+  local o, files = run.options, M.prior_files(run)
+  local edge = o.resolution or exploration.wanted(run) and exploration.RESOLUTION
+               or o.effort.resolution
+  if files then
+    edge = run:map_resolution(files.map)
+    if o.resolution and math.abs(o.resolution - edge) > 1e-9 * edge then
+      run:fail("resolution", string.format(
+        "%.6g m, and the prior's map '%s' has voxels of %.6g m: leave resolution out",
+        o.resolution, files.map, edge))
+    end
+  end
+  resolutions[run] = edge
+  return edge
+end
+
 -- How far up or down the map and the reconstruction may move a surface.
-local function moved(run) return run.options.resolution + run.options.surface.cell end
+local function moved(run) return M.resolution(run) + run.options.surface.cell end
 
 -- Round the bounds of a mesh of the user's, so that its outermost walls belong to it and are seen
 -- from outside, and roof and ground as they are reconstructed belong to it too.
@@ -60,11 +80,7 @@ function M.region_of(run)
   local given = run.options.region
   if given.lower and given.upper then return given end
   if given.lower or given.upper then run:fail("region", "expected both lower and upper") end
-  local surface = M.surface_of(run)
-  if not surface then
-    run:fail("region", "files of an earlier flight do not say which region is of interest: give "
-                       .. "region = { lower = {x, y, z}, upper = {x, y, z} }")
-  end
+  local surface = M.surface_of(run)  -- there is one, or first.check has refused
   return run.options.input and around(run, surface.region) or surface.region
 end
 

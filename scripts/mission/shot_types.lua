@@ -47,16 +47,16 @@ shots.described = {
     { name = "height", type = "number", unit = "m", required = true, minimum = -1e6,
       maximum = 1e6, summary = "of the camera, in the world" },
     { name = "angle", type = "number", unit = "deg", default = 360, minimum = -36000,
-      maximum = 36000, summary = "that is turned through; negative is clockwise" },
+      maximum = 36000, summary = "angle of the orbit; negative is clockwise" },
     { name = "from", type = "number", unit = "deg", default = 0, minimum = -36000,
       maximum = 36000, summary = "direction from the center at the start" },
     { name = "ramp", type = "number", unit = "s", default = 2, minimum = 0, maximum = 1e5,
-      summary = "in which the rate rises at the start and falls at the end; 0: constant "
+      summary = "duration in which the rate rises at the start and falls at the end; 0: constant "
         .. "throughout, for a film that starts and finishes `free`" } }),
   described("crane", "Straight up, or down, as on a crane's arm.",
             { place("position", "at the start"),
               { name = "by", type = "number", unit = "m", required = true, minimum = -1e5,
-                maximum = 1e5, summary = "upwards; negative is downwards" } }),
+                maximum = 1e5, summary = "height difference; negative is downwards" } }),
   described("flyover", "Over something, and down on its far side.",
             { place("from_position", "at the start"), place("to_position", "at the end"),
               { name = "height", type = "number", unit = "m", required = true, minimum = -1e5,
@@ -88,7 +88,10 @@ local function at(given, share, position, look_at)
            look_at = look_at or given.look_at }
 end
 
-local function raised(position, up) return { position[1], position[2], position[3] + up } end
+-- Keyframes are options: lists of numbers that a script may change.
+local function list_of(v) return { v.x, v.y, v.z } end
+local function raised(position, up) return list_of(lapwing.vector(position) + { 0, 0, up }) end
+local function middle(a, b) return list_of((lapwing.vector(a) + b) / 2) end
 
 function shots.static(given)
   given = arguments("static", given)
@@ -104,8 +107,7 @@ end
 function shots.dolly(given)
   given = arguments("dolly", given)
   local a, b = given.from_position, given.to_position
-  local middle = { (a[1] + b[1]) / 2, (a[2] + b[2]) / 2, (a[3] + b[3]) / 2 }
-  return { at(given, 0, a), at(given, 0.5, middle), at(given, 1, b) }
+  return { at(given, 0, a), at(given, 0.5, middle(a, b)), at(given, 1, b) }
 end
 
 -- The share of an orbit that is behind after `time`: the rate rises smoothly, without a jump of the
@@ -147,8 +149,8 @@ end
 function shots.flyover(given)
   given = arguments("flyover", given)
   local a, b = given.from_position, given.to_position
-  local top = { (a[1] + b[1]) / 2, (a[2] + b[2]) / 2, (a[3] + b[3]) / 2 + given.height }
-  return { at(given, 0, a), at(given, 0.5, top), at(given, 1, b) }
+  return { at(given, 0, a), at(given, 0.5, raised(middle(a, b), given.height)),
+           at(given, 1, b) }
 end
 
 -- Several lists of keyframes in one, each beginning where the one before ends in time. A keyframe

@@ -13,25 +13,26 @@ local function inside(spans, time)
   end
 end
 
--- All that the camera is asked for, with times multiplied by `stretch`; nil when nothing is.
+-- All that the camera is asked for by a request, over `duration` s; nil when nothing is.
 --   list      subjects {name, track, height, width, ...}
 --   spans     {subject, start, finish}       when a subject is to be in the image
 --   cuts      {start, finish}
 --   pulls     {time, position, weight}       where the target is drawn to
 --   guess     {times, yaws, pitches, targets}
-function subjects.plan(run, shot, stretch, duration, vehicle)
-  local list, by_name = tracks.checked(run, shot.subjects, stretch)
+function subjects.plan(run, request, duration)
+  local stretch = request.stretch
+  local list, by_name = tracks.checked(run, request.subjects, stretch)
   local keyframes = {}
-  for i, k in ipairs(shot.keyframes) do
+  for i, k in ipairs(request.keyframes) do
     keyframes[i] = { time = k.time * stretch, position = k.position, look_at = k.look_at,
                      subject = k.subject }
   end
   local order = looks.of(run, keyframes, list, by_name)
   if not order then
-    if #shot.cuts > 0 then run:fail("cuts", "there is nothing to cut between: no subject") end
+    if #request.cuts > 0 then run:fail("cuts", "there is nothing to cut between: no subject") end
     return nil
   end
-  local cuts = looks.cuts(run, shot.cuts, stretch, duration, vehicle, keyframes, order)
+  local cuts = looks.cuts(run, request.cuts, stretch, duration, request.vehicle, keyframes, order)
   local spans, points = looks.schedule(order, duration, cuts)
   looks.check_coverage(run, spans)
 

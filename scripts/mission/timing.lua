@@ -1,22 +1,25 @@
--- Free timing: the times of keyframes as wishes, and the fastest feasible timing along a path that
--- is kept (path_first). Where times are kept, the path gives: every other film.
+-- path_first: the fastest timing along a path that is kept. A strategy: the film at its own pace
+-- gives the path; then it is flown as fast as the vehicle allows, with the times of keyframes as
+-- wishes, and slower until the vehicle follows within the tolerance.
+local attempts = require "mission.film_attempt"
+local requests = require "mission.film_request"
+local path_times = require "mission.path_times"
 local times = require "mission.keyframe_times"
 
 local M = {}
 
-local GRID = 0.05       -- s, between the times that are weighed
-local MOST_TIMES = 20000
 local SPACING = 0.05    -- m, of the path that is timed
 local ROUNDING = 0.4    -- m, of the corners that stages make of a smooth path
 local PLACES = 0.2      -- s, between the places that draw the flight to the path
 local PULL = 2e4        -- weight of all those places together, per m^2
+local SHORTEST = 0.05   -- s, of a leg
 local SLOWER, SLOWEST = 0.93, 0.25  -- share of what the vehicle can do, when it cannot follow
 
 local function wishes(k) return k.time_weight or k.earliest or k.latest end
 
 -- What keyframes wish makes sense together, and with the option `timing`.
-function M.check(run, shot)
-  for i, k in ipairs(shot.keyframes) do
+function M.check(run, film)
+  for i, k in ipairs(film.keyframes) do
     local what = "keyframes[" .. i .. "]"
     if wishes(k) and run.options.timing ~= "path_first" and run.options.timing ~= "free" then
       run:fail(what, "time_weight, earliest and latest need timing = \"path_first\" or \"free\"")
@@ -31,93 +34,22 @@ function M.check(run, shot)
   end
 end
 
--- What it costs to pass keyframe k at `time`; math.huge: it may not.
-local function price(k, time, is_last)
-  local cost = is_last and time or 0
-  if k.time_weight then return cost + k.time_weight * (time - k.time) ^ 2 end
-  if k.time and math.abs(time - k.time) > 1e-9 then return math.huge end
-  if time < (k.earliest or 0) - 1e-9 or time > (k.latest or math.huge) + 1e-9 then
-    return math.huge
+-- What each keyframe asks of its time, the film's duration being the last one's. An error where the
+-- times of `way`, which starts in the first keyframe at 0 s, cannot be found.
+function M.wishes(run, film, way)
+  local list = {}
+  if run.options.stretch ~= 1 then run:fail("stretch", way .. " finds the times itself") end
+  if #film.keyframes < 2 then run:fail("keyframes", way .. " needs two at least") end
+  for i, k in ipairs(film.keyframes) do
+    list[i] = { time = k.time, time_weight = k.time_weight, earliest = k.earliest,
+                latest = k.latest }
   end
-  return cost
-end
-
--- All times that may be chosen: a grid, and every time that somebody named.
-local function candidates(keyframes, fastest)
-  local finish, list = fastest, {}
-  for _, k in ipairs(keyframes) do
-    for _, t in ipairs { k.time or 0, k.earliest or 0, k.latest or 0 } do
-      finish = math.max(finish, t)
-      list[#list + 1] = t
-    end
+  if (list[1].time or list[1].earliest or 0) > 0 then
+    run:fail("keyframes[1]", way .. " starts in the first keyframe, at 0 s")
   end
-  local room = finish + fastest
-  local step = math.max(GRID, room / MOST_TIMES)
-  for i = 0, math.ceil(room / step) do list[#list + 1] = i * step end
-  table.sort(list)
+  local last = list[#list]
+  if film.duration and not (last.time or wishes(last)) then last.time = film.duration end
   return list
-end
-
--- The cheapest times at which keyframes are passed, each leg lasting at least legs[i] seconds: from
--- keyframe to keyframe the least price of every time, by dynamic programming. Or nil and the
--- keyframe that cannot have its time.
-function M.cheapest(keyframes, legs)
-  local fastest = 0
-  for _, leg in ipairs(legs) do fastest = fastest + leg end
-  local list, count = candidates(keyframes, fastest), #keyframes
-  local least, from = {}, {}
-  for j, t in ipairs(list) do
-    least[j] = t == 0 and price(keyframes[1], 0, count == 1) or math.huge
-  end
-  for k = 2, count do
-    local before, best, place, i = least, math.huge, nil, 1
-    least, from[k] = {}, {}
-    local any = false
-    for j, t in ipairs(list) do
-      while i <= #list and list[i] <= t - legs[k - 1] + 1e-9 do
-        if before[i] < best then best, place = before[i], i end
-        i = i + 1
-      end
-      least[j] = best < math.huge and best + price(keyframes[k], t, k == count) or math.huge
-      from[k][j] = place
-      any = any or least[j] < math.huge
-    end
-    if not any then return nil, k end
-  end
-  local last = 1
-  for j in ipairs(list) do if least[j] < least[last] then last = j end end
-  if least[last] == math.huge then return nil, 1 end
-  local chosen = {}
-  for k = count, 1, -1 do
-    chosen[k] = list[last]
-    last = k > 1 and from[k][last] or last
-  end
-  for k = 2, count do  -- what nobody wished for need not wait for the grid
-    if not keyframes[k].time and not wishes(keyframes[k]) then
-      chosen[k] = math.min(chosen[k], chosen[k - 1] + legs[k - 1])
-    end
-  end
-  return chosen
-end
-
-local function distance(a, b, i, j)
-  return math.sqrt((a[i] - b[j]) ^ 2 + (a[i + 1] - b[j + 1]) ^ 2 + (a[i + 2] - b[j + 2]) ^ 2)
-end
-
--- The place on the timed path nearest to each keyframe, in order: its number.
-local function stops_of(keyframes, timed)
-  local count, first, stops = #timed.times, 1, {}
-  local around = math.max(1, count // #keyframes)
-  for i, k in ipairs(keyframes) do
-    local best, least = first, math.huge
-    for j = first, math.min(count, first + (i > 1 and 3 * around or 0)) do
-      local d = distance(timed.points, k.position, 3 * j - 2, 1)
-      if d < least then best, least = j, d end
-    end
-    stops[i], first = best, best
-  end
-  stops[1], stops[#stops] = 1, count
-  return stops
 end
 
 -- Places and times of the path, each leg as much slower than the fastest as its keyframes ask for.
@@ -130,8 +62,8 @@ local function places_of(timed, stops, chosen)
     local time = chosen[leg] + share * (chosen[leg + 1] - chosen[leg])
     time = math.min(time, chosen[#chosen])
     if time >= next_time or j == #timed.times then
-      places[#places + 1] = { time = time, value = { timed.points[3 * j - 2],
-                              timed.points[3 * j - 1], timed.points[3 * j] } }
+      places[#places + 1] = { time = time,
+                              value = { table.unpack(timed.points, 3 * j - 2, 3 * j) } }
       next_time = time + PLACES
     end
   end
@@ -141,64 +73,78 @@ local function places_of(timed, stops, chosen)
   return places
 end
 
--- A film at its own pace gives the path; then faster, as the vehicle allows, until it follows
--- within the tolerance. Gives what came of it, sentences, and figures.
-function M.fly(run, shot, attempt, holds)
-  local o = run.options
-  if o.stretch ~= 1 then run:fail("stretch", "path_first finds the times itself") end
-  local wanted = shot.keyframes
-  local own, last = {}, wanted[#wanted]
-  if #wanted < 2 then run:fail("keyframes", "path_first needs two at least") end
-  if (wanted[1].time or wanted[1].earliest or 0) > 0 then
-    run:fail("keyframes[1]", "path_first starts in the first keyframe, at 0 s")
+-- The film along the path of `memory` with its share of what the vehicle can do; nil where no times
+-- at that pace grant all wishes, but did at a faster one.
+local function at_share(run, request, memory)
+  local timed = run:time_path { points = memory.path, spacing = SPACING, rounding = ROUNDING,
+                                vehicle = request.vehicle, share = memory.share,
+                                speed = run.options.speed_limit }
+  local stops = path_times.stops(request.keyframes, timed)
+  local legs = {}
+  for i = 1, #stops - 1 do
+    legs[i] = math.max(SHORTEST, timed.times[stops[i + 1]] - timed.times[stops[i]])
   end
-  for i, k in ipairs(wanted) do
-    own[i] = { position = k.position, yaw_deg = k.yaw_deg, look_at = k.look_at,
-               subject = k.subject }
+  local chosen, refused = path_times.cheapest(memory.wishes, legs)
+  if not chosen then
+    if memory.share < 1 then return nil end
+    local least = 0
+    for i = 1, refused - 1 do least = least + legs[i] end
+    run:fail("keyframes[" .. refused .. "]", string.format(
+      "cannot be passed when it asks to be: from the one before it the path takes %.3g s at "
+      .. "least, from the start %.3g s", legs[refused - 1] or 0, least))
   end
-  if shot.duration and not (last.time or wishes(last)) then last.time = shot.duration end
-  shot.keyframes, shot.duration = own, nil
-  times.fill(shot, shot.vehicle)
-  times.unwrap_yaw(own)
-  shot.duration = own[#own].time
-  local base = attempt(run, shot, 1)
-  if not holds(base) then
-    return base, { "the path at its own pace is not certified: "
-                   .. (base.verdict.failures[1] or base.solution.message) }
+  local keyframes = {}
+  for i, k in ipairs(request.keyframes) do
+    keyframes[i] = { position = k.position, yaw = k.yaw, look_at = k.look_at,
+                     subject = k.subject, time = chosen[i] }
   end
-  local path, share, tried = base.solution.path, 1, nil
-  while share > SLOWEST and not run:cancelled() do
-    local timed = run:time_path { points = path, spacing = SPACING, rounding = ROUNDING,
-                                  vehicle = shot.vehicle, share = share,
-                                  speed = run.options.speed_limit }
-    local stops, legs = stops_of(own, timed), {}
-    for i = 1, #stops - 1 do
-      legs[i] = math.max(0.05, timed.times[stops[i + 1]] - timed.times[stops[i]])
+  times.check_battery(run, request.vehicle, chosen[#chosen])
+  local places = places_of(timed, stops, chosen)
+  return requests.with(request, { keyframes = keyframes, duration = chosen[#chosen],
+                                  track = { places = places, weight = PULL / #places },
+                                  memory = memory })
+end
+
+-- The film at its own pace, which gives the path.
+function M.first(run, film)
+  local asked = M.wishes(run, film, "path_first")
+  local untimed = {}
+  for i, k in ipairs(film.keyframes) do
+    untimed[i] = { position = k.position, yaw_deg = k.yaw_deg, look_at = k.look_at,
+                   subject = k.subject }
+  end
+  local keyframes = times.with_yaw((times.filled(untimed, nil, film.vehicle)))
+  return requests.first { vehicle = film.vehicle, subjects = film.subjects, cuts = film.cuts,
+                          terms = film.terms, origin = film.origin, keyframes = keyframes,
+                          duration = keyframes[#keyframes].time, memory = { wishes = asked } }
+end
+
+-- The next request after an outcome; told are {notes, figures}.
+function M.next(run, outcome)
+  local request, memory = outcome.request, outcome.request.memory
+  if not memory.path then
+    if not outcome.holds then
+      return nil, { notes = { "the path at its own pace is not certified: "
+                              .. attempts.complaint(outcome) } }
     end
-    local chosen, which = M.cheapest(wanted, legs)
-    if not chosen then
-      if tried then break end
-      local least = 0
-      for i = 1, which - 1 do least = least + legs[i] end
-      run:fail("keyframes[" .. which .. "]", string.format(
-        "cannot be passed when it asks to be: from the one before it the path takes %.3g s at "
-        .. "least, from the start %.3g s", legs[which - 1] or 0, least))
-    end
-    for i, k in ipairs(own) do k.time = chosen[i] end
-    shot.duration = chosen[#chosen]
-    times.check_battery(run, shot, 1)
-    shot.track = places_of(timed, stops, chosen)
-    shot.track_weight = PULL / #shot.track
-    tried = attempt(run, shot, 1)
-    local figures = { duration = shot.duration, share = share,
-                      path_error = run:path_distance { points = tried.solution.path, path = path } }
-    if holds(tried) and figures.path_error <= o.path_tolerance then return tried, {}, figures end
-    tried.figures = figures
-    share = share * SLOWER
+    local timed = { wishes = memory.wishes, path = outcome.solution.path, share = 1 }
+    local told = { notes = { "cancelled before the path was timed" } }
+    if run:cancelled() then return nil, told end
+    return at_share(run, requests.with(request, { legs = outcome.legs }), timed), told
   end
-  if not tried then return base, { "cancelled before the path was timed" } end
-  return tried, { string.format("no timing down to %.2g of what the vehicle can do keeps the path "
-                                .. "within %.3g m", share, o.path_tolerance) }, tried.figures
+  local figures = { duration = request.duration, share = memory.share,
+                    path_error = run:path_distance { points = outcome.solution.path,
+                                                     path = memory.path } }
+  if outcome.holds and figures.path_error <= run.options.path_tolerance then
+    return nil, { notes = {}, figures = figures }
+  end
+  local share = memory.share * SLOWER
+  local told = { figures = figures, notes = { string.format(
+    "no timing down to %.2g of what the vehicle can do keeps the path within %.3g m", share,
+    run.options.path_tolerance) } }
+  if share <= SLOWEST or run:cancelled() then return nil, told end
+  local slower = { wishes = memory.wishes, path = memory.path, share = share }
+  return at_share(run, requests.with(request, { legs = outcome.legs }), slower), told
 end
 
 return M

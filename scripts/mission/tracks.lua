@@ -33,11 +33,8 @@ function tracks.checked(run, list, stretch, option, word)
   return result, by_name
 end
 
-local function between(a, b, share)
-  local p = {}
-  for i = 1, 3 do p[i] = a[i] + share * (b[i] - a[i]) end
-  return p
-end
+-- A vector as options and problems have it.
+function tracks.list(v) return { v.x, v.y, v.z } end
 
 -- Position in a list of {time, position}: straight in between, at rest outside.
 function tracks.at(track, time)
@@ -45,7 +42,8 @@ function tracks.at(track, time)
   for i = 2, #track do
     local a, b = track[i - 1], track[i]
     if time <= b.time then
-      return between(a.position, b.position, (time - a.time) / (b.time - a.time))
+      local way = lapwing.vector(b.position) - a.position
+      return tracks.list((time - a.time) / (b.time - a.time) * way + a.position)
     end
   end
   return track[#track].position
@@ -54,11 +52,11 @@ end
 -- Yaw in the world, and pitch, of a look; the yaw next to `before`, which it keeps when the look is
 -- steep.
 function tracks.angles(from, to, before)
-  local d = { to[1] - from[1], to[2] - from[2], to[3] - from[3] }
-  local across = math.sqrt(d[1] ^ 2 + d[2] ^ 2)
-  local pitch = math.atan(d[3], math.max(across, 1e-9))
-  if across < STEEP * math.sqrt(across ^ 2 + d[3] ^ 2) then return before or 0, pitch end
-  local yaw = math.atan(d[2], d[1])
+  local d = lapwing.vector(to) - from
+  local across = lapwing.norm { d.x, d.y }
+  local pitch = math.atan(d.z, math.max(across, 1e-9))
+  if across < STEEP * lapwing.norm { across, d.z } then return before or 0, pitch end
+  local yaw = math.atan(d.y, d.x)
   if before then yaw = yaw - 2 * math.pi * math.floor((yaw - before) / (2 * math.pi) + 0.5) end
   return yaw, pitch
 end

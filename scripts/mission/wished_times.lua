@@ -1,10 +1,16 @@
--- Free timing where no path is kept: the times of keyframes are found together with the flight.
--- Every leg between two keyframes has a step of its own; a keyframe's time is exact, preferred with
--- a weight, within a window or free, and each second of flight costs `weights.time`.
-local film = require "mission.film_problem"
-local passages = require "mission.passages"
+-- timing = "free": the times of keyframes are found together with the flight, where no path is
+-- kept. Every leg between two keyframes has a step of its own; a keyframe's time is exact,
+-- preferred with a weight, within a window or free, and each second of flight costs `weights.time`.
+-- A strategy: the film at the times found; where it does not hold, at those found with more thrust
+-- to spare.
+local attempts = require "mission.film_attempt"
+local film_problem = require "mission.film_problem"
+local point_mass = require "mission.point_mass"
+local requests = require "mission.film_request"
 local surroundings = require "mission.film_environment"
 local times = require "mission.keyframe_times"
+local timing = require "mission.timing"
+local ways = require "mission.ways"
 
 local M = {}
 
@@ -31,140 +37,141 @@ local function paced(own, fixed)
 end
 
 -- A first guess of the times that grants what is asked for: times first, then windows.
-local function guessed(shot, vehicle)
-  local keyframes, own, fixed = {}, {}, {}
-  for i, k in ipairs(shot.keyframes) do keyframes[i] = { position = k.position } end
-  times.fill({ keyframes = keyframes }, vehicle)
-  for i, k in ipairs(shot.keyframes) do own[i], fixed[i] = keyframes[i].time, k.time end
+local function guessed(keyframes, wishes, vehicle)
+  local untimed, own, fixed = {}, {}, {}
+  for i, k in ipairs(keyframes) do untimed[i] = { position = k.position } end
+  for i, k in ipairs((times.filled(untimed, nil, vehicle))) do
+    own[i], fixed[i] = k.time, wishes[i].time
+  end
   local list = paced(own, fixed)
-  for i, k in ipairs(shot.keyframes) do
-    if list[i] < (k.earliest or 0) or list[i] > (k.latest or math.huge) then
-      fixed[i] = math.min(math.max(list[i], k.earliest or 0), k.latest or math.huge)
+  for i, wish in ipairs(wishes) do
+    local earliest, latest = wish.earliest or 0, wish.latest or math.huge
+    if list[i] < earliest or list[i] > latest then
+      fixed[i] = math.min(math.max(list[i], earliest), latest)
       list = paced(own, fixed)
     end
   end
   return list
 end
 
--- What a keyframe asks of the time at the end of a leg.
-local function add_wishes(p, shot, list)
-  for i, k in ipairs(shot.keyframes) do
-    local name, at = "time of keyframe " .. i, list[i]
-    if i == 1 then
-      -- The film begins in it.
-    elseif k.time_weight then
-      p:add_cost { type = "keyframe", name = name, block = "time", weight = k.time_weight,
-                   keyframes = { { time = at, value = { k.time } } } }
-    elseif k.time then
-      p:add_constraint { type = "hard_keyframe", name = name, block = "time", tolerance = EXACT,
-                         keyframes = { { time = at, value = { k.time } } } }
-    elseif k.earliest or k.latest then
-      local first, last = k.earliest or 0, k.latest or OPEN
+-- What keyframes ask of the times at the ends of legs, which are guessed in `list`.
+local function add_wishes(p, wishes, list)
+  for i = 2, #wishes do  -- the film begins in the first
+    local wish, name = wishes[i], "time of keyframe " .. i
+    local function held(time, tolerance)
       p:add_constraint { type = "hard_keyframe", name = name, block = "time",
-                         tolerance = (last - first) / 2,
-                         keyframes = { { time = at, value = { (first + last) / 2 } } } }
+                         tolerance = tolerance,
+                         keyframes = { { time = list[i], value = { time } } } }
+    end
+    if wish.time_weight then
+      p:add_cost { type = "keyframe", name = name, block = "time", weight = wish.time_weight,
+                   keyframes = { { time = list[i], value = { wish.time } } } }
+    elseif wish.time then
+      held(wish.time, EXACT)
+    elseif wish.earliest or wish.latest then
+      local first, last = wish.earliest or 0, wish.latest or OPEN
+      held((first + last) / 2, (last - first) / 2)
     end
   end
 end
 
--- The flight alone, without the camera, with legs of free time.
-local function problem_of(run, shot, list, share)
-  local o = run.options
-  local legs, keyframes = {}, { places = {}, yaws = {}, times = {}, positions = {}, headings = {} }
+-- Legs of free time, and keyframes as a problem wants them, at the times guessed in `list`.
+local function legs_and_keyframes(keyframes, list)
+  local legs, made = {}, { places = {}, yaws = {}, times = {}, positions = {}, headings = {} }
   local heading = 0
-  for i, k in ipairs(shot.keyframes) do
+  for i, k in ipairs(keyframes) do
     heading = k.yaw or heading
     local time = list[i]
-    keyframes.times[i], keyframes.positions[i] = time, k.position
-    keyframes.places[i], keyframes.headings[i] = { time = time, value = k.position }, heading
-    if k.yaw then keyframes.yaws[#keyframes.yaws + 1] = { time = time, value = { k.yaw } } end
+    made.times[i], made.positions[i] = time, k.position
+    made.places[i], made.headings[i] = { time = time, value = k.position }, heading
+    if k.yaw then made.yaws[#made.yaws + 1] = { time = time, value = { k.yaw } } end
     if i > 1 then
       local span = time - list[i - 1]
       legs[i - 1] = { duration = span, mode = "free", longest = LONGEST * span,
                       intervals = math.max(FEWEST, math.ceil(span / STEP)) }
     end
   end
-  local environment = surroundings.state(run, shot, o)
-  local p = run:problem { vehicle = shot.vehicle, legs = legs, environment = environment }
-  local path, corridor = passages.path(p, shot, keyframes, environment, o.planner)
-  p:add_model { type = "quadrotor" }
+  return legs, made
+end
+
+-- The flight of a request alone, without the camera, with legs of free time; and its ways.
+local function problem_of(run, request, memory)
+  local o, vehicle = run.options, request.vehicle
+  local legs, keyframes = legs_and_keyframes(request.keyframes, memory.guess)
+  local environment = surroundings.state(run, request)
+  local p = run:problem { vehicle = vehicle, legs = legs, environment = environment }
+  local way = ways.planned(p, keyframes, environment, o.planner, request.legs, false)
   p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }
-  p:add_cost(film.parts.smoothness(o, shot.vehicle))
-  p:add_cost { type = "yaw_derivative", name = "yaw", weight = o.weights.yaw }
-  p:add_cost { type = "input_effort", name = "effort", weight = o.weights.effort }
+  point_mass.add(p, vehicle,
+                 film_problem.parts.motion(o, { across = "extent", share = memory.share }))
   p:add_cost { type = "flight_time", weight = o.weights.time }
-  p:add_constraint { type = "input_limits", across = "extent", share = share }
-  p:add_constraint { type = "state_limits" }
-  p:add_constraint { type = "hard_keyframe", tolerance = o.hard or film.MISS,
+  p:add_constraint { type = "hard_keyframe", tolerance = o.hard or film_problem.MISS,
                      keyframes = keyframes.places }
   if #keyframes.yaws > 0 then
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
                  weight = o.weights.keyframe, keyframes = keyframes.yaws }
   end
-  p:add_constraint(film.parts.boundary(o, 1, #keyframes.yaws == 0 and 0 or nil))
-  surroundings.add(p, environment, nil, corridor)
+  p:add_constraint(film_problem.parts.boundary(o, 1, #keyframes.yaws == 0 and 0 or nil))
+  surroundings.add(p, environment, nil, nil)
   surroundings.add_speed_limit(p, o, true)
-  add_wishes(p, shot, list)
-  p:guess_path(film.parts.guess(keyframes, nil, path))
+  add_wishes(p, memory.wishes, memory.guess)
+  p:guess_path(film_problem.parts.guess(keyframes, nil, way.path))
   p:finish()
-  return p
+  return p, way.legs
 end
 
--- The times of all keyframes, or nil and what the solver says.
-local function found(run, shot, list, share)
-  local o = run.options
-  local solution = run:solve(problem_of(run, shot, list, share), o.solver)
+-- The film of a request at the times found with the share of the thrust that `memory` names; nil
+-- where there are none, but were with more thrust.
+local function at_share(run, request, memory)
+  local stated, ways_of_legs = problem_of(run, request, memory)
+  local solution = run:solve(stated, run.options.solver)
   if solution.status == "unsupported" then run:fail("solver", solution.message) end
   if solution.status ~= "optimal" and solution.status ~= "feasible" then
-    return nil, solution.status .. ": " .. solution.message
+    if memory.number > 1 then return nil end
+    run:fail("keyframes", string.format(
+      "no times grant every wish within the vehicle's limits: %s: %s", solution.status,
+      solution.message))
   end
-  local chosen, clock = { 0 }, 0
-  for i, leg in ipairs(solution.legs) do
-    clock = clock + leg
-    chosen[i + 1] = shot.keyframes[i + 1].time and not shot.keyframes[i + 1].time_weight
-                    and shot.keyframes[i + 1].time or clock
+  local keyframes, clock, legs = {}, 0, solution.legs
+  for i, k in ipairs(request.keyframes) do
+    clock = clock + (legs[i - 1] or 0)
+    local wish = memory.wishes[i]
+    keyframes[i] = { position = k.position, yaw = k.yaw, look_at = k.look_at, subject = k.subject,
+                     time = i > 1 and not wish.time_weight and wish.time or clock }
   end
-  return chosen
+  local duration = keyframes[#keyframes].time
+  times.check_battery(run, request.vehicle, duration)
+  return requests.with(request, { keyframes = keyframes, duration = duration,
+                                  legs = ways_of_legs, memory = memory })
 end
 
--- The film at the times found; where it does not hold, with more thrust to spare. Gives what came
--- of it, sentences, and figures.
-function M.fly(run, shot, attempt, holds)
-  local o = run.options
-  local wanted = shot.keyframes
-  if o.stretch ~= 1 then run:fail("stretch", "timing = \"free\" finds the times itself") end
-  if #wanted < 2 then run:fail("keyframes", "timing = \"free\" needs two at least") end
-  if (wanted[1].time or wanted[1].earliest or 0) > 0 then
-    run:fail("keyframes[1]", "timing = \"free\" starts in the first keyframe, at 0 s")
-  end
-  local last = wanted[#wanted]
-  if shot.duration and not (last.time or last.earliest or last.latest) then
-    last.time = shot.duration
-  end
-  times.unwrap_yaw(wanted)
-  local list, tried = guessed(shot, shot.vehicle), nil
-  for _, share in ipairs(SHARES) do
-    local chosen, why = found(run, shot, list, share)
-    if not chosen then
-      if tried then break end
-      run:fail("keyframes", "no times grant every wish within the vehicle's limits: " .. why)
-    end
-    local own = {}
-    for i, k in ipairs(wanted) do
-      own[i] = { position = k.position, yaw_deg = k.yaw_deg, yaw = k.yaw, look_at = k.look_at,
-                 subject = k.subject, time = chosen[i] }
-    end
-    shot.keyframes, shot.duration = own, chosen[#chosen]
-    times.check_battery(run, shot, 1)
-    tried = attempt(run, shot, 1)
-    tried.figures = { duration = shot.duration, share = share }
-    shot.keyframes = wanted
-    if holds(tried) or run:cancelled() then return tried, {}, tried.figures end
-  end
-  return tried, { string.format("at the times found with %.2g of the thrust: %s",
-                                tried.figures.share,
-                                tried.verdict.failures[1] or tried.solution.message) },
-         tried.figures
+-- With the share of the thrust of that number.
+local function remembered(memory, number)
+  return { wishes = memory.wishes, guess = memory.guess, number = number, share = SHARES[number] }
+end
+
+-- The film at the first times found.
+function M.first(run, film)
+  local wishes = timing.wishes(run, film, "timing = \"free\"")
+  local keyframes = times.with_yaw(film.keyframes)
+  local request = requests.first {
+    vehicle = film.vehicle, subjects = film.subjects, cuts = film.cuts, terms = film.terms,
+    origin = film.origin, keyframes = keyframes }
+  local memory = { wishes = wishes, guess = guessed(keyframes, wishes, film.vehicle) }
+  return at_share(run, request, remembered(memory, 1))
+end
+
+-- The next request after an outcome; told are {notes, figures}.
+function M.next(run, outcome)
+  local request, memory = outcome.request, outcome.request.memory
+  local figures = { duration = request.duration, share = memory.share }
+  if outcome.holds or run:cancelled() then return nil, { notes = {}, figures = figures } end
+  local told = { figures = figures, notes = { string.format(
+    "at the times found with %.2g of the thrust: %s", memory.share,
+    attempts.complaint(outcome)) } }
+  if not SHARES[memory.number + 1] then return nil, told end
+  return at_share(run, requests.with(request, { legs = outcome.legs }),
+                  remembered(memory, memory.number + 1)), told
 end
 
 return M

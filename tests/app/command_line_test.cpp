@@ -163,7 +163,7 @@ TEST_F(CommandLine, UsageErrors) {
   refused({}, {"expected a command after 'lapwing'"});
   refused({"rnu", "shot.lua"}, {"unknown command 'rnu'; did you mean 'run'?"});
   refused({"plugins", "lst"}, {"unknown command 'lst'; did you mean 'list'?"});
-  refused({"run"}, {"mission is required"});
+  refused({"run"}, {"'lapwing run' wants MISSION.lua"});
   refused({"run", "shot.lua", "--sett", "a=b"}, {"--sett"});
   refused({"run", "shot.lua", "--seed", "x"}, {"--seed"});
   refused({"run", "shot.lua", "--seed", "-1"}, {"--seed"});

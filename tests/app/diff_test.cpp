@@ -87,7 +87,7 @@ TEST_F(Comparing, WhatIsNoPlanIsRefused) {
   fs::create_directories(folder_ / "empty");
   refused({"diff", "a", "empty"}, {"'empty': there is no plan 'empty/plan.json'"});
   refused({"diff", "a", "nothing"}, {"there is no plan 'nothing'"});
-  refused({"diff", "a"}, {"second is required"});
+  refused({"diff", "a"}, {"'lapwing diff' wants PLAN.json|DIR"});
   refused({"diff", "a", "a", "-o", "page"}, {"'page'", ".html"});
 }
 

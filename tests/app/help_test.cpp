@@ -26,13 +26,6 @@ class Helping : public CommandLine {
   static bool installed(const std::string& program) {
     return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0;
   }
-  // What a real bash completes, one a line.
-  std::string completed(const std::string& words) {
-    return shell("source <(lapwing completion bash)\nCOMP_WORDS=(" + words +
-                 ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_lapwing\nprintf '%s\\n' "
-                 "\"${COMPREPLY[@]}\"")
-        .out;
-  }
 };
 
 TEST_F(Helping, EveryCommandHasAnExampleDefaultsAndExitStatuses) {
@@ -161,34 +154,6 @@ TEST_F(Helping, EscapeSequencesAreShownAsText) {
   refused({"run", "bad.lua"}, {"a\\x1b[2Jb"});
   refused({"run", "a\x1b[2J.lua"}, {"a\\x1b[2J.lua"});
   refused({"run", "shot.lua", "--\x1b[2J"}, {"--\\x1b[2J"});
-}
-
-TEST_F(Helping, BashCompletesCommandsOptionsAndFiles) {
-  ASSERT_EQ(shell("lapwing completion bash > lapwing.bash && bash -n lapwing.bash").status, 0);
-  EXPECT_EQ(completed("lapwing ru"), "run\n");
-  EXPECT_EQ(completed("lapwing map con"), "convert\n");
-  EXPECT_EQ(completed("lapwing run --conf"), "--config\n");
-  EXPECT_EQ(completed("lapwing --color a"), "auto\nalways\n");
-  EXPECT_EQ(completed("lapwing --plugin-path run plug"), "plugins\n");
-  EXPECT_EQ(completed("lapwing help sw"), "sweep\n");
-  EXPECT_EQ(completed("lapwing completion f"), "fish\n");
-  write("my shot.lua", "");
-  EXPECT_EQ(completed("lapwing run my"), "my shot.lua\n");
-  EXPECT_EQ(completed("lapwing run --out my"), "\n");  // no folder of that name
-}
-
-TEST_F(Helping, ZshTakesTheCompletion) {
-  if (!installed("zsh")) GTEST_SKIP() << "zsh is not installed";
-  const Finished finished = shell("lapwing completion zsh > _lapwing && zsh -n _lapwing");
-  EXPECT_EQ(finished.status, 0) << finished.err;
-}
-
-TEST_F(Helping, FishTakesTheCompletion) {
-  if (!installed("fish")) GTEST_SKIP() << "fish is not installed";
-  const Finished finished = shell(
-      "export HOME=$PWD\nlapwing completion fish > lapwing.fish && fish --no-execute lapwing.fish\n"
-      "fish -c 'source lapwing.fish; complete -C \"lapwing ru\"'");
-  EXPECT_EQ(finished.out.rfind("run\t", 0), 0u) << finished.out << finished.err;
 }
 
 TEST_F(Helping, TheManualIsWellFormed) {

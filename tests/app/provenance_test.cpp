@@ -121,6 +121,19 @@ TEST_F(ProvenanceTest, EveryEditIsToldAndNamed) {
   }
 }
 
+// What makes a plan no plan stands right below the verdict, and is not buried by what follows.
+TEST_F(ProvenanceTest, TheCauseComesFirst) {
+  Value broken = document();
+  broken.set("environment", Value(broken.at("environment"))).set("margin", -1.0);
+  save(std::move(broken), true);
+  const Finished damaged = run({"verify", plan_.string()});
+  EXPECT_EQ(damaged.status, 1);
+  EXPECT_THAT(damaged.out, testing::StartsWith("shot: not certified\n  FAIL     document "));
+  EXPECT_THAT(damaged.out, HasSubstr("checks were not made: they need a document that holds"));
+  EXPECT_LT(std::count(damaged.out.begin(), damaged.out.end(), '\n'), 15) << damaged.out;
+  EXPECT_GT(answer().at("certificate").at("checks").as_list().size(), 20u) << "--json has them all";
+}
+
 TEST_F(ProvenanceTest, LayoutIsNoChange) {
   write_file_atomically(plan_, to_json(document(), -1));
   EXPECT_TRUE(failures_in(answer()).empty());

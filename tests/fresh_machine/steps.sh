@@ -23,14 +23,14 @@ for name in http_proxy https_proxy ftp_proxy no_proxy HTTP_PROXY HTTPS_PROXY NO_
   [ -z "${!name:-}" ] || proxies+=("$name=${!name}")
 done
 
-# in_machine USER HOME COMMAND: a line of bash there, in the checkout, with a bare environment.
+# in_machine MACHINE FOLDER USER HOME COMMAND: a line of bash there, with a bare environment.
 in_machine() {
-  chroot "$machine" /usr/sbin/runuser -u "$1" -- /usr/bin/env -i HOME="$2" USER="$1" \
+  chroot "$1" /usr/sbin/runuser -u "$3" -- /usr/bin/env -i HOME="$4" USER="$3" \
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb \
-    CCACHE_DIR=/var/cache/ccache "${proxies[@]}" bash -c "cd $place && $3"
+    CCACHE_DIR=/var/cache/ccache "${proxies[@]}" bash -c "cd $2 && $5"
 }
-as_root() { in_machine root /root "$1"; }
-as_user() { in_machine "$user" "/home/$user" "$1"; }
+as_root() { in_machine "$machine" "$place" root /root "$1"; }
+as_user() { in_machine "$machine" "$place" "$user" "/home/$user" "$1"; }
 
 bare_debian() {
   chmod 0755 "$machine"  # the root of a machine is open to its users
@@ -47,8 +47,9 @@ bare_debian() {
   chroot "$machine" update-ca-certificates
 }
 
+# mounts MACHINE
 mounts() {
-  local device
+  local device machine=$1
   mount -t proc proc "$machine/proc"
   mount -t tmpfs -o mode=1777 tmpfs "$machine/tmp"
   mount -t tmpfs -o mode=0755 tmpfs "$machine/dev"
@@ -64,6 +65,30 @@ mounts() {
   mount -t tmpfs -o mode=1777 tmpfs "$machine/dev/shm"
   mount -t devpts -o newinstance,ptmxmode=0666 devpts "$machine/dev/pts"
   ln -s pts/ptmx "$machine/dev/ptmx"
+}
+
+# The bare machine once more, for who installs the package and has no source.
+readonly bare="$machine/var/bare"
+copy_of_bare() {
+  mkdir "$bare"
+  tar -C "$machine" --exclude=./var/bare -c . | tar -C "$bare" -x
+}
+
+# The package that scripts/package.sh writes, installed by apt there, flies the first example and names
+# the plugins that it brought.
+package() {
+  as_root "bash scripts/package.sh" || return 1
+  cp "$machine$place"/build/lapwing_*.deb "$bare/root/"
+  mounts "$bare"
+  in_machine "$bare" /root root /root "
+set -e
+apt-get update -q
+apt-get install -y -q --no-install-recommends ./lapwing_*.deb
+lapwing version
+lapwing plugins list
+lapwing run /usr/share/lapwing/examples/filming/castle_flyover.lua
+test -s out/castle_flyover/report.html
+test -s /usr/share/man/man1/lapwing.1"
 }
 
 # A copy of the files that git knows or would take, as they are now.
@@ -110,11 +135,13 @@ lapwing run low.lua -o again"
 
 echo "A bare Debian 12 in $machine" >&3
 step "a bare Debian 12, with git" bare_debian
-mounts
+copy_of_bare
+mounts "$machine"
 mkdir -p "$machine/var/cache/ccache"
 checkout root
 step "as root: $first" as_root "$first"
 step "as root: $second" as_root "$second"
+step "scripts/package.sh, and its package on a bare Debian 12" package
 step "a user with sudo" a_user_with_sudo
 checkout "$user"
 step "as a user: $first" as_user "$first"

@@ -31,9 +31,16 @@ TEST_F(Covering, WhatTheFirstFlightNeverSawIsUnknownAndSaidInWords) {
   const Value& surface = answer.at("tour").at("surface");
   EXPECT_LT(number(surface.at("true"), "first_flight_share"), 0.8) << to_json(surface);
   EXPECT_GT(number(surface, "unknown"), 25) << to_json(surface);
+  const Value& largest = surface.at("largest_opening");
+  EXPECT_GT(number(largest, "area"), 20) << to_json(surface);
+  EXPECT_TRUE(largest.at("passable").as_boolean());
+  // The open side is joined to what was not seen of the walls beside it.
+  for (const auto& [axis, most] : {std::pair{0, 8.0}, {1, 6.0}})
+    EXPECT_LE(std::abs(largest.at("position").as_list().at(axis).as_number()), most);
   std::string notes;
   for (const Value& note : answer.at("notes").as_list()) notes += note.as_text() + "\n";
-  EXPECT_THAT(notes, HasSubstr("unknown and not counted. That is much"));
+  EXPECT_THAT(notes, HasSubstr("unknown and not counted: at least "));
+  EXPECT_THAT(notes, HasSubstr("(2 m wide) would pass through the largest opening"));
   EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr("unknown, not counted"));
 }
 
@@ -47,14 +54,28 @@ TEST_F(Covering, TheTerminalThePlanAndTheReportSayTheSame) {
   const std::string considered = std::to_string(answer.at("tour").at("candidates").as_integer()) +
                                  " views that were considered";
   for (const std::string& said :
-       {"visible from any of the " + considered, std::string("unknown and not counted")})
+       {"visible from any of the " + considered, std::string("unknown and not counted: ")})
     EXPECT_THAT(sentence, HasSubstr(said));
   EXPECT_THAT(plan(), HasSubstr(sentence));
   EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr(sentence));
-  // What only a simulator knows is no part of the plan.
+  // What only a simulator knows stands beside it in the answer and in the report, and is no part of
+  // the plan.
+  std::string truth;
+  for (const Value& note : answer.at("notes").as_list())
+    if (note.as_text().starts_with("true surface (simulation)")) truth = note.as_text();
+  ASSERT_FALSE(truth.empty());
+  EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr(truth));
   EXPECT_EQ(plan().find("true surface"), std::string::npos);
   // 80 x 60 pixels are for planning.
   EXPECT_THAT(plan(), HasSubstr("camera.focal"));
+}
+
+// Rays of few pixels are farther apart than small voxels: the gaps between them hide nothing.
+TEST_F(Covering, AClosedCourtSeenByFewPixelsHasNoUnknown) {
+  write_file_atomically(folder_ / "house.obj", kCourtMesh);
+  const Value answer = of_house("--set resolution=0.2");
+  const Value& surface = answer.at("tour").at("surface");
+  EXPECT_LT(number(surface, "unknown"), 0.01 * number(surface, "known")) << to_json(surface);
 }
 
 // Quick looks change effort, never the task.

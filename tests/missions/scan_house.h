@@ -21,6 +21,37 @@ f 3 4 8 7
 f 4 1 5 8
 )";
 
+// A court of 16 m x 16 m between wings of 3 m, 6 m high.
+inline constexpr const char* kCourtMesh = R"(v -11 -11 0
+v 11 -11 0
+v 11 11 0
+v -11 11 0
+v -11 -11 6
+v 11 -11 6
+v 11 11 6
+v -11 11 6
+v -8 -8 0
+v 8 -8 0
+v 8 8 0
+v -8 8 0
+v -8 -8 6
+v 8 -8 6
+v 8 8 6
+v -8 8 6
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+f 10 9 13 14
+f 11 10 14 15
+f 12 11 15 16
+f 9 12 16 13
+f 5 6 14 13
+f 6 7 15 14
+f 7 8 16 15
+f 8 5 13 16
+)";
+
 class Covering : public Scanning {
  protected:
   void SetUp() override {

@@ -21,8 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class BoundaryState final : public DifferentiableConstraint<BoundaryState> {
  public:
   static constexpr PluginText kText{"boundary_state", "1.0.0",
-                                    "the flight begins and ends at rest, moving or freely",
-                                    "thesis 3.5.2"};
+                                    "fixes the state at the start and the finish", "thesis 3.5.2"};
   static ParameterTable parameters() {
     ParameterTable table;
     for (const std::string end : {"start", "finish"})

@@ -17,7 +17,7 @@ namespace {
 class BoxObstacle final : public DifferentiableConstraint<BoxObstacle, 7> {
  public:
   static constexpr PluginText kText{"box_obstacle", "1.0.0",
-                                    "the path keeps out of the environment's boxes",
+                                    "the path stays outside the environment's boxes",
                                     "thesis 3.6, obstacle avoidance, for boxes"};
   static ParameterTable parameters() { return {}; }
   static std::span<const Extension> extensions() {

@@ -17,9 +17,9 @@ namespace {
 
 class Clearance final : public DifferentiableConstraint<Clearance, 7> {
  public:
-  static constexpr PluginText kText{"clearance", "1.0.0",
-                                    "the path keeps away from the environment's meshes and maps",
-                                    "thesis 2.1, Collision"};
+  static constexpr PluginText kText{
+      "clearance", "1.0.0", "the path keeps the margin from the environment's meshes and maps",
+      "thesis 2.1, Collision"};
   static ParameterTable parameters() { return {}; }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kInvariantToTime, nullptr}};

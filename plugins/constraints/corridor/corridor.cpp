@@ -55,15 +55,15 @@ class Corridor final : public DifferentiableConstraint<Corridor, 4> {
   static ParameterTable parameters() {
     const Range far = between(-1e6, 1e6);
     ParameterTable half;
-    half.required_numbers("normal", 3, "", "points out of the region", far)
-        .required_number("offset", "m", "normal . p is at most this");
+    half.required_numbers("normal", 3, "", "outward normal", far)
+        .required_number("offset", "m", "normal . p <= offset");
     ParameterTable region;
-    region.required_number("start", "s", "from the start of the flight", at_least(0))
-        .required_number("finish", "s", "from the start of the flight", at_least(0))
-        .required_numbers("lower", 3, "m", "lowest corner of its box, world", far)
-        .required_numbers("size", 3, "m", "edges of its box", {0, 2e6, true})
-        .tables("half_spaces", half, "that cut the box");
-    return ParameterTable{}.tables("regions", region, "in any order", true);
+    region.required_number("start", "s", "start of the span", at_least(0))
+        .required_number("finish", "s", "end of the span", at_least(0))
+        .required_numbers("lower", 3, "m", "lower corner of the box, world", far)
+        .required_numbers("size", 3, "m", "edge lengths of the box", {0, 2e6, true})
+        .tables("half_spaces", half, "half spaces that cut the box");
+    return ParameterTable{}.tables("regions", region, "regions, in any order", true);
   }
   explicit Corridor(const Parameters& parameters) {
     for (const Parameters& given : parameters.tables("regions"))

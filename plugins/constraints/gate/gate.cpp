@@ -21,26 +21,28 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Gate final : public DifferentiableConstraint<Gate> {
  public:
-  static constexpr PluginText kText{"gate", "1.0.0", "a gate is flown through at the end of a leg",
+  static constexpr PluginText kText{"gate", "1.0.0", "the flight passes a gate at the end of a leg",
                                     "thesis 3.7.2"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .integer("leg", 1, "the leg that ends in the opening, or where the tunnel begins",
+        .integer("leg", 1,
+                 "number of the leg that ends in the opening, or at the start of the tunnel",
                  at_least(0))
         .choice("shape", "ball", {"ball", "rectangle", "triangle", "pentagon", "hexagon"},
-                "of the opening")
-        .numbers("position", {0, 0, 0}, "m", "middle of the opening, world")
-        .numbers("direction", {1, 0, 0}, "", "of flight, world; a ball has none")
-        .numbers("up", {0, 0, 1}, "", "which way the opening stands")
+                "shape of the opening")
+        .numbers("position", {0, 0, 0}, "m", "centre of the opening, world")
+        .numbers("direction", {1, 0, 0}, "", "flight direction, world; not used for a ball")
+        .numbers("up", {0, 0, 1}, "", "upward direction of the opening, world")
         .optional_number("width", "m", "of a rectangle or a triangle", above(0))
         .optional_number("height", "m", "of a rectangle or a triangle", above(0))
         .number("radius", 0.5, "m",
-                "of a ball; of a pentagon or a hexagon, to the corners, where `side` is absent",
+                "of a ball; of a pentagon or a hexagon to the corners, if `side` is absent",
                 above(0))
         .optional_number("side", "m", "of a pentagon or a hexagon", above(0))
-        .number("tunnel_length", 0, "m", "half before and half behind the opening", at_least(0))
-        .number("margin", 0, "m", "kept from the rim", at_least(0))
-        .number("speed", 0.1, "m/s", "least speed through the opening", at_least(0));
+        .number("tunnel_length", 0, "m", "length, half before and half behind the opening",
+                at_least(0))
+        .number("margin", 0, "m", "distance from the rim", at_least(0))
+        .number("speed", 0.1, "m/s", "smallest speed along `direction`", at_least(0));
   }
 
   explicit Gate(const Parameters& given)

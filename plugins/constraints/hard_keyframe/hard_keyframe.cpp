@@ -54,18 +54,19 @@ double facet_distance(int n) {
 class HardKeyframe final : public DifferentiableConstraint<HardKeyframe> {
  public:
   static constexpr PluginText kText{"hard_keyframe", "1.0.0",
-                                    "a block must be near values at given times",
+                                    "a block lies near given values at given times",
                                     "thesis 3.5.2, (3.4) as a constraint"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .text("block", "position", "block that must be there: position, yaw, target, ...")
-        .number("tolerance", 0.0, "", "largest distance allowed, in the block's unit", at_least(0))
+        .text("block", "position", "constrained block: position, yaw, target, ...")
+        .number("tolerance", 0.0, "", "largest distance from the value, in the block's unit",
+                at_least(0))
         .tables("keyframes",
                 ParameterTable{}
-                    .required_number("time", "s", "when, from the start; need not be on a stage",
+                    .required_number("time", "s", "time from the start; need not be on a stage",
                                      at_least(0))
-                    .required_numbers("value", 0, "", "where to be, in the block's unit"),
-                "what to pass, and when; at least one", true);
+                    .required_numbers("value", 0, "", "value, in the block's unit"),
+                "times and values; at least one", true);
   }
 
   explicit HardKeyframe(const Parameters& parameters)

@@ -26,14 +26,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class InputLimits final : public DifferentiableConstraint<InputLimits, 4> {
  public:
   static constexpr PluginText kText{"input_limits", "1.0.0",
-                                    "force and yaw torque stay within what the rotors can do",
+                                    "bounds force and yaw torque by the limits of the rotors",
                                     "thesis 3.8.3"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .boolean("norm", false, "bound the force's norm itself: larger than the box, but curved")
+        .boolean("norm", false,
+                 "bound the norm of the force: a larger set than the box, but curved rows")
         .choice("across", "inscribed", {"inscribed", "extent"},
-                "box only: hold the acceleration across in every direction, or per axis")
-        .number("share", 0.98, "", "share of the limits that is used, measured from hovering",
+                "box only: horizontal acceleration limit in every direction, or per axis")
+        .number("share", 0.98, "", "share of the limits used, measured from hovering",
                 {.minimum = 0, .maximum = 1, .minimum_excluded = true});
   }
 

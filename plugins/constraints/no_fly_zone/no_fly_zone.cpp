@@ -21,7 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class NoFlyZone final : public DifferentiableConstraint<NoFlyZone, 7> {
  public:
   static constexpr PluginText kText{"no_fly_zone", "1.0.0",
-                                    "the path keeps out of the environment's zones", ""};
+                                    "the path stays outside the environment's zones", ""};
   static ParameterTable parameters() { return {}; }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kInvariantToTime, nullptr}};

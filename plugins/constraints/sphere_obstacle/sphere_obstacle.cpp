@@ -15,7 +15,7 @@ namespace {
 class SphereObstacle final : public DifferentiableConstraint<SphereObstacle, 7> {
  public:
   static constexpr PluginText kText{"sphere_obstacle", "1.0.0",
-                                    "the path keeps out of the environment's spheres",
+                                    "the path stays outside the environment's spheres",
                                     "thesis 3.6, obstacle avoidance"};
   static ParameterTable parameters() { return {}; }
   static std::span<const Extension> extensions() {

@@ -24,20 +24,19 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
  public:
   static constexpr PluginText kText{"state_limits", "1.0.0",
-                                    "speeds, accelerations and places stay within limits",
-                                    "thesis 3.5.1"};
+                                    "bounds speed, acceleration and position", "thesis 3.5.1"};
   static ParameterTable parameters() {
-    const std::string tighter = ", where tighter than the vehicle's";
+    const std::string tighter = ", if tighter than the vehicle's";
     return ParameterTable{}
-        .integer("sides", 16, "sides of the polygon for limits across; even", between(4, 64))
+        .integer("sides", 16, "sides of the polygon for horizontal limits; even", between(4, 64))
         .optional_number("speed_across", "m/s", "horizontal speed" + tighter, above(0))
-        .optional_number("climb_speed", "m/s", "speed upwards" + tighter, above(0))
-        .optional_number("descent_speed", "m/s", "speed downwards" + tighter, above(0))
+        .optional_number("climb_speed", "m/s", "climb speed" + tighter, above(0))
+        .optional_number("descent_speed", "m/s", "descent speed" + tighter, above(0))
         .optional_number("yaw_rate", "rad/s", "yaw rate" + tighter, above(0))
         .optional_number("acceleration_across", "m/s^2", "horizontal acceleration" + tighter,
                          above(0))
-        .optional_numbers("lower", 3, "m", "lowest position, world")
-        .optional_numbers("upper", 3, "m", "highest position, world");
+        .optional_numbers("lower", 3, "m", "lower corner of the position box, world")
+        .optional_numbers("upper", 3, "m", "upper corner of the position box, world");
   }
 
   static std::span<const Extension> extensions() {

@@ -26,12 +26,12 @@ double largest_speed(const Subject& subject) {
 class SubjectDistance final : public DifferentiableConstraint<SubjectDistance, 8> {
  public:
   static constexpr PluginText kText{"subject_distance", "1.0.0",
-                                    "the path keeps its distance from subjects",
+                                    "the path keeps a distance from subjects",
                                     "thesis 3.5.3, minimum distance from the target"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .optional_text("subject", "name of one subject; absent: all of them")
-        .required_number("distance", "m", "kept from its middle", above(0));
+        .optional_text("subject", "name of a subject; absent: all subjects")
+        .required_number("distance", "m", "distance from its centre", above(0));
   }
   explicit SubjectDistance(const Parameters& parameters)
       : distance_(parameters.number("distance")) {

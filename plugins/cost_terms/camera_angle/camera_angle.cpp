@@ -18,11 +18,11 @@ namespace {
 
 class CameraAngle final : public DifferentiableCost<CameraAngle, 9> {
  public:
-  static constexpr PluginText kText{"camera_angle", "1.0.0", "the camera looks at its target",
+  static constexpr PluginText kText{"camera_angle", "1.0.0",
+                                    "penalises the angle between camera and target",
                                     "thesis 3.5.3, (3.7), (3.8)"};
   static ParameterTable parameters() {
-    return ParameterTable{}.tables("except", time_span_table(),
-                                   "spans of time in which it may look anywhere: cuts");
+    return ParameterTable{}.tables("except", time_span_table(), "spans without this cost: cuts");
   }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kInvariantToTranslation, nullptr},

@@ -19,14 +19,13 @@ namespace {
 
 class Derivative final : public DifferentiableCost<Derivative, 8> {
  public:
-  static constexpr PluginText kText{
-      "derivative", "1.0.0", "penalises a derivative of a block over time", "thesis 3.5.2, (3.6)"};
+  static constexpr PluginText kText{"derivative", "1.0.0", "penalises a time derivative of a block",
+                                    "thesis 3.5.2, (3.6)"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .text("block", "position",
-              "block whose derivative is penalised; several with blanks between them")
+        .text("block", "position", "penalised block; several separated by blanks")
         .integer("order", 4, "order of the derivative: 3 is jerk, 4 is snap", between(1, 4))
-        .tables("except", time_span_table(), "spans of time in which it is not asked: cuts");
+        .tables("except", time_span_table(), "spans without this cost: cuts");
   }
   static std::vector<Preset> presets() {
     const auto of = [](const char* block, int order) {

@@ -19,18 +19,20 @@ namespace {
 
 class Framing final : public DifferentiableCost<Framing, 9> {
  public:
-  static constexpr PluginText kText{"framing", "1.0.0", "a subject's place and size in the image",
+  static constexpr PluginText kText{"framing", "1.0.0",
+                                    "penalises wrong place and size of a subject in the image",
                                     "thesis 3.5.3, (3.7), for other places than the middle"};
   static ParameterTable parameters() {
     return FilmedPoint::table(FilmedPoint::Has::place_and_height)
-        .number("horizontal", 0.5, "", "place in the image: 0 is its left edge, 1 its right one",
-                between(0, 1))
-        .number("vertical", 0.5, "", "place in the image: 0 is its upper edge, 1 its lower one",
-                between(0, 1))
-        .optional_number("size", "", "height in the image as a share of the image's", above(0))
-        .number("size_weight", 1.0, "", "weight of the size's logarithm, per rad^2", at_least(0))
-        .tables("spans", time_span_table(), "spans of time in which it is asked; none: always")
-        .tables("except", time_span_table(), "spans of time in which it is not: cuts");
+        .number("horizontal", 0.5, "",
+                "wanted place in the image: 0 is the left edge, 1 the right edge", between(0, 1))
+        .number("vertical", 0.5, "",
+                "wanted place in the image: 0 is the upper edge, 1 the lower edge", between(0, 1))
+        .optional_number("size", "", "wanted height as a share of the image height", above(0))
+        .number("size_weight", 1.0, "", "weight of the squared log size error, per rad^2",
+                at_least(0))
+        .tables("spans", time_span_table(), "spans with this cost; none: always")
+        .tables("except", time_span_table(), "spans without this cost: cuts");
   }
 
   explicit Framing(const Parameters& parameters)

@@ -16,8 +16,8 @@ namespace {
 
 class InputEffort final : public DifferentiableCost<InputEffort, 4> {
  public:
-  static constexpr PluginText kText{
-      "input_effort", "1.0.0", "penalises forces and yaw torques beyond hovering", "thesis 3.5.2"};
+  static constexpr PluginText kText{"input_effort", "1.0.0",
+                                    "penalises inputs that differ from hovering", "thesis 3.5.2"};
   static ParameterTable parameters() { return {}; }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kInvariantToTranslation, nullptr},

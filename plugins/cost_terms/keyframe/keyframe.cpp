@@ -15,18 +15,19 @@ namespace {
 
 class Keyframe final : public DifferentiableCost<Keyframe> {
  public:
-  static constexpr PluginText kText{"keyframe", "1.0.0", "pulls a block to values at given times",
+  static constexpr PluginText kText{"keyframe", "1.0.0",
+                                    "penalises the distance of a block from values at given times",
                                     "thesis 3.5.2, (3.4)"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .text("block", "position", "block to be pulled: position, yaw, target, ...")
+        .text("block", "position", "penalised block: position, yaw, target, ...")
         .tables("keyframes",
                 ParameterTable{}
-                    .required_number("time", "s", "when, from the start; need not be on a stage",
+                    .required_number("time", "s", "time from the start; need not be on a stage",
                                      at_least(0))
-                    .required_numbers("value", 0, "", "where to be, in the block's unit")
-                    .number("weight", 1.0, "", "weight among the keyframes", at_least(0)),
-                "what to pass, and when; at least one", true);
+                    .required_numbers("value", 0, "", "value, in the block's unit")
+                    .number("weight", 1.0, "", "relative weight of this keyframe", at_least(0)),
+                "times and values; at least one", true);
   }
 
   static std::vector<Preset> presets() {

@@ -89,11 +89,11 @@ T haze(const Vector<T>& q, bool round) {
 class Occlusion final : public DifferentiableCost<Occlusion> {
  public:
   static constexpr PluginText kText{"occlusion", "1.0.0",
-                                    "no obstacle stands between the camera and its target", ""};
+                                    "penalises obstacles between the camera and its target", ""};
   static ParameterTable parameters() {
     return FilmedPoint::table(FilmedPoint::Has::place)
-        .number("margin", 0.5, "m", "kept between the line of sight and every surface", above(0))
-        .tables("except", time_span_table(), "spans of time in which it is not asked: cuts");
+        .number("margin", 0.5, "m", "wanted distance of the line of sight from obstacles", above(0))
+        .tables("except", time_span_table(), "spans without this cost: cuts");
   }
   explicit Occlusion(const Parameters& parameters)
       : point_(parameters, FilmedPoint::Has::place),

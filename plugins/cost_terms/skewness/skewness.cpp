@@ -20,13 +20,13 @@ namespace {
 class Skewness final : public DifferentiableCost<Skewness> {
  public:
   static constexpr PluginText kText{"skewness", "1.0.0",
-                                    "the view on the target is neither steep from above nor below",
+                                    "penalises views from far above or far below",
                                     "thesis 3.5.3, (3.9), (3.10)"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .required_number("height", "m", "of what is filmed, from foot to top", above(0))
-        .tables("spans", time_span_table(), "spans of time in which it is asked; none: always")
-        .tables("except", time_span_table(), "spans of time in which any view will do: cuts");
+        .required_number("height", "m", "height of the subject", above(0))
+        .tables("spans", time_span_table(), "spans with this cost; none: always")
+        .tables("except", time_span_table(), "spans without this cost: cuts");
   }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kInvariantToTranslation, nullptr},

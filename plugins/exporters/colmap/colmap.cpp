@@ -28,7 +28,7 @@ std::string image_name(std::size_t number, std::size_t count) {
 class Colmap final : public Exporter {
  public:
   static constexpr PluginText kText{
-      "colmap", "1.0.0", "the images of a scan as COLMAP's text model, a folder of three files",
+      "colmap", "1.0.0", "images of a scan as a COLMAP text model, a folder of three files",
       "https://colmap.github.io/format.html"};
   static ParameterTable parameters() { return {}; }
   explicit Colmap(const Parameters&) {}

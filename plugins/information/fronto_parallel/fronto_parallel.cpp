@@ -22,22 +22,22 @@ namespace {
 
 class FrontoParallel final : public ViewInformation {
  public:
-  static constexpr PluginText kText{"fronto_parallel", "1.0.0",
-                                    "close views at right angles to a surface tell most of it",
-                                    "thesis 4.4.4, (4.7)"};
+  static constexpr PluginText kText{
+      "fronto_parallel", "1.0.0",
+      "more information from close views at right angles to the surface", "thesis 4.4.4, (4.7)"};
   static ParameterTable parameters() {
     return ParameterTable()
-        .number("views", 3, "", "perfect views that tell all of a voxel, xi", at_least(1))
-        .number("incidence_deg", 25, "deg", "up to this angle a view is as good as square",
+        .number("views", 3, "", "number of perfect views for full information about a voxel, xi",
+                at_least(1))
+        .number("incidence_deg", 25, "deg", "largest angle of incidence without loss",
                 between(0, 90))
-        .number("incidence_falloff_deg", 25, "deg", "beyond it, the angle that costs a factor e",
-                above(0))
-        .number("pixels", 6, "px", "from so many pixels a voxel on, closer is no better",
-                at_least(0))
-        .number("pixels_falloff", 3, "px", "below it, the pixels that cost a factor e", above(0))
-        .number("unknown_normal", 0.2, "", "in place of the angle's factor without a normal",
-                between(0, 1))
-        .optional_number("farthest", "m", "distance beyond which a view tells nothing", above(0));
+        .number("incidence_falloff_deg", 25, "deg",
+                "additional angle that reduces the information by a factor e", above(0))
+        .number("pixels", 6, "px", "size of a voxel in the image without loss", at_least(0))
+        .number("pixels_falloff", 3, "px",
+                "missing pixels that reduce the information by a factor e", above(0))
+        .number("unknown_normal", 0.2, "", "factor for a voxel with unknown normal", between(0, 1))
+        .optional_number("farthest", "m", "distance beyond which the information is 0", above(0));
   }
   explicit FrontoParallel(const Parameters& p)
       : views_(p.number("views")),

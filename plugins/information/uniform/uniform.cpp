@@ -12,10 +12,11 @@ namespace {
 class Uniform final : public ViewInformation {
  public:
   static constexpr PluginText kText{"uniform", "1.0.0",
-                                    "every view of a voxel tells the same of it",
+                                    "equal information from every view of a voxel",
                                     "thesis 4.3 (observation count)"};
   static ParameterTable parameters() {
-    return ParameterTable().number("views", 3, "", "views that tell all of a voxel", at_least(1));
+    return ParameterTable().number(
+        "views", 3, "", "number of views for full information about a voxel", at_least(1));
   }
   explicit Uniform(const Parameters& p) : share_(static_cast<float>(1 / p.number("views"))) {}
 

@@ -251,7 +251,7 @@ void BrickMap::set_voxels(const VoxelLeaf& leaf) {
 class Brick final : public BrickMap {
  public:
   static constexpr PluginText kText{"brick", "1.0.0",
-                                    "dense bricks in a sparse grid: equal to octomap, and fast",
+                                    "sparse grid of dense bricks: equal to octomap, faster",
                                     "thesis 2.2, 5.4.1, 5.4.3"};
   static ParameterTable parameters() { return map_parameters(); }
   explicit Brick(const Parameters& parameters) : BrickMap(map_settings(parameters)) {}

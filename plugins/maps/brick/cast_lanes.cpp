@@ -1,3 +1,10 @@
+// How: a caster keeps two groups of four rays. While one waits for memory, the other computes. Each
+// turn, a group
+//   1. looks at the cell of each ray: the largest free box ahead of it (bits of block, brick and
+//      chunk, see ray_quad.h), or an end;
+//   2. leaves that box: all four rays step to the far side of their boxes at once.
+// Rays in one cell share one look. A full tile of 64 rays from one place first finds how far all of
+// its rays are free (ray_beam.h) and starts there.
 #include "plugins/maps/brick/cast_lanes.h"
 
 #include "plugins/maps/brick/ray_beam.h"

@@ -1,3 +1,18 @@
+// How one scan becomes 64-bit words of measured and hit voxels:
+//   1. find_box: the box of voxels that the rays can touch, aligned to bricks of 16 voxels. It gets
+//      one byte per voxel. If it is too large for memory, a hash table of bricks is used instead
+//      (sparse_marks.h).
+//   2. discretise (mode `discretised`): keep one end per voxel, its centre. The byte kSeen notes
+//      voxels that have one.
+//   3. mark_rays writes kPassed into every voxel that a ray passes, on several threads. All write
+//      the same value, so their order has no effect. The voxel of the origin is common to all rays
+//      and is written once, at the end.
+//   4. mark_hits writes kHit over it: a hit outweighs passes, and each voxel counts once.
+//   5. find_bricks lists the bricks with a mark. A large box has one more byte per 4096 voxels
+//      (`pages`), so that empty parts are skipped and their memory is never touched.
+//   6. take packs the bytes of a brick into words: bit 7 of a byte is "measured", bit 6 is "hit".
+// Four rays are walked side by side. A lane without a ray writes to `parking`, a byte that nobody
+// reads, because that is cheaper than a branch.
 #include "plugins/maps/brick/scan_marks.h"
 
 #include <algorithm>

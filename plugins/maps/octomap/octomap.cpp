@@ -59,7 +59,7 @@ void set_cube(octomap::OcTree& tree, const VoxelLeaf& leaf, float value) {
 class Octomap final : public Map {
  public:
   static constexpr PluginText kText{"octomap", "1.0.0",
-                                    "OctoMap's octree: the reference that others must equal",
+                                    "OctoMap's octree: the reference implementation",
                                     "Hornung et al., Autonomous Robots 34, 2013; thesis 2.2"};
   static ParameterTable parameters() { return map_parameters(); }
 

@@ -9,21 +9,21 @@ enum Takes : unsigned { kRange = 1, kGoalBias = 2, kRewiring = 4, kBatches = 8 }
 
 ParameterTable table_of(unsigned takes, std::int64_t iterations) {
   ParameterTable table;
-  table.integer("iterations", iterations, "at most; planners that improve a path use them all",
+  table.integer("iterations", iterations, "largest number; planners that improve paths use all",
                 between(1, 100'000'000));
   if (takes & kRange) {
-    table.number("range", 0, "m", "longest piece added at once; 0 is a fifth of the bounds",
+    table.number("range", 0, "m", "longest segment; 0: a fifth of the bounds",
                  between(0, 1e5));
   }
   if (takes & kGoalBias) {
-    table.number("goal_bias", 0.05, "", "share of samples that are the goal", between(0, 1));
+    table.number("goal_bias", 0.05, "", "share of samples at the goal", between(0, 1));
   }
   if (takes & kRewiring) {
-    table.number("rewire_factor", 1.1, "", "of the radius within which paths are compared",
+    table.number("rewire_factor", 1.1, "", "factor on the rewiring radius",
                  between(1, 10));
   }
   if (takes & kBatches) {
-    table.integer("samples_per_batch", 100, "drawn at once", between(1, 10'000));
+    table.integer("samples_per_batch", 100, "samples per batch", between(1, 10'000));
   }
   return table;
 }
@@ -58,8 +58,8 @@ class OmplPlanner : public PathPlanner {
 class Rrt final : public OmplPlanner {
  public:
   static constexpr unsigned kTakes = kRange | kGoalBias;
-  static constexpr PluginText kText{"rrt", "1.0.0", "the first path that a growing tree finds",
-                                    "LaValle 1998; OMPL"};
+  static constexpr PluginText kText{
+      "rrt", "1.0.0", "rapidly exploring random tree: first path found", "LaValle 1998; OMPL"};
   static ParameterTable parameters() { return table_of(kTakes, 50'000); }
   explicit Rrt(const Parameters& p) : OmplPlanner(settings_of(p, kTakes), make_rrt) {}
 };
@@ -68,7 +68,7 @@ class RrtStar final : public OmplPlanner {
  public:
   static constexpr unsigned kTakes = kRange | kGoalBias | kRewiring;
   static constexpr PluginText kText{"rrt_star", "1.0.0",
-                                    "a tree that is rewired: paths get shorter with every sample",
+                                    "RRT with rewiring: paths become shorter with more samples",
                                     "thesis 2.1, algorithm 1; Karaman and Frazzoli 2011; OMPL"};
   static ParameterTable parameters() { return table_of(kTakes, 10'000); }
   explicit RrtStar(const Parameters& p) : OmplPlanner(settings_of(p, kTakes), make_rrt_star) {}
@@ -78,7 +78,7 @@ class RrtConnect final : public OmplPlanner {
  public:
   static constexpr unsigned kTakes = kRange;
   static constexpr PluginText kText{"rrt_connect", "1.0.0",
-                                    "two trees that grow towards each other: the quickest",
+                                    "two trees that grow towards each other: fastest first path",
                                     "Kuffner and LaValle 2000; OMPL"};
   static ParameterTable parameters() { return table_of(kTakes, 50'000); }
   explicit RrtConnect(const Parameters& p)
@@ -89,7 +89,7 @@ class InformedRrtStar final : public OmplPlanner {
  public:
   static constexpr unsigned kTakes = kRange | kGoalBias | kRewiring;
   static constexpr PluginText kText{"informed_rrt_star", "1.0.0",
-                                    "rrt_star that samples only where the path could get shorter",
+                                    "rrt_star that samples only where a shorter path is possible",
                                     "Gammell and others 2014; OMPL"};
   static ParameterTable parameters() { return table_of(kTakes, 10'000); }
   explicit InformedRrtStar(const Parameters& p)
@@ -99,9 +99,9 @@ class InformedRrtStar final : public OmplPlanner {
 class BitStar final : public OmplPlanner {
  public:
   static constexpr unsigned kTakes = kRewiring | kBatches;
-  static constexpr PluginText kText{"bit_star", "1.0.0",
-                                    "batches of samples, searched in the order of possible length",
-                                    "Gammell and others 2015; OMPL"};
+  static constexpr PluginText kText{
+      "bit_star", "1.0.0", "batches of samples, searched in order of estimated path length",
+      "Gammell and others 2015; OMPL"};
   static ParameterTable parameters() { return table_of(kTakes, 3'000); }
   explicit BitStar(const Parameters& p) : OmplPlanner(settings_of(p, kTakes), make_bit_star) {}
 };

@@ -17,8 +17,8 @@ class CostBenefit final : public TourSolver {
                                     "the better of greedy by gain and greedy by gain per second",
                                     "thesis 4.4.3, reading 4.8"};
   static ParameterTable parameters() {
-    return ParameterTable{}.boolean(
-        "lazy", true, "evaluate only views that could still be the best; the same tour");
+    return ParameterTable{}.boolean("lazy", true,
+                                    "skip evaluations that cannot change the choice; same tour");
   }
   explicit CostBenefit(const Parameters& parameters) : lazy_(parameters.boolean("lazy")) {}
 

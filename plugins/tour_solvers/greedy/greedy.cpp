@@ -15,10 +15,10 @@ namespace {
 class Greedy final : public TourSolver {
  public:
   static constexpr PluginText kText{
-      "greedy", "1.0.0", "the view with the largest gain, again and again", "thesis 2.4, 4.4.3"};
+      "greedy", "1.0.0", "adds the view with the largest gain, one at a time", "thesis 2.4, 4.4.3"};
   static ParameterTable parameters() {
-    return ParameterTable{}.boolean(
-        "lazy", true, "evaluate only views whose gain could still be the largest; the same tour");
+    return ParameterTable{}.boolean("lazy", true,
+                                    "skip evaluations that cannot change the choice; same tour");
   }
   explicit Greedy(const Parameters& parameters) : lazy_(parameters.boolean("lazy")) {}
 

@@ -146,23 +146,19 @@ class Annealing {
 
 class LocalSearch final : public TourSolver {
  public:
-  static constexpr PluginText kText{
-      "local_search", "1.0.0", "ruin and repair of a tour, from the initial one or its own", ""};
+  static constexpr PluginText kText{"local_search", "1.0.0",
+                                    "large neighbourhood search with simulated annealing", ""};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .integer("iterations", 2000, "times the tour is ruined and repaired",
-                 between(1, 100'000'000))
-        .number("share", 0.25, "", "of the tour's views, most that are taken out at once",
-                between(0.01, 1))
-        .number("warmth", 1.0, "",
-                "how much worse a tour may become at first, in views of average worth",
+        .integer("iterations", 2000, "number of removals and repairs", between(1, 100'000'000))
+        .number("share", 0.25, "", "largest share of the views removed at once", between(0.01, 1))
+        .number("warmth", 1.0, "", "initial temperature, in mean gains of a view",
                 between(1e-3, 100))
         .number("exchanges", 0.3, "",
-                "share of the iterations that begin by putting views in over the budget",
-                between(0, 1))
-        .number("chance", 0.5, "", "how far promises are scattered; 0 for strictly the best",
+                "share of iterations that first insert views beyond the budget", between(0, 1))
+        .number("chance", 0.5, "", "random spread of estimated gains; 0: always the best",
                 between(0, 5))
-        .integer("patience", 12, "most evaluations for one choice", between(1, 100'000));
+        .integer("patience", 12, "largest number of evaluations per choice", between(1, 100'000));
   }
   explicit LocalSearch(const Parameters& parameters)
       : settings_{

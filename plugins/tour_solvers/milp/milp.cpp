@@ -44,17 +44,19 @@ TourProblem additive_problem(const TourProblem& problem, const std::vector<doubl
 
 class Milp final : public TourSolver {
  public:
-  static constexpr PluginText kText{
-      "milp", "1.0.0", "the best tour for a sum of fixed rewards, as an integer program",
-      "Roberts et al. 2017; thesis 4.5.2, 4.9.1"};
+  static constexpr PluginText kText{"milp", "1.0.0",
+                                    "best tour for a sum of fixed rewards, by integer programming",
+                                    "Roberts et al. 2017; thesis 4.5.2, 4.9.1"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .integer("candidates", 1000, "most views that the program holds, those of largest reward",
+        .integer("candidates", 1000,
+                 "number of views in the program, those with the largest rewards",
                  between(1, 100'000))
-        .integer("neighbours", 12, "arcs that leave each view, the quickest; 0 for all",
+        .integer("neighbours", 12, "arcs per view, the shortest in time; 0: all",
                  between(0, 100'000))
-        .integer("nodes", 1000, "of the search tree, at most", between(1, 100'000'000))
-        .boolean("start", true, "begin with a greedy tour of the same rewards");
+        .integer("nodes", 1000, "largest number of nodes of the search tree",
+                 between(1, 100'000'000))
+        .boolean("start", true, "start with a greedy tour for the same rewards");
   }
   explicit Milp(const Parameters& parameters)
       : candidates_(parameters.integer("candidates")),

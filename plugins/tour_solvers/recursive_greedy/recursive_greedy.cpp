@@ -14,14 +14,13 @@ constexpr double kLeastShare = 0.25, kLargestShare = 0.75;  // of a part's budge
 
 class RecursiveGreedy final : public TourSolver {
  public:
-  static constexpr PluginText kText{
-      "recursive_greedy", "1.0.0",
-      "middle view first, half the budget before it, the rest after it",
-      "thesis algorithm 2, 4.7; reading 4.4"};
+  static constexpr PluginText kText{"recursive_greedy", "1.0.0",
+                                    "best middle view first, then both halves recursively",
+                                    "thesis algorithm 2, 4.7; reading 4.4"};
   static ParameterTable parameters() {
     return ParameterTable{}.integer(
         "rounds", 1,
-        "the first divides budgets in the middle, as the thesis does, others at random",
+        "number of runs; the first halves budgets as in the thesis, others divide at random",
         between(1, 1'000'000));
   }
   explicit RecursiveGreedy(const Parameters& parameters) : rounds_(parameters.integer("rounds")) {}

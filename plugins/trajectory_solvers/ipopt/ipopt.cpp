@@ -25,25 +25,23 @@ class Ipopt final : public TrajectorySolver {
       "search algorithm, 2006"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .integer("iterations", 500, "most iterations", between(1, 100000))
+        .integer("iterations", 500, "largest number of iterations", between(1, 100000))
         .number("tolerance", 1e-8, "", "scaled optimality error that ends the solve",
                 between(1e-12, 1e-2))
-        .number("feasibility", 1e-7, "", "largest violation of a row, in its own unit",
+        .number("feasibility", 1e-7, "", "largest violation of a row, in its unit",
                 between(1e-12, 1e-5))
         .number("acceptable_tolerance", 1e-6, "",
-                "optimality error that ends the solve when no better one comes",
+                "optimality error that ends the solve if there is no more progress",
                 between(1e-12, 1e-2))
         .integer("acceptable_iterations", 15,
-                 "iterations at the acceptable tolerance that end the solve; 0 for never",
+                 "iterations at the acceptable tolerance that end the solve; 0: never",
                  between(0, 10000))
         .choice("hessian", "exact", {"exact", "gauss_newton", "limited_memory"},
-                "second derivatives: exact, of residuals to first order, or estimated from "
-                "gradients")
+                "second derivatives: exact, Gauss-Newton, or estimated from gradients")
         .choice("mu_strategy", "adaptive", {"adaptive", "monotone"},
-                "how the barrier parameter falls")
+                "update of the barrier parameter")
         .number("first_barrier", 0.1, "",
-                "barrier parameter of the first iteration, for monotone; less where the guess is "
-                "good",
+                "first barrier parameter of `monotone`; reduced for a good guess",
                 between(1e-9, 0.1));
   }
 

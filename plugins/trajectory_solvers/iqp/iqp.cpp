@@ -43,15 +43,13 @@ constexpr double kElasticPenalty = 1e3;  // times 1 + |g|
 class Iqp final : public TrajectorySolver {
  public:
   static constexpr PluginText kText{
-      "iqp", "1.0.0", "iterative quadratic programming with a line search on the merit",
-      "thesis 3.6"};
+      "iqp", "1.0.0", "sequential quadratic programming with a line search", "thesis 3.6"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .integer("iterations", 50, "most quadratic programs to solve", between(1, 10000))
+        .integer("iterations", 50, "largest number of quadratic programs", between(1, 10000))
         .number("tolerance", 1e-6, "",
-                "promised decrease, relative to the cost, that ends the solve",
-                between(1e-12, 1e-1))
-        .number("feasibility", 1e-6, "", "largest violation of a row, in its own unit",
+                "predicted relative decrease of the cost that ends the solve", between(1e-12, 1e-1))
+        .number("feasibility", 1e-6, "", "largest violation of a row, in its unit",
                 between(1e-12, 1e-1));
   }
 

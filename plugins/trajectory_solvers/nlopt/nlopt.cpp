@@ -54,29 +54,24 @@ const std::map<std::string, nlopt_algorithm>& algorithms() {
 
 class Nlopt final : public TrajectorySolver {
  public:
-  static constexpr PluginText kText{"nlopt", "1.0.0",
-                                    "gradient methods on the flown trajectory, limits in an "
-                                    "augmented Lagrangian",
-                                    "Johnson, The NLopt nonlinear-optimization package"};
+  static constexpr PluginText kText{
+      "nlopt", "1.0.0", "gradient methods by single shooting, with an augmented Lagrangian",
+      "Johnson, The NLopt nonlinear-optimization package"};
   static ParameterTable parameters() {
     std::vector<std::string> names{"LD_LBFGS"};
     for (const auto& [name, algorithm] : algorithms())
       if (name != names.front()) names.push_back(name);
     return ParameterTable{}
-        .choice("algorithm", names.front(), names, "as NLopt names it")
-        .integer("iterations", 20000, "most evaluations of cost, limits and gradient",
-                 between(1, 10000000))
+        .choice("algorithm", names.front(), names, "NLopt's name of the algorithm")
+        .integer("iterations", 20000, "largest number of evaluations", between(1, 10000000))
         .number("tolerance", 1e-9, "",
-                "promised decrease, relative to the cost, that ends the solve",
-                between(1e-14, 1e-2))
-        .number("feasibility", 1e-7, "", "largest violation of a limit, in its own unit",
+                "predicted relative decrease of the cost that ends the solve", between(1e-14, 1e-2))
+        .number("feasibility", 1e-7, "", "largest violation of a constraint, in its unit",
                 between(1e-10, 1e-5))
         .choice("scaling", "whole", {"whole", "diagonal"},
-                "coordinates: rounded by the cost's whole second derivative at the start of each "
-                "inner problem, or number by number")
-        .integer("cycle", 40, "evaluations after which coordinates are rounded anew",
-                 between(2, 100000))
-        .integer("storage", 30, "steps that the method remembers", between(1, 1000));
+                "change of variables by the full Gauss-Newton Hessian, or by its diagonal")
+        .integer("cycle", 40, "evaluations after which the scaling is renewed", between(2, 100000))
+        .integer("storage", 30, "number of stored steps of the method", between(1, 1000));
   }
 
   explicit Nlopt(const Parameters& parameters) {

@@ -32,10 +32,10 @@ class Entropy {
 class AverageEntropy final : public ViewUtility {
  public:
   static constexpr PluginText kText{"average_entropy", "1.0.0",
-                                    "mean entropy of the voxels on the way to known surfaces",
+                                    "mean entropy of the voxels in front of known surfaces",
                                     "Isler et al. 2016; Delmerico et al. 2018, average entropy"};
   static ParameterTable parameters() {
-    return ParameterTable().integer("pixel_step", 2, "a ray through every so many pixels and rows",
+    return ParameterTable().integer("pixel_step", 2, "one ray per so many columns and rows",
                                     between(1, 64));
   }
   static std::span<const Extension> extensions() {

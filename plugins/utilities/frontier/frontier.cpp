@@ -13,10 +13,10 @@ namespace {
 class Frontier final : public ViewUtility {
  public:
   static constexpr PluginText kText{"frontier", "1.0.0",
-                                    "counts unknown voxels at the border of the known space",
+                                    "number of visible unknown voxels at the border of free space",
                                     "thesis 5.5.2; Yamauchi 1997"};
   static ParameterTable parameters() {
-    return ParameterTable().integer("pixel_step", 2, "a ray through every so many pixels and rows",
+    return ParameterTable().integer("pixel_step", 2, "one ray per so many columns and rows",
                                     between(1, 64));
   }
   static std::span<const Extension> extensions() {

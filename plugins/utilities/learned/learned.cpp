@@ -71,18 +71,17 @@ double still_to_observe(const EpisodeView& known, const Viewpoint& view, double 
 
 class Learned final : public ViewUtility {
  public:
-  static constexpr PluginText kText{"learned", "1.0.0",
-                                    "a network that was trained on an oracle's scores",
-                                    "thesis 5.4.3, 5.5.1"};
+  static constexpr PluginText kText{
+      "learned", "1.0.0", "network trained on the values of the oracle", "thesis 5.4.3, 5.5.1"};
   static ParameterTable parameters() {
     return ParameterTable()
-        .text("model", "", "file of a trained model; empty: the one that is shipped")
-        .boolean("rays", true, "ask the rays of the view, too, what there is left to observe")
-        .number("behind", 1.5, "m", "from where the unknown begins to a surface, for the rays",
+        .text("model", "", "file of a trained model; empty: the shipped one")
+        .boolean("rays", true, "combine the network with ray casts of the view")
+        .number("behind", 1.5, "m", "assumed distance from unknown space to a surface, for rays",
                 between(0, 100))
-        .number("grazed", 3, "", "known surface that rays observe for each voxel that they end in",
+        .number("grazed", 3, "", "factor on known surface, for voxels that rays graze",
                 between(0, 100))
-        .boolean("blank", false, "the network sees nothing of the map: what it knows without");
+        .boolean("blank", false, "blank input of the network, for comparison");
   }
   static std::span<const Extension> extensions() {
     static const Trainable trainable{&learned::sample_parameters, &learned::sample_shape,

@@ -11,8 +11,7 @@ namespace {
 
 class Oracle final : public ViewUtility {
  public:
-  static constexpr PluginText kText{"oracle", "1.0.0",
-                                    "by how much the view would raise the observed surface",
+  static constexpr PluginText kText{"oracle", "1.0.0", "true gain of a view in observed surface",
                                     "thesis 5.4.2, (5.3)"};
   static ParameterTable parameters() { return {}; }
   static std::span<const Extension> extensions() {

@@ -14,13 +14,13 @@ namespace {
 
 class ProximityCount final : public ViewUtility {
  public:
-  static constexpr PluginText kText{"proximity_count", "1.0.0",
-                                    "counts unmeasured voxels behind seen surfaces, near ones more",
-                                    "Isler et al. 2016; Delmerico et al. 2018, proximity count"};
+  static constexpr PluginText kText{
+      "proximity_count", "1.0.0", "unmeasured voxels behind known surfaces, weighted by proximity",
+      "Isler et al. 2016; Delmerico et al. 2018, proximity count"};
   static ParameterTable parameters() {
     return ParameterTable()
-        .integer("pixel_step", 2, "a ray through every so many pixels and rows", between(1, 64))
-        .number("maximum_distance", 4, "m", "behind the surface, where voxels no longer count",
+        .integer("pixel_step", 2, "one ray per so many columns and rows", between(1, 64))
+        .number("maximum_distance", 4, "m", "distance behind the surface at which the weight is 0",
                 between(0.1, 20));
   }
   static std::span<const Extension> extensions() {
@@ -43,8 +43,9 @@ class ProximityCount final : public ViewUtility {
  private:
   static const HiddenVoxels& behind(const EpisodeView& known) {
     if (!known.hidden)
-      throw InputError("utility 'proximity_count' asks what lies behind the surfaces that images "
-                       "saw, and there are no images");
+      throw InputError(
+          "utility 'proximity_count' asks what lies behind the surfaces that images "
+          "saw, and there are no images");
     return *known.hidden;
   }
 

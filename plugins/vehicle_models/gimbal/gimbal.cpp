@@ -13,7 +13,7 @@ namespace {
 class Gimbal final : public DifferentiableModel<Gimbal, 2, 2> {
  public:
   static constexpr PluginText kText{
-      "gimbal", "1.0.0", "yaw and pitch of the camera, turned by their rates", "thesis 3.5.3"};
+      "gimbal", "1.0.0", "yaw and pitch of the camera, integrated from rates", "thesis 3.5.3"};
   static ParameterTable parameters() { return {}; }
   explicit Gimbal(const Parameters&) {}
 

@@ -14,7 +14,7 @@ namespace {
 class Quadrotor final : public DifferentiableModel<Quadrotor, 8, 4> {
  public:
   static constexpr PluginText kText{"quadrotor", "1.0.0",
-                                    "point mass with yaw, forces held over a step",
+                                    "point mass with yaw, inputs held over a step",
                                     "thesis 3.5.1, (3.1) to (3.3)"};
   static ParameterTable parameters() { return {}; }
   explicit Quadrotor(const Parameters&) {}

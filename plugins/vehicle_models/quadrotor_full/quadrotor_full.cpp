@@ -21,13 +21,13 @@ namespace {
 class QuadrotorFull final : public VehicleModel {
  public:
   static constexpr PluginText kText{"quadrotor_full", "1.0.0",
-                                    "rigid body with four rotors, thrusts linear between stages",
+                                    "rigid body with four rotors, thrust linear between stages",
                                     "thesis 3.8.1, (3.11) to (3.13)"};
   static ParameterTable parameters() {
     ParameterTable table;
     for (const auto& [name, value, summary] :
-         {std::tuple{"thrust_share", 1.0, "share of the rotors' largest thrust that is used"},
-          std::tuple{"rate_share", 1.0, "share of the limits of body rates that is used"}})
+         {std::tuple{"thrust_share", 1.0, "share of the largest rotor thrust used"},
+          std::tuple{"rate_share", 1.0, "share of the body rate limits used"}})
       table.number(name, value, "", summary,
                    {.minimum = 0, .maximum = 1, .minimum_excluded = true});
     return table;

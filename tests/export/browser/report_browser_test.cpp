@@ -116,17 +116,24 @@ class ReportInBrowser : public testing::Test {
   }
 };
 
+// Drawing of ten times the samples takes at most ten times as long, on a machine of any speed. What
+// other programs delay is measured again, twice at most.
 TEST_F(ReportInBrowser, LongFlightsStaySmallAndQuick) {
-  const std::string html = render_html(flight_report(synthetic_flight(300, 3001, 10)));
-  EXPECT_LT(html.size(), 3u << 20);
   const std::string probe = std::string(kListFigures) +
                             "document.documentElement.dataset.drawing = performance.measure('draw',"
                             " 'draw-begin', 'draw-end').duration;";
-  const std::string dom = opened(html, probe);
-  expect_complete(dom, 3001);
-  const double milliseconds = std::atof(attribute(dom, "drawing").c_str());
-  EXPECT_GT(milliseconds, 0);
-  EXPECT_LT(milliseconds, 1000);
+  const auto milliseconds = [&](int samples) {
+    const std::string html = render_html(flight_report(synthetic_flight(300, samples, 10)));
+    EXPECT_LT(html.size(), 3u << 20);
+    const std::string dom = opened(html, probe);
+    expect_complete(dom, samples);
+    return std::atof(attribute(dom, "drawing").c_str());
+  };
+  const double few = milliseconds(301);
+  double many = milliseconds(3001);
+  EXPECT_GT(few, 0);
+  for (int again = 0; again < 2 && many >= 10 * few; ++again) many = milliseconds(3001);
+  EXPECT_LT(many, 10 * few) << few << " ms for 301 samples";
 }
 
 TEST_F(ReportInBrowser, ShowsWhatTheCameraFilms) {

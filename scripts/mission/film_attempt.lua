@@ -1,0 +1,67 @@
+-- One attempt at a film: request in, outcome out; nothing else is read or changed.
+local problem = require "mission.film_problem"
+local requests = require "mission.film_request"
+
+local M = {}
+
+local function tried(run, request)
+  local stated = problem.state(run, request)
+  local camera = stated.camera
+  local solution = run:solve(stated.problem, run.options.solver)
+  local verdict = run:certify(run:plan { solution = solution, task = stated.task,
+                                         cuts = camera and camera.cuts or {} })
+  return requests.outcome {
+    request = request, solution = solution, verdict = verdict, task = stated.task, camera = camera,
+    legs = stated.legs, holds = verdict.feasible and solution.status ~= "infeasible" }
+end
+
+-- The outcome of a request.
+function M.attempt(run, request)
+  local stretch = request.stretch
+  run:phase(stretch == 1 and "film" or string.format("film %.4g times as long", stretch))
+  if not request.corridor then return tried(run, request) end
+  -- A corridor may leave no room for what the film asks for.
+  local fine, result = pcall(tried, run, request)
+  if fine then return result end
+  return requests.outcome { request = request, legs = request.legs, holds = false,
+                            fault = tostring(result) }
+end
+
+-- Attempts what `strategy` asks for until it asks for no more, or the user ends it. A strategy
+-- takes an outcome and gives the next request, or nil; and what is to be told if the search ends
+-- here. Gives the last outcome, and what is told of it.
+function M.follow(run, outcome, strategy)
+  local request, told = strategy(run, outcome)
+  while request and not run:cancelled() do
+    outcome = M.attempt(run, request)
+    request, told = strategy(run, outcome)
+  end
+  return outcome, told
+end
+
+-- The same from the attempt at a request.
+function M.pursue(run, request, strategy)
+  return M.follow(run, M.attempt(run, request), strategy)
+end
+
+-- Whether a check of the certificate is one that fails it.
+function M.fails(check) return check.required and not check.skipped and not check.pass end
+
+-- The checks that an outcome fails, by name; and the first of them.
+function M.failed_checks(outcome)
+  local failed, first = {}, nil
+  for _, check in ipairs(outcome.verdict.checks) do
+    if M.fails(check) then
+      failed[check.name] = check
+      first = first or check
+    end
+  end
+  return failed, first
+end
+
+-- The sentence on the first check that an outcome fails, or else what the solver says.
+function M.complaint(outcome)
+  return outcome.verdict.failures[1] or outcome.solution.message
+end
+
+return M

@@ -1,0 +1,102 @@
+-- Why a film came to nothing, in words: the leg that is too fast, the limit that the vehicle lacks,
+-- the subject that the gimbal cannot see, the script's constraint that is in the way. What the
+-- failing film alone does not tell is asked of the same film with less held.
+local attempts = require "mission.film_attempt"
+local own = require "mission.own_terms"
+local problem = require "mission.film_problem"
+local requests = require "mission.film_request"
+local subjects = require "mission.subjects"
+
+local M = {}
+
+local MISSED = 1e-4  -- by which a constraint is missed that is worth naming, in its own unit
+
+local function first_failed(outcome)
+  local _, check = attempts.failed_checks(outcome)
+  return check and check.name
+end
+
+-- What more time would not mend: a way that obstacles close; a subject that the gimbal cannot see,
+-- or that obstacles hide.
+function M.blocked(outcome) return first_failed(outcome) == "clearance" end
+local function hidden(outcome) return first_failed(outcome) == "line_of_sight" end
+function M.out_of_sight(outcome)
+  return first_failed(outcome) == "framing" or hidden(outcome)
+end
+
+-- Which obstacles the planner does not look round: its cost knows spheres and boxes alone.
+local function not_looked_round(options)
+  local names = {}
+  for _, obstacle in ipairs(options.obstacles) do
+    if obstacle.type ~= "sphere" and obstacle.type ~= "box" then
+      local name = obstacle.name ~= "" and obstacle.name or obstacle.file or "without a name"
+      names[#names + 1] = obstacle.type .. " '" .. name .. "'"
+    end
+  end
+  if #names == 0 then return "" end
+  return "; the planner does not look round " .. table.concat(names, ", ")
+    .. ", which the certificate judges"
+end
+
+-- Which limit a film breaks, where and when: what the gimbal cannot see, or else what the film
+-- would ask for if nothing held it. `legs`: the ways to begin with.
+function M.broken_limit(run, failing, legs)
+  if hidden(failing) then return attempts.complaint(failing) .. not_looked_round(run.options) end
+  if M.out_of_sight(failing) then
+    return subjects.hidden(failing.camera, failing.request.vehicle) or attempts.complaint(failing)
+  end
+  local free = attempts.attempt(run, requests.with(failing.request,
+                                                   { scope = "unlimited", legs = legs }))
+  local limit = free.solution.status == "optimal" and free.verdict.failures[1]
+  if limit then return "flown as if the vehicle had no limits: " .. limit end
+  return attempts.complaint(failing)
+end
+
+-- For a film that misses a keyframe: which option says how near is near enough. Else "".
+function M.tolerance(outcome, hard)
+  if not attempts.failed_checks(outcome).keyframe_miss then return "" end
+  return string.format("; keyframes may be missed by %g m: hard = METRES %s", hard or problem.MISS,
+                       hard and "sets that" or "holds them within another distance")
+end
+
+-- The first of the script's own constraints that an outcome breaks, as a sentence; and whether it
+-- breaks nothing else.
+local function broken_constraint(options, outcome)
+  local checks, sentence, alone = own.checks(options), nil, true
+  if options.speed_limit then checks[own.check("speed_limit")] = true end
+  local number = 0
+  for _, check in ipairs(outcome.verdict.checks) do
+    if attempts.fails(check) then
+      number = number + 1  -- of the sentences, which are those of the failed checks in turn
+      if not checks[check.name] then alone = false
+      else sentence = sentence or outcome.verdict.failures[number] end
+    end
+  end
+  return sentence, alone
+end
+
+-- Whether the script's own constraints are what is in the way of a film, in words: the same film,
+-- at the same times, flown without holding them.
+function M.in_the_way(run, failing)
+  local constraints = run.options.constraints
+  if #constraints == 0 or run:cancelled() then return nil end
+  local free = attempts.attempt(run, requests.with(failing.request, {
+    scope = "unconstrained", legs = failing.legs }))
+  local sentence, alone = broken_constraint(run.options, free)
+  if not alone or free.solution.status == "infeasible" then
+    local worst = failing.solution.violations[1]
+    for _, entry in ipairs(constraints) do
+      if worst and worst.amount > MISSED and worst.name == (entry.name or entry.type) then
+        return string.format('constraint "%s" is in the way: missed by %.3g at %.4g s', worst.name,
+                             worst.amount, worst.time)
+      end
+    end
+    return nil
+  end
+  if sentence then return "in the way, as the film shows without it: " .. sentence end
+  local names = {}
+  for i, entry in ipairs(constraints) do names[i] = '"' .. (entry.name or entry.type) .. '"' end
+  return "certified without the constraints of the script, " .. table.concat(names, ", ")
+end
+
+return M

@@ -1,0 +1,143 @@
+// Completion in bash, zsh and fish, each run for real.
+#include <array>
+#include <cstring>
+
+#include "framework/app/command_reference.h"
+#include "framework/app/completion_names.h"
+#include "tests/app/program_fixture.h"
+
+namespace lapwing {
+namespace {
+
+class Completing : public CommandLine {
+ protected:
+  // Runs a shell's script in the test's folder; `lapwing` is the program.
+  Finished shell(const std::string& program, const std::string& script) {
+    write("script", script);
+    const std::string line = "cd '" + folder_.string() +
+                             "' && PATH='" LAPWING_BUILD_DIR "/bin':\"$PATH\" HOME=$PWD " +
+                             program + " script > out.txt 2> err.txt";
+    Finished finished;
+    finished.status = WEXITSTATUS(std::system(line.c_str()));
+    finished.out = read_file(folder_ / "out.txt");
+    finished.err = read_file(folder_ / "err.txt");
+    EXPECT_EQ(finished.err, "");
+    return finished;
+  }
+  static bool installed(const std::string& program) {
+    return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0;
+  }
+
+  // What each shell completes, one a line. The last of the words is the one being typed.
+  std::string in_bash(const std::string& words) {
+    return shell("bash", "source <(lapwing completion bash)\nCOMP_WORDS=(" + words +
+                             ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_lapwing\nprintf "
+                             "'%s\\n' \"${COMPREPLY[@]}\"")
+        .out;
+  }
+  // The parts of zsh's completion system that the function calls print what they are given.
+  std::string in_zsh(const std::string& words) {
+    return shell("zsh -f",
+                 "compdef() {}\ncompadd() { shift; for w in $@; do [[ $w == ${words[CURRENT]}* ]] "
+                 "&& print -r -- $w; done; return 0 }\n"
+                 "_files() { print FILES $@ }\n"
+                 "_describe() { for w in $offered; do [[ $w == ${words[CURRENT]}* ]] && print -r "
+                 "-- ${w%%:*}; done; return 0 }\n"
+                 "source <(lapwing completion zsh)\nwords=(" +
+                     words + ")\nCURRENT=$#words\n_lapwing\n")
+        .out;
+  }
+  std::string in_fish(const std::string& line) {
+    return shell("fish",
+                 "lapwing completion fish | source\n"
+                 "complete -C \"" +
+                     line + "\" | string replace -r '\\t.*' ''")
+        .out;
+  }
+
+  // What every shell offers behind `words` for the beginning `typed`.
+  static std::vector<std::array<const char*, 3>> cases() {
+    return {{"lapwing run --config", "scan/s", "scan/small\n"},
+            {"lapwing verify --vehicle", "vehicles/", "vehicles/racer\nvehicles/solo\n"},
+            {"lapwing plugins show", "cost_term/input", "cost_term/input_effort\n"},
+            {"lapwing export --format", "cs", "csv\n"},
+            {"lapwing evaluate explore --world", "sub", "suburb\n"},
+            {"lapwing evaluate explore --utility", "proxi", "proximity_count\n"},
+            {"lapwing train dataset --explorer", "orac", "oracle\n"},
+            {"lapwing evaluate scan --method", "mil", "milp\n"},
+            {"lapwing new plugin", "util", "utility\n"},
+            {"lapwing new mission", "fi", "film\n"},
+            {"lapwing map", "con", "convert\n"},
+            {"lapwing --color", "al", "always\n"}};
+  }
+};
+
+TEST_F(Completing, BashCompletesCommandsOptionsAndFiles) {
+  ASSERT_EQ(run({"completion", "bash"}).status, 0);
+  EXPECT_EQ(in_bash("lapwing ru"), "run\n");
+  EXPECT_EQ(in_bash("lapwing map con"), "convert\n");
+  EXPECT_EQ(in_bash("lapwing run --conf"), "--config\n");
+  EXPECT_EQ(in_bash("lapwing --color a"), "auto\nalways\n");
+  EXPECT_EQ(in_bash("lapwing --plugin-path run plug"), "plugins\n");
+  EXPECT_EQ(in_bash("lapwing help sw"), "sweep\n");
+  EXPECT_EQ(in_bash("lapwing completion f"), "fish\n");
+  write("my shot.lua", "");
+  EXPECT_EQ(in_bash("lapwing run my"), "my shot.lua\n");
+  EXPECT_EQ(in_bash("lapwing run --out my"), "\n");  // no folder of that name
+}
+
+TEST_F(Completing, BashCompletesNames) {
+  for (const auto& [words, typed, offered] : cases())
+    EXPECT_EQ(in_bash(words + std::string(" ") + typed), offered) << words;
+}
+
+TEST_F(Completing, ZshCompletesNames) {
+  if (!installed("zsh")) GTEST_SKIP() << "zsh is not installed";
+  for (const auto& [words, typed, offered] : cases()) {
+    std::string found = in_zsh(words + std::string(" ") + typed);
+    // What takes a file as well asks zsh for files, behind the names.
+    if (const std::string files = "FILES\n"; found.ends_with(files))
+      found.resize(found.size() - files.size());
+    EXPECT_EQ(found, offered) << words;
+  }
+}
+
+TEST_F(Completing, FishCompletesNames) {
+  if (!installed("fish")) GTEST_SKIP() << "fish is not installed";
+  for (const auto& [words, typed, offered] : cases())
+    EXPECT_EQ(in_fish(words + std::string(" ") + typed), offered) << words;
+}
+
+// Files stand beside the names, and a name of another list does not.
+TEST_F(Completing, FilesJoinTheNames) {
+  write("scan.yaml", "");
+  EXPECT_EQ(in_bash("lapwing run --config scan"), "scan/fused\nscan/small\nscan.yaml\n");
+  EXPECT_EQ(in_bash("lapwing run --config vehicles/"), "\n");
+  EXPECT_EQ(in_bash("lapwing plugins check cost_term/input"), "cost_term/input_effort\n");
+  EXPECT_EQ(in_bash("lapwing evaluate explore --world wal"), "\n") << "a part of scenes";
+}
+
+TEST_F(Completing, ListsAreOfDeclaredOptionsAndHoldNames) {
+  const CommandEntry tree = command_tree();
+  for (const NamedValue& value : named_values()) {
+    int found = 0;
+    for (const CommandEntry* command : every_command(tree))
+      for (const OptionEntry& option : command->options)
+        found += (*value.command == '\0' || command->path == value.command) &&
+                 option.names.back() == value.option && option.names_list == value.names;
+    EXPECT_GT(found, 0) << value.command << " " << value.option;
+    EXPECT_FALSE(run({"complete", value.names}).out.empty()) << value.names;
+  }
+  refused({"complete", "moods"}, {"there is no list of names 'moods'", "vehicle", "world"});
+  EXPECT_EQ(run({"help"}).out.find("\n  complete "), std::string::npos) << "for shells alone";
+}
+
+// Whatever a folder of plugins holds, a shell reads it as a name or not at all.
+TEST_F(Completing, NoNameIsReadAsACommand) {
+  const Finished finished = run({"complete", "plugin"});
+  for (const char c : finished.out)
+    EXPECT_TRUE(std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-./+\n", c)) << c;
+}
+
+}  // namespace
+}  // namespace lapwing
