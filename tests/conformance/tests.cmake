@@ -9,5 +9,5 @@ list(TRANSFORM slow_plugins PREPEND Registered/EveryPlugin.Conforms/)
 list(JOIN slow_plugins ":" slow_plugins)
 set_tests_properties(conformance PROPERTIES ENVIRONMENT "GTEST_FILTER=-${slow_plugins}")
 add_test(NAME conformance_long COMMAND test_conformance)
-set_tests_properties(conformance_long PROPERTIES LABELS long TIMEOUT 240
+set_tests_properties(conformance_long PROPERTIES LABELS long
                      ENVIRONMENT "GTEST_FILTER=${slow_plugins}")

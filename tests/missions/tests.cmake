@@ -9,7 +9,7 @@ set_tests_properties(missions_long PROPERTIES LABELS long TIMEOUT 2700)  # a who
 # The longest program, in two halves that may run at once; the longest begins first.
 add_test(NAME missions_too COMMAND test_missions)
 foreach(half missions missions_too)
-  set_tests_properties(${half} PROPERTIES COST 1000 TIMEOUT 240)
+  set_tests_properties(${half} PROPERTIES COST 1000)
 endforeach()
 set_tests_properties(missions PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=0")
 set_tests_properties(missions_too PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=1")

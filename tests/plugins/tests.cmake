@@ -13,7 +13,6 @@ add_test(NAME copied_term COMMAND ${CMAKE_COMMAND}
   -DBUILD_TYPE=${CMAKE_BUILD_TYPE} -DSANITIZE=${LAPWING_SANITIZE} -DGENERATOR=${CMAKE_GENERATOR}
   -DCOMPILER=${CMAKE_CXX_COMPILER} -DCHECK=$<TARGET_FILE:check_plugin_folder>
   -P ${CMAKE_CURRENT_LIST_DIR}/copied_term/copied_term.cmake)
-set_tests_properties(copied_term PROPERTIES TIMEOUT 240)
 
 # The example plugin, built and run against an install tree; and a new plugin of every kind.
 foreach(name installed_plugin new_plugins)
@@ -21,7 +20,6 @@ foreach(name installed_plugin new_plugins)
     -DLAPWING_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DLAPWING_BUILD_DIR=${CMAKE_BINARY_DIR}
     -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
     -P ${CMAKE_CURRENT_LIST_DIR}/installed/${name}.cmake)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 600)
 endforeach()
 set_tests_properties(new_plugins PROPERTIES LABELS long)
 
@@ -44,7 +42,7 @@ endforeach()
 # The published orienteering instances with as much work as the README speaks of.
 add_test(NAME orienteering_long
          COMMAND test_tour_solvers --gtest_filter=Orienteering.RoutesOfPublished*)
-set_tests_properties(orienteering_long PROPERTIES LABELS long TIMEOUT 600
+set_tests_properties(orienteering_long PROPERTIES LABELS long
                                                   ENVIRONMENT "LAPWING_LONG=1")
 
 # The learned utility's network against libtorch: one source, which takes longer than all others.
@@ -61,5 +59,4 @@ if(LAPWING_LEARN)
   target_link_libraries(test_learned_torch PRIVATE lapwing GTest::gtest GTest::gtest_main
     ${torch_library} ${torch_cpu_library} ${c10_library})
   add_test(NAME learned_torch COMMAND test_learned_torch)
-  set_tests_properties(learned_torch PROPERTIES TIMEOUT 240)
 endif()
