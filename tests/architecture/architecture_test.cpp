@@ -177,6 +177,17 @@ TEST(Rules, TextIsFinishedAndFitsTheScreen) {
   EXPECT_EQ(count("scripts/scene/castle.lua", lines + "x = 1\n"), 0u);
 }
 
+TEST(Rules, SourcesWithTestsAreNamedAlike) {
+  const auto count = [](const std::string& path, const std::string& text) {
+    return check_style({path, text}).size();
+  };
+  const std::string test = "int a;\nTEST(A, Holds) {}\n";
+  EXPECT_EQ(count("tests/core/json_test.cpp", test), 0u);
+  EXPECT_EQ(count("tests/core/test_json.cpp", test), 1u);
+  EXPECT_EQ(count("tests/core/json.cpp", "TEST_P(A, Holds) {}\n"), 1u);
+  EXPECT_EQ(count("tests/core/scenes.cpp", "// MY_TEST(a)\nint a;\n"), 0u);
+}
+
 TEST(Rules, TheMapSaysWhatTheRulesSay) {
   const std::string rows =
       "| room | holds | may include |\n|---|---|---|\n"

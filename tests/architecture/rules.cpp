@@ -266,6 +266,11 @@ Violations check_style(const SourceFile& file) {
   if (name.ends_with(".h") && file.text.find("#pragma once") == file.text.npos) {
     found.push_back(file.path + ": no #pragma once");
   }
+  static const std::regex kTest(R"((^|\n)(TEST|TEST_F|TEST_P|TYPED_TEST)\()");
+  if (name.ends_with(".cpp") && file.path.starts_with("tests/") &&
+      std::regex_search(file.text, kTest) && !name.ends_with("_test.cpp")) {
+    found.push_back(file.path + ": a source with tests is named WHAT_test.cpp");
+  }
   const std::vector<std::string> lines = split(file.text, '\n');
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (code && columns(lines[i]) > 100) {

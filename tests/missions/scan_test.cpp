@@ -133,7 +133,7 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set up=y"), HasSubstr("up: is of an input"));
   EXPECT_THAT(refused("--set tour.begin=gredy"), HasSubstr("did you mean 'greedy'?"));
   EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
-  EXPECT_THAT(refused("--set scene=churhc"), HasSubstr("did you mean 'scene.church'?"));
+  EXPECT_THAT(refused("--set scene=churhc"), HasSubstr("did you mean 'church'?"));
   EXPECT_THAT(refused("--set prior.map=a.ot"), HasSubstr("both a map and a mesh"));
   // What contradicts is said before anything is flown.
   EXPECT_THAT(refused("--set tour.budget_metres=300"), HasSubstr("give one of them"));

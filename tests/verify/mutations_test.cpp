@@ -172,7 +172,7 @@ TEST(Mutations, RotorsAreSaturatedWhereTheyCannotFollow) {
 }
 
 TEST(Mutations, CoverEveryCheckThatIsMade) {
-  // Upside down two fail above; the last two are reported alone: test_framing.cpp judges one of
+  // Upside down two fail above; the last two are reported alone: framing_test.cpp judges one of
   // them, RotorsAreSaturatedWhereTheyCannotFollow below the other.
   std::set<std::string> covered{"force_up",          "closed_loop_yaw", "acceleration_up",
                                 "acceleration_down", "whole_subject",   "rotors_saturated"};

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Runs clang-tidy, with .clang-tidy, over the sources that changed; a warning is an error.
+#   scripts/tidy.sh [--since COMMIT] [--minutes N] [FILE...]
+# Without files: what differs from COMMIT (default: the commit before the last), and what git does not
+# know yet. A source is checked with the headers that it includes. With --minutes no source is begun
+# after N minutes; how many were left out is printed.
+# Exit status: 0 no warnings, 1 warnings, 2 it cannot run.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+since=HEAD~1 minutes=
+while [[ "${1:-}" == --* ]]; do
+  [ $# -ge 2 ] || { echo "tidy.sh: $1 needs a value" >&2; exit 2; }
+  case "$1" in
+    --since) since=$2 ;;
+    --minutes) minutes=$2 ;;
+    *) echo "tidy.sh: unknown option '$1'; it knows --since and --minutes" >&2; exit 2 ;;
+  esac
+  shift 2
+done
+[[ "$minutes" =~ ^([1-9][0-9]*)?$ ]] ||
+  { echo "tidy.sh: --minutes: expected a whole number above 0, not '$minutes'" >&2; exit 2; }
+command -v clang-tidy >/dev/null ||
+  { echo "tidy.sh: no clang-tidy; scripts/setup.sh --for check installs it" >&2; exit 2; }
+
+if [ $# -gt 0 ]; then
+  files=("$@")
+else
+  git rev-parse --quiet --verify "$since^{commit}" >/dev/null ||
+    { echo "tidy.sh: no commit '$since' here; --since names another" >&2; exit 2; }
+  mapfile -t files < <({ git diff --name-only --diff-filter=d "$since" -- '*.cpp'
+                         git ls-files --others --exclude-standard -- '*.cpp'; } | sort -u)
+fi
+# Commands that compile each source by itself, and without the precompiled headers of another compiler.
+mkdir -p build
+cmake -S . -B build/tidy -G Ninja -DCMAKE_BUILD_TYPE=Debug -DLAPWING_TESTS=ON -DLAPWING_UNITY=OFF \
+  -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >build/tidy.log 2>&1 ||
+  { tail -n 30 build/tidy.log >&2; exit 2; }
+
+# Sources that are in no target (templates, generated ones) have no command.
+known=()
+for file in "${files[@]}"; do
+  ! grep -qF "\"file\": \"$PWD/$file\"" build/tidy/compile_commands.json || known+=("$file")
+done
+echo "clang-tidy: ${#known[@]} sources ..."
+[ ${#known[@]} -gt 0 ] || exit 0
+tidy_one() {
+  if [ -n "$2" ] && [ "$(date +%s)" -ge "$2" ]; then echo "$1" >>build/tidy.left_out; return; fi
+  clang-tidy -p build/tidy --quiet --warnings-as-errors='*' "$1" 2>/dev/null
+}
+export -f tidy_one
+end=
+[ -z "$minutes" ] || end=$(($(date +%s) + 60 * minutes))
+rm -f build/tidy.left_out
+status=0
+printf '%s\0' "${known[@]}" | xargs -0 -n 1 -P 2 -I '{}' bash -c 'tidy_one "$0" "$1"' '{}' "$end" ||
+  status=1
+[ ! -f build/tidy.left_out ] ||
+  echo "clang-tidy: $(wc -l <build/tidy.left_out) of ${#known[@]} sources left out after $minutes min"
+exit "$status"
