@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Runs clang-tidy, with .clang-tidy, over the sources that changed; a warning is an error.
 #   scripts/tidy.sh [--since COMMIT] [--minutes N] [FILE...]
-# Without files: what differs from COMMIT (default: the commit before the last), and what git does not
-# know yet. A source is checked with the headers that it includes. With --minutes no source is begun
-# after N minutes; how many were left out is printed.
+# Without files: what differs from COMMIT, or else what the commits of the last day changed, the last
+# change first; and what is not committed yet. A source is checked with the headers that it includes.
+# With --minutes no source is begun after N minutes; how many were left out is printed.
 # Exit status: 0 no warnings, 1 warnings, 2 it cannot run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-since=HEAD~1 minutes=
+since= minutes=
 while [[ "${1:-}" == --* ]]; do
   [ $# -ge 2 ] || { echo "tidy.sh: $1 needs a value" >&2; exit 2; }
   case "$1" in
@@ -26,10 +26,13 @@ command -v clang-tidy >/dev/null ||
 if [ $# -gt 0 ]; then
   files=("$@")
 else
-  git rev-parse --quiet --verify "$since^{commit}" >/dev/null ||
-    { echo "tidy.sh: no commit '$since' here; --since names another" >&2; exit 2; }
-  mapfile -t files < <({ git diff --name-only --diff-filter=d "$since" -- '*.cpp'
-                         git ls-files --others --exclude-standard -- '*.cpp'; } | sort -u)
+  [ -z "$since" ] || git rev-parse --quiet --verify "$since^{commit}" >/dev/null ||
+    { echo "tidy.sh: no commit '$since' here" >&2; exit 2; }
+  mapfile -t files < <({
+    git ls-files --others --modified --exclude-standard -- '*.cpp'
+    if [ -n "$since" ]; then git diff --name-only "$since" -- '*.cpp'
+    else git log --since='1 day ago' --name-only --pretty=format: -- '*.cpp'; fi
+  } | awk 'NF && !seen[$0]++')
 fi
 # Commands that compile each source by itself, and without the precompiled headers of another compiler.
 mkdir -p build
