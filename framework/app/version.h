@@ -1,6 +1,4 @@
-// The program's version.
+// The program's version; CMakeLists.txt reads it from here.
 #pragma once
 
-#ifndef LAPWING_VERSION
-#define LAPWING_VERSION "0.1.0"
-#endif
+#define LAPWING_VERSION "0.2.0"
