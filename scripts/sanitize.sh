@@ -16,8 +16,7 @@ options=()
 case "$which" in
   address)
     preset=asan
-    # Objects of libraries that are never unloaded are no leaks of ours.
-    export ASAN_OPTIONS=detect_leaks=0:strict_string_checks=1:detect_stack_use_after_return=1
+    export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1
     export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
     ;;
   thread)
