@@ -9,6 +9,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
+#include "framework/trajectory/keyframe_timing.h"
 #include "framework/vehicle/pursuit.h"
 #include "framework/vehicle/smooth_leg.h"
 
@@ -87,9 +88,8 @@ int time_path(lua_State* state) {
   const PathLimits asked{given.has("speed") ? given.number("speed") : infinite,
                          given.has("acceleration") ? given.number("acceleration") : infinite};
   const std::vector<double> times =
-      vehicle
-          ? fastest_times(smooth, within(motion_limits(*vehicle, given.number("share")), asked))
-          : fastest_times(smooth, asked);
+      vehicle ? fastest_times(smooth, within(motion_limits(*vehicle, given.number("share")), asked))
+              : fastest_times(smooth, asked);
   Value points = Value::list(), result = Value::map();
   for (const Eigen::Vector3d& p : smooth)
     for (int axis = 0; axis < 3; ++axis) points.push_back(p(axis));
@@ -115,6 +115,66 @@ int path_distance(lua_State* state) {
   for (const Eigen::Vector3d& p : points_of(given, "points"))
     worst = std::max(worst, distance_to(path, p));
   lua_pushnumber(state, worst);
+  return 1;
+}
+
+ParameterTable keyframe_stops_table() {
+  ParameterTable table;
+  table.required_numbers("points", 0, "m", "x, y, z of each point of the path in turn, world")
+      .required_numbers("keyframes", 0, "m", "x, y, z of each keyframe in turn, world");
+  return table;
+}
+
+// run:keyframe_stops{points = {x, y, z, ...}, keyframes = {x, y, z, ...}}: numbers of points,
+// from 1.
+int stops_of_keyframes(lua_State* state) {
+  const Parameters given = table_argument(state, 2, keyframe_stops_table(), "keyframe_stops");
+  Value list = Value::list();
+  for (const std::size_t stop :
+       keyframe_stops(points_of(given, "points"), points_of(given, "keyframes")))
+    list.push_back(static_cast<std::int64_t>(stop + 1));
+  push_value(state, list);
+  return 1;
+}
+
+ParameterTable keyframe_times_table() {
+  ParameterTable wish;
+  wish.optional_number("time", "s", "exact, or preferred where there is a time_weight")
+      .optional_number("time_weight", "1/s^2", "of the squared distance from `time`", at_least(0))
+      .optional_number("earliest", "s", "not before")
+      .optional_number("latest", "s", "not after");
+  ParameterTable table;
+  table.tables("wishes", wish, "of each keyframe; the first one is passed at 0 s", true)
+      .required_numbers("legs", 0, "s", "shortest duration of each leg", above(0));
+  return table;
+}
+
+// run:keyframe_times{wishes = {...}, legs = {...}}: the cheapest times; or nil and the number of
+// the keyframe that can have none of its times.
+int times_of_keyframes(lua_State* state) {
+  const Parameters given = table_argument(state, 2, keyframe_times_table(), "keyframe_times");
+  const auto number = [](const Parameters& entry, const char* key) {
+    return entry.has(key) ? std::optional(entry.number(key)) : std::nullopt;
+  };
+  std::vector<TimeWish> wishes;
+  for (const Parameters& entry : given.tables("wishes")) {
+    wishes.push_back({number(entry, "time"), number(entry, "time_weight"),
+                      number(entry, "earliest"), number(entry, "latest")});
+    if (wishes.back().time_weight && !wishes.back().time)
+      throw InputError(entry.origin("time_weight"), "keyframe_times: a time_weight needs a time");
+  }
+  const auto legs = given.numbers("legs");
+  if (legs.size() + 1 != wishes.size())
+    throw InputError(given.origin("legs"), "keyframe_times: " + std::to_string(wishes.size()) +
+                                               " wishes need one leg fewer, got " +
+                                               std::to_string(legs.size()));
+  const KeyframeTimes found = cheapest_times(wishes, legs);
+  if (found.refused) {
+    lua_pushnil(state);
+    lua_pushinteger(state, static_cast<lua_Integer>(*found.refused + 1));
+    return 2;
+  }
+  push_value(state, Value(Value::List(found.times.begin(), found.times.end())));
   return 1;
 }
 
@@ -190,6 +250,13 @@ std::span<const Binding> flight_methods_of_run() {
        &time_path_table, kPathVehicle},
       {"path_distance", &guarded<path_distance>, "(places: @): number",
        "how far the farthest of the points is from the path, m", &path_distance_table},
+      {"keyframe_stops", &guarded<stops_of_keyframes>, "(places: @): integer[]",
+       "for each keyframe the number of the nearest point of the path, in order",
+       &keyframe_stops_table},
+      {"keyframe_times", &guarded<times_of_keyframes>, "(asked: @): number[]?, integer?",
+       "the cheapest times that grant every wish: duration and weighted squared distances from "
+       "preferred times; or nil and the keyframe that can have none of its times",
+       &keyframe_times_table},
       {"pursue", &guarded<pursue_path>, "(path: @): table",
        "a flight along straight lines by pure pursuit, simulated: duration, views, lost, "
        "position_error",

@@ -72,6 +72,21 @@ int fail(lua_State* state) {
                    text_argument(state, 1, "lapwing.fail"));
 }
 
+// lapwing.has_module(name): whether `require` finds it; if not, also the nearest name, or nil.
+int has_module(lua_State* state) {
+  const std::string module = text_argument(state, 1, "lapwing.has_module");
+  const Sandbox& sandbox = Sandbox::of(state);
+  const bool found = !sandbox.module_file(module).empty();
+  lua_pushboolean(state, found);
+  if (found) return 1;
+  const std::string nearest = sandbox.nearest_module(module);
+  if (nearest.empty())
+    lua_pushnil(state);
+  else
+    push_text(state, nearest);
+  return 2;
+}
+
 }  // namespace
 
 MissionRun& run_of(lua_State* state) {
@@ -107,6 +122,8 @@ void open_lapwing_library(lua_State* state, MissionRun& run) {
       {"local_from_geodetic", &guarded<local_from_geodetic>,
        "(origin: lapwing.geodetic, point: lapwing.geodetic): number[]",
        "{east, north, up} of the point from the origin, m"},
+      {"has_module", &guarded<has_module>, "(name: string): boolean, string?",
+       "whether `require` finds a module; if not, also the nearest name"},
       {"fail", &guarded<fail>, "(message: string)", "an error at the script's own line"}};
   static const BoundTable tables[] = {{"geodetic", &geodetic_table, {}}};
   lua_newtable(state);

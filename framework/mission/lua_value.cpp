@@ -7,6 +7,7 @@
 
 #include "framework/core/json.h"
 #include "framework/mission/guard.h"
+#include "framework/mission/symbolic_values.h"
 
 namespace lapwing {
 
@@ -35,6 +36,7 @@ class Reader {
       case LUA_TTABLE:
         return read_table(index, path, without);
       default:
+        if (is_symbolic_vector(state_, index)) return read_vector(index, path);
         refuse(path, std::string("a ") + luaL_typename(state_, index) + " cannot stand here");
     }
   }
@@ -114,6 +116,20 @@ class Reader {
       lua_pop(state_, 1);
     }
     return list;
+  }
+
+  // A lapwing.vector is the list of its numbers.
+  Value read_vector(int index, const std::string& path) {
+    Value list = Value::list();
+    for (const SymbolicScalar& entry : symbolic_vector_argument(state_, index, path)) {
+      if (!entry.known())
+        refuse(path,
+               "a value of a stage is unknown until the problem is solved: it cannot stand "
+               "here");
+      if (!std::isfinite(entry.value)) refuse(path, "expected a vector of finite numbers");
+      list.push_back(located(Value(entry.value)));
+    }
+    return located(std::move(list));
   }
 
   // Sorted; counts all entries into entries_.

@@ -407,7 +407,8 @@ int plan_field(lua_State* state) {
   return push_field(state, "a plan", field, fields, kPlanFields);
 }
 
-// run:certify(plan): {feasible =, failures = {"sentence", ...}, checks = {...}}
+// run:certify(plan): {feasible =, failures = {"sentence", ...}, checks = {...}}; a check that was
+// made has its result in words as `line`.
 int certify(lua_State* state) {
   const PlanObject& object = object_argument<PlanObject>(state, 2, kPlanType);
   Certificate certificate;
@@ -416,8 +417,14 @@ int certify(lua_State* state) {
     certificate = verify(object.plan, run_of(state).obstacles.folder());
   }
   Value result = certificate.to_value();
-  Value failures = Value::list();
+  Value failures = Value::list(), checks = Value::list();
   for (const Check& check : certificate.failures()) failures.push_back(to_line(check));
+  for (std::size_t i = 0; i < certificate.checks.size(); ++i) {
+    Value check = result.at("checks").as_list()[i];
+    if (certificate.checks[i].skipped.empty()) check.set("line", to_line(certificate.checks[i]));
+    checks.push_back(std::move(check));
+  }
+  result.set("checks", std::move(checks));
   result.set("failures", std::move(failures));
   push_value(state, result);
   return 1;
@@ -434,7 +441,8 @@ std::span<const Binding> solving_methods_of_run() {
       {"plan", &guarded<plan>, "(made: @): lapwing.plan", "what a mission's `plan` returns",
        &plan_table, kPlanObjects},
       {"certify", &guarded<certify>, "(plan: lapwing.plan): table",
-       "the verifier's answer: `feasible`, `failures` (sentences), `checks`"}};
+       "the verifier's answer: `feasible`, `failures` (sentences), `checks`, each as in a plan, with "
+       "`line`: its result in words"}};
   return methods;
 }
 

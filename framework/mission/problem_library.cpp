@@ -403,9 +403,11 @@ void open_problem_library(lua_State* state) {
        "distance of the nearest obstacle in m, negative inside, and its name"},
       {"flight_zone_distance", &guarded<flight_zone_distance>, "(place: number[]): number, string",
        "distance from the nearest face of a flight zone, negative outside, and its name"},
-      {"plan_way", &guarded<plan_way>, "(wanted: @): number[][]?, string?",
+      {"plan_way", &guarded<plan_way>, "(wanted: @): number[][]?, string?, string?",
        "a free way that keeps the margin, the distance to bystanders that stand still, and `more` "
-       "metres, through a passage that none of the `excluded` ways has; or nothing and why",
+       "metres, through a passage that none of the `excluded` ways has; or nil, why in words, and "
+       "the "
+       "planner's status",
        &way_table, kWayObjects},
       {"grow_corridor", &guarded<grow_corridor_of_problem>, "(along: @): table[]",
        "free boxes along a way, {from, to, lower, size}, parts in shares of its length", nullptr,

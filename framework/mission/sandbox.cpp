@@ -343,25 +343,8 @@ void Sandbox::run_script(lua_State* state, const std::filesystem::path& script) 
 
 namespace {
 
-// Of the modules in the same folder of any root.
-std::string nearest_module(const std::vector<std::filesystem::path>& roots,
-                           const std::string& module) {
-  std::string folder = module.substr(0, module.rfind('.') == module.npos ? 0 : module.rfind('.'));
-  const std::string before = folder.empty() ? "" : folder + ".";
-  std::replace(folder.begin(), folder.end(), '.', '/');
-  std::vector<std::string> known;
-  for (const std::filesystem::path& root : roots) {
-    std::error_code error;
-    for (const auto& item : std::filesystem::directory_iterator(root / folder, error))
-      if (item.path().extension() == ".lua") known.push_back(before + item.path().stem().string());
-  }
-  std::sort(known.begin(), known.end());
-  return nearest_name(module, known);
-}
-
-}  // namespace
-
-void Sandbox::require(lua_State* state, const std::string& module) {
+// The module's file below a folder of modules. InputError where the name is none.
+std::string module_path(const std::string& module) {
   const bool well_formed =
       !module.empty() && module.front() != '.' && module.back() != '.' &&
       module.find("..") == module.npos &&
@@ -373,8 +356,38 @@ void Sandbox::require(lua_State* state, const std::string& module) {
                      "\"mission.film\"");
   }
   std::string relative = module;
-  for (char& letter : relative) letter = letter == '.' ? '/' : letter;
-  relative += ".lua";
+  std::replace(relative.begin(), relative.end(), '.', '/');
+  return relative + ".lua";
+}
+
+}  // namespace
+
+std::filesystem::path Sandbox::module_file(const std::string& module) const {
+  const std::string relative = module_path(module);
+  for (const std::filesystem::path& folder : module_folders_) {
+    std::error_code error;
+    const auto file = std::filesystem::canonical(folder / relative, error);
+    if (!error) return file;
+  }
+  return {};
+}
+
+std::string Sandbox::nearest_module(const std::string& module) const {
+  std::string folder = module.substr(0, module.rfind('.') == module.npos ? 0 : module.rfind('.'));
+  const std::string before = folder.empty() ? "" : folder + ".";
+  std::replace(folder.begin(), folder.end(), '.', '/');
+  std::vector<std::string> known;
+  for (const std::filesystem::path& root : module_folders_) {
+    std::error_code error;
+    for (const auto& item : std::filesystem::directory_iterator(root / folder, error))
+      if (item.path().extension() == ".lua") known.push_back(before + item.path().stem().string());
+  }
+  std::sort(known.begin(), known.end());
+  return nearest_name(module, known);
+}
+
+void Sandbox::require(lua_State* state, const std::string& module) {
+  const std::string relative = module_path(module);
   std::string looked;
   for (const std::filesystem::path& folder : module_folders_) {
     std::error_code error;
@@ -411,7 +424,7 @@ void Sandbox::require(lua_State* state, const std::string& module) {
     lua_remove(state, -2);
     return;
   }
-  const std::string nearest = nearest_module(module_folders_, module);
+  const std::string nearest = nearest_module(module);
   throw InputError("module '" + module + "' not found" +
                    (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") + "; looked for " +
                    looked);

@@ -103,6 +103,10 @@ class Sandbox {
   // its limit of memory leaves.
   void claim(lua_State* state, std::size_t bytes);
   void require(lua_State* state, const std::string& module);
+  // The file that `require` would read; empty where there is none.
+  std::filesystem::path module_file(const std::string& module) const;
+  // The module of the same folder whose name is nearest; empty where none is near.
+  std::string nearest_module(const std::string& module) const;
   void keep_defect(std::exception_ptr defect) { defect_ = std::move(defect); }
 
  private:

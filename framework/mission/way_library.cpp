@@ -124,7 +124,8 @@ int plan_way(lua_State* state) {
     lua_pushnil(state);
     push_text(state, std::string(to_string(report.status)) +
                          (report.message.empty() ? "" : ": " + report.message));
-    return 2;
+    push_text(state, to_string(report.status));
+    return 3;
   }
   Value points = Value::list();
   for (const Eigen::Vector3d& p : found.path.points) points.push_back(list_of(p));

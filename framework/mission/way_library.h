@@ -13,8 +13,8 @@ inline constexpr BoundField kCorridorWay[] = {{"way", "number[][]", "places, m, 
 
 // problem:plan_way{from =, to =, planner =, more =, excluded = {way, ...}, tries =}: {{x, y, z},
 // ...}, a free way that keeps the margin, the distance to bystanders that stand still, and `more`
-// metres, and goes through a passage that none of the excluded ways has; or nothing and why there
-// is none.
+// metres, and goes through a passage that none of the excluded ways has; or nil, why there is none
+// in words, and the planner's status: start_blocked, goal_blocked, iteration_limit, ...
 int plan_way(lua_State* state);
 
 // problem:grow_corridor{way = {{x, y, z}, ...}}: {{from =, to =, lower =, size =}, ...}, free boxes

@@ -1,5 +1,6 @@
 -- What is drawn: strokes from a text, an SVG picture or points, placed in the world and joined.
 local fonts = require "mission.stroke_font"
+local paths = require "mission.paths"
 local svg = require "mission.svg"
 
 local M = {}
@@ -74,7 +75,7 @@ function M.without_repeats(strokes)
     local points = { stroke[1] }
     for i = 2, #stroke do
       local p, q = points[#points], stroke[i]
-      if (p[1] - q[1]) ^ 2 + (p[2] - q[2]) ^ 2 > 1e-12 then points[#points + 1] = q end
+      if lapwing.norm(lapwing.vector(p) - q) > 1e-6 then points[#points + 1] = q end
     end
     if #points > 1 then kept[#kept + 1] = points end
   end
@@ -94,28 +95,16 @@ function M.placed(strokes, unit, o)
   local scale = o.height / (unit or (high - low > 1e-6 * (right - left) and high - low)
                             or right - left)
   local yaw = math.rad(o.view_yaw_deg)
-  local across = { math.sin(yaw), -math.cos(yaw) }  -- to the right of who looks that way
+  local across = lapwing.vector(math.sin(yaw), -math.cos(yaw), 0)  -- right of who looks that way
   local world = {}
   for i, stroke in ipairs(strokes) do
     world[i] = {}
     for k, p in ipairs(stroke) do
-      local u = scale * (p[1] - (left + right) / 2)
-      world[i][k] = { o.origin[1] + u * across[1], o.origin[2] + u * across[2],
-                      o.origin[3] + scale * (p[2] - low) }
+      local u, up = scale * (p[1] - (left + right) / 2), scale * (p[2] - low)
+      world[i][k] = u * across + { 0, 0, up } + o.origin
     end
   end
   return world
-end
-
--- x, y, z of each point in turn.
-function M.flat(points)
-  local numbers = {}
-  for _, p in ipairs(points) do table.move(p, 1, 3, #numbers + 1, numbers) end
-  return numbers
-end
-
-local function distance(a, b)
-  return math.sqrt((a[1] - b[1]) ^ 2 + (a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2)
 end
 
 -- One path through all strokes, and per stroke the shares of its length that are lit.
@@ -123,7 +112,7 @@ function M.joined(strokes)
   local points, lit, length = {}, {}, 0
   for i, stroke in ipairs(strokes) do
     for k, p in ipairs(stroke) do
-      if #points > 0 then length = length + distance(points[#points], p) end
+      if #points > 0 then length = length + paths.distance(points[#points], p) end
       points[#points + 1] = p
       if k == 1 then lit[i] = { length } end
     end

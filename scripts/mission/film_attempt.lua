@@ -1,4 +1,5 @@
 -- One attempt at a film: request in, outcome out; nothing else is read or changed.
+local checks = require "mission.checks"
 local problem = require "mission.film_problem"
 local requests = require "mission.film_request"
 
@@ -44,14 +45,11 @@ function M.pursue(run, request, strategy)
   return M.follow(run, M.attempt(run, request), strategy)
 end
 
--- Whether a check of the certificate is one that fails it.
-function M.fails(check) return check.required and not check.skipped and not check.pass end
-
 -- The checks that an outcome fails, by name; and the first of them.
 function M.failed_checks(outcome)
   local failed, first = {}, nil
   for _, check in ipairs(outcome.verdict.checks) do
-    if M.fails(check) then
+    if checks.fails(check) then
       failed[check.name] = check
       first = first or check
     end

@@ -2,6 +2,7 @@
 -- the subject that the gimbal cannot see, the script's constraint that is in the way. What the
 -- failing film alone does not tell is asked of the same film with less held.
 local attempts = require "mission.film_attempt"
+local checks = require "mission.checks"
 local own = require "mission.own_terms"
 local problem = require "mission.film_problem"
 local requests = require "mission.film_request"
@@ -62,14 +63,11 @@ end
 -- The first of the script's own constraints that an outcome breaks, as a sentence; and whether it
 -- breaks nothing else.
 local function broken_constraint(options, outcome)
-  local checks, sentence, alone = own.checks(options), nil, true
-  if options.speed_limit then checks[own.check("speed_limit")] = true end
-  local number = 0
+  local owned, sentence, alone = own.checks(options), nil, true
+  if options.speed_limit then owned[own.check("speed_limit")] = true end
   for _, check in ipairs(outcome.verdict.checks) do
-    if attempts.fails(check) then
-      number = number + 1  -- of the sentences, which are those of the failed checks in turn
-      if not checks[check.name] then alone = false
-      else sentence = sentence or outcome.verdict.failures[number] end
+    if checks.fails(check) then
+      if not owned[check.name] then alone = false else sentence = sentence or check.line end
     end
   end
   return sentence, alone

@@ -21,9 +21,7 @@ local function boundary(options, stretch, yaw)
   for _, name in ipairs { "start", "finish" } do
     state[name] = options[name]
     local velocity = options[name .. "_velocity"]
-    if velocity then
-      state[name .. "_velocity"] = tracks.list(lapwing.vector(velocity) / stretch)
-    end
+    if velocity then state[name .. "_velocity"] = lapwing.vector(velocity) / stretch end
   end
   return state
 end

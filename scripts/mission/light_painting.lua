@@ -7,6 +7,7 @@
 -- `origin`, the middle of their lower edge; spectators look along `view_yaw_deg`.
 local drawings = require "mission.drawings"
 local order = require "mission.stroke_order"
+local paths = require "mission.paths"
 local point_mass = require "mission.point_mass"
 
 local M = {}
@@ -72,12 +73,8 @@ local function places_of(timed, count, duration)
     while k < #timed.times - 1 and timed.times[k + 1] < time do k = k + 1 end
     local from, to = timed.times[k], timed.times[k + 1]
     local share = to > from and math.min(1, (time - from) / (to - from)) or 1
-    local p = {}
-    for axis = 1, 3 do
-      local a, b = timed.points[3 * (k - 1) + axis], timed.points[3 * k + axis]
-      p[axis] = a + share * (b - a)
-    end
-    places[i + 1] = { time = time, value = p }
+    local a, b = lapwing.vector(paths.point(timed.points, k)), paths.point(timed.points, k + 1)
+    places[i + 1] = { time = time, value = a + share * (b - a) }
   end
   return places
 end
@@ -125,7 +122,7 @@ local function plan_of(run, strokes, lights, solution, figures, notes)
   local yaw = math.rad(run.options.view_yaw_deg)
   local task = { strokes = {}, drawing_view = { math.cos(yaw), math.sin(yaw), 0 },
                  drawing_tolerance = tolerance_of(run.options) }
-  for i, stroke in ipairs(strokes) do task.strokes[i] = { points = drawings.flat(stroke) } end
+  for i, stroke in ipairs(strokes) do task.strokes[i] = { points = paths.flat(stroke) } end
   return run:plan { solution = solution, task = task, lights = lights,
                     figures = figures, notes = notes }
 end
@@ -167,7 +164,7 @@ local function painted(run)
   local share, best = 1, nil
   while true do
     local timed = run:time_path {
-      points = drawings.flat(path), spacing = SPACING, rounding = o.rounding,
+      points = paths.flat(path), spacing = SPACING, rounding = o.rounding,
       speed = share * math.min(o.speed, fastest),
       acceleration = share ^ 2 * math.min(o.acceleration, strongest),
     }

@@ -2,6 +2,7 @@
 -- stands in the way. The passage of the leg that fails is tried again within a corridor of free
 -- boxes; if that fails as well, another passage is planned for the leg.
 local attempts = require "mission.film_attempt"
+local paths = require "mission.paths"
 local requests = require "mission.film_request"
 local ways = require "mission.ways"
 
@@ -35,7 +36,7 @@ local NOTHING = { count = 0, number = {}, entries = {}, notes = {} }
 -- The memory with one more entry on what was tried, and a sentence where it failed.
 local function with_entry(memory, outcome, leg, number, why)
   local way = outcome.legs[leg].way
-  local entry = { leg = leg, number = number, length = way and ways.length(way) or 0, why = why,
+  local entry = { leg = leg, number = number, length = way and paths.length(way) or 0, why = why,
                   corridor = outcome.request.corridor, certified = outcome.holds }
   local entries = table.move(memory.entries, 1, #memory.entries, 1, {})
   local notes = table.move(memory.notes, 1, #memory.notes, 1, {})

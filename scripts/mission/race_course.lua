@@ -1,5 +1,7 @@
 -- A course: the gates in the order of flight, laps written out, with everything checked that can be
 -- checked before a flight is planned.
+local paths = require "mission.paths"
+
 local course = {}
 
 local SHAPES = { ball = { "radius" }, rectangle = { "width", "height" },
@@ -7,11 +9,6 @@ local SHAPES = { ball = { "radius" }, rectangle = { "width", "height" },
                  hexagon = { "radius", "side" } }
 local MOST = 10000      -- gates, laps together
 local SAME = 1e-6       -- m, nearer than this two places are one
-
-local function distance(a, b)
-  return math.sqrt((a[1] - b[1]) ^ 2 + (a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2)
-end
-course.distance = distance
 
 local function finite(x) return math.type(x) ~= nil and x == x and math.abs(x) < 1e6 end
 
@@ -89,12 +86,9 @@ end
 
 -- The place at a share of the tunnel, from -0.5 to 0.5.
 function course.place(gate, share)
-  local p = {}
-  for i = 1, 3 do
-    local along = gate.direction and gate.direction[i] * gate.tunnel_length or 0
-    p[i] = gate.position[i] + share * along
-  end
-  return p
+  local place = lapwing.vector(gate.position)
+  if not gate.direction then return place end
+  return place + share * (gate.tunnel_length * lapwing.vector(gate.direction))
 end
 
 local function end_of(fail, given, path)
@@ -115,7 +109,7 @@ end
 local function check_apart(fail, gates, each)
   for i = 2, #gates do
     local a, b = gates[i - 1], gates[i]
-    if a.direction and b.direction and distance(a.position, b.position) < SAME then
+    if a.direction and b.direction and paths.distance(a.position, b.position) < SAME then
       fail(string.format("gates[%d]", (i - 1) % each + 1), string.format(
         "gates '%s' and '%s' stand inside each other, at %g %g %g", a.name, b.name,
         a.position[1], a.position[2], a.position[3]))

@@ -1,6 +1,7 @@
 -- The flight of a course: planned in rounds until it is certified, each with more stages where
 -- those of a leg are too coarse, and with slower forces where the controller strays.
-local courses = require "mission.race_course"
+local checks = require "mission.checks"
+local paths = require "mission.paths"
 local problem = require "mission.race_problem"
 local search = require "mission.race_search"
 
@@ -9,6 +10,7 @@ local M = {}
 local NEARLY = 1e-4     -- first barrier parameter from there
 local SOFTER = 8        -- times the weight of smoothness where the controller cannot follow
 local FOLLOWED = 100    -- times that weight where it has to, to begin with
+local TRACKING = { closed_loop = true, closed_loop_yaw = true }  -- checks of the controller
 local COARSE = 0.7      -- share of the allowed defect beyond which a leg gets twice the stages
 
 function M.solved(solution)
@@ -27,8 +29,7 @@ end
 local function failing_legs(certificate, legs)
   local found = {}
   for _, check in ipairs(certificate.checks) do
-    local tracking = check.name:find("closed_loop", 1, true)
-    if check.pass == false and not check.skipped and not tracking and check.at then
+    if check.pass == false and not check.skipped and not TRACKING[check.name] and check.at then
       local clock = 0
       for i, time in ipairs(legs) do
         if check.at >= clock - 1e-6 and check.at <= clock + time + 1e-6 then found[i] = true end
@@ -42,10 +43,7 @@ end
 -- Whether the controller cannot follow: forces then change less quickly in the next round.
 function M.strays(certificate)
   for _, check in ipairs(certificate.checks) do
-    if check.name:find("closed_loop", 1, true) and check.required and check.pass == false
-       and not check.skipped then
-      return true
-    end
+    if TRACKING[check.name] and checks.fails(check) then return true end
   end
   return false
 end
@@ -67,10 +65,7 @@ local function refine(made, solution, certificate)
 end
 
 local function check_battery(run, made, vehicle)
-  local length = 0
-  for i = 2, #made.points do
-    length = length + courses.distance(made.points[i - 1], made.points[i])
-  end
+  local length = paths.length(made.points)
   local speed = math.sqrt(vehicle.speed_across ^ 2
                           + math.max(vehicle.climb_speed, vehicle.descent_speed) ^ 2)
   if length / speed > vehicle.flight_time then

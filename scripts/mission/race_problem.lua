@@ -1,6 +1,7 @@
 -- A course as a trajectory problem: legs from gate to gate, each with a step of its own, limits,
 -- gates, and a straight first guess (thesis 3.7.2).
 local courses = require "mission.race_course"
+local paths = require "mission.paths"
 local point_mass = require "mission.point_mass"
 
 local problem = {}
@@ -27,9 +28,8 @@ end
 
 -- Seconds from rest to rest along a straight line, at a share of speed and acceleration.
 local function straight_time(from, to, limits)
-  local across = math.sqrt((to[1] - from[1]) ^ 2 + (to[2] - from[2]) ^ 2)
-  local up = to[3] - from[3]
-  local d = courses.distance(from, to)
+  local way = lapwing.vector(to) - from
+  local across, up, d = lapwing.norm { way.x, way.y }, way.z, lapwing.norm(way)
   local slowest = math.max(across / limits.across, up > 0 and up / limits.up or -up / limits.down)
   local speed, a = PROFILE * d / slowest, PROFILE * limits.acceleration
   if d <= speed * speed / a then return 2 * math.sqrt(d / a) end
@@ -41,7 +41,7 @@ end
 local function flowing_times(made, course, limits)
   local a, length, ends = GUESS * limits.acceleration, 0, { 0 }
   for i = 2, #made.points do
-    length = length + courses.distance(made.points[i - 1], made.points[i])
+    length = length + paths.distance(made.points[i - 1], made.points[i])
     ends[i] = length
   end
   local cruise = math.min(limits.across, limits.up, limits.down,
@@ -66,7 +66,7 @@ local function stations(course)
   local made = { points = {}, at = {} }
   local function go(place)
     local last = made.points[#made.points]
-    if not last or courses.distance(last, place) > SAME then
+    if not last or paths.distance(last, place) > SAME then
       made.points[#made.points + 1] = place
     end
     return #made.points - 1

@@ -3,13 +3,10 @@ local M = {}
 
 -- From `position` the camera looks at the middle of the box `region`, no higher than `pitch` (rad).
 function M.looking_in(position, region, pitch)
-  local to = {}
-  for axis = 1, 3 do
-    to[axis] = (region.lower[axis] + region.upper[axis]) / 2 - position[axis]
-  end
-  local across = math.sqrt(to[1] * to[1] + to[2] * to[2])
-  return { position = position, yaw = math.atan(to[2], to[1]),
-           pitch = math.min(math.atan(to[3], across), pitch) }
+  local to = (lapwing.vector(region.lower) + region.upper) / 2 - position
+  local across = lapwing.norm { to.x, to.y }
+  return { position = position, yaw = math.atan(to.y, to.x),
+           pitch = math.min(math.atan(to.z, across), pitch) }
 end
 
 -- Round the region, on an ellipse `reach` metres wider than it on every side.

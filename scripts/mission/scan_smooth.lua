@@ -1,6 +1,7 @@
 -- Legs of a tour by a trajectory solver, in place of pure pursuit: from rest to rest, with little
 -- jerk, past the corners of ways round obstacles instead of stopping at them. Each leg is a problem
 -- of its own.
+local paths = require "mission.paths"
 local point_mass = require "mission.point_mass"
 
 local M = {}
@@ -20,7 +21,7 @@ local function places_of(run, vehicle, leg, duration)
   local length = 0
   for i = 4, count do length = length + math.abs(leg.points[i] - leg.points[i - 3]) end
   if length == 0 then
-    local there = { leg.points[1], leg.points[2], leg.points[3] }
+    local there = paths.point(leg.points, 1)
     return { { time = 0, value = there }, { time = duration, value = there } }
   end
   local timed = run:time_path { points = leg.points, spacing = SPACING, rounding = flight.stray,
@@ -31,8 +32,7 @@ local function places_of(run, vehicle, leg, duration)
   for i, t in ipairs(timed.times) do
     local time, last = slower * t, places[#places]
     if not last or time >= last.time + PLACES then
-      places[#places + 1] = { time = time, value = { timed.points[3 * i - 2],
-                              timed.points[3 * i - 1], timed.points[3 * i] } }
+      places[#places + 1] = { time = time, value = paths.point(timed.points, i) }
     end
   end
   return places
@@ -42,9 +42,8 @@ local function solved(run, vehicle, leg, duration, pull)
   local steps = math.max(FEWEST, math.ceil(duration / STEP))
   local p = run:problem { vehicle = vehicle, duration = duration, step = duration / steps,
                           environment = {} }
-  local places, n = places_of(run, vehicle, leg, duration), #leg.points
-  local first = { leg.points[1], leg.points[2], leg.points[3] }
-  local last = { leg.points[n - 2], leg.points[n - 1], leg.points[n] }
+  local places = places_of(run, vehicle, leg, duration)
+  local first, last = paths.point(leg.points, 1), paths.point(leg.points, #leg.points // 3)
   p:add_cost { type = "keyframe", name = "way", weight = pull / #places, keyframes = places }
   point_mass.add(p, vehicle, { smoothness = { name = "jerk", order = 3, weight = JERK },
                                yaw = { weight = 0.02 }, inputs = { across = "extent" } })

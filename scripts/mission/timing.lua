@@ -3,7 +3,7 @@
 -- wishes, and slower until the vehicle follows within the tolerance.
 local attempts = require "mission.film_attempt"
 local requests = require "mission.film_request"
-local path_times = require "mission.path_times"
+local paths = require "mission.paths"
 local times = require "mission.keyframe_times"
 
 local M = {}
@@ -63,7 +63,7 @@ local function places_of(timed, stops, chosen)
     time = math.min(time, chosen[#chosen])
     if time >= next_time or j == #timed.times then
       places[#places + 1] = { time = time,
-                              value = { table.unpack(timed.points, 3 * j - 2, 3 * j) } }
+                              value = paths.point(timed.points, j) }
       next_time = time + PLACES
     end
   end
@@ -79,12 +79,14 @@ local function at_share(run, request, memory)
   local timed = run:time_path { points = memory.path, spacing = SPACING, rounding = ROUNDING,
                                 vehicle = request.vehicle, share = memory.share,
                                 speed = run.options.speed_limit }
-  local stops = path_times.stops(request.keyframes, timed)
+  local positions = {}
+  for i, k in ipairs(request.keyframes) do positions[i] = k.position end
+  local stops = run:keyframe_stops { points = timed.points, keyframes = paths.flat(positions) }
   local legs = {}
   for i = 1, #stops - 1 do
     legs[i] = math.max(SHORTEST, timed.times[stops[i + 1]] - timed.times[stops[i]])
   end
-  local chosen, refused = path_times.cheapest(memory.wishes, legs)
+  local chosen, refused = run:keyframe_times { wishes = memory.wishes, legs = legs }
   if not chosen then
     if memory.share < 1 then return nil end
     local least = 0

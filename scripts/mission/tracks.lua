@@ -33,17 +33,15 @@ function tracks.checked(run, list, stretch, option, word)
   return result, by_name
 end
 
--- A vector as options and problems have it.
-function tracks.list(v) return { v.x, v.y, v.z } end
-
--- Position in a list of {time, position}: straight in between, at rest outside.
+-- Position in a list of {time, position}: straight in between, at rest outside. A
+-- list of numbers or a vector.
 function tracks.at(track, time)
   if time <= track[1].time then return track[1].position end
   for i = 2, #track do
     local a, b = track[i - 1], track[i]
     if time <= b.time then
       local way = lapwing.vector(b.position) - a.position
-      return tracks.list((time - a.time) / (b.time - a.time) * way + a.position)
+      return (time - a.time) / (b.time - a.time) * way + a.position
     end
   end
   return track[#track].position

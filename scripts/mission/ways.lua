@@ -6,26 +6,19 @@
 --   why       there is none: the planner's answer
 --   failed    ways through passages that came to nothing, which this one avoids
 --   corridor  boxes about the way, once a corridor was asked for
+local paths = require "mission.paths"
+
 local M = {}
 
 -- m, that a planned way keeps beside the margin; less where an end leaves no more room.
 local MORE = { 0.3, 0.1, 0 }
 local TRIES = 20   -- of the planner, to find another passage
 
--- m, between two places.
-local function distance(a, b) return lapwing.norm(lapwing.vector(b) - a) end
-
-function M.length(way)
-  local length = 0
-  for i = 2, #way do length = length + distance(way[i - 1], way[i]) end
-  return length
-end
-
 -- The places between two keyframes on the planned way, at even speed.
 local function between(way, from, to)
-  local length, places, passed = M.length(way), {}, 0
+  local length, places, passed = paths.length(way), {}, 0
   for i = 2, #way - 1 do
-    passed = passed + distance(way[i - 1], way[i])
+    passed = passed + paths.distance(way[i - 1], way[i])
     places[#places + 1] = { time = from + (to - from) * passed / length, position = way[i] }
   end
   return places
@@ -44,11 +37,11 @@ end
 
 -- The leg with a way, or with why there is none.
 local function planned_leg(p, leg, from, to, planner)
-  local way, why
+  local way, why, status
   for _, more in ipairs(MORE) do
-    way, why = p:plan_way { from = from, to = to, more = more, planner = planner,
-                            excluded = leg.failed, tries = TRIES }
-    if not string.find(why or "", "_blocked") then break end
+    way, why, status = p:plan_way { from = from, to = to, more = more, planner = planner,
+                                    excluded = leg.failed, tries = TRIES }
+    if status ~= "start_blocked" and status ~= "goal_blocked" then break end
   end
   return { failed = leg.failed, way = way, why = why }
 end
