@@ -10,6 +10,7 @@
 #include "framework/app/plan_figures.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
+#include "framework/app/run_additions.h"
 #include "framework/app/run_target.h"
 #include "framework/app/terminal.h"
 #include "framework/core/files.h"
@@ -18,10 +19,6 @@
 #include "framework/core/visible_text.h"
 #include "framework/export/exporter.h"
 #include "framework/export/flight_report.h"
-#include "framework/export/light_painting.h"
-#include "framework/export/race_report.h"
-#include "framework/export/scan_report.h"
-#include "framework/geometry/png.h"
 
 namespace lapwing {
 
@@ -34,17 +31,15 @@ struct RunOutcome {
   Certificate certificate = {};
   std::string status = {};  // ok, not_certified, infeasible, failed, cancelled
   RunTarget& target;
-  Value provenance = {};                          // what the certificate is about
-  double seconds = 0;                             // wall clock, all of it
-  std::optional<std::string> long_exposure = {};  // PNG
-  std::vector<RacedPilot> raced = {};
-  std::string not_raced = {};  // why players did not fly; empty: they did, or there are none
+  Value provenance = {};  // what the certificate is about
+  double seconds = 0;     // wall clock, all of it
+  std::vector<RunAddition> additions = {};
 };
 
-// With what only the simulator of a scan knows, which is told and no part of the plan.
+// With what stands in no plan.
 std::vector<std::string> told_notes(const MissionResult& result) {
   std::vector<std::string> all = result.notes;
-  if (result.scan && result.scan->truth) all.push_back(truth_in_words(*result.scan));
+  all.insert(all.end(), result.told.begin(), result.told.end());
   return all;
 }
 
@@ -108,9 +103,8 @@ Value json_of(const RunOutcome& outcome, const Invocation& invocation) {
     object.set("notes", Value(Value::List(all.begin(), all.end())));
   if (result.block.is_map())
     object.set(result.block_name.empty() ? result.plan.kind : result.block_name, result.block);
-  if (!outcome.raced.empty()) object.set("game", to_value(outcome.raced));
-  if (!outcome.not_raced.empty())
-    object.set("game", Value::map()).set("not_flown", outcome.not_raced);
+  for (const RunAddition& addition : outcome.additions)
+    if (!addition.key.empty()) object.set(addition.key, addition.figures);
   return object;
 }
 
@@ -144,10 +138,6 @@ std::vector<std::string> findings(const RunOutcome& outcome,
   return said_once(lines);
 }
 
-std::string not_raced_words(const RunOutcome& outcome) {
-  return "the players did not fly: " + outcome.not_raced;
-}
-
 void print_summary(const RunOutcome& outcome, bool verbose) {
   const MissionResult& result = outcome.result;
   char line[160];
@@ -166,9 +156,10 @@ void print_summary(const RunOutcome& outcome, bool verbose) {
   if (outcome.status == "ok" && result.report.status == SolveStatus::iteration_limit)
     std::cout << "  the solver came to its iteration limit: every check holds, a slightly better "
                  "flight may exist\n";
-  std::cout << visible_text(race_result(outcome.raced));
-  if (!outcome.not_raced.empty())
-    std::cout << "  " << visible_text(not_raced_words(outcome)) << "\n";
+  for (const RunAddition& addition : outcome.additions) {
+    std::cout << visible_text(addition.summary);
+    if (!addition.failure.empty()) std::cout << "  " << visible_text(addition.failure) << "\n";
+  }
   std::cout << "  report: " << visible_line((outcome.target.folder() / "report.html").string())
             << "\n";
   if (const std::string old = outcome.target.old_run_in_words(); !old.empty())
@@ -189,23 +180,11 @@ std::string report_page(const RunOutcome& outcome) {
     findings.text = text;
     report.sections.insert(report.sections.begin(), Section{"Findings", {findings}});
   }
-  if (outcome.long_exposure) {
-    Image image{*outcome.long_exposure, "What a camera with an open shutter sees of the flight"};
-    report.sections.insert(report.sections.begin() + 1, Section{"Long exposure", {image}});
-  }
-  if (outcome.result.scan) {
-    const std::vector<Section> scan = scan_sections(outcome.result.plan, *outcome.result.scan);
-    report.sections.insert(report.sections.begin() + 1, scan.begin(), scan.end());
-  }
-  report.sections.insert(report.sections.begin() + 1, outcome.result.sections.begin(),
-                         outcome.result.sections.end());
-  if (!outcome.not_raced.empty())
-    report.sections.insert(report.sections.begin() + 1,
-                           Section{"Game", {TextBlock{not_raced_words(outcome)}}});
-  if (!outcome.raced.empty()) {
-    std::vector<Section> race = race_sections(outcome.result.plan, outcome.raced, {});
-    report.sections.insert(report.sections.begin() + 1, race.begin(), race.end());
-  }
+  std::vector<Section> own;
+  for (const RunAddition& addition : outcome.additions)
+    own.insert(own.end(), addition.sections.begin(), addition.sections.end());
+  own.insert(own.end(), outcome.result.sections.begin(), outcome.result.sections.end());
+  report.sections.insert(report.sections.begin() + 1, own.begin(), own.end());
   return render_html(report);
 }
 
@@ -219,11 +198,13 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
   files.report = report_page(outcome);
   logging::info("status " + outcome.status);
   for (const std::string& note : all_notes(outcome.result)) logging::info(note);
-  if (!outcome.not_raced.empty()) logging::info(not_raced_words(outcome));
+  for (const RunAddition& addition : outcome.additions) {
+    if (!addition.failure.empty()) logging::info(addition.failure);
+    if (addition.long_exposure) files.long_exposure = addition.long_exposure;
+  }
   for (const Check& check : outcome.certificate.failures())
     logging::info("fails: " + to_line(check));
   files.log = capture.text();
-  files.long_exposure = outcome.long_exposure;
   for (const std::string& name : outcome.result.obstacle_files) {
     std::string bytes = read_file(outcome.result.obstacle_folder / name, kLargestObstacle);
     if (name == "map.ot")
@@ -232,43 +213,6 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
       files.obstacles.emplace_back(name, std::move(bytes));
   }
   outcome.target.write(files);
-}
-
-// Of the flight under control.
-std::string photograph(const Plan& plan) {
-  constexpr int kWidth = 1000;  // pixels
-  const FlownPath flown = fly(plan.trajectory, vehicle_from_value(plan.vehicle));
-  return encode_png(long_exposure(plan, flown, kWidth));
-}
-
-std::vector<RacedPilot> flown_by_pilots(const RunOutcome& outcome, const CancellationToken& token) {
-  const Plan& plan = outcome.result.plan;
-  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
-  std::vector<RacedPilot> raced;
-  const RaceFlightLimits limits = race_limits(plan.trajectory, plan.task.gates);
-  for (const Pilot& pilot : outcome.result.pilots) {
-    RaceFlight flight = fly_race(plan.trajectory, vehicle, pilot, limits, &token);
-    RaceScore score = score_of(flight, plan.trajectory, plan.task.gates, pilot.handicap);
-    raced.push_back({pilot, std::move(flight), std::move(score)});
-  }
-  return raced;
-}
-
-// Whatever comes of the game, the plan was computed and is kept.
-void fly_pilots(RunOutcome& outcome, const CancellationToken& token) {
-  if (outcome.result.pilots.empty()) return;
-  const Check* document = outcome.certificate.find("document");
-  try {
-    if (token.cancelled()) throw Cancelled();
-    if (document && !document->pass)
-      outcome.not_raced = "the plan does not hold together: " + document->detail;
-    else
-      outcome.raced = flown_by_pilots(outcome, token);
-  } catch (const Cancelled&) {
-    outcome.not_raced = "interrupted; fly them with lapwing race PLAN --pilot LOG";
-  } catch (const Error& error) {
-    outcome.not_raced = error.what();
-  }
 }
 
 void complete_plan(RunOutcome& outcome) {
@@ -310,8 +254,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   progress.report(-1, "");
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome);
-  if (!outcome.result.plan.lights.empty()) outcome.long_exposure = photograph(outcome.result.plan);
-  fly_pilots(outcome, interruption.token());
+  outcome.additions = run_additions(outcome.result, outcome.certificate, interruption.token());
   write_files(outcome, registry, capture);
   progress.clear();
   outcome.seconds = steady_seconds() - begin;
@@ -325,9 +268,11 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
     for (const std::string& finding : findings(outcome, {}))
       std::cerr << "\n  " << visible_text(finding);
     std::cerr << std::endl;
-  } else if (!outcome.not_raced.empty()) {
-    std::cerr << "lapwing: " << visible_line(outcome.result.plan.mission) << ": "
-              << visible_text(not_raced_words(outcome)) << std::endl;
+  } else {
+    for (const RunAddition& addition : outcome.additions)
+      if (!addition.failure.empty())
+        std::cerr << "lapwing: " << visible_line(outcome.result.plan.mission) << ": "
+                  << visible_text(addition.failure) << std::endl;
   }
   return exit_status_of(outcome.status);
 }

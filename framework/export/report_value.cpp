@@ -243,16 +243,20 @@ bool decode_base64(const std::string& text, std::string& bytes) {
   return true;
 }
 
-Image image_block(Fields& fields) {
+Image image_block(Fields& fields, const ReadImage& read) {
   Image out;
   out.caption = fields.text("caption");
+  if (read && fields.has("file")) {
+    out.png = read(fields.text("file"));
+    return out;
+  }
   if (!decode_base64(fields.text("png_base64"), out.png)) {
     fields.add_error("png_base64", "expected the bytes of a PNG file in padded base64");
   }
   return out;
 }
 
-Block block(Fields& fields) {
+Block block(Fields& fields, const ReadImage& read_image) {
   static const std::vector<std::string> kTypes = {"text", "facts", "table", "chart",
                                                   "path", "scene", "image"};
   // With an unknown type every other key would be unknown as well; one error says enough.
@@ -277,7 +281,7 @@ Block block(Fields& fields) {
       case 5:
         return scene_block(fields);
       default:
-        return image_block(fields);
+        return image_block(fields, read_image);
     }
   };
   Block out = read();
@@ -285,11 +289,11 @@ Block block(Fields& fields) {
   return out;
 }
 
-std::vector<Section> sections(Fields& fields, const char* name) {
+std::vector<Section> sections(Fields& fields, const char* name, const ReadImage& read_image) {
   std::vector<Section> out;
   for (Fields& f : tables(fields, name, true)) {
     Section section{f.text("title"), {}};
-    for (Fields& b : tables(f, "blocks", true)) section.blocks.push_back(block(b));
+    for (Fields& b : tables(f, "blocks", true)) section.blocks.push_back(block(b, read_image));
     f.finish();
     out.push_back(std::move(section));
   }
@@ -314,20 +318,21 @@ Report report_from_value(const Value& value) {
   report.subtitle = fields.optional_text("subtitle");
   report.status = fields.optional_text("status");
   report.status_mark = mark(fields);
-  report.sections = sections(fields, "sections");
+  report.sections = sections(fields, "sections", {});
   fields.finish();
   errors.throw_if_any();
   require_drawable(report, value.origin());
   return report;
 }
 
-std::vector<Section> sections_from_value(const Value& value, const std::string& key_path) {
+std::vector<Section> sections_from_value(const Value& value, const std::string& key_path,
+                                         const ReadImage& read_image) {
   Diagnostics errors;
   Report report;
   Value holder;
   holder.set(key_path, value);
   Fields fields(holder, "", errors);
-  report.sections = sections(fields, key_path.c_str());
+  report.sections = sections(fields, key_path.c_str(), read_image);
   errors.throw_if_any();
   require_drawable(report, value.origin());
   return report.sections;

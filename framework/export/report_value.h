@@ -10,7 +10,7 @@
 //            markers: label, x; spans: label, from, to
 //     path   title, projection (above, from_south, from_east), and a drawing
 //     scene  title, and a drawing
-//     image  png_base64, caption
+//     image  caption, and png_base64 or, where files may be read, file
 //   axis     label, unit, whole, logarithmic (of y only)
 //   drawing  lines: name, points (triples), along, values; points: label, position;
 //            spheres: name, center, radius; boxes: name, lower, upper; zones: name, corners
@@ -21,6 +21,7 @@
 // rest may lack. Units, frames and rules are those of report.h; in y and values null is a gap.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,11 @@ namespace lapwing {
 // first contradiction that render_html would refuse: what was read can be rendered.
 Report report_from_value(const Value& value);
 
-// A list of sections; `key_path` names it in messages.
-std::vector<Section> sections_from_value(const Value& value, const std::string& key_path);
+// The bytes of a file that an image names; throws InputError.
+using ReadImage = std::function<std::string(const std::string& name)>;
+
+// A list of sections; `key_path` names it in messages. Null: images name no files.
+std::vector<Section> sections_from_value(const Value& value, const std::string& key_path,
+                                         const ReadImage& read_image = {});
 
 }  // namespace lapwing

@@ -195,8 +195,13 @@ MissionResult Mission::plan() {
     result.pilots = planned->pilots;
     result.block = planned->block;
     result.block_name = planned->block_name;
-    result.scan = planned->scan;
+    result.told = planned->told;
     result.sections = planned->sections;
+    if (planned->late_sections) {
+      const Sandbox::ClockPause pause(impl.sandbox);
+      for (Section& section : planned->late_sections(result.plan))
+        result.sections.push_back(std::move(section));
+    }
   });
   result.solve_seconds = impl.run.solve_seconds;
   result.obstacle_folder = impl.run.obstacles.folder();

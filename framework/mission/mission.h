@@ -31,8 +31,8 @@ struct MissionResult {
   Value block;                            // the kind's own figures, null or a map
   std::string block_name = {};            // of them in the answer; "": the kind
   std::vector<Pilot> pilots;              // who fly it by hand, in simulation
-  std::shared_ptr<const ScanRecord> scan = nullptr;  // of a scan: what its report shows
-  std::vector<Section> sections = {};                // of the report, beside those of every flight
+  std::vector<std::string> told = {};     // likewise, that stand in no plan
+  std::vector<Section> sections = {};     // of the report, beside those of every flight
   // Where the files lie that the plan's environment names, as long as the mission lives; and their
   // names.
   std::filesystem::path obstacle_folder = {};

@@ -4,7 +4,9 @@
 
 #include <lua.hpp>
 
+#include "framework/core/files.h"
 #include "framework/core/log.h"
+#include "framework/export/report_value.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -31,6 +33,17 @@ PluginChoice plugin_choice(lua_State* state, int index, const std::string& what)
     for (const auto& [key, value] : given.as_map())
       if (key != "type") choice.parameters.set(key, value);
   return choice;
+}
+
+std::vector<Section> stated_sections(lua_State* state, int index, const std::string& what) {
+  constexpr std::size_t kLargestImage = std::size_t{64} << 20;  // bytes
+  lua_getfield(state, index, "sections");
+  const Value given = value_from_lua(state, -1, Sandbox::of(state).script_position(state), what);
+  lua_pop(state, 1);
+  if (given.is_null()) return {};
+  return sections_from_value(given, what, [&](const std::string& name) {
+    return read_file(run_of(state).files.find(name), kLargestImage);
+  });
 }
 
 namespace {
@@ -343,7 +356,20 @@ constexpr BoundField kPlanObjects[] = {{"solution", "lapwing.solution", "whose m
                                        {"details?", "string[]",
                                         "sentences on what was tried and came to nothing: shown "
                                         "where the plan is not certified, or asked for"},
-                                       {"figures?", "table", "the kind's own figures, for --json"}};
+                                       {"figures?", "table", "the kind's own figures, for --json"},
+                                       kStatedSections};
+
+// plan:add_sections(sections): more of its report.
+int add_sections(lua_State* state) {
+  PlanObject& made = object_argument<PlanObject>(state, 1, kPlanType);
+  lua_settop(state, 2);
+  lua_createtable(state, 0, 1);
+  lua_insert(state, 2);
+  lua_setfield(state, 2, "sections");
+  for (Section& section : stated_sections(state, 2, "add_sections"))
+    made.sections.push_back(std::move(section));
+  return 0;
+}
 
 int plan(lua_State* state) {
   MissionRun& run = run_of(state);
@@ -358,6 +384,7 @@ int plan(lua_State* state) {
   made.details = notes_argument(state, 2, "details", origin);
   lua_getfield(state, 2, "figures");
   made.block = value_from_lua(state, -1, origin, "plan.figures");
+  made.sections = stated_sections(state, 2, "sections");
   made.pilots = pilots_of(given.tables("players"), run.files);
 
   Plan& document = made.plan;
@@ -441,7 +468,8 @@ std::span<const Binding> solving_methods_of_run() {
       {"plan", &guarded<plan>, "(made: @): lapwing.plan", "what a mission's `plan` returns",
        &plan_table, kPlanObjects},
       {"certify", &guarded<certify>, "(plan: lapwing.plan): table",
-       "the verifier's answer: `feasible`, `failures` (sentences), `checks`, each as in a plan, with "
+       "the verifier's answer: `feasible`, `failures` (sentences), `checks`, each as in a plan, "
+       "with "
        "`line`: its result in words"}};
   return methods;
 }
@@ -451,7 +479,10 @@ void open_plan_library(lua_State* state) {
   note_fields(state, kVehicleType, kVehicleFields);
   define_type<SolutionObject>(state, kSolutionType, {}, &guarded<solution_field>);
   note_fields(state, kSolutionType, kSolutionFields);
-  define_type<PlanObject>(state, kPlanType, {}, &guarded<plan_field>);
+  static const Binding of_plan[] = {
+      {"add_sections", &guarded<add_sections>, "(sections: table[])",
+       "more sections of its report: text, facts, tables, charts, drawings, images"}};
+  define_type<PlanObject>(state, kPlanType, {of_plan}, &guarded<plan_field>);
   note_fields(state, kPlanType, kPlanFields);
 }
 

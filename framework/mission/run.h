@@ -26,7 +26,6 @@ struct lua_State;
 
 namespace lapwing {
 
-struct ScanRecord;  // export/scan_report.h
 struct ScriptTerm;  // script_terms.h
 
 struct ScanWork;  // scan_objects.h
@@ -76,13 +75,16 @@ struct PlanObject {
   Plan plan;
   SolveReport report;
   std::string solver;
-  std::vector<std::string> notes;          // sentences for the user
-  std::vector<std::string> details = {};   // likewise, of what was tried and came to nothing
-  Value block;                             // the kind's own figures; null or a map
-  std::string block_name;                  // of them in the answer; "": the kind
-  std::vector<Pilot> pilots;               // who fly it by hand
-  std::shared_ptr<const ScanRecord> scan;  // of a scan: what its report shows
-  std::vector<Section> sections = {};      // of the report, beside those of every flight
+  std::vector<std::string> notes;         // sentences for the user
+  std::vector<std::string> details = {};  // likewise, of what was tried and came to nothing
+  Value block;                            // the kind's own figures; null or a map
+  std::string block_name;                 // of them in the answer; "": the kind
+  std::vector<Pilot> pilots;              // who fly it by hand
+  std::vector<std::string> told = {};     // likewise, that stand in no plan
+  // Of the report, beside those of every flight: those that are made already, and those that are
+  // drawn once the mission has ended; null where there are none of these.
+  std::vector<Section> sections = {};
+  std::function<std::vector<Section>(const Plan&)> late_sections = {};
 };
 
 struct MissionRun {
@@ -127,6 +129,12 @@ void push_run(lua_State* state);
 // The methods of `run`, for the type's table.
 std::span<const Binding> problem_methods_of_run();  // vehicle, problem
 std::span<const Binding> solving_methods_of_run();  // solve, plan, certify
+
+// Sections of a report from the key `sections` of the table at `index`; none where it lacks.
+// InputError naming what is wrong in them, beginning with `what`.
+inline constexpr BoundField kStatedSections = {
+    "sections?", "table[]", "of the report: text, facts, tables, charts, drawings, images"};
+std::vector<Section> stated_sections(lua_State* state, int index, const std::string& what);
 
 // "iqp" or {type = "iqp", ...}, as options that choose a plugin are given.
 struct PluginChoice {

@@ -195,13 +195,13 @@ std::vector<const SolutionObject*> legs_argument(lua_State* state, int table) {
   return legs;
 }
 
-constexpr BoundField kScanPlanObjects[] = {{"tour", "lapwing.tour", "that is flown"},
-                                           {"legs?", "lapwing.solution[]",
-                                            "how, from view to view; absent: by pure pursuit"},
-                                           {"explored?", "lapwing.exploration",
-                                            "what came before it, for the report"},
-                                           {"notes?", "string[]", "sentences for the user"},
-                                           {"figures?", "table", "of the tour, for --json"}};
+constexpr BoundField kScanPlanObjects[] = {
+    {"tour", "lapwing.tour", "that is flown"},
+    {"legs?", "lapwing.solution[]", "how, from view to view; absent: by pure pursuit"},
+    {"explored?", "lapwing.exploration", "what came before it, for the report"},
+    {"notes?", "string[]", "sentences for the user"},
+    {"figures?", "table", "of the tour, for --json"},
+    kStatedSections};
 ParameterTable scan_plan_table() {
   ParameterTable table;
   table.number("margin", 0.4, "m", "kept from what is not free, and from the mesh", at_least(0))
@@ -213,7 +213,7 @@ ParameterTable scan_plan_table() {
 }
 
 // run:scan_plan{tour =, margin =, budget =, closed_loop_required =, seen_share =, notes =,
-//               figures =, legs =, explored =}
+//               figures =, sections =, legs =, explored =}
 int scan_plan_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -230,8 +230,10 @@ int scan_plan_of_run(lua_State* state) {
   made.block = value_from_lua(state, lua_gettop(state), origin, "scan_plan.figures");
   const std::vector<const SolutionObject*> legs = legs_argument(state, 2);
   made.block_name = "tour";
+  made.sections = stated_sections(state, 2, "scan_plan.sections");
   if (lua_getfield(state, 2, "explored") != LUA_TNIL)
-    made.sections = sections_of_exploration(state, -1);
+    for (Section& section : sections_of_exploration(state, -1))
+      made.sections.push_back(std::move(section));
   made.notes = texts_of(notes);
   made.report = report_of(tour.report);
   made.solver = tour.solver;
@@ -264,10 +266,12 @@ int scan_plan_of_run(lua_State* state) {
     plan.environment.meshes.push_back(std::move(mesh));
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
-    made.scan = record_of_scan(tour, run.settings.threads);
+    const auto record = record_of_scan(tour, run.settings.threads);
     if (!made.block.is_map()) made.block = Value::map();
-    made.block.set("surface", areas_as_value(*made.scan));
-    made.notes.push_back(areas_in_words(*made.scan));
+    made.block.set("surface", areas_as_value(*record));
+    made.notes.push_back(areas_in_words(*record));
+    if (record->truth) made.told.push_back(truth_in_words(*record));
+    made.late_sections = [record](const Plan& of) { return scan_sections(of, *record); };
     const std::string small = warning_of_small_camera(plan.task.scan->camera);
     if (!small.empty()) made.notes.push_back(small);
   }
