@@ -52,6 +52,11 @@ const std::vector<CommandExamples>& command_examples() {
       {"lapwing race",
        {"lapwing race out/race/plan.json --pilot ann.csv:name=Ann,strength=0.5 -o race.html"},
        kOfFiles},
+      {"lapwing tour",
+       {"lapwing tour kroA150-gen1-50.oplib",
+        "lapwing tour *.oplib --solver local_search --solver milp --guard 60 --json"},
+       "0 every solver found a tour; 1 one found none; 2 bad input; 3 internal error; 130 "
+       "interrupted"},
       {"lapwing map", {"lapwing map info out/street/map.ot"}, kOfFiles},
       {"lapwing map info", {"lapwing map info out/street/map.ot"}, kOfFiles},
       {"lapwing map convert", {"lapwing map convert out/street/map.ot -o street.bt"}, kOfFiles},

@@ -11,6 +11,7 @@
 #include "framework/app/provenance.h"
 #include "framework/app/sweep_command.h"
 #include "framework/app/terminal.h"
+#include "framework/app/tour_command.h"
 #include "framework/app/train_command.h"
 #include "framework/app/version.h"
 
@@ -258,6 +259,7 @@ struct Requests {
   SceneStatement stated;
   std::vector<std::string> pilots;
   RaceRules rules;
+  TourRun tour;
   TrainRequest training;
   PluginCheck checking;
   Description described;
@@ -289,6 +291,7 @@ void declare_commands(CLI::App& app, Requests& asked) {
   add_map_commands(app, invocation, asked.plan, asked.target, command);
   add_scene_commands(app, invocation, asked.plan, asked.stated, asked.target, command);
   add_race_command(app, invocation, asked.plan, asked.pilots, asked.rules, asked.target, command);
+  add_tour_command(app, invocation, asked.tour, command);
   add_plugin_commands(app, invocation, asked.name, asked.described, asked.checking, command);
   add_description_commands(app, invocation, asked.described, command);
   add_new_commands(app, invocation, asked.wanted, command);
@@ -331,8 +334,8 @@ int run_command_line(int argc, const char* const* argv) {
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
-    std::cerr << tinted_error(Tone::bad, "lapwing:") << " "
-              << visible_text(usage_error(app, error)) << "\n";
+    std::cerr << tinted_error(Tone::bad, "lapwing:") << " " << visible_text(usage_error(app, error))
+              << "\n";
     return static_cast<int>(ExitStatus::bad_input);
   }
   return static_cast<int>(guarded_command(asked.command, asked.invocation));

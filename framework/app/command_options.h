@@ -23,6 +23,7 @@ struct Description;
 struct ExploreEvaluation;
 struct NewFiles;
 struct PluginCheck;
+struct TourRun;
 struct TrainRequest;
 
 constexpr std::uint64_t kMostThreads = 1024;
@@ -63,6 +64,7 @@ void add_description_commands(CLI::App& app, Invocation& invocation, Description
 void add_new_commands(CLI::App& app, Invocation& invocation, NewFiles& wanted, Command& command);
 void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& request,
                         Command& command);
+void add_tour_command(CLI::App& app, Invocation& invocation, TourRun& asked, Command& command);
 void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluation& asked,
                        Command& command);
 void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,

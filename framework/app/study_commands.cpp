@@ -4,6 +4,7 @@
 
 #include "framework/app/command_options.h"
 #include "framework/app/evaluate_explore.h"
+#include "framework/app/tour_command.h"
 #include "framework/app/train_command.h"
 
 namespace lapwing {
@@ -83,6 +84,31 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
   scan->add_flag("--quiet", invocation.quiet, "no progress, no tables");
   add_json(*scan, invocation);
   scan->callback([&] { command = [&] { return evaluate_scan(asked, invocation); }; });
+}
+
+void add_tour_command(CLI::App& app, Invocation& invocation, TourRun& asked, Command& command) {
+  CLI::App* tour = app.add_subcommand(
+      "tour", "solve instances of the orienteering problem, from files, by tour solvers");
+  add_text(*tour, "files", "FILE...",
+           "instances: TSPLIB-style (.oplib), or `budget 1` and lines `x y score`",
+           [&](const std::string& path) { asked.files.emplace_back(path); })
+      ->required()
+      ->expected(-1)
+      ->take_all();
+  add_repeated(*tour, "--solver", "NAME", asked.solvers,
+               "a tour solver; repeatable; default: local_search");
+  add_repeated(*tour, "--set", "KEY=VALUE", invocation.overrides,
+               "set one parameter of every solver; repeatable; default: none");
+  add_text(*tour, "--guard", "S", "wall-clock limit of one tour in s; default: none",
+           [&](const std::string& text) {
+             asked.guard = read_number("--guard", text);
+             if (!(*asked.guard > 0))
+               throw CLI::ValidationError("--guard",
+                                          "expected seconds above 0, not '" + text + "'");
+           });
+  add_seed(*tour, invocation.seed, "seed of all random numbers; default: 1");
+  add_json(*tour, invocation);
+  tour->callback([&] { command = [&] { return solve_tours(asked, invocation); }; });
 }
 
 void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& request,

@@ -8,6 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "tests/plugins/tour_solvers/route_judge.h"
 #include "tests/plugins/tour_solvers/tour_plugins.h"
 
 namespace lapwing {
@@ -36,76 +37,6 @@ std::vector<Known> known_instances(const fs::path& folder) {
   return known;
 }
 
-// A route judged from the file's text: what it collects, negative where it is none.
-class Judge {
- public:
-  explicit Judge(const std::string& text) {
-    std::istringstream words(text);
-    std::string word;
-    while (words >> word) {
-      if (word == "DIMENSION:" || word == "DIMENSION") n_ = static_cast<int>(value(words, word));
-      if (word == "COST_LIMIT" || word == "COST_LIMIT:") limit_ = value(words, word);
-      if (word == "EDGE_WEIGHT_TYPE:" || word == "EDGE_WEIGHT_TYPE")
-        type_ = text_value(words, word);
-      if (word == "NODE_COORD_SECTION") read(words, 2, points_);
-      if (word == "NODE_SCORE_SECTION") read(words, 1, scores_);
-      if (word == "EDGE_WEIGHT_SECTION") {
-        for (int i = 0; i < n_ * (n_ + 1) / 2; ++i) words >> lower_.emplace_back();
-      }
-    }
-  }
-
-  double collected(const std::vector<int>& walk) const {
-    if (walk.size() < 2 || walk.front() != 0 || walk.back() != 0) return -1;
-    double length = 0, score = 0;
-    std::vector<bool> visited(n_, false);
-    for (std::size_t i = 1; i < walk.size(); ++i) {
-      if (visited[walk[i]]) return -1;
-      visited[walk[i]] = true;
-      score += scores_[walk[i]][0];
-      length += distance(walk[i - 1], walk[i]);
-    }
-    return length <= limit_ ? score : -1;
-  }
-
- private:
-  static std::string text_value(std::istringstream& words, const std::string& key) {
-    std::string word;
-    if (key.back() != ':') words >> word;
-    words >> word;
-    return word;
-  }
-  static double value(std::istringstream& words, const std::string& key) {
-    return std::stod(text_value(words, key));
-  }
-  void read(std::istringstream& words, int count, std::vector<std::vector<double>>& rows) const {
-    rows.assign(n_, std::vector<double>(count));
-    for (int i = 0, node = 0; i < n_; ++i) {
-      words >> node;
-      for (double& number : rows[node - 1]) words >> number;
-    }
-  }
-  double distance(int a, int b) const {
-    if (type_ == "EXPLICIT")
-      return lower_[std::max(a, b) * (std::max(a, b) + 1) / 2 + std::min(a, b)];
-    const auto &p = points_[a], &q = points_[b];
-    if (type_ == "EUC_2D") return std::lround(std::hypot(p[0] - q[0], p[1] - q[1]));
-    const auto radians = [](double x) {
-      const int degrees = static_cast<int>(x);
-      return 3.141592 * (degrees + 5.0 * (x - degrees) / 3.0) / 180.0;
-    };
-    const double a1 = radians(p[0]), o1 = radians(p[1]), a2 = radians(q[0]), o2 = radians(q[1]);
-    const double q1 = std::cos(o1 - o2), q2 = std::cos(a1 - a2), q3 = std::cos(a1 + a2);
-    return static_cast<int>(6378.388 * std::acos(0.5 * ((1 + q1) * q2 - (1 - q1) * q3)) + 1);
-  }
-
-  int n_ = 0;
-  double limit_ = 0;
-  std::string type_;
-  std::vector<std::vector<double>> points_, scores_;
-  std::vector<double> lower_;
-};
-
 TEST(Orienteering, RoutesOfPublishedInstancesComeNearTheOptimum) {
   const char* data = std::getenv("LAPWING_DATA");
   if (!data) GTEST_SKIP() << "LAPWING_DATA is not set";
@@ -124,7 +55,7 @@ TEST(Orienteering, RoutesOfPublishedInstancesComeNearTheOptimum) {
     const std::clock_t began = std::clock();
     const TourResult result = solver->solve(problem);
     const double seconds = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
-    const double collected = Judge(read_file(path)).collected(result.walk);
+    const double collected = RouteJudge(read_file(path)).collected(result.walk);
     EXPECT_EQ(collected, result.report.score) << name;
     EXPECT_LE(collected, optimum) << name;
     EXPECT_GE(result.report.upper_bound, optimum) << name;
@@ -148,6 +79,45 @@ TEST(Orienteering, PlainFilesGoFromTheFirstPointToTheSecond) {
       tour_plugins().create<TourSolver>("local_search", Value())->solve(problem);
   EXPECT_EQ(result.walk, (std::vector<int>{0, 2, 1}));
   EXPECT_EQ(result.report.score, 5);
+}
+
+// Four nodes at given places, and with the given distances.
+std::string of_four(const std::string& type, const std::string& more) {
+  return "NAME : four\nTYPE : OP\nDIMENSION : 4\nCOST_LIMIT : 100000\nEDGE_WEIGHT_TYPE : " + type +
+         "\n" + more + "NODE_SCORE_SECTION\n1 0\n2 5\n3 6\n4 7\nDEPOT_SECTION\n1\n-1\nEOF\n";
+}
+
+TEST(Orienteering, JudgeAndReaderAgreeOnEveryKindOfDistance) {
+  const std::string places = "NODE_COORD_SECTION\n1 0 0\n2 38.24 20.42\n3 -12.5 7.3\n4 3 94.1\n";
+  const auto stated = [](const std::string& format, const std::string& numbers) {
+    return of_four("EXPLICIT",
+                   "EDGE_WEIGHT_FORMAT: " + format + "\nEDGE_WEIGHT_SECTION\n" + numbers);
+  };
+  const std::vector<std::string> files = {
+      of_four("EUC_2D", places),
+      of_four("CEIL_2D", places),
+      of_four("ATT", places),
+      of_four("GEO", places),
+      stated("FULL_MATRIX", "0 1 2 3\n1 0 4 5\n2 4 0 6\n3 5 6 0\n"),
+      stated("LOWER_DIAG_ROW", "0 1 0 2 4 0 3 5 6 0\n"),
+      stated("LOWER_ROW", "1 2 4\n3 5 6\n"),
+      stated("UPPER_DIAG_ROW", "0 1 2 3 0 4 5 0 6 0\n"),
+      stated("UPPER_ROW", "1 2 3 4 5 6\n")};
+  for (const std::string& file : files) {
+    const TourProblem problem(read_orienteering(file, "four.oplib").definition);
+    const RouteJudge judge(file);
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b)
+        EXPECT_TRUE(a == b || problem.leg(a, b) == judge.distance(a, b)) << a << b << file;
+    EXPECT_EQ(judge.collected({0, 1, 2, 3, 0}), 18) << file;
+    EXPECT_EQ(judge.collected({0, 1, 1, 0}), -1);
+    EXPECT_EQ(judge.collected({1, 2, 1}), -1);
+  }
+  // By hand: of nodes 1 and 2 the length is 43.35; over the root of ten 13.71.
+  EXPECT_EQ(RouteJudge(files[0]).distance(0, 1), 43);
+  EXPECT_EQ(RouteJudge(files[1]).distance(0, 1), 44);
+  EXPECT_EQ(RouteJudge(files[2]).distance(0, 1), 14);
+  EXPECT_EQ(RouteJudge(files[7]).distance(3, 1), 5);
 }
 
 TEST(Orienteering, BrokenFilesAreRefused) {
