@@ -10,9 +10,9 @@ return race.course {
   thrust = 0.7,
   floor = 0.5,
   gates = {
-    { name = "south", shape = "rectangle", position = { 0, -12, 2 }, normal_yaw = 0, width = 3,
+    { name = "south", shape = "rectangle", position = { 0, -12, 2 }, normal_yaw_deg = 0, width = 3,
       height = 2 },
-    { name = "east", shape = "hexagon", position = { 12, 2, 4 }, normal_yaw = 120, side = 1.5 },
+    { name = "east", shape = "hexagon", position = { 12, 2, 4 }, normal_yaw_deg = 120, side = 1.5 },
     { name = "west", shape = "ball", position = { -12, 4, 3 }, radius = 0.5 },
   },
 }

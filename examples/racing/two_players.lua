@@ -12,12 +12,12 @@ return race.course {
   floor = 0.5,
   margin = 0.6,  -- m, that the planned course leaves pilots at the rims
   gates = {
-    { name = "south", shape = "rectangle", position = { 0, -12, 4 }, normal_yaw = 0, width = 8,
+    { name = "south", shape = "rectangle", position = { 0, -12, 4 }, normal_yaw_deg = 0, width = 8,
       height = 6 },
-    { name = "east", shape = "rectangle", position = { 14, 2, 5 }, normal_yaw = 110, width = 8,
+    { name = "east", shape = "rectangle", position = { 14, 2, 5 }, normal_yaw_deg = 110, width = 8,
       height = 6 },
-    { name = "west", shape = "rectangle", position = { -14, 2, 5 }, normal_yaw = -110, width = 8,
-      height = 6 },
+    { name = "west", shape = "rectangle", position = { -14, 2, 5 }, normal_yaw_deg = -110,
+      width = 8, height = 6 },
   },
   players = {
     { name = "Timid", log = "pilots/timid.csv", speed = 0.9, strength = 30, reach = 12 },

@@ -41,7 +41,12 @@ std::string gate_difference(const Value& asked, const GateTask& here) {
     if (!near(corners[i], here.corners[i])) return "of another size";
   if (here.ball()) return same_number(here.radius, size("radius")) ? "" : "of another radius";
   if (!same_number(here.tunnel_length, size("tunnel_length"))) return "of another tunnel";
-  const double yaw = radians(size("normal_yaw")), pitch = radians(size("normal_pitch"));
+  // Plans made before 0.2.0 state these angles, in degrees too, without the unit in the name.
+  const auto angle = [&](const std::string& key) {
+    const auto stated = stated_number(asked, (key + "_deg").c_str());
+    return radians(stated ? *stated : size(key.c_str()));
+  };
+  const double yaw = angle("normal_yaw"), pitch = angle("normal_pitch");
   const Eigen::Vector3d direction(std::cos(yaw) * std::cos(pitch), std::sin(yaw) * std::cos(pitch),
                                   std::sin(pitch));
   GateTask turned;

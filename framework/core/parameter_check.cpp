@@ -94,7 +94,8 @@ class ParameterChecker {
     bool listed = false;  // once is enough
     for (const auto& [key, value] : given.as_map()) {
       if (table.find(key)) continue;
-      const std::string nearest = nearest_name(key, known);
+      std::string nearest = nearest_name(key, known);
+      if (nearest.empty() && table.find(key + "_deg")) nearest = key + "_deg";
       std::string message = "unknown key";
       if (!nearest.empty())
         message += "; did you mean " + in_quotes(nearest) + "?";

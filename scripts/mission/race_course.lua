@@ -1,5 +1,6 @@
 -- A course: the gates in the order of flight, laps written out, with everything checked that can be
 -- checked before a flight is planned.
+local files = require "mission.race_file"
 local paths = require "mission.paths"
 
 local course = {}
@@ -10,26 +11,9 @@ local SHAPES = { ball = { "radius" }, rectangle = { "width", "height" },
 local MOST = 10000      -- gates, laps together
 local SAME = 1e-6       -- m, nearer than this two places are one
 
-local function finite(x) return math.type(x) ~= nil and x == x and math.abs(x) < 1e6 end
+course.GATE = files.GATE
 
-local function number(name, unit, summary)
-  return { name = name, type = "number", unit = unit, summary = summary }
-end
--- A gate, in a script or in a file.
-course.GATE = {
-  { name = "name", type = "text", summary = "in messages" },
-  { name = "shape", type = "choice", required = true, summary = "of the opening",
-    choices = { "ball", "rectangle", "triangle", "pentagon", "hexagon" } },
-  { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-    summary = "centre, world" },
-  number("normal_yaw", "", "direction of flight, degrees; a ball has none"),
-  number("normal_pitch", "", "the same, degrees upwards"),
-  number("width", "m", "of a rectangle or a triangle"),
-  number("height", "m", "of a rectangle or a triangle"),
-  number("radius", "m", "of a ball; of a pentagon or hexagon to its corners"),
-  number("side", "m", "of a pentagon or hexagon"),
-  number("tunnel_length", "m", "half before, half behind the gate"),
-}
+local function finite(x) return math.type(x) ~= nil and x == x and math.abs(x) < 1e6 end
 
 local function point(fail, path, value)
   local fits = type(value) == "table" and #value == 3
@@ -41,8 +25,8 @@ end
 local function add_sizes(fail, path, given, gate)
   local shape = gate.shape
   local sizes = SHAPES[shape]
-  local has = { name = true, shape = true, position = true, normal_yaw = true,
-                normal_pitch = true, tunnel_length = true }
+  local has = { name = true, shape = true, position = true, normal_yaw_deg = true,
+                normal_pitch_deg = true, tunnel_length = true }
   local either, count = sizes[2] == "side", 0
   for _, size in ipairs(sizes) do
     has[size] = true
@@ -69,12 +53,12 @@ local function gate_of(fail, path, given)
                  position = point(fail, path .. ".position", given.position) }
   add_sizes(fail, path, given, gate)
   if gate.shape == "ball" then return gate end
-  local yaw, pitch = given.normal_yaw, given.normal_pitch or 0
+  local yaw, pitch = given.normal_yaw_deg, given.normal_pitch_deg or 0
   if not yaw then
-    fail(path .. ".normal_yaw", "missing; expected the direction of flight in degrees")
+    fail(path .. ".normal_yaw_deg", "missing; expected the direction of flight in degrees")
   end
   if math.abs(pitch) > 89 then
-    fail(path .. ".normal_pitch", "expected degrees upwards, between -89 and 89")
+    fail(path .. ".normal_pitch_deg", "expected degrees upwards, between -89 and 89")
   end
   yaw, pitch = math.rad(yaw), math.rad(pitch)
   gate.direction = { math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch),
@@ -155,32 +139,6 @@ local function free_form(o)
   return points
 end
 
--- The course of a file: {start =, finish =, gates =, keyframes =}, and what fails on its lines.
-local function read_file(name)
-  local given, file
-  if name:match("%.json$") then given, file = lapwing.read_json(name, "tracks")
-  else given, file = lapwing.read_yaml(name, "tracks") end
-  file:expect_keys("", { "start", "end", "gates", "waypoints" })
-  for _, key in ipairs { "start", "end" } do
-    if type(given[key]) == "table" and #given[key] == 0 then
-      file:expect_keys(key, { "position", "velocity" })
-    end
-  end
-  for _, key in ipairs { "gates", "waypoints" } do
-    if given[key] ~= nil and (type(given[key]) ~= "table" or #given[key] == 0) then
-      file:fail(key, "expected a list")
-    end
-  end
-  local gates = given.gates and {}
-  for i in ipairs(given.gates or {}) do
-    gates[i] = file:check(string.format("gates[%d]", i), course.GATE)
-  end
-  local names = { keyframes = "waypoints", finish = "end" }  -- as the file has them
-  local function fail(path, text) file:fail(path:gsub("^%a+", names), text) end
-  return { start = given.start, finish = given["end"], gates = gates,
-           keyframes = given.waypoints }, fail
-end
-
 -- The course as it is given, and a function that fails where a part of it was written.
 local function read(run)
   local o = run.options
@@ -196,7 +154,7 @@ local function read(run)
     run:fail("laps", "laps are flown on a closed course: set closed = true")
   end
   if not o.input then return o, function(path, text) run:fail(path, text) end end
-  local made, fail = read_file(o.input)
+  local made, fail = files.read(o.input)
   made.closed, made.laps = o.closed, o.laps
   return made, fail
 end

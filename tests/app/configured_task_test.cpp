@@ -151,7 +151,7 @@ TEST_F(ConfiguredTask, OfARaceIsHeldToItsConfiguration) {
       "  closed_loop = 'reported', refinements = 0, gates = {\n"
       "    { shape = 'ball', position = {5, 1, 1.5}, radius = 0.5 },\n"
       "    { shape = 'rectangle', position = {10, 0, 1.5}, width = 2, height = 1,\n"
-      "      normal_yaw = 10, normal_pitch = 5, tunnel_length = 0.4 } } }\n");
+      "      normal_yaw_deg = 10, normal_pitch_deg = 5, tunnel_length = 0.4 } } }\n");
   expect_told({
       {"gate 1 ('gates[1]') is of another radius in the plan",
        [](Value& d) { entry(d, "task", "gates").set("radius", 3.0); }},

@@ -65,7 +65,8 @@ TEST_F(Race, OtherSolversSayWhichOneToTake) {
 
 TEST_F(Race, BadCoursesAreRefused) {
   const std::string ball = "{ shape = 'ball', position = {5, 0, 2}, radius = 0.5 }";
-  const std::string gate = "shape = 'rectangle', position = {5, 0, 2}, normal_yaw = 0, width = 2";
+  const std::string gate =
+      "shape = 'rectangle', position = {5, 0, 2}, normal_yaw_deg = 0, width = 2";
   const auto course = [&](const std::string& gates, const std::string& more = "") {
     return refused("start = {0, 0, 2}, finish = {9, 0, 2}, gates = {" + gates + "}, " + more);
   };
@@ -76,7 +77,9 @@ TEST_F(Race, BadCoursesAreRefused) {
       {course("{ " + gate + ", height = -1 }"), "cannot be entered"},
       {course("{ shape = 'ball', position = {0/0, 0, 0}, radius = 1 }"), "finite"},
       {course("{ shape = 'rectangle', position = {5, 0, 2}, width = 2, height = 2 }"),
-       "normal_yaw"},
+       "normal_yaw_deg"},
+      {course("{ shape = 'rectangle', position = {5, 0, 2}, normal_yaw = 0, height = 2 }"),
+       "normal_yaw: unknown key; did you mean 'normal_yaw_deg'?"},
       {course("{ " + gate + ", height = 2 }, { " + gate + ", height = 1 }"), "inside each other"},
       {course(ball, "floor = 3"), "start: 2 m above the ground"},
       {course(ball, "floor = 1.5, start = {0, 0, 1}"), "start"},

@@ -10,9 +10,9 @@ TEST_F(Race, MoreThrustIsNotMuchSlower) {
   // At the whole thrust the controller follows only a flight of 6.5 s, and 4.05 s at 0.9.
   const std::string course =
       "vehicle = 'vehicles/racer', closed = true, floor = 0.5, gates = { { name = 'south', shape = "
-      "'rectangle', position = {0, -12, 2}, normal_yaw = 0, width = 3, height = 2 }, { name = "
-      "'east', shape = 'hexagon', position = {12, 2, 4}, normal_yaw = 120, side = 1.5 }, { name = "
-      "'west', shape = 'ball', position = {-12, 4, 3}, radius = 0.5 } }, ";
+      "'rectangle', position = {0, -12, 2}, normal_yaw_deg = 0, width = 3, height = 2 }, { name = "
+      "'east', shape = 'hexagon', position = {12, 2, 4}, normal_yaw_deg = 120, side = 1.5 }, "
+      "{ name = 'west', shape = 'ball', position = {-12, 4, 3}, radius = 0.5 } }, ";
   const Flown flown = race(course + "thrust = 1");
   expect_certified(flown);
   EXPECT_LT(time_of(flown), 4.3);

@@ -1,0 +1,69 @@
+-- Courses in files, and what a gate has, in a script or in a file.
+local M = {}
+
+local function number(name, unit, summary)
+  return { name = name, type = "number", unit = unit, summary = summary }
+end
+
+-- A gate, in a script or in a file.
+M.GATE = {
+  { name = "name", type = "text", summary = "in messages" },
+  { name = "shape", type = "choice", required = true, summary = "of the opening",
+    choices = { "ball", "rectangle", "triangle", "pentagon", "hexagon" } },
+  { name = "position", type = "numbers", size = 3, unit = "m", required = true,
+    summary = "centre, world" },
+  number("normal_yaw_deg", "deg", "direction of flight; a ball has none"),
+  number("normal_pitch_deg", "deg", "the same, upwards"),
+  number("width", "m", "of a rectangle or a triangle"),
+  number("height", "m", "of a rectangle or a triangle"),
+  number("radius", "m", "of a ball; of a pentagon or hexagon to its corners"),
+  number("side", "m", "of a pentagon or hexagon"),
+  number("tunnel_length", "m", "half before, half behind the gate"),
+}
+
+-- Courses that others publish name these angles without their unit, which is degrees.
+local PUBLISHED = { normal_yaw = "normal_yaw_deg", normal_pitch = "normal_pitch_deg" }
+local FILE_GATE = table.move(M.GATE, 1, #M.GATE, 1, {})
+for _, name in ipairs { "normal_yaw", "normal_pitch" } do
+  FILE_GATE[#FILE_GATE + 1] = number(name, "deg", PUBLISHED[name] .. " in published courses")
+end
+
+-- A gate of a file, by the names that gates have here.
+local function gate_of_file(file, path)
+  local gate = file:check(path, FILE_GATE)
+  for published, name in pairs(PUBLISHED) do
+    if gate[published] and gate[name] then
+      file:fail(path .. "." .. published, "states the same as " .. name .. ": give one of them")
+    end
+    gate[published], gate[name] = nil, gate[name] or gate[published]
+  end
+  return gate
+end
+
+-- The course of a file: {start =, finish =, gates =, keyframes =}, and what fails on its lines.
+function M.read(name)
+  local given, file
+  if name:match("%.json$") then given, file = lapwing.read_json(name, "tracks")
+  else given, file = lapwing.read_yaml(name, "tracks") end
+  file:expect_keys("", { "start", "end", "gates", "waypoints" })
+  for _, key in ipairs { "start", "end" } do
+    if type(given[key]) == "table" and #given[key] == 0 then
+      file:expect_keys(key, { "position", "velocity" })
+    end
+  end
+  for _, key in ipairs { "gates", "waypoints" } do
+    if given[key] ~= nil and (type(given[key]) ~= "table" or #given[key] == 0) then
+      file:fail(key, "expected a list")
+    end
+  end
+  local gates = given.gates and {}
+  for i in ipairs(given.gates or {}) do
+    gates[i] = gate_of_file(file, string.format("gates[%d]", i))
+  end
+  local names = { keyframes = "waypoints", finish = "end" }  -- as the file has them
+  local function fail(path, text) file:fail(path:gsub("^%a+", names), text) end
+  return { start = given.start, finish = given["end"], gates = gates,
+           keyframes = given.waypoints }, fail
+end
+
+return M
