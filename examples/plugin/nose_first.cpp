@@ -19,19 +19,26 @@ class NoseFirst final : public DifferentiableCost<NoseFirst, 4> {
   explicit NoseFirst(const Parameters& parameters) : tolerance_(parameters.number("tolerance")) {}
 
   FunctionShape declare(const ProblemSetting& setting) {
-    return {.blocks = setting.layout.indices({"velocity", "yaw"}), .rows = 1, .integral = true};
+    FunctionShape shape{.rows = 1, .integral = true};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("velocity"), reads.add("yaw")};
+    return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
     using std::cos, std::sin;
-    const auto velocity = stage.template vector<3>(0);
-    const T& yaw = stage.scalar(1);
+    const auto velocity = stage(in_.velocity);
+    const T& yaw = stage(in_.yaw);
     rows[0] = (velocity.y() * cos(yaw) - velocity.x() * sin(yaw)) * (1.0 / tolerance_);
   }
 
  private:
   double tolerance_;
+  struct {
+    VectorHandle velocity;
+    NumberHandle yaw;
+  } in_;
 };
 
 }  // namespace

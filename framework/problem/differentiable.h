@@ -3,18 +3,22 @@
 //   class KeepLow final : public DifferentiableCost<KeepLow> {
 //    public:
 //     FunctionShape declare(const ProblemSetting& setting) {
-//       return {.blocks = setting.layout.indices({"position"}), .rows = 1, .integral = true};
+//       FunctionShape shape{.rows = 1, .integral = true};
+//       position_ = BlocksRead(setting.layout, shape.blocks).add<3>("position");
+//       return shape;
 //     }
 //     template <class T>
 //     void residual(const Stage<T>& stage, Rows<T>& rows) const {
 //       using std::max;
-//       rows[0] = max(stage.template vector<3>(0).z() - height_, T(0.0));
+//       rows[0] = max(stage(position_).z() - height_, T(0.0));
 //     }
+//    private:
+//     VectorHandle position_;
 //   };
 //
 // `declare` is called once, when the function is bound; it may note what it needs from the setting.
 // T is double or a dual number. `stage` is the first stage of the window, stage[1] its neighbour;
-// blocks are asked for by their place in the shape's list. Derivatives are taken `Width`
+// blocks are read through the handles of `declare` (blocks_read.h). Derivatives are taken `Width`
 // inputs at a time in forward mode; second derivatives by duals of duals.
 #pragma once
 
@@ -22,6 +26,7 @@
 #include <array>
 #include <vector>
 
+#include "framework/problem/blocks_read.h"
 #include "framework/problem/constraint.h"
 #include "framework/problem/cost_term.h"
 #include "framework/problem/dual.h"
@@ -36,6 +41,13 @@ class Stage {
   Stage(const T* data, const int* offsets, int stride, int instance)
       : data_(data), offsets_(offsets), stride_(stride), instance_(instance) {}
 
+  // The number or the vector of a block.
+  const T& operator()(const NumberHandle& block) const { return data_[block.offset()]; }
+  template <int Size>
+  requires(Size != 1) Eigen::Map<const Eigen::Matrix<T, Size, 1>>
+  operator()(const BlockHandle<Size>& block) const {
+    return Eigen::Map<const Eigen::Matrix<T, Size, 1>>(data_ + block.offset(), block.size());
+  }
   // Block by its place in the list of blocks read.
   const T& scalar(int block) const { return data_[offsets_[block]]; }
   template <int Size>

@@ -32,8 +32,11 @@ FilmedPoint::FilmedPoint(const Parameters& parameters, Has has) {
 
 void FilmedPoint::bind(const ProblemSetting& setting, FunctionShape& shape) {
   if (name_) subject_ = subject_named(setting.environment, *name_);
-  place_ = static_cast<int>(shape.blocks.size());
-  shape.blocks.push_back(setting.layout.index(subject_ ? "time" : "target"));
+  BlocksRead reads(setting.layout, shape.blocks);
+  if (subject_)
+    time_ = reads.add("time");
+  else
+    target_ = reads.add<3>("target");
 }
 
 double FilmedPoint::height(const std::string& what) const {

@@ -44,15 +44,16 @@ class FilmedPoint {
 
   template <class T>
   Eigen::Matrix<T, 3, 1> at(const Stage<T>& stage) const {
-    if (subject_) return subject_position<T>(*subject_, stage.scalar(place_));
-    return stage.template vector<3>(place_);
+    if (subject_) return subject_position<T>(*subject_, stage(time_));
+    return stage(target_);
   }
 
  private:
   std::optional<std::string> name_;
   std::optional<double> height_;
   std::optional<Subject> subject_;
-  int place_ = 0;  // of its block in the shape
+  NumberHandle time_;  // one of both is read
+  VectorHandle target_;
 };
 
 }  // namespace lapwing

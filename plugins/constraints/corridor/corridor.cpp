@@ -84,16 +84,17 @@ class Corridor final : public DifferentiableConstraint<Corridor, 4> {
       stages_.push_back(stage);
       faces_.push_back(std::move(faces));
     }
-    return {.blocks = setting.layout.indices({"position", "step"}),
-            .rows = static_cast<int>(most),
-            .stages = stages_,
-            .affine = !horizon.step_free};
+    FunctionShape shape{
+        .rows = static_cast<int>(most), .stages = stages_, .affine = !horizon.step_free};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("position"), reads.add("step")};
+    return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const T* p = stage.data(0);
-    const T bulge = (0.125 * acceleration_) * stage.scalar(1) * stage.scalar(1);
+    const auto p = stage(in_.position);
+    const T bulge = (0.125 * acceleration_) * stage(in_.step) * stage(in_.step);
     const std::vector<Face>& faces = faces_[static_cast<std::size_t>(stage.instance())];
     for (std::size_t k = 0; k < faces.size(); ++k) {
       const Eigen::Vector3d& n = faces[k].normal;
@@ -150,6 +151,10 @@ class Corridor final : public DifferentiableConstraint<Corridor, 4> {
       }
   }
 
+  struct {
+    VectorHandle position;
+    NumberHandle step;
+  } in_;
   std::vector<Region> regions_;
   std::vector<int> stages_;
   std::vector<std::vector<Face>> faces_;  // of each stage in stages_

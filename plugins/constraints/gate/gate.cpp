@@ -76,9 +76,10 @@ class Gate final : public DifferentiableConstraint<Gate> {
 
   FunctionShape declare(const ProblemSetting& setting) {
     const int first = setting.horizon.end_of_leg(leg_);
-    FunctionShape shape{.blocks = setting.layout.indices({"position", "velocity"}),
-                        .rows = gate_.ball() ? 1 : static_cast<int>(sides_.size()) + 2,
+    FunctionShape shape{.rows = gate_.ball() ? 1 : static_cast<int>(sides_.size()) + 2,
                         .affine = !gate_.ball()};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("position"), reads.add<3>("velocity")};
     last_ = gate_.tunnel_length > 0 ? setting.horizon.end_of_leg(leg_ + 1) - first : 0;
     for (int k = 0; k <= last_; ++k) shape.stages.push_back(first + k);
     if (gate_.ball()) {
@@ -94,7 +95,7 @@ class Gate final : public DifferentiableConstraint<Gate> {
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
     T from[3];
-    for (int i = 0; i < 3; ++i) from[i] = stage.data(0)[i] - gate_.position[i];
+    for (int i = 0; i < 3; ++i) from[i] = stage(in_.position)[i] - gate_.position[i];
     if (gate_.ball()) {
       rows[0] = from[0] * from[0] + from[1] * from[1] + from[2] * from[2];
       return;
@@ -103,7 +104,7 @@ class Gate final : public DifferentiableConstraint<Gate> {
       return d.x() * v[0] + d.y() * v[1] + d.z() * v[2];
     };
     rows[0] = along(gate_.direction, from);
-    rows[1] = along(gate_.direction, stage.data(1));
+    rows[1] = along(gate_.direction, stage(in_.velocity).data());
     for (std::size_t k = 0; k < sides_.size(); ++k)
       rows[static_cast<int>(k) + 2] = along(sides_[k].outward, from);
   }
@@ -145,6 +146,9 @@ class Gate final : public DifferentiableConstraint<Gate> {
     }
   }
 
+  struct {
+    VectorHandle position, velocity;
+  } in_;
   int leg_, last_ = 0;
   double margin_, speed_;
   GateTask gate_;

@@ -50,20 +50,21 @@ class InputLimits final : public DifferentiableConstraint<InputLimits, 4> {
 
   FunctionShape declare(const ProblemSetting& setting) {
     find_limits(setting.vehicle);
-    FunctionShape shape{.blocks = setting.layout.indices({"force", "yaw_torque"}),
-                        .rows = norm_ ? 6 : 4,
+    FunctionShape shape{.rows = norm_ ? 6 : 4,
                         .affine = !norm_,
                         .identity = !norm_,
                         .row_names = {"force.x", "force.y", "force.z", "yaw_torque"}};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("force"), reads.add("yaw_torque")};
     if (norm_) shape.row_names.insert(shape.row_names.end(), {"force_norm", "force_across"});
     return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const auto force = stage.template vector<3>(0);
+    const auto force = stage(in_.force);
     for (int i = 0; i < 3; ++i) rows[i] = force[i];
-    rows[3] = stage.scalar(1);
+    rows[3] = stage(in_.yaw_torque);
     if (!norm_) return;
     const T across = force.x() * force.x() + force.y() * force.y();
     rows[4] = (across + force.z() * force.z()) / (norm_max_ * norm_max_);
@@ -112,6 +113,10 @@ class InputLimits final : public DifferentiableConstraint<InputLimits, 4> {
     high_ = std::min(high_, std::sqrt(squared - 2 * across_ * across_));
   }
 
+  struct {
+    VectorHandle force;
+    NumberHandle yaw_torque;
+  } in_;
   bool norm_, inscribed_;
   double share_;
   double low_ = 0, high_ = 0, across_ = 0, torque_ = 0;  // N, N, N, N m

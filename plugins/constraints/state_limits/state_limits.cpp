@@ -10,6 +10,7 @@
 //
 //   p:add_constraint { type = "state_limits", speed_across = 5, lower = {-50, -50, 0} }
 #include <numbers>
+#include <optional>
 
 #include "framework/core/units.h"
 #include "framework/plugin/plugin.h"
@@ -60,51 +61,46 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
     inside_ = given_.has("lower") || given_.has("upper");
     lower_.clear(), upper_.clear(), names_.clear();
     const double inscribed = std::cos(std::numbers::pi / sides_);
-    std::vector<int> blocks = setting.layout.indices({"velocity"});
-    const auto read = [&](const char* name, bool wanted) {
-      if (!wanted || setting.layout.find(name) < 0) return -1;
-      blocks.push_back(setting.layout.find(name));
-      return static_cast<int>(blocks.size()) - 1;
-    };
-    yaw_rate_ = read("yaw_rate", true);
-    force_ = read("force", true);
-    if (inside_) setting.layout.index("position");
-    position_ = read("position", inside_);
+    FunctionShape shape{.affine = true};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("velocity"), {}, {}, {}};
+    if (reads.has("yaw_rate")) in_.yaw_rate = reads.add("yaw_rate");
+    if (reads.has("force")) in_.force = reads.add<3>("force");
+    if (inside_) in_.position = reads.add<3>("position");
     polygon("speed_across", inscribed * limit("speed_across", vehicle.speed_across_max));
     row("climb", -limit("descent_speed", vehicle.descent_speed_max),
         limit("climb_speed", vehicle.climb_speed_max));
     const double yaw_rate = limit("yaw_rate", vehicle.yaw_rate_max);
-    if (yaw_rate_ >= 0) row("yaw_rate", -yaw_rate, yaw_rate);
-    if (force_ >= 0) {
+    if (in_.yaw_rate) row("yaw_rate", -yaw_rate, yaw_rate);
+    if (in_.force) {
       polygon("acceleration_across",
               inscribed * limit("acceleration_across", vehicle.acceleration_across_max));
       row("acceleration_up", -vehicle.acceleration_down_max.value_or(kInfinity),
           vehicle.acceleration_up_max.value_or(kInfinity));
     }
     if (inside_) place();
-    FunctionShape shape{.blocks = blocks,
-                        .rows = static_cast<int>(names_.size()),
-                        .affine = true,
-                        .row_names = names_};
+    shape.rows = static_cast<int>(names_.size());
+    shape.row_names = names_;
     return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const auto velocity = stage.template vector<3>(0);
+    const auto velocity = stage(in_.velocity);
     int r = 0;
     for (const Eigen::Vector2d& d : directions_)
       rows[r++] = d.x() * velocity.x() + d.y() * velocity.y();
     rows[r++] = velocity.z();
-    if (yaw_rate_ >= 0) rows[r++] = stage.scalar(yaw_rate_);
-    if (force_ >= 0) {
-      const auto force = stage.template vector<3>(force_);
+    if (in_.yaw_rate) rows[r++] = stage(*in_.yaw_rate);
+    if (in_.force) {
+      const auto force = stage(*in_.force);
       for (const Eigen::Vector2d& d : directions_)
         rows[r++] = (d.x() * force.x() + d.y() * force.y()) / mass_;
       rows[r++] = force.z() / mass_ - kGravity;
     }
     if (!inside_) return;
-    for (int i = 0; i < 3; ++i) rows[r++] = stage.data(position_)[i];
+    const auto position = stage(in_.position);
+    for (int i = 0; i < 3; ++i) rows[r++] = position[i];
   }
 
   void bounds(InstanceRange range, double* lower, double* upper) const override {
@@ -147,7 +143,12 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
   int sides_;
   double mass_ = 1;
   bool inside_ = false;
-  int yaw_rate_ = -1, force_ = -1, position_ = -1;  // places among the blocks read; -1: not read
+  struct {
+    VectorHandle velocity;
+    std::optional<NumberHandle> yaw_rate;  // of models that have one
+    std::optional<VectorHandle> force;     // likewise
+    VectorHandle position;                 // where it is limited
+  } in_;
   std::vector<Eigen::Vector2d> directions_;
   std::vector<std::string> names_;
   std::vector<double> lower_, upper_;

@@ -43,8 +43,10 @@ class SubjectDistance final : public DifferentiableConstraint<SubjectDistance, 8
     if (name_) subjects_ = {subject_named(setting.environment, *name_)};
     speeds_.clear();
     clearance_ = PathClearance(setting.vehicle);
-    FunctionShape shape{.blocks = setting.layout.indices({"position", "velocity", "time", "step"}),
-                        .rows = static_cast<int>(subjects_.size())};
+    FunctionShape shape{.rows = static_cast<int>(subjects_.size())};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("position"), reads.add<3>("velocity"), reads.add("time"),
+           reads.add("step")};
     for (const Subject& subject : subjects_) {
       speeds_.push_back(largest_speed(subject));
       shape.row_names.push_back(subject.name.empty() ? std::to_string(speeds_.size())
@@ -55,13 +57,13 @@ class SubjectDistance final : public DifferentiableConstraint<SubjectDistance, 8
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const auto position = stage.template vector<3>(0);
-    const Eigen::Matrix<T, 3, 1> velocity = stage.template vector<3>(1);
+    const auto position = stage(in_.position);
+    const Eigen::Matrix<T, 3, 1> velocity = stage(in_.velocity);
     for (std::size_t k = 0; k < subjects_.size(); ++k) {
-      const auto subject = subject_position<T>(subjects_[k], stage.scalar(2));
+      const auto subject = subject_position<T>(subjects_[k], stage(in_.time));
       rows[static_cast<int>(k)] =
           distance<T>(position - subject) -
-          clearance_.around(velocity, stage.scalar(3), speeds_[k]).asked(distance_);
+          clearance_.around(velocity, stage(in_.step), speeds_[k]).asked(distance_);
     }
   }
 
@@ -81,6 +83,10 @@ class SubjectDistance final : public DifferentiableConstraint<SubjectDistance, 8
     return sqrt(squared);
   }
 
+  struct {
+    VectorHandle position, velocity;
+    NumberHandle time, step;
+  } in_;
   std::optional<std::string> name_;
   double distance_;
   std::vector<Subject> subjects_;

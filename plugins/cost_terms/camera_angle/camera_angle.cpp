@@ -33,26 +33,30 @@ class CameraAngle final : public DifferentiableCost<CameraAngle, 9> {
   explicit CameraAngle(const Parameters& parameters) : except_(time_spans(parameters, "except")) {}
 
   FunctionShape declare(const ProblemSetting& setting) {
-    FunctionShape shape{.blocks = setting.layout.indices(
-                            {"position", "yaw", "gimbal_yaw", "gimbal_pitch", "target"}),
-                        .rows = 2,
-                        .integral = true,
-                        .row_names = {"right", "down"}};
+    FunctionShape shape{.rows = 2, .integral = true, .row_names = {"right", "down"}};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("position"), reads.add("yaw"), reads.add("gimbal_yaw"),
+           reads.add("gimbal_pitch"), reads.add<3>("target")};
     ask_within(shape, setting.horizon, {}, except_);
     return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const CameraAxes<T> axes = camera_axes<T>(stage.scalar(1) + stage.scalar(2), stage.scalar(3));
-    const Eigen::Matrix<T, 3, 1> to_target =
-        stage.template vector<3>(4) - stage.template vector<3>(0);
+    const CameraAxes<T> axes =
+        camera_axes<T>(stage(in_.yaw) + stage(in_.gimbal_yaw), stage(in_.gimbal_pitch));
+    const Eigen::Matrix<T, 3, 1> to_target = stage(in_.target) - stage(in_.position);
     const auto angles = angle_residual<T>(axes.in_camera(to_target));
     rows[0] = angles[0];
     rows[1] = angles[1];
   }
 
  private:
+  struct {
+    VectorHandle position;
+    NumberHandle yaw, gimbal_yaw, gimbal_pitch;
+    VectorHandle target;
+  } in_;
   std::vector<TimeSpan> except_;
 };
 

@@ -64,15 +64,15 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
     FunctionShape shape{
         .blocks = {}, .window = order_ + 1, .integral = true, .affine = !setting.horizon.step_free};
     even_ = setting.horizon.uniform();
-    sizes_.clear();
-    held_.clear();
+    read_.clear();
+    BlocksRead reads(setting.layout, shape.blocks);
     for (const std::string& name : names_) {
-      shape.blocks.push_back(setting.layout.index(name));
-      sizes_.push_back(setting.layout.block(shape.blocks.back()).size);
-      held_.push_back(setting.layout.block(shape.blocks.back()).role == BlockRole::input);
-      shape.rows += sizes_.back();
+      const AnyHandle block = reads.add<Eigen::Dynamic>(name);
+      const BlockRole role = setting.layout.block(shape.blocks.back()).role;
+      read_.push_back({block, role == BlockRole::input});
+      shape.rows += block.size();
     }
-    shape.blocks.push_back(setting.layout.index("step"));
+    step_ = reads.add("step");
     ask_within(shape, setting.horizon, {}, except_);
     return shape;
   }
@@ -82,13 +82,13 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
     static constexpr double kBinomial[5][5] = {
         {}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}, {1, -4, 6, -4, 1}};
     if (!even_) return divided(stage, rows);
-    const int blocks = static_cast<int>(sizes_.size());
     T scale = 1.0;
-    for (int q = 0; q < order_; ++q) scale = scale / stage.scalar(blocks);
-    for (int b = 0, row = 0; b < blocks; ++b)
-      for (int i = 0; i < sizes_[b]; ++i, ++row) {
+    for (int q = 0; q < order_; ++q) scale = scale / stage(step_);
+    int row = 0;
+    for (const ReadBlock& read : read_)
+      for (int i = 0; i < read.block.size(); ++i, ++row) {
         T sum = 0.0;
-        for (int q = 0; q <= order_; ++q) sum += kBinomial[order_][q] * stage[q].data(b)[i];
+        for (int q = 0; q <= order_; ++q) sum += kBinomial[order_][q] * stage[q](read.block)[i];
         rows[row] = scale * sum;
       }
   }
@@ -96,17 +96,17 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
  private:
   template <class T>
   void divided(const Stage<T>& stage, Rows<T>& rows) const {
-    const int blocks = static_cast<int>(sizes_.size());
-    for (int b = 0, row = 0; b < blocks; ++b) {
+    int row = 0;
+    for (const ReadBlock& read : read_) {
       T times[5];
       times[0] = 0.0;
       for (int q = 0; q < order_; ++q) {
-        const T& step = stage[q].scalar(blocks);
-        times[q + 1] = times[q] + (held_[b] ? 0.5 * (step + stage[q + 1].scalar(blocks)) : step);
+        const T& step = stage[q](step_);
+        times[q + 1] = times[q] + (read.held ? 0.5 * (step + stage[q + 1](step_)) : step);
       }
-      for (int i = 0; i < sizes_[b]; ++i, ++row) {
+      for (int i = 0; i < read.block.size(); ++i, ++row) {
         T table[5];
-        for (int q = 0; q <= order_; ++q) table[q] = stage[q].data(b)[i];
+        for (int q = 0; q <= order_; ++q) table[q] = stage[q](read.block)[i];
         for (int level = 1; level <= order_; ++level)
           for (int q = 0; q + level <= order_; ++q)
             table[q] = double(level) * (table[q + 1] - table[q]) / (times[q + level] - times[q]);
@@ -116,9 +116,13 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
   }
 
   std::vector<std::string> names_;
-  std::vector<int> sizes_;  // of the blocks
-  std::vector<bool> held_;  // inputs
-  bool even_ = true;        // one step for all
+  struct ReadBlock {
+    AnyHandle block;
+    bool held = false;  // over a step: an input
+  };
+  std::vector<ReadBlock> read_;
+  NumberHandle step_;
+  bool even_ = true;  // one step for all
   int order_;
   std::vector<TimeSpan> except_;
 };

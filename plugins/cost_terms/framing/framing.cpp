@@ -46,11 +46,10 @@ class Framing final : public DifferentiableCost<Framing, 9> {
   }
 
   FunctionShape declare(const ProblemSetting& setting) {
-    FunctionShape shape{
-        .blocks = setting.layout.indices({"position", "yaw", "gimbal_yaw", "gimbal_pitch"}),
-        .rows = size_ ? 3 : 2,
-        .integral = true,
-        .row_names = {"right", "down"}};
+    FunctionShape shape{.rows = size_ ? 3 : 2, .integral = true, .row_names = {"right", "down"}};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("position"), reads.add("yaw"), reads.add("gimbal_yaw"),
+           reads.add("gimbal_pitch")};
     if (size_) shape.row_names.push_back("size");
     point_.bind(setting, shape);
     const Camera& camera = setting.vehicle.camera;
@@ -64,8 +63,9 @@ class Framing final : public DifferentiableCost<Framing, 9> {
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const CameraAxes<T> axes = camera_axes<T>(stage.scalar(1) + stage.scalar(2), stage.scalar(3));
-    const Eigen::Matrix<T, 3, 1> away = point_.at(stage) - stage.template vector<3>(0);
+    const CameraAxes<T> axes =
+        camera_axes<T>(stage(in_.yaw) + stage(in_.gimbal_yaw), stage(in_.gimbal_pitch));
+    const Eigen::Matrix<T, 3, 1> away = point_.at(stage) - stage(in_.position);
     const Eigen::Matrix<T, 3, 1> seen = axes.in_camera(away);
     Eigen::Matrix<T, 3, 1> turned;
     for (int i = 0; i < 3; ++i)
@@ -87,6 +87,10 @@ class Framing final : public DifferentiableCost<Framing, 9> {
     turn_ << right.transpose(), forward.cross(right).transpose(), forward.transpose();
   }
 
+  struct {
+    VectorHandle position;
+    NumberHandle yaw, gimbal_yaw, gimbal_pitch;
+  } in_;
   FilmedPoint point_;
   double horizontal_, vertical_, root_;
   std::optional<double> size_;

@@ -30,23 +30,27 @@ class InputEffort final : public DifferentiableCost<InputEffort, 4> {
   FunctionShape declare(const ProblemSetting& setting) {
     weight_ = setting.vehicle.mass * kGravity;
     torque_max_ = setting.vehicle.yaw_torque_max();
-    return {.blocks = setting.layout.indices({"force", "yaw_torque"}),
-            .rows = 4,
-            .integral = true,
-            .affine = true,
-            .row_names = {"x", "y", "z", "yaw"}};
+    FunctionShape shape{
+        .rows = 4, .integral = true, .affine = true, .row_names = {"x", "y", "z", "yaw"}};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("force"), reads.add("yaw_torque")};
+    return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    const auto force = stage.template vector<3>(0);
+    const auto force = stage(in_.force);
     rows[0] = force.x() / weight_;
     rows[1] = force.y() / weight_;
     rows[2] = force.z() / weight_ - 1.0;
-    if (torque_max_ > 0) rows[3] = stage.scalar(1) / torque_max_;
+    if (torque_max_ > 0) rows[3] = stage(in_.yaw_torque) / torque_max_;
   }
 
  private:
+  struct {
+    VectorHandle force;
+    NumberHandle yaw_torque;
+  } in_;
   double weight_ = 1, torque_max_ = 0;
 };
 

@@ -40,8 +40,9 @@ class Skewness final : public DifferentiableCost<Skewness> {
         except_(time_spans(parameters, "except")) {}
 
   FunctionShape declare(const ProblemSetting& setting) {
-    FunctionShape shape{
-        .blocks = setting.layout.indices({"position", "target"}), .rows = 1, .integral = true};
+    FunctionShape shape{.rows = 1, .integral = true};
+    BlocksRead reads(setting.layout, shape.blocks);
+    in_ = {reads.add<3>("position"), reads.add<3>("target")};
     ask_within(shape, setting.horizon, spans_, except_);
     return shape;
   }
@@ -50,13 +51,16 @@ class Skewness final : public DifferentiableCost<Skewness> {
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
     using std::abs;
     constexpr double kCoincident = 1e-12;  // m^2
-    const Eigen::Matrix<T, 3, 1> d = stage.template vector<3>(1) - stage.template vector<3>(0);
+    const Eigen::Matrix<T, 3, 1> d = stage(in_.target) - stage(in_.position);
     const T squared = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
     if (value_of(squared) < kCoincident) return;
     rows[0] = near_fade(squared) * height_ * d.z() / (squared + 0.5 * height_ * abs(d.z()));
   }
 
  private:
+  struct {
+    VectorHandle position, target;
+  } in_;
   double height_;
   std::vector<TimeSpan> spans_, except_;
 };
