@@ -2,6 +2,7 @@
 
 #include "framework/core/random.h"
 #include "framework/solve/local_program.h"
+#include "tests/camera_drone.h"
 
 namespace lapwing {
 namespace {
@@ -9,20 +10,12 @@ namespace {
 constexpr double kStep = 0.1;                      // s
 constexpr double kKeyframeInterval = 30.0 / 11.0;  // s: 12 keyframes in 30 s
 
-// A 1.5 kg camera drone with the limits of thesis 3.8.3.
+// With weaker rotors.
 Vehicle drone() {
-  Vehicle vehicle;
-  vehicle.name = "bench";
-  vehicle.mass = 1.5;
+  Vehicle vehicle = camera_drone("bench");
   vehicle.inertia = {0.02, 0.02, 0.035};
-  vehicle.rotors = {
-      .thrust_max = 7.4, .thrust_min = 0.2, .torque_coefficient = 0.016, .arm_length = 0.23};
-  vehicle.yaw_share = 0.2;
-  vehicle.speed_across_max = 10;
-  vehicle.climb_speed_max = 2.5;
-  vehicle.descent_speed_max = 2;
-  vehicle.acceleration_across_max = 4;
-  vehicle.yaw_rate_max = 1.5;
+  vehicle.rotors.thrust_max = 7.4;
+  vehicle.rotors.diagonal = false;
   return vehicle;
 }
 

@@ -4,29 +4,13 @@
 #include "framework/core/units.h"
 #include "framework/plugin/registry.h"
 #include "framework/problem/trajectory_problem.h"
+#include "tests/camera_drone.h"
 
 namespace lapwing {
 
 inline const Registry& plugins() {
   static const Registry registry({LAPWING_BUILD_DIR "/lib/plugins"});
   return registry;
-}
-
-// A 1.5 kg camera drone.
-inline Vehicle camera_drone() {
-  Vehicle vehicle;
-  vehicle.name = "drone";
-  vehicle.mass = 1.5;
-  vehicle.inertia = {0.015, 0.015, 0.025};
-  vehicle.rotors = {8.0, 0.2, 0.016, 0.23, true};
-  vehicle.yaw_share = 0.2;
-  vehicle.speed_across_max = 10;
-  vehicle.climb_speed_max = 2.5;
-  vehicle.descent_speed_max = 2;
-  vehicle.acceleration_across_max = 4;
-  vehicle.yaw_rate_max = 1.5;
-  vehicle.flight_time = 1200;
-  return vehicle;
 }
 
 // {key = value, ...}

@@ -21,7 +21,7 @@ Value derivative_of(const std::string& block, int order) {
 }
 
 TrajectoryProblem quadrotor_problem(bool step_free) {
-  TrajectoryProblem problem(plain_vehicle(), {.stages = 7, .step = 0.5, .step_free = step_free});
+  TrajectoryProblem problem(camera_drone(), {.stages = 7, .step = 0.5, .step_free = step_free});
   problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
   for (int order = 1; order <= 4; ++order)
     problem.add_cost("smooth_" + std::to_string(order), 0.3 * order,
@@ -69,7 +69,7 @@ TEST(Derivatives, OfALinearProblemWithFreeStep) {
 }
 
 TrajectoryProblem pendulum_problem(bool step_free, bool times) {
-  TrajectoryProblem problem(plain_vehicle(), {.stages = 6, .step = 0.6, .step_free = step_free});
+  TrajectoryProblem problem(camera_drone(), {.stages = 6, .step = 0.6, .step_free = step_free});
   problem.add_model("pendulum", std::make_unique<Pendulum>());
   problem.add_block({.name = "target", .size = 3, .unit = "m"});
   for (int window = 1; window <= 3; ++window) {
@@ -127,7 +127,7 @@ TEST(Derivatives, WithFreeStepAndIntegrals) {
 }
 
 TrajectoryProblem tumbler_problem(bool step_free, bool times) {
-  TrajectoryProblem problem(plain_vehicle(), {.stages = 4, .step = 0.5, .step_free = step_free});
+  TrajectoryProblem problem(camera_drone(), {.stages = 4, .step = 0.5, .step_free = step_free});
   problem.add_model("tumbler", std::make_unique<Tumbler>());
   problem.add_block({.name = "look", .size = 4, .topology = Topology::quaternion});
   for (int window = 1; window <= 3; ++window) {
@@ -167,7 +167,7 @@ TEST(Derivatives, WithOrientationsBetweenStages) {
 TEST(Derivatives, GaussNewtonIsTwiceTheWeightedSquareOfTheJacobian) {
   // The same function as a cost and as a constraint: the latter's rows give the Jacobian.
   const Reading reading{.blocks = {"attitude", "height", "height"}, .window = 2};
-  TrajectoryProblem problem(plain_vehicle(), {.stages = 5, .step = 0.5});
+  TrajectoryProblem problem(camera_drone(), {.stages = 5, .step = 0.5});
   problem.add_model("tumbler", std::make_unique<Tumbler>());
   problem.add_cost("wavy", 0.7, wavy_cost(reading));
   problem.add_constraint("bent", wavy_constraint(reading));
@@ -182,7 +182,7 @@ TEST(Derivatives, GaussNewtonIsTwiceTheWeightedSquareOfTheJacobian) {
 TEST(Derivatives, CachedJacobianOfAStraightTermEqualsTheEvaluatedOne) {
   // Declared straight: computed once. Declared curved: computed anew. Both see the same numbers.
   const auto build = [](bool cached) {
-    TrajectoryProblem problem(plain_vehicle(), {.stages = 6, .step = 0.5});
+    TrajectoryProblem problem(camera_drone(), {.stages = 6, .step = 0.5});
     problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
     problem.add_cost("straight", 0.3,
                      wavy_cost({.blocks = {"position", "yaw_torque"},

@@ -4,24 +4,9 @@
 #include "framework/core/random.h"
 #include "framework/problem/differentiable.h"
 #include "framework/problem/trajectory_problem.h"
+#include "tests/camera_drone.h"
 
 namespace lapwing::laboratory {
-
-inline Vehicle plain_vehicle() {
-  Vehicle vehicle;
-  vehicle.name = "plain";
-  vehicle.mass = 1.5;
-  vehicle.inertia = {0.015, 0.015, 0.025};
-  vehicle.rotors = {8.0, 0.2, 0.016, 0.23, true};
-  vehicle.yaw_share = 0.2;
-  vehicle.speed_across_max = 10;
-  vehicle.climb_speed_max = 2.5;
-  vehicle.descent_speed_max = 2;
-  vehicle.acceleration_across_max = 4;
-  vehicle.yaw_rate_max = 1.5;
-  vehicle.flight_time = 1200;
-  return vehicle;
-}
 
 // A pendulum that is pushed: nonlinear, on lines.
 //   place+ = place + h rate      rate+ = rate + h (push - sin(place) - 0.1 rate^2)

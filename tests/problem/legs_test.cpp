@@ -27,7 +27,7 @@ Value leg_derivative(const std::string& block, int order) {
 }
 
 TrajectoryProblem quadrotor(const Horizon& horizon) {
-  TrajectoryProblem problem(plain_vehicle(), horizon);
+  TrajectoryProblem problem(camera_drone(), horizon);
   problem.add_model("quadrotor", leg_plugins().create<VehicleModel>("quadrotor"));
   for (int order = 1; order <= 4; ++order)
     problem.add_cost(
@@ -90,7 +90,7 @@ TEST(Legs, DerivativesAreExact) {
 TEST(Legs, DerivativesOfAPeriodicFlightAreExact) {
   Horizon horizon = Horizon::of_legs(kThree);
   horizon.periodic = true;
-  TrajectoryProblem problem(plain_vehicle(), horizon);
+  TrajectoryProblem problem(camera_drone(), horizon);
   problem.add_model("tumbler", std::make_unique<Tumbler>());
   problem.finish();
   EXPECT_EQ(problem.row_name(problem.rows() - 1).substr(0, 8), "closure.");
@@ -101,7 +101,7 @@ TEST(Legs, APeriodicFlightMayTurn) {
   Horizon horizon{.stages = 3, .step = 0.5};
   horizon.periodic = true;
   horizon.turns = 1;
-  TrajectoryProblem problem(plain_vehicle(), horizon);
+  TrajectoryProblem problem(camera_drone(), horizon);
   problem.add_model("quadrotor", leg_plugins().create<VehicleModel>("quadrotor"));
   problem.set_path_guess({0, 1}, {{0, 0, 1}, {0, 0, 1}}, {0.0, 2 * std::numbers::pi});
   problem.finish();
@@ -113,7 +113,7 @@ TEST(Legs, APeriodicFlightMayTurn) {
 
 // x(t) = t^q has q! as its q-th derivative, whatever the steps are.
 TEST(Legs, DividedDifferencesOfPowersAreFactorials) {
-  TrajectoryProblem problem(plain_vehicle(),
+  TrajectoryProblem problem(camera_drone(),
                             Horizon::of_legs({{.intervals = 3, .step = 0.1, .free = false},
                                               {.intervals = 3, .step = 0.35, .free = false}}));
   problem.add_model("quadrotor", leg_plugins().create<VehicleModel>("quadrotor"));

@@ -18,7 +18,7 @@ const Registry& problem_plugins() {
 }
 
 TrajectoryProblem pendulum(Horizon horizon = {.stages = 5, .step = 0.25}) {
-  TrajectoryProblem problem(plain_vehicle(), horizon);
+  TrajectoryProblem problem(camera_drone(), horizon);
   problem.add_model("pendulum", std::make_unique<Pendulum>());
   return problem;
 }
@@ -214,7 +214,7 @@ TEST(TrajectoryProblem, IntegralsDoNotDependOnTheNumberOfStages) {
   // integral over 2 s of the squared third derivative of t^4 / 24, that is of t^2: 8 / 3.
   double previous = 1;
   for (const int intervals : {20, 80, 320}) {
-    TrajectoryProblem problem(plain_vehicle(), {.stages = intervals + 1, .step = 2.0 / intervals});
+    TrajectoryProblem problem(camera_drone(), {.stages = intervals + 1, .step = 2.0 / intervals});
     problem.add_model("quadrotor", problem_plugins().create<VehicleModel>("quadrotor"));
     Value parameters = Value::map();
     parameters.set("order", 3);
@@ -231,7 +231,7 @@ TEST(TrajectoryProblem, IntegralsDoNotDependOnTheNumberOfStages) {
 
 TEST(TrajectoryProblem, ReadsKeyframesOffTheFlow) {
   // Constant acceleration: r = t^2 exactly, at any time.
-  TrajectoryProblem problem(plain_vehicle(), {.stages = 4, .step = 1.0});
+  TrajectoryProblem problem(camera_drone(), {.stages = 4, .step = 1.0});
   problem.add_model("quadrotor", problem_plugins().create<VehicleModel>("quadrotor"));
   problem.add_constraint("read", std::make_unique<Read>());
   problem.finish();
@@ -253,7 +253,7 @@ TEST(TrajectoryProblem, ReadsKeyframesOffTheFlow) {
 }
 
 TEST(TrajectoryProblem, GuessesFollowTheirTimes) {
-  TrajectoryProblem problem(plain_vehicle(), {.stages = 5, .step = 1.0});
+  TrajectoryProblem problem(camera_drone(), {.stages = 5, .step = 1.0});
   problem.add_model("quadrotor", problem_plugins().create<VehicleModel>("quadrotor"));
   problem.add_block({.name = "target", .size = 3});
   problem.add_block({.name = "look", .size = 4, .topology = Topology::quaternion});
@@ -282,7 +282,7 @@ TEST(TrajectoryProblem, RefusesWhatMakesNoSense) {
   expect_message([] { pendulum({.stages = 1, .step = 1}); }, {"at least 2 stages"});
   expect_message([] { pendulum({.stages = 3, .step = 0}); }, {"positive step"});
   expect_message([] { pendulum({.stages = 3, .step = kInfinity}); }, {"positive step"});
-  expect_message([] { TrajectoryProblem(plain_vehicle(), {.stages = 3, .step = 1}).finish(); },
+  expect_message([] { TrajectoryProblem(camera_drone(), {.stages = 3, .step = 1}).finish(); },
                  {"needs a vehicle model"});
   TrajectoryProblem problem = pendulum();
   expect_message([&] { problem.add_cost("smooth", -1, wavy_cost({.blocks = {"place"}})); },
@@ -337,7 +337,7 @@ TEST(TrajectoryProblem, DoesNotChangeOnceFinished) {
 
 TEST(TrajectoryProblem, AKeyframeAtTheVeryEndSurvivesRounding) {
   // 0.1 is not a binary number: 299 steps of it are not 29.9 exactly.
-  TrajectoryProblem problem(plain_vehicle(), {.stages = 300, .step = 0.1});
+  TrajectoryProblem problem(camera_drone(), {.stages = 300, .step = 0.1});
   problem.add_model("pendulum", std::make_unique<Pendulum>());
   problem.add_constraint("end", wavy_constraint({.blocks = {"place"}, .times = {29.9, 0.3}}));
   problem.finish();
@@ -349,7 +349,7 @@ TEST(TrajectoryProblem, AKeyframeAtTheVeryEndSurvivesRounding) {
 TEST(TrajectoryProblem, SimulationMeetsTheDynamics) {
   for (const int round : {0, 1, 2, 3}) {
     const bool step_free = round % 2 == 1;
-    TrajectoryProblem problem(plain_vehicle(), {.stages = 6, .step = 0.2, .step_free = step_free});
+    TrajectoryProblem problem(camera_drone(), {.stages = 6, .step = 0.2, .step_free = step_free});
     if (round < 2)
       problem.add_model("tumbler", std::make_unique<Tumbler>());
     else

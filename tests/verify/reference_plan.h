@@ -12,23 +12,14 @@
 #include "framework/core/units.h"
 #include "framework/geometry/camera_axes.h"
 #include "framework/trajectory/plan.h"
-#include "framework/vehicle/vehicle.h"
+#include "tests/camera_drone.h"
 
 namespace lapwing {
 
 inline Vehicle reference_vehicle() {
-  Vehicle v;
-  v.name = "reference";
-  v.mass = 1.5;
-  v.inertia = {0.015, 0.015, 0.025};
-  v.rotors = {.thrust_max = 8, .thrust_min = 0.2, .torque_coefficient = 0.016, .arm_length = 0.23};
-  v.yaw_share = 0.2;
-  v.speed_across_max = 10;
-  v.climb_speed_max = 2.5;
-  v.descent_speed_max = 2;
-  v.acceleration_across_max = 4;
+  Vehicle v = camera_drone("reference");
+  v.rotors.diagonal = false;
   v.yaw_rate_max = radians(90);
-  v.flight_time = 1200;
   v.gimbal = GimbalLimits{-1, 1, radians(-90), 0, radians(90), radians(90)};
   v.camera = {"action", 1920, 1080, 890, 890, 959.5, 539.5};
   return v;

@@ -13,6 +13,7 @@
 
 #include "framework/plugin/plugin.h"
 #include "framework/problem/differentiable.h"
+#include "framework/problem/timed_values.h"
 
 namespace lapwing {
 namespace {
@@ -57,69 +58,46 @@ class HardKeyframe final : public DifferentiableConstraint<HardKeyframe> {
                                     "a block lies near given values at given times",
                                     "thesis 3.5.2, (3.4) as a constraint"};
   static ParameterTable parameters() {
-    return ParameterTable{}
-        .text("block", "position", "constrained block: position, yaw, target, ...")
+    return TimedValues::table("constrained", TimedValues::entry())
         .number("tolerance", 0.0, "", "largest distance from the value, in the block's unit",
-                at_least(0))
-        .tables("keyframes",
-                ParameterTable{}
-                    .required_number("time", "s", "time from the start; need not be on a stage",
-                                     at_least(0))
-                    .required_numbers("value", 0, "", "value, in the block's unit"),
-                "times and values; at least one", true);
+                at_least(0));
   }
 
   explicit HardKeyframe(const Parameters& parameters)
-      : block_(parameters.text("block")), tolerance_(parameters.number("tolerance")) {
-    for (const Parameters& given : parameters.tables("keyframes")) {
-      const auto value = given.numbers("value");
-      times_.push_back(given.number("time"));
-      values_.emplace_back(value.begin(), value.end());
-    }
-    if (times_.empty())
-      throw InputError(parameters.origin("keyframes"), "keyframes: expected at least one");
-  }
+      : wanted_(parameters), tolerance_(parameters.number("tolerance")) {}
 
   FunctionShape declare(const ProblemSetting& setting) {
-    const BlockSpec& block = setting.layout.block(setting.layout.index(block_));
-    if (block.topology != Topology::line)
-      throw InputError("block '" + block_ + "' is an orientation, which keyframes cannot hold");
-    for (std::size_t j = 0; j < values_.size(); ++j)
-      if (static_cast<int>(values_[j].size()) != block.size)
-        throw InputError("keyframe " + std::to_string(j + 1) + " has " +
-                         std::to_string(values_[j].size()) + " numbers, block '" + block_ +
-                         "' has " + std::to_string(block.size));
-    size_ = block.size;
-    if (tolerance_ > 0) facets_ = facets(size_);
-    FunctionShape shape{.blocks = setting.layout.indices({block_}),
-                        .rows = facets_.empty() ? size_ : static_cast<int>(facets_.size()),
-                        .times = times_,
-                        .affine = true,
-                        .identity = facets_.empty()};
-    for (int i = 0; i < size_ && facets_.empty(); ++i)
-      shape.row_names.push_back(size_ == 1 ? block_ : component_name(block, i));
+    FunctionShape shape{.affine = true};
+    block_ = wanted_.bind(setting, shape, "hold");
+    if (tolerance_ > 0) facets_ = facets(block_.size());
+    shape.rows = facets_.empty() ? block_.size() : static_cast<int>(facets_.size());
+    shape.identity = facets_.empty();
+    const BlockSpec& block = setting.layout.block(shape.blocks.front());
+    for (int i = 0; i < block_.size() && facets_.empty(); ++i)
+      shape.row_names.push_back(component_name(block, i));
     for (const std::vector<double>& facet : facets_) shape.row_names.push_back(name(facet, block));
     return shape;
   }
 
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
-    for (int i = 0; i < size_ && facets_.empty(); ++i) rows[i] = stage.data(0)[i];
+    const auto at = stage(block_);
+    for (int i = 0; i < block_.size() && facets_.empty(); ++i) rows[i] = at[i];
     for (std::size_t k = 0; k < facets_.size(); ++k) {
       T along = T(0.0);
-      for (int i = 0; i < size_; ++i) along += facets_[k][i] * stage.data(0)[i];
+      for (int i = 0; i < block_.size(); ++i) along += facets_[k][i] * at[i];
       rows[static_cast<int>(k)] = along;
     }
   }
 
   void bounds(InstanceRange range, double* lower, double* upper) const override {
     for (int k = 0; k < range.count; ++k) {
-      const std::vector<double>& value = values_[range.first + k];
+      const std::vector<double>& value = wanted_.value(range.first + k);
       if (facets_.empty()) {
         lower = std::copy(value.begin(), value.end(), lower);
         upper = std::copy(value.begin(), value.end(), upper);
       }
-      const double half = facet_distance(size_) * tolerance_;
+      const double half = facet_distance(block_.size()) * tolerance_;
       for (const std::vector<double>& facet : facets_) {
         const double along = std::inner_product(facet.begin(), facet.end(), value.begin(), 0.0);
         *lower++ = along - half;
@@ -131,9 +109,9 @@ class HardKeyframe final : public DifferentiableConstraint<HardKeyframe> {
  private:
   // "position.x", "position.x-z": the direction, by its components.
   std::string name(const std::vector<double>& facet, const BlockSpec& block) const {
-    if (size_ == 1) return block_;
+    if (block_.size() == 1) return wanted_.block();
     std::string result;
-    for (int i = 0; i < size_; ++i) {
+    for (int i = 0; i < block_.size(); ++i) {
       if (facet[i] == 0) continue;
       const std::string component = component_name(block, i);
       if (result.empty())
@@ -144,12 +122,10 @@ class HardKeyframe final : public DifferentiableConstraint<HardKeyframe> {
     return result;
   }
 
-  std::string block_;
+  TimedValues wanted_;
   double tolerance_;
-  std::vector<double> times_;
-  std::vector<std::vector<double>> values_;
+  AnyHandle block_;
   std::vector<std::vector<double>> facets_;  // none: the block's numbers are equations
-  int size_ = 0;
 };
 
 }  // namespace

@@ -3,8 +3,7 @@
 //   utility: {type: average_entropy, pixel_step: 2}
 #include <cmath>
 
-#include "framework/core/parallel.h"
-#include "framework/explore/view_rays.h"
+#include "framework/explore/ray_utility.h"
 #include "framework/plugin/plugin.h"
 
 namespace lapwing {
@@ -29,33 +28,22 @@ class Entropy {
   double bits_ = 1;
 };
 
-class AverageEntropy final : public ViewUtility {
+class AverageEntropy final : public RayUtility {
  public:
   static constexpr PluginText kText{"average_entropy", "1.0.0",
                                     "mean entropy of the voxels in front of known surfaces",
                                     "Isler et al. 2016; Delmerico et al. 2018, average entropy"};
-  static ParameterTable parameters() {
-    return ParameterTable().integer("pixel_step", 2, "one ray per so many columns and rows",
-                                    between(1, 64));
-  }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kMonotone, nullptr}};
     return all;
   }
-  explicit AverageEntropy(const Parameters& p) : step_(static_cast<int>(p.integer("pixel_step"))) {}
+  explicit AverageEntropy(const Parameters& parameters) : RayUtility(parameters) {}
 
  protected:
-  void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
-                 std::span<double> values) const override {
-    parallel_for(views.size(), known.threads,
-                 [&](std::size_t i) { values[i] = mean(known, views[i]); });
-  }
-
- private:
-  double mean(const EpisodeView& known, const Viewpoint& view) const {
+  double value_of(const EpisodeView& known, const Viewpoint& view) const override {
     double entropy = 0, met = 0;
     Entropy bits;
-    for (const Eigen::Vector3d& direction : view_rays(view, known.pinhole, step_)) {
+    for (const Eigen::Vector3d& direction : rays_of(known, view)) {
       double on_ray = 0, voxels = 0;
       bool ends = false;
       walk_ray(*known.map, view.position, direction, known.range,
@@ -71,8 +59,6 @@ class AverageEntropy final : public ViewUtility {
     }
     return met > 0 ? entropy / met : 0;
   }
-
-  int step_;
 };
 
 }  // namespace

@@ -3,39 +3,27 @@
 //   utility: {type: frontier, pixel_step: 2}
 #include <algorithm>
 
-#include "framework/core/parallel.h"
-#include "framework/explore/view_rays.h"
+#include "framework/explore/ray_utility.h"
 #include "framework/plugin/plugin.h"
 
 namespace lapwing {
 namespace {
 
-class Frontier final : public ViewUtility {
+class Frontier final : public RayUtility {
  public:
   static constexpr PluginText kText{"frontier", "1.0.0",
                                     "number of visible unknown voxels at the border of free space",
                                     "thesis 5.5.2; Yamauchi 1997"};
-  static ParameterTable parameters() {
-    return ParameterTable().integer("pixel_step", 2, "one ray per so many columns and rows",
-                                    between(1, 64));
-  }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kMonotone, nullptr}};
     return all;
   }
-  explicit Frontier(const Parameters& p) : step_(static_cast<int>(p.integer("pixel_step"))) {}
+  explicit Frontier(const Parameters& parameters) : RayUtility(parameters) {}
 
  protected:
-  void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
-                 std::span<double> values) const override {
-    parallel_for(views.size(), known.threads,
-                 [&](std::size_t i) { values[i] = count(known, views[i]); });
-  }
-
- private:
-  double count(const EpisodeView& known, const Viewpoint& view) const {
+  double value_of(const EpisodeView& known, const Viewpoint& view) const override {
     std::vector<MapRay> rays;
-    for (const Eigen::Vector3d& direction : view_rays(view, known.pinhole, step_))
+    for (const Eigen::Vector3d& direction : rays_of(known, view))
       rays.push_back({view.position, direction, known.range});
     std::vector<MapRayHit> hits(rays.size());
     known.map->cast(rays, hits);
@@ -45,8 +33,6 @@ class Frontier final : public ViewUtility {
     std::sort(unknown.begin(), unknown.end());
     return static_cast<double>(std::unique(unknown.begin(), unknown.end()) - unknown.begin());
   }
-
-  int step_;
 };
 
 }  // namespace
