@@ -9,10 +9,11 @@ install(TARGETS lapwing lapwing_app lapwing_sidecar EXPORT lapwing_targets)
 install(EXPORT lapwing_targets NAMESPACE lapwing:: DESTINATION ${package})
 export(EXPORT lapwing_targets NAMESPACE lapwing:: FILE ${CMAKE_BINARY_DIR}/lapwing_targets.cmake)
 
-# Plugins see the kernel's headers; Lua and the command line stay inside.
+# Plugins see the kernel's headers; Lua, studies and the command line stay inside.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lapwing FILES_MATCHING PATTERN "*.h"
-  PATTERN "framework/mission" EXCLUDE PATTERN "framework/app" EXCLUDE)
+  PATTERN "framework/mission" EXCLUDE PATTERN "framework/study" EXCLUDE
+  PATTERN "framework/app" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs ${PROJECT_SOURCE_DIR}/scripts
   ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/lapwing)
 install(FILES plugin/lapwing_plugin.cmake plugin/plugin_exports.map DESTINATION ${package})

@@ -73,7 +73,7 @@ ExitStatus race_plan(const std::filesystem::path& plan, const std::vector<std::s
                      const RaceRules& rules, const std::filesystem::path& target,
                      const Invocation& invocation);
 
-// What a study of scan tours compares; see app/scan_study.h.
+// What a study of scan tours compares; see study/scan_study.h.
 struct ScanEvaluation {
   std::vector<std::filesystem::path> missions;
   std::vector<std::string> methods;  // none: all

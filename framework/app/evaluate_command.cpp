@@ -6,9 +6,6 @@
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
-#include "framework/app/scan_photos.h"
-#include "framework/app/scan_study.h"
-#include "framework/app/scan_tables.h"
 #include "framework/app/version.h"
 #include "framework/config/shipped.h"
 #include "framework/core/checksum.h"
@@ -18,6 +15,9 @@
 #include "framework/core/visible_text.h"
 #include "framework/mission/data_files.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/study/scan_photos.h"
+#include "framework/study/scan_study.h"
+#include "framework/study/scan_tables.h"
 
 namespace lapwing {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iostream>
 
-#include "framework/app/exploration_figures.h"
 #include "framework/app/exploration_settings.h"
 #include "framework/app/interruption.h"
 #include "framework/config/overrides.h"
@@ -13,6 +12,8 @@
 #include "framework/core/parallel.h"
 #include "framework/core/visible_text.h"
 #include "framework/mission/explore_library.h"
+#include "framework/study/exploration_figures.h"
+#include "framework/study/study_settings.h"
 
 namespace lapwing {
 namespace {

@@ -23,7 +23,7 @@ struct ExploreEvaluation {
 // The invocation's overrides are parameters of utilities, as "learned.blank=true".
 //
 // Every episode is a file in FOLDER/episodes, whole or not there; from these come the tables
-// (app/exploration_figures.h). Wall-clock figures stand apart, in FOLDER/seconds and seconds.csv.
+// (study/exploration_figures.h). Wall-clock figures stand apart, in FOLDER/seconds and seconds.csv.
 // FOLDER/settings.json says what all of it was made of; InputError for a folder with episodes but
 // without it, and for an evaluation to compare with that has other starts or lacks an episode.
 ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& invocation);

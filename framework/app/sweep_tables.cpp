@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/app/csv.h"
 #include "framework/app/terminal.h"
 #include "framework/app/text_table.h"
 #include "framework/core/number_text.h"
 #include "framework/core/visible_text.h"
 #include "framework/export/flight_charts.h"
+#include "framework/study/csv.h"
 
 namespace lapwing {
 

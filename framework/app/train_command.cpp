@@ -13,6 +13,7 @@
 #include "framework/core/visible_text.h"
 #include "framework/explore/trainable.h"
 #include "framework/mission/explore_library.h"
+#include "framework/study/study_settings.h"
 
 namespace lapwing {
 namespace {

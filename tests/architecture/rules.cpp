@@ -46,7 +46,8 @@ const std::map<std::string, Names>& rooms() {
       {"plugin", {}},
       {"conformance", without(kAllButApp, "mission")},
       {"mission", kAllButApp},
-      {"app", with(kAllButApp, "app")},
+      {"study", {"geometry", "view", "export", "config", "plugin"}},
+      {"app", with(with(kAllButApp, "app"), "study")},
   };
   return kRooms;
 }
@@ -83,6 +84,7 @@ constexpr Containment kContained[] = {
     {"lua", "framework/mission/", false},
     {"lauxlib.h", "framework/mission/", false},
     {"yaml-cpp/", "framework/config/", true},
+    {"boost/math/", "framework/study/", true},
     {"CLI/", "framework/app/", false},
     {"embree", "framework/geometry/", true},
     {"assimp/", "framework/geometry/", false},
@@ -104,8 +106,9 @@ constexpr Containment kContained[] = {
     {"torch/", "", true},
 };
 // Of these, one source file of the framework alone.
-constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/", "png.h",     "octomap/",
-                                         "opencv2/",       "CGAL/",   "nanoflann", "torch/"};
+constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/",  "png.h",
+                                         "octomap/",       "opencv2/", "CGAL/",
+                                         "nanoflann",      "torch/",   "boost/math/"};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;

@@ -4,9 +4,9 @@
 #include <mutex>
 #include <set>
 
-#include "framework/app/progress_line.h"
-#include "framework/app/scan_study.h"
 #include "framework/core/error.h"
+#include "framework/study/scan_study.h"
+#include "framework/study/stopwatch.h"
 #include "framework/view/fixed_rewards.h"
 
 namespace lapwing {
@@ -21,13 +21,13 @@ constexpr const char* kLeastRival = "greedy";
 class Timed {
  public:
   explicit Timed(double& sum) : sum_(sum) {}
-  ~Timed() { sum_ += steady_seconds() - began_; }
+  ~Timed() { sum_ += watch_.seconds(); }
   Timed(const Timed&) = delete;
   Timed& operator=(const Timed&) = delete;
 
  private:
   double& sum_;
-  double began_ = steady_seconds();
+  Stopwatch watch_;
 };
 
 // A row in the making.

@@ -1,14 +1,14 @@
-#include "framework/app/scan_tables.h"
+#include "framework/study/scan_tables.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include "framework/app/csv.h"
-#include "framework/app/stratified_sample.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/study/csv.h"
+#include "framework/study/stratified_sample.h"
 
 namespace lapwing {
 namespace {

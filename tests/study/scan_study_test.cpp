@@ -1,5 +1,5 @@
 // A study on a small made-up scene: a block on the ground, views on rings around it.
-#include "framework/app/scan_study.h"
+#include "framework/study/scan_study.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -10,11 +10,11 @@
 #include <map>
 #include <numbers>
 
-#include "framework/app/scan_tables.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/random.h"
+#include "framework/study/scan_tables.h"
 
 namespace lapwing {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/app/scan_photos.h"
+#include "framework/study/scan_photos.h"
 
 #include <fcntl.h>
 #include <signal.h>

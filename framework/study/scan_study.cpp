@@ -1,16 +1,16 @@
-#include "framework/app/scan_study.h"
+#include "framework/study/scan_study.h"
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <set>
 
-#include "framework/app/progress_line.h"
-#include "framework/app/scan_photos.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/parallel.h"
+#include "framework/study/scan_photos.h"
+#include "framework/study/stopwatch.h"
 
 namespace lapwing {
 namespace {
@@ -130,9 +130,9 @@ class StudyRun {
     if (missing.empty()) return;
     const std::string name = study_.missions[m] + ", seed " + std::to_string(study_.seeds[s]);
     say_(name + ": candidates and motions");
-    const double begun = steady_seconds();
+    const Stopwatch preparing;
     const ScanCase scan = study_.prepare(m, s);
-    const double prepared = steady_seconds() - begun;
+    const double prepared = preparing.seconds();
     ReconstructionSettings settings = study_.reconstruction;
     settings.region = scan.region;
     const SurfaceSample surface(scan.surface->mesh(), settings, study_.threads);

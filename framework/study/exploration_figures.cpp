@@ -1,18 +1,18 @@
-#include "framework/app/exploration_figures.h"
+#include "framework/study/exploration_figures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
 
-#include "framework/app/exploration_settings.h"
-#include "framework/app/stratified_sample.h"
 #include "framework/core/error.h"
 #include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/number_text.h"
 #include "framework/export/report.h"
+#include "framework/study/stratified_sample.h"
+#include "framework/study/study_settings.h"
 
 namespace lapwing {
 

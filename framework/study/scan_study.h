@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/app/scan_row.h"
 #include "framework/core/progress.h"
 #include "framework/core/value.h"
 #include "framework/plugin/registry.h"
+#include "framework/study/scan_row.h"
 #include "framework/view/pattern_tour.h"
 #include "framework/view/tour_solver.h"
 
@@ -44,7 +44,7 @@ struct ScanStudy {
   std::optional<double> guard = 300;      // s of wall clock for one solver
   ReconstructionSettings reconstruction;  // its region is the case's
   Value statement;      // of all else that rows depend on: scripts, configurations
-  bool photos = false;  // whether COLMAP is asked to register photographs (app/scan_photos.h)
+  bool photos = false;  // whether COLMAP is asked to register photographs (study/scan_photos.h)
   int threads = 1;      // rows at once; results are the same
   // Makes a case: mission and seed, by their places. Called once for each that lacks a row.
   std::function<ScanCase(std::size_t mission, std::size_t seed)> prepare;

@@ -1,4 +1,4 @@
-#include "framework/app/scan_row.h"
+#include "framework/study/scan_row.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "framework/app/csv.h"
+#include "framework/study/csv.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,25 +1,15 @@
-#include "framework/app/stratified_sample.h"
+#include "framework/study/stratified_sample.h"
 
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <iterator>
 
 namespace lapwing {
 namespace {
 
-// Student's t of 97.5 %: of 1 degree of freedom, of 2, ...
-constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,
-                               2.262,  2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
-                               2.110,  2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
-                               2.060,  2.056, 2.052, 2.048, 2.045, 2.042};
-
-// Beyond the table by the first terms of its expansion about the normal distribution's quantile
-// (Abramowitz and Stegun 26.7.5), right to 1e-4 there.
+// The 97.5 % quantile of Student's t.
 double student(std::size_t freedom) {
-  if (freedom <= std::size(kStudent)) return kStudent[freedom - 1];
-  constexpr double z = 1.959964;
-  const double n = static_cast<double>(freedom);
-  return z + (z * z * z + z) / (4 * n) +
-         (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * n * n);
+  const boost::math::students_t distribution(static_cast<double>(freedom));
+  return boost::math::quantile(distribution, 0.975);
 }
 
 // About the first value: exact where all are equal.

@@ -33,9 +33,9 @@ struct ScanRow {
   std::uint64_t seed = 0;
   double budget = 0;  // s
   std::string status = "", message = "";
-  bool found = false;                 // a tour
-  bool reproducible = true;           // false: the wall clock ended it
-  bool counts = true;                 // of milp: see counts_as_rival
+  bool found = false;        // a tour
+  bool reproducible = true;  // false: the wall clock ended it
+  bool counts = true;        // of milp: see counts_as_rival
   // Of what all candidates show together; not a number for views that are none of them.
   double score = 0, score_share = 0;
   std::optional<double> upper_bound = std::nullopt;

@@ -1,4 +1,4 @@
-#include "framework/app/stratified_sample.h"
+#include "framework/study/stratified_sample.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST(StratifiedSample, OfOneGroupIsAnOrdinaryOne) {
   EXPECT_EQ(sample.count(), 8u);
   EXPECT_DOUBLE_EQ(sample.mean(), 5);
   EXPECT_DOUBLE_EQ(sample.deviation(), std::sqrt(32.0 / 7));
-  EXPECT_NEAR(sample.interval(), 2.365 * std::sqrt(32.0 / 7 / 8), 1e-12);
+  EXPECT_NEAR(sample.interval(), 2.364624251592785 * std::sqrt(32.0 / 7 / 8), 1e-12);
 }
 
 // Groups far apart whose values agree leave nothing open; the deviation is that of all values.
@@ -35,17 +35,23 @@ TEST(StratifiedSample, GroupsAreNoChance) {
   two.join(sample_of({0, 2}));
   two.join(sample_of({5, 7, 5, 7}));
   EXPECT_DOUBLE_EQ(two.mean(), 26.0 / 6);
-  EXPECT_NEAR(two.interval(), 2.776 * std::sqrt(2.0 / 9 / 2 * 1 + 4.0 / 9 * (4.0 / 3) / 4), 1e-12);
+  EXPECT_NEAR(two.interval(),
+              2.776445105197793 * std::sqrt(2.0 / 9 / 2 * 1 + 4.0 / 9 * (4.0 / 3) / 4), 1e-12);
 }
 
 // As tables of the distribution have them.
-TEST(StratifiedSample, ManyValuesGoBeyondTheTable) {
-  for (const auto& [freedom, quantile] :
-       {std::pair{30, 2.0423}, {31, 2.0395}, {40, 2.0211}, {60, 2.0003}, {120, 1.9799}}) {
+TEST(StratifiedSample, TheIntervalIsStudents) {
+  for (const auto& [freedom, quantile] : {std::pair{1, 12.7062},
+                                          {2, 4.3027},
+                                          {30, 2.0423},
+                                          {31, 2.0395},
+                                          {40, 2.0211},
+                                          {60, 2.0003},
+                                          {120, 1.9799}}) {
     StratifiedSample sample;
     for (int k = 0; k <= freedom; ++k) sample.add(k % 2);
     const double error = sample.deviation() / std::sqrt(freedom + 1.0);
-    EXPECT_NEAR(sample.interval() / error, quantile, 5e-4) << freedom;
+    EXPECT_NEAR(sample.interval() / error, quantile, 6e-5) << freedom;
   }
 }
 

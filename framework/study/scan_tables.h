@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/app/scan_study.h"
 #include "framework/export/report.h"
+#include "framework/study/scan_study.h"
 
 namespace lapwing {
 
