@@ -6,11 +6,11 @@
 #include "framework/core/units.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/geometry/mesh_picture.h"
-#include "framework/geometry/surface_mesh.h"
 #include "framework/map/map_file.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/surface/surface_mesh.h"
 
 namespace lapwing {
 
@@ -61,7 +61,7 @@ Pinhole pinhole_of(const Parameters& given) {
 namespace {
 
 constexpr int kPictureWidth = 720, kPictureHeight = 450;  // pixels, of the scene
-constexpr double kMostAir = 1e9;  // voxels that are said to be free
+constexpr double kMostAir = 1e9;                          // voxels that are said to be free
 
 Prior& prior_argument(lua_State* state) {
   return *object_argument<PriorObject>(state, 1, kPriorType).prior;
@@ -299,8 +299,8 @@ int reconstruct(lua_State* state) {
   points.insert(points.end(), prior.earlier.begin(), prior.earlier.end());
   const MissionRun& run = run_of(state);
   if (run.settings.progress)
-    run.settings.progress->report(-1, "surface through " + std::to_string(points.size()) +
-                                          " points");
+    run.settings.progress->report(-1,
+                                  "surface through " + std::to_string(points.size()) + " points");
   TriangleMesh mesh;
   try {
     mesh = surface_from_points(points, {given.number("cell"), given.number("trim")});

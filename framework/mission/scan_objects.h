@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/geometry/point_fusion.h"
 #include "framework/geometry/render.h"
 #include "framework/map/ray_gaps.h"
 #include "framework/mission/map_objects.h"
+#include "framework/surface/point_fusion.h"
 #include "framework/vehicle/pursuit.h"
 #include "framework/vehicle/smooth_leg.h"
 #include "framework/view/scan_graph.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/core/value.h"
-#include "framework/geometry/reconstruction.h"
 #include "framework/plugin/registry.h"
+#include "framework/surface/reconstruction.h"
 
 namespace lapwing {
 

@@ -18,9 +18,10 @@ using Names = std::set<std::string>;
 
 // What a room may include besides itself and core.
 const std::map<std::string, Names>& rooms() {
-  static const Names kAllButApp{"geometry", "trajectory", "vehicle",     "map",     "path",
-                                "problem",  "solve",      "view",        "explore", "verify",
-                                "export",   "config",     "conformance", "plugin",  "mission"};
+  static const Names kAllButApp{"geometry",    "trajectory", "vehicle", "map",
+                                "path",        "problem",    "solve",   "view",
+                                "explore",     "verify",     "export",  "config",
+                                "conformance", "plugin",     "mission", "surface"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -32,6 +33,7 @@ const std::map<std::string, Names>& rooms() {
   static const std::map<std::string, Names> kRooms{
       {"core", {}},
       {"geometry", {}},
+      {"surface", {"geometry"}},
       {"trajectory", {"geometry"}},
       {"vehicle", {"geometry", "trajectory"}},
       {"map", {"geometry"}},
@@ -46,7 +48,7 @@ const std::map<std::string, Names>& rooms() {
       {"plugin", {}},
       {"conformance", without(kAllButApp, "mission")},
       {"mission", kAllButApp},
-      {"study", {"geometry", "view", "export", "config", "plugin"}},
+      {"study", {"geometry", "surface", "view", "export", "config", "plugin"}},
       {"app", with(with(kAllButApp, "app"), "study")},
   };
   return kRooms;

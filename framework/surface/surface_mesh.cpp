@@ -1,4 +1,4 @@
-#include "framework/geometry/surface_mesh.h"
+#include "framework/surface/surface_mesh.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "framework/core/error.h"
-#include "framework/geometry/poisson_field.h"
+#include "framework/surface/poisson_field.h"
 
 namespace lapwing {
 namespace {

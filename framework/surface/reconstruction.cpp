@@ -1,4 +1,4 @@
-#include "framework/geometry/reconstruction.h"
+#include "framework/surface/reconstruction.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/parallel.h"
-#include "framework/geometry/grid_table.h"
+#include "framework/surface/grid_table.h"
 
 namespace lapwing {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/geometry/reconstruction.h"
+#include "framework/surface/reconstruction.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include "framework/core/error.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/geometry/mesh_builder.h"
-#include "framework/geometry/surface_mesh.h"
+#include "framework/surface/surface_mesh.h"
 
 namespace lapwing {
 namespace {

@@ -1,11 +1,11 @@
-#include "framework/geometry/poisson_field.h"
+#include "framework/surface/poisson_field.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Poisson_reconstruction_function.h>
 #include <CGAL/property_map.h>
 
 #include "framework/core/error.h"
-#include "framework/geometry/poisson_equations.h"
+#include "framework/surface/poisson_equations.h"
 
 namespace lapwing {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/geometry/point_fusion.h"
+#include "framework/surface/point_fusion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // A mesh from points with normals: what a first flight saw, for planning the second (reading 4.9).
 #pragma once
 
-#include "framework/geometry/point_fusion.h"
 #include "framework/geometry/triangle_mesh.h"
+#include "framework/surface/point_fusion.h"
 
 namespace lapwing {
 

@@ -18,8 +18,8 @@ struct FusedPoint {
 };
 
 struct FusionOptions {
-  double voxel = 0.1;          // m, edge of the cubes
-  double range = 30;           // m of depth, beyond which pixels are left out
+  double voxel = 0.1;  // m, edge of the cubes
+  double range = 30;   // m of depth, beyond which pixels are left out
   double reach = std::numeric_limits<double>::infinity();  // m along the ray, likewise
   double incidence = 1.309;    // rad between normal and ray (75 degrees), likewise
   double discontinuity = 0.1;  // share of the depth by which neighbouring pixels may differ

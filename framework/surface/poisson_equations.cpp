@@ -1,4 +1,4 @@
-#include "framework/geometry/poisson_equations.h"
+#include "framework/surface/poisson_equations.h"
 
 #include <cmath>
 #include <numeric>
