@@ -13,6 +13,7 @@
 #include "framework/core/checksum.h"
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
+#include "framework/study/study_settings.h"
 
 namespace lapwing {
 namespace {
@@ -66,12 +67,6 @@ fs::path WorldName::file() const {
   fs::path script = shipped_folder("scripts") / "scene" / path;
   script += ".lua";
   return script;
-}
-
-std::string file_text(std::string name) {
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
-  return name;
 }
 
 std::vector<WorldName> distinct_worlds(const std::vector<std::string>& given,

@@ -29,8 +29,6 @@ std::vector<WorldName> world_names(const std::string& given);
 // names: "a/block.obj" and "b/block.obj".
 std::vector<WorldName> distinct_worlds(const std::vector<std::string>& given,
                                        const std::string& command);
-// A name as part of a file's.
-std::string file_text(std::string name);
 
 struct World {
   std::string name;

@@ -1,8 +1,16 @@
 #include "framework/study/study_settings.h"
 
+#include <cctype>
+
 #include "framework/core/json.h"
 
 namespace lapwing {
+
+std::string file_text(std::string name) {
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+  return name;
+}
 
 namespace {
 

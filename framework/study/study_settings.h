@@ -1,4 +1,4 @@
-// The settings that a study was made with, as maps, and how two of them differ.
+// The settings that a study was made with, as maps, and how two of them differ; names of files.
 #pragma once
 
 #include <string>
@@ -6,6 +6,9 @@
 #include "framework/core/value.h"
 
 namespace lapwing {
+
+// A name as part of a file's: letters, digits, '-', '.', and '_' for all else.
+std::string file_text(std::string name);
 
 // "step 0.7, clear 2": a map of settings on one line.
 std::string settings_text(const Value& settings);
