@@ -11,6 +11,7 @@
 #include "framework/config/overrides.h"
 #include "framework/config/shipped.h"
 #include "framework/core/checksum.h"
+#include "framework/core/log.h"
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
 #include "framework/study/study_settings.h"
@@ -138,12 +139,14 @@ World load_world(const WorldName& name, const std::string& up, const Registry& r
     const fs::path file(name.scene);
     MeshFileOptions options;
     if (!up.empty()) options.up = up_axis(up);
+    MeshFile read = read_mesh(file, options);
+    if (!read.doubt.empty()) logging::warning(file.string() + ": " + read.doubt);
     if (name.inside) {
-      auto scene = std::make_shared<MeshScene>(read_mesh(file, options).mesh, name.text());
+      auto scene = std::make_shared<MeshScene>(std::move(read.mesh), name.text());
       const Eigen::AlignedBox3d region = scene->mesh().bounds();
       return {name.text(), std::move(scene), region, name.inside};
     }
-    OpenWorld open = with_floor(read_mesh(file, options).mesh);
+    OpenWorld open = with_floor(std::move(read.mesh));
     return {name.text(), std::make_shared<MeshScene>(std::move(open.mesh), name.text()),
             open.region, std::nullopt};
   }

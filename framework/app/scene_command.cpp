@@ -1,4 +1,6 @@
 // lapwing scene view: a mesh file, or a scene that a Lua script makes.
+#include <iostream>
+
 #include "framework/app/command_line.h"
 #include "framework/app/completion_names.h"
 #include "framework/app/exploration_worlds.h"
@@ -6,6 +8,7 @@
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
 #include "framework/core/number_text.h"
+#include "framework/core/visible_text.h"
 #include "framework/export/scene_report.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/mission/scene_script.h"
@@ -42,6 +45,11 @@ MeshFileOptions mesh_options(const SceneStatement& stated) {
   return options;
 }
 
+void warn_of_doubt(const MeshFile& read, const std::string& name) {
+  if (read.doubt.empty()) return;
+  std::cerr << "lapwing: warning: " << visible_line(name + ": " + read.doubt) << "\n";
+}
+
 // Neither a script nor a file with an ending: a name that is none of the shipped scenes.
 void require_an_ending(const fs::path& file) {
   if (file.extension() == ".lua") throw InputError("'" + file.string() + "' not found");
@@ -62,6 +70,7 @@ ExitStatus view_scene(const fs::path& file, const SceneStatement& stated, const 
     const MeshFile read = read_mesh(file, mesh_options(stated));
     shown.title = file.filename().string();
     shown.origin = read.description();
+    warn_of_doubt(read, shown.title);
     const MeshScene scene(read.mesh, shown.title);
     write_file_atomically(target, render_html(scene_report(scene, shown)));
     return ExitStatus::done;

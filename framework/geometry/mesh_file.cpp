@@ -17,6 +17,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/own_process.h"
+#include "framework/geometry/mesh_doubts.h"
 #include "framework/geometry/mesh_readers.h"
 
 namespace lapwing {
@@ -252,6 +253,7 @@ MeshFile read_mesh(const fs::path& path, const MeshFileOptions& options) {
     if (file.format == "Collada") check_collada(bytes, name);
     file.mesh = read_by_assimp(file, bytes, name);
   }
+  require_near(file, "'" + name + "'");
   check_mesh(file.mesh, "'" + name + "'");
   const std::size_t before = file.mesh.triangles.size();
   weld(file.mesh, 0);
@@ -260,6 +262,7 @@ MeshFile read_mesh(const fs::path& path, const MeshFileOptions& options) {
     throw InputError("'" + name + "': none of its " + std::to_string(before) +
                      " triangles has an area");
   }
+  file.doubt = doubt_of(file);
   return file;
 }
 

@@ -37,6 +37,8 @@ struct MeshFile {
   UpAxis up = UpAxis::z;
   StatedBy up_from = StatedBy::assumption;
   std::size_t dropped = 0;  // triangles without area
+  // What is odd about where it lies or how large it is, with what to do; "" (mesh_doubts.h).
+  std::string doubt = {};
 
   // "Collada, 0.0254 m a unit (stated by the file), z up (stated by the file), 3021 triangles"
   std::string description() const;

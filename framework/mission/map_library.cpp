@@ -70,6 +70,7 @@ int read_surface(lua_State* state) {
   std::snprintf(extent, sizeof extent, ", %.4g x %.4g x %.4g m", bounds.sizes().x(),
                 bounds.sizes().y(), bounds.sizes().z());
   run_of(state).settings.print(name + ": " + file.description() + extent);
+  if (!file.doubt.empty()) run_of(state).settings.print("warning: " + name + ": " + file.doubt);
   return push_surface(state, name, std::move(file.mesh), bounds);
 }
 

@@ -103,7 +103,9 @@ MeshObstacle ObstacleFiles::mesh(const fs::path& file, const std::string& name, 
   auto found = state_->meshes.find(file);
   if (found == state_->meshes.end()) {
     const MeshFile given = read_mesh(file);
-    print(file.filename().string() + ": " + given.description());
+    const std::string name_there = file.filename().string();
+    print(name_there + ": " + given.description());
+    if (!given.doubt.empty()) print("warning: " + name_there + ": " + given.doubt);
     State::Mesh mesh;
     mesh.copy = state_->keep(ply_bytes(given.mesh), ".ply");
     // As the verifier will read it, rounded to single precision.
