@@ -3,8 +3,10 @@
 #include <iostream>
 
 #include "framework/app/command_line.h"
+#include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/output_target.h"
+#include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
 #include "framework/app/terminal.h"
 #include "framework/config/annotated.h"
@@ -69,9 +71,16 @@ void warn_of_changes(const JudgedPlan& judged, const Judges& judges) {
 
 }  // namespace
 
-ExitStatus verify_plan(const std::filesystem::path& file, const Judges& judges,
+ExitStatus verify_plan(const std::filesystem::path& file, const Judges& given,
                        const Invocation& invocation) {
+  const Interruption interruption;
+  ProgressLine progress("verify", std::cerr, progress_style_of_stderr(invocation.quiet),
+                        columns_of_stderr(), &steady_seconds);
+  Judges judges = given;
+  judges.cancellation = &interruption.token();
+  judges.progress = &progress;
   const JudgedPlan judged = judge_file(file, judges);
+  progress.clear();
   const Certificate& certificate = judged.certificate;
   warn_of_changes(judged, judges);
   if (invocation.json) {

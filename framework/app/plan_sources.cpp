@@ -50,14 +50,18 @@ void add_differences(const Value& plan, const Value& source, const std::string& 
                   source_name);
 }
 
+// A plan names files below its own folder. Those of a judge have names that no file there has.
 template <class Obstacle>
-std::vector<Obstacle> files_from(const Parameters& given, const char* list, const fs::path& file) {
+std::vector<Obstacle> files_from(const Parameters& given, const char* list, const fs::path& file,
+                                 std::map<std::string, fs::path>& elsewhere) {
   std::vector<Obstacle> obstacles;
   for (const Parameters& entry : given.tables(list)) {
     const fs::path there = fs::absolute(file).parent_path() / entry.text("file");
     Obstacle obstacle;
     obstacle.name = entry.text("name");
-    obstacle.file = there.string();
+    obstacle.file =
+        "of the judge/" + std::to_string(elsewhere.size() + 1) + "/" + there.filename().string();
+    elsewhere[obstacle.file] = there;
     try {
       obstacle.sha256 = sha256(read_file(there, kLargestFile));
     } catch (const InputError& error) {
@@ -128,7 +132,7 @@ VehicleSource read_vehicle_file(const fs::path& file, const fs::path& configs) {
   }
 }
 
-Plan with_environment(Plan plan, const fs::path& file) {
+Plan with_environment(Plan plan, const fs::path& file, std::map<std::string, fs::path>& elsewhere) {
   ParameterTable named;
   named.text("name", "", "for messages").required_text("file", "beside this file");
   ParameterTable table = shapes_table();
@@ -138,8 +142,8 @@ Plan with_environment(Plan plan, const fs::path& file) {
                        at_least(0));
   const Parameters given = check(table, read_yaml(file));
   Environment environment = shapes_of(given);
-  environment.meshes = files_from<MeshObstacle>(given, "meshes", file);
-  environment.maps = files_from<MapObstacle>(given, "maps", file);
+  environment.meshes = files_from<MeshObstacle>(given, "meshes", file, elsewhere);
+  environment.maps = files_from<MapObstacle>(given, "maps", file, elsewhere);
   environment.margin = given.has("margin") ? given.number("margin") : plan.environment.margin;
   environment.subjects = std::move(plan.environment.subjects);
   for (MapObstacle& map : plan.environment.maps)

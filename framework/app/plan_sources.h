@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,9 +32,10 @@ VehicleSource read_vehicle_file(const std::filesystem::path& file,
 
 // The plan with the obstacles of a YAML file in place of its own: spheres, boxes, zones,
 // flight_zones as an environment has them, meshes and maps {name, file} (files beside it), and
-// `margin`, if stated. Subjects, and the map that a scan's views see in, stay. InputError with all
-// errors.
-Plan with_environment(Plan plan, const std::filesystem::path& file);
+// `margin`, if stated. Subjects, and the map that a scan's views see in, stay. Where the files are
+// comes to `elsewhere`, by the names that the plan then has for them. InputError with all errors.
+Plan with_environment(Plan plan, const std::filesystem::path& file,
+                      std::map<std::string, std::filesystem::path>& elsewhere);
 
 // What differs between two tables, a sentence each: "limits.speed_across is 20 in the plan and 10
 // in configs/...". Numbers count as equal to twelve digits.

@@ -11,6 +11,7 @@
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
 #include "framework/export/run_folder.h"
+#include "framework/geometry/mesh_file.h"
 #include "framework/verify/provenance.h"
 #include "framework/verify/verify.h"
 
@@ -132,14 +133,17 @@ class Examination {
       for (std::string& fault : found.faults) faults_.push_back(std::move(fault));
       not_compared_ = std::move(found.not_compared);
     } else {
-      judged_ = with_environment(std::move(judged_), judges.environment);
+      judged_ = with_environment(std::move(judged_), judges.environment, elsewhere_);
       not_compared_.push_back("obstacles and task: --environment judges");
+      doubt_meshes();
     }
     if (!compared_) not_compared_.insert(not_compared_.begin(), "the vehicle: it has no file");
     if (digest) compare_digest();
   }
 
   const Plan& plan() const { return judged_; }
+  // See VerifyRequest.
+  const std::map<std::string, fs::path>& elsewhere() const { return elsewhere_; }
   Provenance provenance() const { return {summary(), faults_}; }
 
   Value value() const {
@@ -224,6 +228,19 @@ class Examination {
       remarks_.push_back("vehicle." + one);
   }
 
+  // Whoever states meshes of their own is told where one seems to be in other units or elsewhere.
+  // One that cannot be read fails the check `document`.
+  void doubt_meshes() {
+    for (const MeshObstacle& mesh : judged_.environment.meshes) {
+      const fs::path& file = elsewhere_.at(mesh.file);
+      try {
+        const std::string doubt = read_mesh(file).doubt;
+        if (!doubt.empty()) remarks_.push_back(file.string() + ": " + doubt);
+      } catch (const InputError&) {
+      }
+    }
+  }
+
   void compare_digest() {
     if (!digest_->stated) {
       faults_.push_back("the document states no digest: whether it was changed cannot be told");
@@ -262,6 +279,7 @@ class Examination {
   const DigestFindings* digest_;
   const Judges& judges_;
   Plan judged_;
+  std::map<std::string, fs::path> elsewhere_;
   fs::path configs_;
   std::string source_;
   bool compared_ = false;  // its numbers were compared with a source's
@@ -289,7 +307,10 @@ JudgedPlan judge(Plan plan, const fs::path& folder, const DigestFindings* digest
   const Examination examination(plan, digest, judges);
   JudgedPlan judged;
   judged.plan = examination.plan();
-  judged.certificate = verify(judged.plan, folder);
+  judged.certificate = verify(judged.plan, {.folder = folder,
+                                            .elsewhere = examination.elsewhere(),
+                                            .cancellation = judges.cancellation,
+                                            .progress = judges.progress});
   state_provenance(examination.provenance(), judged.certificate);
   judged.provenance = examination.value();
   judged.lines = examination.lines();

@@ -5,15 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/progress.h"
 #include "framework/trajectory/plan.h"
 #include "framework/trajectory/plan_digest.h"
 #include "framework/verify/certificate.h"
 
 namespace lapwing {
 
-// Files of whoever judges; empty: what the plan states.
+// Files of whoever judges; empty: what the plan states. And what tells how far the verdict is, or
+// ends it; both may be null.
 struct Judges {
-  std::filesystem::path vehicle, environment;
+  std::filesystem::path vehicle = {}, environment = {};
+  const CancellationToken* cancellation = nullptr;
+  Progress* progress = nullptr;
 };
 
 // A plan with its verdict, and what the verdict is about.
@@ -26,7 +30,8 @@ struct JudgedPlan {
 };
 
 // `digest`: what the document's own digest says; null for a plan that has not been written yet.
-// Meshes and maps are read from `folder`. InputError for files of the judge's that do not hold.
+// Meshes and maps are read from `folder`. InputError for files of the judge's that do not hold,
+// Cancelled when told to stop.
 JudgedPlan judge(Plan plan, const std::filesystem::path& folder, const DigestFindings* digest,
                  const Judges& judges = {});
 

@@ -246,8 +246,9 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
     return finish_mapping({outcome.result, target, outcome.seconds}, invocation, capture);
   }
   progress.begin("certificate");
-  progress.report(-1, "");
-  JudgedPlan judged = judge(outcome.result.plan, outcome.result.obstacle_folder, nullptr);
+  // Also the best so far of a run that was told to end is judged.
+  JudgedPlan judged =
+      judge(outcome.result.plan, outcome.result.obstacle_folder, nullptr, {.progress = &progress});
   outcome.certificate = std::move(judged.certificate);
   outcome.provenance = std::move(judged.provenance);
   progress.begin("files");

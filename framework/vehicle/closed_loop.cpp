@@ -77,7 +77,8 @@ BodyState starting_state(const ReferenceMotion& reference, const FlightControlle
 }  // namespace
 
 FlownPath fly(const Trajectory& trajectory, const Vehicle& vehicle,
-              const FlightConditions& conditions, const CancellationToken* cancellation) {
+              const FlightConditions& conditions, const CancellationToken* cancellation,
+              const std::function<void(double)>& told) {
   check(conditions, vehicle);
   const ReferenceMotion reference(trajectory, vehicle);
   FlightController controller(vehicle, reference);
@@ -93,7 +94,10 @@ FlownPath fly(const Trajectory& trajectory, const Vehicle& vehicle,
   double sum = 0;
   std::int64_t saturated = 0, flown = 0;
   for (std::int64_t k = 0; k <= steps && !path.lost; ++k) {
-    if (cancellation && k % 1024 == 0 && cancellation->cancelled()) throw Cancelled();
+    if (k % 1024 == 0) {
+      if (cancellation && cancellation->cancelled()) throw Cancelled();
+      if (told) told(static_cast<double>(k) / static_cast<double>(steps));
+    }
     const double time = reference.start() + static_cast<double>(k) * step;
     const ReferencePoint wanted = reference.at(time);
     const double error = (state.position - wanted.position).norm();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "framework/core/progress.h"
@@ -40,8 +41,10 @@ struct FlownPath {
 
 // Flies a trajectory of the motion model `force`, from its first sample. Throws InputError for
 // another model, for wind on a vehicle that states no drag, and for conditions that make no sense;
-// Cancelled when told to stop.
+// Cancelled when told to stop. `told` is called now and then with the share of the flight that is
+// done; what it throws ends the flight.
 FlownPath fly(const Trajectory& trajectory, const Vehicle& vehicle,
-              const FlightConditions& conditions = {}, const CancellationToken* cancellation = {});
+              const FlightConditions& conditions = {}, const CancellationToken* cancellation = {},
+              const std::function<void(double)>& told = {});
 
 }  // namespace lapwing

@@ -16,6 +16,8 @@
 #include "framework/verify/certificate.h"
 #include "framework/verify/motion.h"
 #include "framework/verify/tolerances.h"
+#include "framework/verify/verify.h"
+#include "framework/verify/watch.h"
 
 namespace lapwing {
 
@@ -112,6 +114,7 @@ struct Flight {
   Motion& motion;
   std::span<const MeshScene> meshes;    // of the environment, in its order
   std::span<const BlockedVoxels> maps;  // likewise
+  Watch& watch;                         // `motion` tells it how far a walk along it has come
 };
 
 // The families. Each appends its checks; `document` also yields the vehicle that it read.
@@ -121,7 +124,7 @@ struct Document {
   std::vector<MeshScene> meshes;    // of the environment, in its order
   std::vector<BlockedVoxels> maps;  // likewise, where the flight comes
 };
-Document check_document(const Plan& plan, const std::filesystem::path& folder);
+Document check_document(const Plan& plan, const VerifyRequest& request, Watch& watch);
 void check_dynamics(const Flight& flight, Certificate& certificate);
 void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);

@@ -16,7 +16,8 @@ std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& ce
     for (const char* name : kNames) certificate.checks.push_back(skipped_check(name, reason));
     return std::nullopt;
   }
-  FlownPath path = fly(trajectory, flight.vehicle);
+  FlownPath path = fly(trajectory, flight.vehicle, {}, nullptr,
+                       [&flight](double share) { flight.watch.done(share); });
   const double infinite = std::numeric_limits<double>::infinity();
   Check tracking =
       judged(make_check("closed_loop"), path.lost ? infinite : path.position_error_worst,

@@ -297,8 +297,11 @@ void check_coverage(const Flight& flight, Certificate& certificate) {
   const SeeThrough space(voxels);
   const double edge = voxels.grid().resolution();
   SeenVoxels seen(voxels, scan->region);
-  parallel_for(scan->views.size(), 0,
-               [&](std::size_t i) { look(scan->views[i], *scan, space, edge, seen); });
+  std::atomic<std::size_t> looked = 0;
+  parallel_for(scan->views.size(), 0, [&](std::size_t i) {
+    look(scan->views[i], *scan, space, edge, seen);
+    flight.watch.done(static_cast<double>(++looked) / static_cast<double>(scan->views.size()));
+  });
   const std::int64_t count = seen.count();
   Check check =
       judged(make_check("coverage"), static_cast<double>(count) / static_cast<double>(scan->seen),

@@ -13,8 +13,8 @@ constexpr std::size_t kListed = 5;  // problems named in the certificate
 
 class Reader {
  public:
-  explicit Reader(const Plan& plan, const std::filesystem::path& folder)
-      : plan_(plan), folder_(folder) {}
+  Reader(const Plan& plan, const VerifyRequest& request, Watch& watch)
+      : plan_(plan), request_(request), watch_(watch) {}
 
   Document read() {
     Document document;
@@ -61,10 +61,22 @@ class Reader {
     }
   }
 
+  std::filesystem::path place_of(const std::string& file) const {
+    const auto found = request_.elsewhere.find(file);
+    return found == request_.elsewhere.end() ? request_.folder / file : found->second;
+  }
+
+  // Of the files of the environment, one more has been read.
+  void count_file() {
+    const auto& e = plan_.environment;
+    watch_.done(static_cast<double>(++files_) /
+                static_cast<double>(e.meshes.size() + e.maps.size()));
+  }
+
   // The plan says what its files held when it was made.
   void read_meshes(std::vector<MeshScene>& meshes) {
     for (const MeshObstacle& mesh : plan_.environment.meshes) {
-      const std::filesystem::path file = folder_ / mesh.file;
+      const std::filesystem::path file = place_of(mesh.file);
       try {
         if (sha256(read_file(file, std::size_t{1} << 30)) != mesh.sha256) {
           add("mesh '" + mesh.name + "': '" + mesh.file + "' has changed since the plan was made");
@@ -74,6 +86,7 @@ class Reader {
       } catch (const std::exception& error) {
         add("mesh '" + mesh.name + "': " + error.what());
       }
+      count_file();
     }
   }
 
@@ -115,7 +128,7 @@ class Reader {
 
   void read_maps(const Vehicle& vehicle, std::vector<BlockedVoxels>& maps) {
     for (const MapObstacle& map : plan_.environment.maps) {
-      const std::filesystem::path file = folder_ / map.file;
+      const std::filesystem::path file = place_of(map.file);
       try {
         const std::string bytes = read_file(file, std::size_t{1} << 30);
         if (sha256(bytes) != map.sha256) {
@@ -126,6 +139,7 @@ class Reader {
       } catch (const std::exception& error) {
         add("map '" + map.name + "': " + error.what());
       }
+      count_file();
     }
   }
 
@@ -196,15 +210,17 @@ class Reader {
   }
 
   const Plan& plan_;
-  const std::filesystem::path& folder_;
+  const VerifyRequest& request_;
+  Watch& watch_;
+  std::size_t files_ = 0;  // that were read
   std::vector<std::string> problems_;
   double at_ = 0;
 };
 
 }  // namespace
 
-Document check_document(const Plan& plan, const std::filesystem::path& folder) {
-  return Reader(plan, folder).read();
+Document check_document(const Plan& plan, const VerifyRequest& request, Watch& watch) {
+  return Reader(plan, request, watch).read();
 }
 
 }  // namespace lapwing

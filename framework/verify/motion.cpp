@@ -127,6 +127,7 @@ std::span<const MotionPoint> Motion::follow_line(std::size_t interval) {
 }
 
 std::span<const MotionPoint> Motion::integrate(std::size_t interval) {
+  if (watcher_) watcher_(interval);
   if (trajectory_.model == MotionModel::path) return follow_line(interval);
   if (trajectory_.model == MotionModel::rotors) return turn_rotors(interval);
   const Sample& a = trajectory_.samples[interval];

@@ -12,6 +12,7 @@
 // of the interval's first point; its yaw rate is the body rate about z.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,9 @@ class Motion {
   // included. Steps are as tolerances.h says. Valid until the next call.
   std::span<const MotionPoint> integrate(std::size_t interval);
 
+  // Told of every interval that `integrate` is asked for, beforehand; what it throws ends the call.
+  void watch_by(std::function<void(std::size_t)> watcher) { watcher_ = std::move(watcher); }
+
   // What sample `index` itself states.
   MotionPoint stated(std::size_t index) const;
 
@@ -68,6 +72,7 @@ class Motion {
   Eigen::Vector3d inertia_;
   Eigen::Matrix4d mixer_;
   std::vector<MotionPoint> points_;
+  std::function<void(std::size_t)> watcher_;
 };
 
 }  // namespace lapwing

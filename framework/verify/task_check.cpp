@@ -121,8 +121,6 @@ void check_task(const Flight& flight, const std::optional<FlownPath>& flown,
   check_framing(flight, certificate);
   check_gates(flight, certificate);
   check_drawing(flight, flown, certificate);
-  check_views(flight, certificate);
-  check_coverage(flight, certificate);
 }
 
 }  // namespace lapwing

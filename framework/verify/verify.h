@@ -5,7 +5,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
+#include "framework/core/progress.h"
 #include "framework/trajectory/plan.h"
 #include "framework/verify/certificate.h"
 
@@ -18,5 +21,18 @@ namespace lapwing {
 // is not there, or not as it was, fails `document`. Deterministic; const access only, so plans may
 // be shared between threads. The check `provenance` is skipped: see provenance.h.
 Certificate verify(const Plan& plan, const std::filesystem::path& folder = ".");
+
+// What the verifier is given beside the plan.
+struct VerifyRequest {
+  std::filesystem::path folder = ".";  // where the plan is
+  // Files of meshes and maps that whoever judges put in the place of the plan's own and that lie
+  // elsewhere, by the names that the environment has for them.
+  std::map<std::string, std::filesystem::path> elsewhere = {};
+  const CancellationToken* cancellation = nullptr;
+  Progress* progress = nullptr;  // told the share of all checks that is done; it never falls
+};
+
+// The same. Throws Cancelled when told to stop, and nothing else.
+Certificate verify(const Plan& plan, const VerifyRequest& request);
 
 }  // namespace lapwing

@@ -242,6 +242,58 @@ TEST_F(ProvenanceTest, OnesOwnVehicleAndObstaclesJudge) {
   EXPECT_EQ(run({"verify", plan_.string(), "--vehicle", "nobody"}).status, 2);
 }
 
+// A plan names its meshes below its own folder: wherever that is moved, it is judged the same.
+TEST_F(ProvenanceTest, AMovedFolderWithAMeshIsJudgedAsBefore) {
+  write("tower.obj", "v 2 4 0\nv 3 4 0\nv 3 4 5\nv 2 4 5\nf 1 2 3 4\n");
+  write("mesh.lua", film("obstacles = { { type = 'mesh', name = 'tower', file = 'tower.obj' } }, "
+                         "name = 'mesh'"));
+  const Finished made = run({"run", "mesh.lua"});
+  ASSERT_EQ(made.status, 0) << made.err << made.out;
+  plan_ = folder_ / "out" / "mesh" / "plan.json";
+  const Value before = answer();
+  EXPECT_TRUE(failures_in(before).empty()) << to_json(before);
+  EXPECT_EQ(document().at("environment").at("meshes").as_list().size(), 1u);
+  fs::create_directories(folder_ / "elsewhere");
+  fs::rename(folder_ / "out" / "mesh", folder_ / "elsewhere" / "kept");
+  fs::remove(folder_ / "tower.obj");
+  plan_ = folder_ / "elsewhere" / "kept" / "plan.json";
+  EXPECT_EQ(answer().at("certificate"), before.at("certificate"));
+}
+
+// Meshes and maps of the judge's are read where the judge's file says they are.
+TEST_F(ProvenanceTest, OnesOwnMeshAndMapJudge) {
+  fs::create_directories(folder_ / "site" / "data");
+  // A wall across the flight.
+  const auto wall = [&](double x, double scale = 1) {
+    std::string text;
+    for (const auto& [y, z] : {std::pair{-3, 0}, {3, 0}, {3, 8}, {-3, 8}})
+      text += "v " + std::to_string(scale * x) + " " + std::to_string(scale * y) + " " +
+              std::to_string(scale * z) + "\n";
+    write("site/data/wall.obj", text + "f 1 2 3 4\n");
+  };
+  write("site/own.yaml", "meshes: [{name: wall, file: data/wall.obj}]\n");
+  wall(2.5);
+  Value judged = answer({"--environment", "site/own.yaml"});
+  EXPECT_EQ(failures_in(judged), std::vector<std::string>{"clearance"});
+  EXPECT_THAT(to_json(judged.at("certificate")), HasSubstr("mesh 'wall'"));
+  wall(30);
+  judged = answer({"--environment", "site/own.yaml"});
+  EXPECT_TRUE(failures_in(judged).empty()) << to_json(judged.at("certificate"));
+  EXPECT_EQ(judged.at("provenance").at("remarks").as_list().size(), 0u);
+  // An absolute path, and one that leaves the folder of the judge's file, are the judge's to name.
+  write("site/own.yaml", "meshes: [{file: " + (folder_ / "site/data/wall.obj").string() +
+                             "}, {file: ../site/data/wall.obj}]\n");
+  EXPECT_TRUE(failures_in(answer({"--environment", "site/own.yaml"})).empty());
+  // What is probably in centimetres is told, what lies in a grid of the land is refused.
+  wall(30, 100);
+  EXPECT_THAT(to_json(answer({"--environment", "site/own.yaml"}).at("provenance").at("remarks")),
+              HasSubstr("state its unit (unit = 0.01)"));
+  wall(500000);
+  judged = answer({"--environment", "site/own.yaml"});
+  EXPECT_EQ(failures_in(judged), std::vector<std::string>{"document"});
+  EXPECT_THAT(to_json(judged.at("certificate")), HasSubstr("Subtract a corner"));
+}
+
 TEST_F(ProvenanceTest, WhatAnotherCertificateSaidIsToldWhereTheVerdictStays) {
   Value changed = document();
   changed.find("task")->find("keyframes")->as_list()[0].set("tolerance", 0.7);
