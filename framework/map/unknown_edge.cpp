@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
+#include <set>
 
 #include "framework/core/error.h"
 #include "framework/core/parallel.h"
@@ -299,7 +299,8 @@ class Space {
   }
 
   // Marks the edge, tile by tile: roomy where a sphere of the stated width fits among what was
-  // never measured. What lies beside known surface is left out of that, and not of the sphere.
+  // never measured, and between known surface as it comes in. What lies beside known surface is
+  // left out of the first, and not of the sphere.
   std::vector<std::vector<Index>> marked_edge() {
     const double wanted = settings_.width / 2 / grid_.resolution() - kBesideMesh;
     const auto radius = static_cast<float>(std::max(wanted, kHalfDiagonal));
@@ -315,13 +316,30 @@ class Space {
       if (edge[t].empty()) return;
       const int reach = 2 * static_cast<int>(std::ceil(radius));
       const VoxelBlock room = balls_in(low, high, reach, [&](const Index&) { return radius; });
-      for (const Index& at : edge[t])
-        roomy[t].push_back(room.marked[room.place(at[0] - low[0], at[1] - low[1], at[2] - low[2])]);
+      const Index from = clipped(low, -reach), to = clipped(high, reach);
+      const std::vector<float> sides = squared_sides(from, to, static_cast<int>(radius) + 1);
+      const VoxelBlock around{{to[0] - from[0], to[1] - from[1], to[2] - from[2]}, {}};
+      for (const Index& at : edge[t]) {
+        const bool fits = room.marked[room.place(at[0] - low[0], at[1] - low[1], at[2] - low[2])];
+        const float side = sides[around.place(at[0] - from[0], at[1] - from[1], at[2] - from[2])];
+        roomy[t].push_back(fits && side > radius * radius && clear_of_mesh(at, radius));
+      }
     });
     for (std::size_t t = 0; t < all.size(); ++t)
       for (std::size_t k = 0; k < edge[t].size(); ++k)
         state(edge[t][k]) = roomy[t][k] ? kRoomyEdge : kEdge;
     return edge;
+  }
+
+  // Squared distances of the voxels of a box from measured surface within it, in voxels.
+  std::vector<float> squared_sides(const Index& from, const Index& to, int reach) const {
+    VoxelBlock open{{to[0] - from[0], to[1] - from[1], to[2] - from[2]}, {}};
+    for_each_index(from, to,
+                   [&](const Index& at) { open.marked.push_back(state(at) != kSurface); });
+    return squared_rooms(open, reach);
+  }
+  bool clear_of_mesh(const Index& at, float voxels) const {
+    return !mesh_ || !mesh_->nearest(center(at), voxels * grid_.resolution());
   }
 
   // Faces of a cube that look up an axis and that look down it.
@@ -368,24 +386,54 @@ class Space {
     opening.area *= grid_.resolution() * grid_.resolution();
     opening.passable = settings_.width > 0 && !roomy.empty();
     for (const Index& at : voxels) opening.voxels.push_back(key(at));
-    opening.place =
-        middle_of(opening.voxels, opening.passable ? roomy : std::vector<std::size_t>{});
+    std::vector<Index> chosen;
+    for (const std::size_t k : roomy) chosen.push_back(voxels[k]);
+    opening.place = middle_of(largest_part(opening.passable ? chosen : voxels));
     return opening;
   }
 
-  // The middle of the voxel nearest to the mean of those chosen, or of all where none is.
-  Vector3d middle_of(const std::vector<VoxelKey>& voxels, std::vector<std::size_t> chosen) const {
-    if (chosen.empty()) {
-      chosen.resize(voxels.size());
-      std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  // Those of the voxels that look at air one way along one axis, the largest of the parts in which
+  // they touch. An opening may go round a house, and then its mean lies within the house.
+  std::vector<Index> largest_part(const std::vector<Index>& voxels) const {
+    std::vector<Index> largest;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const int side : {-1, 1}) {
+        std::set<Index> left;
+        for (const Index& at : voxels) {
+          const Index n = moved(at, axis, side);
+          if (n[axis] >= 0 && n[axis] < block_.size[axis] && state(n) == kAir && in_region(n))
+            left.insert(at);
+        }
+        while (!left.empty()) {
+          std::vector<Index> part = part_from(*left.begin(), left);
+          if (part.size() > largest.size()) largest = std::move(part);
+        }
+      }
+    return largest.empty() ? voxels : largest;
+  }
+  // Takes all that is connected to `start`, at corners too.
+  static std::vector<Index> part_from(const Index& start, std::set<Index>& left) {
+    std::vector<Index> part{start};
+    left.erase(start);
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      const Index at = part[k];
+      for_each_index({at[0] - 1, at[1] - 1, at[2] - 1}, {at[0] + 2, at[1] + 2, at[2] + 2},
+                     [&](const Index& n) {
+                       if (left.erase(n) > 0) part.push_back(n);
+                     });
     }
+    return part;
+  }
+
+  // The middle of the voxel nearest to the mean of all.
+  Vector3d middle_of(const std::vector<Index>& voxels) const {
     Vector3d mean = Vector3d::Zero();
-    for (const std::size_t k : chosen) mean += grid_.center(voxels[k]);
-    mean /= static_cast<double>(chosen.size());
-    const auto away = [&](std::size_t k) { return (grid_.center(voxels[k]) - mean).squaredNorm(); };
-    return grid_.center(
-        voxels[*std::min_element(chosen.begin(), chosen.end(),
-                                 [&](std::size_t a, std::size_t b) { return away(a) < away(b); })]);
+    for (const Index& at : voxels) mean += center(at);
+    mean /= static_cast<double>(voxels.size());
+    const auto away = [&](const Index& at) { return (center(at) - mean).squaredNorm(); };
+    return center(
+        *std::min_element(voxels.begin(), voxels.end(),
+                          [&](const Index& a, const Index& b) { return away(a) < away(b); }));
   }
 
   const Map& map_;

@@ -10,16 +10,19 @@ namespace lapwing {
 
 // A connected part of the edge of what was measured.
 struct Opening {
-  double area = 0;                                  // m^2
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  // m, world; in it, near its middle
-  bool passable = false;                            // see EdgeSettings::width
-  std::vector<VoxelKey> voxels;                     // never measured, air beside them
+  double area = 0;  // m^2
+  // m, world: a voxel of it, near the middle of the largest part that looks one way along an axis;
+  // where it is passable, of the parts that are.
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  bool passable = false;         // see EdgeSettings::width
+  std::vector<VoxelKey> voxels;  // never measured, air beside them
 };
 
 struct EdgeSettings {
   Eigen::AlignedBox3d region;
   MapRays rays;
-  // m. An opening is passable where a sphere so wide fits in and behind it, to 1.5 voxels.
+  // m. An opening is passable where a sphere so wide fits behind it, and has room when its middle
+  // is in it: to 1.5 voxels, farther from all known surface than its radius.
   double width = 0;
   int threads = 1;
 };

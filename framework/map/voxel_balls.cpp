@@ -34,12 +34,17 @@ void lower_envelope(const VoxelBlock& block, int reach, std::vector<float>& valu
 
 }  // namespace
 
-void keep_balls(VoxelBlock& block, const std::vector<float>& radius) {
-  const float largest = *std::max_element(radius.begin(), radius.end());
-  const int reach = static_cast<int>(std::ceil(largest));
+std::vector<float> squared_rooms(const VoxelBlock& block, int reach) {
   std::vector<float> values(block.count());
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = block.marked[k] ? kNowhere : 0;
   lower_envelope(block, reach, values);
+  return values;
+}
+
+void keep_balls(VoxelBlock& block, const std::vector<float>& radius) {
+  const float largest = *std::max_element(radius.begin(), radius.end());
+  const int reach = static_cast<int>(std::ceil(largest));
+  std::vector<float> values = squared_rooms(block, reach);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const float squared = radius[k] * radius[k];
     values[k] = values[k] > squared ? -squared : kNowhere;

@@ -32,4 +32,8 @@ struct VoxelBlock {
 // transform.)
 void keep_balls(VoxelBlock& block, const std::vector<float>& radius);
 
+// Of every voxel of the block, the squared distance of its middle from that of the nearest voxel
+// which is not marked, in voxels; 1e12 where none lies within `reach` voxels along each axis.
+std::vector<float> squared_rooms(const VoxelBlock& block, int reach);
+
 }  // namespace lapwing

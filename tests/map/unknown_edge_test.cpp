@@ -117,6 +117,45 @@ TEST(UnknownEdge, TellsTheOpeningsApartWithPlaceSizeAndWidth) {
   EXPECT_FALSE(unknown_openings(wall, nullptr, settings)[0].passable);
 }
 
+// A solid block with its skin, and behind a corner of the skin half a metre of air that is none: a
+// vehicle that fits into the block does not fit between the skin and what was never measured.
+TEST(UnknownEdge, AirThatLeaksIntoASolidIsNoPassage) {
+  const auto leaking = [](double leak) {
+    return map_of(
+        [leak](const Vector3d& p) {
+          const double in = (p - Vector3d(8, 8, 2)).minCoeff();
+          if (in < 0) return Kind::air;
+          if (in < 0.125) return Kind::wall;
+          const bool corner = std::max(p.x(), p.y()) < 8.125 + leak && p.z() > 4 && p.z() < 8;
+          return corner ? Kind::air : Kind::never;
+        },
+        0.125);
+  };
+  EdgeSettings settings{kRegion, {}, 2, 2};
+  const std::vector<Opening> small = unknown_openings(leaking(0.5), nullptr, settings);
+  ASSERT_EQ(small.size(), 1u);
+  EXPECT_GT(small[0].area, 1);
+  EXPECT_FALSE(small[0].passable);
+  const std::vector<Opening> room = unknown_openings(leaking(3), nullptr, settings);
+  ASSERT_EQ(room.size(), 1u);
+  EXPECT_TRUE(room[0].passable);
+}
+
+// Never measured all round, so that the mean of its faces lies within: the place is on the largest.
+TEST(UnknownEdge, ThePlaceOfWhatGoesRoundLiesOnItsLargestFace) {
+  const SmallMap box = map_of([](const Vector3d& p) {
+    const Vector3d from = p - Vector3d(5, 5, 3), to = Vector3d(11, 8, 7) - p;
+    return from.minCoeff() > 0 && to.minCoeff() > 0 ? Kind::never : Kind::air;
+  });
+  const EdgeSettings settings{kRegion, {}, 0, 1};
+  const std::vector<Opening> found = unknown_openings(box, nullptr, settings);
+  ASSERT_EQ(found.size(), 1u);
+  const Vector3d& place = found[0].place;  // 6 m x 4 m, to the south
+  EXPECT_NEAR(place.y(), 5.25, 1e-9);
+  EXPECT_NEAR(place.x(), 8, 0.5);
+  EXPECT_NEAR(place.z(), 5, 0.5);
+}
+
 // Sheets that no ray came to, one of 0.5 m and one of 2 m, across an image's axis.
 TEST(UnknownEdge, IsNotAGapBetweenRays) {
   const SmallMap sheets = map_of(
