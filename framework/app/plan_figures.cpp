@@ -71,7 +71,7 @@ PlanFigures figures_of(const Plan& plan) {
   figures.duration = plan.trajectory.duration();
   for (std::size_t i = 1; i < samples.size(); ++i)
     figures.path_length += (samples[i].position - samples[i - 1].position).norm();
-  if (plan.trajectory.model != MotionModel::path) {
+  if (plan.trajectory.motion.moves) {
     figures.top_speed = 0;
     for (const Sample& sample : samples)
       figures.top_speed = std::max(figures.top_speed, sample.velocity.norm());

@@ -66,7 +66,7 @@ std::vector<Check> distances_of(const Plan& plan, const FlownPath& path,
   flown.cuts.clear();
   flown.lights.clear();
   flown.trajectory = {};
-  flown.trajectory.model = MotionModel::path;
+  flown.trajectory.motion = path_motion();
   for (const FlownSample& sample : path.samples) {
     if (!sample.state.position.allFinite()) break;
     Sample& kept = flown.trajectory.samples.emplace_back();

@@ -57,11 +57,17 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
     return groups;
   }
   if (kind == VehicleModel::kKind)
-    return {{"creation"},    {"blocks"},
-            {"bounds"},      {"flow", "degenerate input"},
-            {"derivatives"}, {"curvature"},
-            {"halves"},      {"samples"},
-            {"ranges"},      {"repeatable", "threads", "allocations"},
+    return {{"creation"},
+            {"blocks"},
+            {"bounds"},
+            {"motion"},
+            {"flow", "degenerate input"},
+            {"derivatives"},
+            {"curvature"},
+            {"halves"},
+            {"samples"},
+            {"ranges"},
+            {"repeatable", "threads", "allocations"},
             {"affine"}};
   if (kind == TrajectorySolver::kKind)
     return {{"creation"},

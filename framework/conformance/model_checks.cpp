@@ -6,6 +6,7 @@
 #include "framework/conformance/findings.h"
 #include "framework/conformance/sample_parameters.h"
 #include "framework/conformance/standard_setting.h"
+#include "framework/verify/verify.h"
 
 namespace lapwing {
 namespace {
@@ -28,6 +29,7 @@ class ModelCheck {
   void run() {
     if (!blocks()) return;
     if (options_.wants("bounds")) bounds();
+    if (options_.wants("motion")) motion();
     for (int point = 0; point < kModelPoints; ++point) {
       const std::vector<double> x = arguments(kModelStep);
       if (options_.wants_any({"flow", "degenerate input"})) flow(x);
@@ -115,6 +117,35 @@ class ModelCheck {
       findings_.expect("bounds",
                        lower[i] <= upper[i] && lower[i] < HUGE_VAL && upper[i] > -HUGE_VAL,
                        [&] { return name_of(i) + " has bounds without anything between them"; });
+  }
+
+  // What the trajectory says of its motion, and whether samples have what it says.
+  void motion() {
+    Trajectory trajectory;
+    trajectory.motion = {};
+    model_.describe(trajectory);
+    const MotionRecord& motion = trajectory.motion;
+    if (motion.name.empty()) {  // a model beside another, such as a gimbal, says nothing
+      const bool whole = std::any_of(states_.begin(), states_.end(), [](const BlockSpec& block) {
+        return block.name == "position";
+      });
+      findings_.expect("motion", !whole, [] {
+        return "it has a block 'position', and `describe` names no motion of the trajectory";
+      });
+      return;
+    }
+    for (const std::string& problem : motion_faults(motion)) findings_.fail("motion", problem);
+    Sample sample;
+    model_.to_sample(arguments(kModelStep).data(), sample);
+    for (const MotionColumn& column : motion.columns)
+      findings_.expect(
+          "motion",
+          sample.columns.find(column.name).size() == static_cast<std::size_t>(column.size), [&] {
+            return "samples lack the column '" + column.name + "' of " +
+                   std::to_string(column.size) + " numbers, which the motion '" + motion.name +
+                   "' states";
+          });
+    findings_.expect("motion", true, {});
   }
 
   void flow(std::vector<double> x) {

@@ -66,6 +66,9 @@ Vehicle standard_vehicle() {
   vehicle.acceleration_across_max = 4;
   vehicle.yaw_rate_max = radians(90);
   vehicle.flight_time = 1200;
+  vehicle.jerk_max = 20;
+  // Rotors and a wing at once, so that models of either find what they need.
+  vehicle.wing = Wing{5, radians(20), radians(60), -3, 3};
   GimbalLimits gimbal;
   gimbal.pitch_min = radians(-90);
   gimbal.pitch_rate_max = radians(90);

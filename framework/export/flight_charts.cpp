@@ -113,7 +113,7 @@ Section path_section(const Plan& plan, const std::filesystem::path& folder) {
   for (const Sample& s : plan.trajectory.samples) {
     line.points.push_back(s.position);
     line.along.push_back(s.time);
-    if (plan.trajectory.model != MotionModel::path) line.values.push_back(s.velocity.norm());
+    if (plan.trajectory.motion.moves) line.values.push_back(s.velocity.norm());
   }
   drawing.value = {"speed", "m/s"};
   drawing.lines.push_back(std::move(line));
@@ -146,7 +146,7 @@ Section motion_section(const Plan& plan, const Vehicle& vehicle) {
                    {charts.series("east", [](const Sample& s) { return s.position.x(); }),
                     charts.series("north", [](const Sample& s) { return s.position.y(); }),
                     charts.series("up", [](const Sample& s) { return s.position.z(); })}));
-  if (plan.trajectory.model == MotionModel::path) return section;
+  if (!plan.trajectory.motion.moves) return section;
   section.blocks.push_back(
       charts.chart("Speed across", "speed", "m/s",
                    {charts.series("across", [](const Sample& s) { return across(s.velocity); })},
@@ -172,30 +172,63 @@ Section motion_section(const Plan& plan, const Vehicle& vehicle) {
   return section;
 }
 
+namespace {
+
+std::string in_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+// A motion's own columns, a chart each, with the unit that the motion states.
+void add_columns(const TimeCharts& charts, const Trajectory& trajectory, Section& section) {
+  for (const MotionColumn& column : trajectory.motion.columns) {
+    std::vector<Series> series;
+    const std::vector<std::string> names = component_names(column);
+    for (int i = 0; i < column.size; ++i)
+      series.push_back(charts.series(
+          in_words(names[static_cast<std::size_t>(i)]),
+          [name = column.name, i](const Sample& s) {
+            const auto values = s.columns.find(name);
+            return static_cast<std::size_t>(i) < values.size()
+                       ? values[static_cast<std::size_t>(i)]
+                       : std::numeric_limits<double>::quiet_NaN();
+          },
+          column.input));
+    std::string title = in_words(column.name);
+    title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
+    section.blocks.push_back(
+        charts.chart(title, in_words(column.name), column.unit, std::move(series)));
+  }
+}
+
+}  // namespace
+
 Section input_section(const Plan& plan, const Vehicle& vehicle) {
   const TimeCharts charts(plan);
   Section section{"Inputs", {}};
-  if (plan.trajectory.model == MotionModel::force) {
-    section.blocks.push_back(
-        charts.chart("Thrust", "thrust", "N",
-                     {charts.series(
-                         "norm", [](const Sample& s) { return s.force.norm(); }, true)},
-                     {{"maximum", vehicle.thrust_max()}, {"minimum", vehicle.thrust_min()}}));
-    section.blocks.push_back(
-        charts.chart("Yaw torque", "torque", "N m",
-                     {charts.series(
-                         "yaw torque", [](const Sample& s) { return s.yaw_torque; }, true)},
-                     both_ways(vehicle.yaw_torque_max())));
-  } else if (plan.trajectory.model == MotionModel::rotors) {
+  if (plan.trajectory.motion.tracked == Tracking::force) {
+    section.blocks.push_back(charts.chart(
+        "Thrust", "thrust", "N",
+        {charts.series(
+            "norm", [](const Sample& s) { return s.columns.vector3("force").norm(); }, true)},
+        {{"maximum", vehicle.thrust_max()}, {"minimum", vehicle.thrust_min()}}));
+    section.blocks.push_back(charts.chart(
+        "Yaw torque", "torque", "N m",
+        {charts.series(
+            "yaw torque", [](const Sample& s) { return s.columns.scalar("yaw_torque"); }, true)},
+        both_ways(vehicle.yaw_torque_max())));
+  } else if (plan.trajectory.motion.tracked == Tracking::rotors) {
     std::vector<Series> rotors;
     for (int i = 0; i < 4; ++i) {
       rotors.push_back(charts.series(
-          "rotor " + std::to_string(i + 1), [i](const Sample& s) { return s.rotor_thrusts[i]; },
-          true));
+          "rotor " + std::to_string(i + 1),
+          [i](const Sample& s) { return s.columns.vector<4>("rotor_thrusts")[i]; }, true));
     }
     section.blocks.push_back(charts.chart(
         "Rotor thrusts", "thrust", "N", std::move(rotors),
         {{"maximum", vehicle.rotors.thrust_max}, {"minimum", vehicle.rotors.thrust_min}}));
+  } else {
+    add_columns(charts, plan.trajectory, section);
   }
   return section;
 }
@@ -206,15 +239,16 @@ Section direction_section(const Plan& plan, const Vehicle& vehicle) {
   section.blocks.push_back(
       charts.chart("Yaw", "yaw", "\u00b0",
                    {charts.series("yaw", [](const Sample& s) { return degrees(s.yaw); })}));
-  if (plan.trajectory.model != MotionModel::path) {
+  if (plan.trajectory.motion.moves) {
     // Of whole quadrotors the limit is that of the body's own axis, however the heading turns.
-    const bool rotors = plan.trajectory.model == MotionModel::rotors;
+    const bool rotors = plan.trajectory.motion.tracked == Tracking::rotors;
     section.blocks.push_back(charts.chart(
         rotors ? "Body rate about the thrust" : "Yaw rate", rotors ? "rate" : "yaw rate",
         "\u00b0/s",
-        {charts.series(
-            "rate",
-            [=](const Sample& s) { return degrees(rotors ? s.body_rates.z() : s.yaw_rate); })},
+        {charts.series("rate",
+                       [=](const Sample& s) {
+                         return degrees(rotors ? s.columns.vector3("body_rates").z() : s.yaw_rate);
+                       })},
         both_ways(degrees(vehicle.yaw_rate_max))));
   }
   return section;

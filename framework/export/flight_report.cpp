@@ -103,7 +103,7 @@ Section summary_section(const Plan& plan, const Vehicle& vehicle) {
   facts.facts = {{"vehicle", vehicle.name, ""},
                  {"duration", number_text(plan.trajectory.duration()), "s"},
                  {"path length", number_text(length_of(plan.trajectory)), "m"}};
-  if (plan.trajectory.model != MotionModel::path) {
+  if (plan.trajectory.motion.moves) {
     facts.facts.push_back({"top speed", number_text(fastest, 3), "m/s"});
   }
   if (plan.budget) facts.facts.push_back({"budget", number_text(*plan.budget), "s"});

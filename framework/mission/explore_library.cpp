@@ -186,7 +186,7 @@ void record_path(Exploration& e) {
 
 Trajectory trajectory_of(const Exploration& e, bool gimbal) {
   Trajectory trajectory;
-  trajectory.model = MotionModel::path;
+  trajectory.motion = path_motion();
   trajectory.has_gimbal = gimbal;
   const MoveTimes times{e.settings.speed, e.settings.turn_rate};
   const auto add = [&](const Viewpoint& view, double time) {

@@ -213,6 +213,7 @@ constexpr BoundField kVehicleFields[] = {
     {"thrust_max", "number", "of all rotors, that is used, N"},
     {"rotor_thrust_max", "number", "of one rotor, N"},
     {"flight_time", "number", "of a battery, s"},
+    {"flies", "boolean", "whether its rotors are known, so that its flight can be simulated"},
     {"gimbal", "table|false",
      "{yaw_min, yaw_max, pitch_min, pitch_max, yaw_rate, pitch_rate}, rad and rad/s; false: none"},
     {"half_view", "table", "{across, up}: half the angle that the camera sees, rad"}};
@@ -234,6 +235,7 @@ int vehicle_field(lua_State* state) {
   const double infinite = std::numeric_limits<double>::infinity();
   fields.set("acceleration_up", vehicle.acceleration_up_max.value_or(infinite));
   fields.set("acceleration_down", vehicle.acceleration_down_max.value_or(infinite));
+  fields.set("flies", vehicle.has_rotors);
   fields.set("gimbal", gimbal_value(vehicle));
   fields.set("half_view", half_view_value(vehicle.camera));
   return push_field(state, "a vehicle", field, fields, kVehicleFields);

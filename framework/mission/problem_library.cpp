@@ -84,6 +84,18 @@ int add_model(lua_State* state) {
   return 0;
 }
 
+// p:has_block("force"): whether a model or the script added a block of that name.
+int has_block(lua_State* state) {
+  const TrajectoryProblem& problem = open_problem(state);
+  lua_pushboolean(state, problem.layout().find(text_argument(state, 2, "has_block")) >= 0);
+  return 1;
+}
+
+int rests_of_problem(lua_State* state) {
+  lua_pushboolean(state, open_problem(state).rests());
+  return 1;
+}
+
 ParameterTable block_table() {
   ParameterTable table;
   table.required_text("name", "of the block")
@@ -384,6 +396,10 @@ void open_problem_library(lua_State* state) {
   static const Binding methods[] = {
       {"add_model", &guarded<add_model>, "(model: lapwing.vehicle_model)",
        "a plugin by name, with its own parameters: how the vehicle moves"},
+      {"has_block", &guarded<has_block>, "(name: string): boolean",
+       "whether a model or the script added a block of that name"},
+      {"rests", &guarded<rests_of_problem>, "(): boolean",
+       "whether the vehicle can stand still, by the models that were added"},
       {"add_block", &guarded<add_block>, "(block: @)", "a free block", &block_table},
       {"add_cost", &guarded<add_cost>, "(term: lapwing.cost_term|lapwing.own_cost)",
        "what is bad: a plugin by name, or a function of the script's own"},

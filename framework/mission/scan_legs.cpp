@@ -36,12 +36,15 @@ void check_end(const Sample& s, const Viewpoint& view, std::size_t leg, const ch
                    " m/s; expected a solution from view to view, at rest in both");
 }
 
-// The vehicle at rest, as it is at the end of a leg.
-Sample at_rest(const Vehicle& vehicle, Sample s) {
+// The vehicle at rest, as it is at the end of a leg: what it does not hover by is zero.
+Sample at_rest(const Vehicle& vehicle, const MotionRecord& motion, Sample s) {
   s.velocity.setZero();
   s.acceleration.setZero();
-  s.force = Eigen::Vector3d(0, 0, vehicle.mass * kGravity);
-  s.yaw_rate = s.yaw_torque = 0;
+  s.yaw_rate = 0;
+  for (const MotionColumn& column : motion.columns)
+    s.columns.set(column.name, std::vector<double>(static_cast<std::size_t>(column.size), 0.0));
+  if (motion.column("force"))
+    s.columns.set("force", Eigen::Vector3d(0, 0, vehicle.mass * kGravity));
   return s;
 }
 
@@ -101,14 +104,15 @@ Pursuit joined_flight(const TourObject& tour,
   for (std::size_t leg = 0; leg < solutions.size(); ++leg) {
     const SolutionObject& solution = *solutions[leg];
     const Trajectory flown = solution.problem->trajectory(solution.result.point.stages);
-    if (flown.model != MotionModel::force || flown.samples.size() < 2)
+    if (flown.motion.column("orientation") || flown.samples.size() < 2)
       throw InputError("scan_plan: leg " + std::to_string(leg + 1) +
-                       " is no solution of the model 'quadrotor'");
+                       " is no solution of a model with a yaw, such as 'quadrotor'");
     check_end(flown.samples.front(), stop_of(tour, leg), leg, "begins");
     check_end(flown.samples.back(), stop_of(tour, leg + 1), leg, "ends");
     if (samples.empty()) {
       flight.trajectory.inputs_held = flown.inputs_held;
-      samples.push_back(at_rest(vehicle, flown.samples.front()));
+      flight.trajectory.motion = flown.motion;
+      samples.push_back(at_rest(vehicle, flown.motion, flown.samples.front()));
       samples.back().time = 0;
     }
     const double around =
@@ -120,7 +124,7 @@ Pursuit joined_flight(const TourObject& tour,
       samples.push_back(s);
     }
     clock = samples.back().time;
-    samples.back() = at_rest(vehicle, samples.back());
+    samples.back() = at_rest(vehicle, flown.motion, samples.back());
     flight.views.push_back({clock, clock + pause,
                             (samples.back().position - stop_of(tour, leg + 1).position).norm()});
     clock += pause;

@@ -92,6 +92,12 @@ void TrajectoryProblem::add_model(std::string name, std::unique_ptr<VehicleModel
     if (block.topology == Topology::quaternion && model->affine())
       throw Error(bound.name + ": no model of an orientation is affine");
   }
+  auto conditions = in_plugin(*model, "conditions", [&] { return model->conditions(); });
+  for (auto& [condition, constraint] : conditions) {
+    constraint->set_plugin_name(model->plugin_name());
+    add_constraint(bound.name + "." + condition, std::move(constraint));
+  }
+  impl_->rests &= in_plugin(*model, "rests", [&] { return model->rests(); });
   bound.model = std::move(model);
   columns.models.push_back(std::move(bound));
 }
@@ -276,6 +282,9 @@ void TrajectoryProblem::Impl::take_bounds(ConstraintEntry& entry, int owner) {
               entry.upper[k * bound.rows() + r], owner);
 }
 
+bool TrajectoryProblem::rests() const {
+  return impl_->rests;
+}
 const Vehicle& TrajectoryProblem::vehicle() const {
   return impl_->vehicle;
 }
@@ -330,8 +339,6 @@ Stages TrajectoryProblem::initial_guess() const {
     samples[i].yaw_rate = (samples[i + 1].yaw - samples[i].yaw) / step;
   }
   for (int i = 0; i < count; ++i) {
-    if (impl_->motion.samples.empty())
-      samples[i].force = impl_->vehicle.mass * kGravity * Eigen::Vector3d::UnitZ();
     for (const BoundModel& model : columns.models) {
       std::vector<double> numbers(model.states + model.inputs);
       in_plugin(*model.model, "from_sample",
@@ -398,7 +405,7 @@ Trajectory TrajectoryProblem::trajectory(const Stages& at) const {
     if (result.has_target) sample.target = at.col(i).segment<3>(columns.layout.offset(target));
     // A heading read off an orientation, on the turn of the sample before.
     constexpr double kTurn = 2 * std::numbers::pi;
-    if (result.model == MotionModel::rotors && i > 0)
+    if (result.motion.column("orientation") && i > 0)
       sample.yaw += kTurn * std::round((result.samples[i - 1].yaw - sample.yaw) / kTurn);
   }
   return result;

@@ -72,6 +72,7 @@ class TrajectoryProblem {
   TrajectoryProblem(TrajectoryProblem&&) noexcept;
 
   // -- building -----------------------------------------------------------------------------------
+  // With the model's own conditions, as constraints named after both.
   void add_model(std::string name, std::unique_ptr<VehicleModel> model);
   void add_block(BlockSpec block);  // role free
   void add_cost(std::string name, double weight, std::unique_ptr<CostTerm> term);
@@ -91,6 +92,7 @@ class TrajectoryProblem {
   // -- what there is
   // --------------------------------------------------------------------------------
   const Vehicle& vehicle() const;
+  bool rests() const;  // whether the models that it has so far can stand still
   const Horizon& horizon() const;
   const Environment& environment() const;
   const StageLayout& layout() const;

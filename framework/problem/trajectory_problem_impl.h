@@ -56,6 +56,7 @@ struct TrajectoryProblem::Impl {
   Horizon motion_legs;
   Sample motion_sample(int stage) const;
   bool finished = false;
+  bool rests = true;        // every model can
   bool affine_rows = true;  // all rows affine
   bool quadratic = true;    // and all residuals too
   int dynamics_rows = 0;    // model rows, held last inputs, clock

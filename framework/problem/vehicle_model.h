@@ -6,10 +6,13 @@
 // the same flow. Models compose: a gimbal beside a quadrotor, each with blocks of its own.
 #pragma once
 
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/core/plugin_object.h"
-#include "framework/problem/stage_function.h"
+#include "framework/problem/constraint.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace lapwing {
@@ -41,8 +44,9 @@ class VehicleModel : public PluginObject {
                          double* hessian, Workspace& workspace) const = 0;
 
   // Between the model's blocks (in its order) and a sample of a trajectory. `to_sample` fills the
-  // fields that the model knows, derivatives included, and leaves the others; `from_sample` is used
-  // for the initial guess and for warm starts.
+  // fields that the model knows, derivatives included, and the columns of its motion, and leaves
+  // the others; `from_sample` is used for the initial guess, whose samples have no columns, and for
+  // warm starts.
   virtual void to_sample(const double* state_and_input, Sample& sample) const = 0;
   virtual void from_sample(const Sample& sample, double* state_and_input) const = 0;
 
@@ -50,7 +54,17 @@ class VehicleModel : public PluginObject {
   // limits of the vehicle that are plain bounds: lower and upper, one number per state and input.
   virtual void bounds(double* lower, double* upper) const = 0;
 
-  // What the trajectory says of itself: its motion model and whether it has a gimbal.
+  // Conditions on the model's own blocks that are no plain bounds, with their names: a lowest
+  // speed. A problem holds them beside the constraints that it is given. Called once, after `bind`.
+  virtual std::vector<std::pair<std::string, std::unique_ptr<Constraint>>> conditions() const {
+    return {};
+  }
+
+  // Whether the vehicle can stand still in the air.
+  virtual bool rests() const { return true; }
+
+  // What the trajectory says of itself: its motion (trajectory/motion_record.h), whether inputs are
+  // held, and whether it has a gimbal.
   virtual void describe(Trajectory& trajectory) const = 0;
 };
 

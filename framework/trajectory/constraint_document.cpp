@@ -119,8 +119,7 @@ Value to_value(const StatedConstraint& constraint) {
     value.set("unjudged", constraint.unjudged);
     return value;
   }
-  Value& operations = value.set("operations", Value::list());
-  for (const ConstraintStep& step : constraint.operations) operations.push_back(to_value(step));
+  value.set("operations", operations_to_value(constraint.operations));
   Value& results = value.set("results", Value::list());
   for (const ConstraintResult& result : constraint.results) results.push_back(to_value(result));
   if (!constraint.times.empty())
@@ -139,10 +138,7 @@ StatedConstraint constraint_from(Fields& fields) {
     if (constraint.unjudged.empty()) fields.add_error("unjudged", "expected a reason");
     return constraint;
   }
-  for (Fields& entry : fields.tables("operations")) {
-    constraint.operations.push_back(step_from(entry));
-    entry.finish();
-  }
+  constraint.operations = operations_from(fields.tables("operations"));
   for (Fields& entry : fields.tables("results")) {
     ConstraintResult result;
     result.operation = entry.integer("of", 0, StatedConstraint::kMostOperations);
@@ -165,6 +161,21 @@ const char* name_of(ConstraintOp op) {
 
 int operand_count(ConstraintOp op) {
   return form_of(op).operands;
+}
+
+Value operations_to_value(const std::vector<ConstraintStep>& operations) {
+  Value list = Value::list();
+  for (const ConstraintStep& step : operations) list.push_back(to_value(step));
+  return list;
+}
+
+std::vector<ConstraintStep> operations_from(std::vector<Fields> entries) {
+  std::vector<ConstraintStep> operations;
+  for (Fields& entry : entries) {
+    operations.push_back(step_from(entry));
+    entry.finish();
+  }
+  return operations;
 }
 
 Value constraints_to_value(const std::vector<StatedConstraint>& constraints) {

@@ -34,8 +34,6 @@ void move(const Sample& a, const Sample& b, double h, double s, Sample& out) {
   const auto yaw = cubic<double>(a.yaw, a.yaw_rate, b.yaw, b.yaw_rate, h, s);
   out.yaw = yaw.value;
   out.yaw_rate = yaw.rate;
-  out.orientation = a.orientation.slerp(s, b.orientation);
-  out.body_rates = blend(a.body_rates, b.body_rates, s);
 }
 
 void follow_line(const Sample& a, const Sample& b, double h, double s, Sample& out) {
@@ -47,11 +45,27 @@ void follow_line(const Sample& a, const Sample& b, double h, double s, Sample& o
 
 void blend_inputs(const Sample& a, const Sample& b, double s, Sample& out) {
   out.acceleration = blend(a.acceleration, b.acceleration, s);
-  out.force = blend(a.force, b.force, s);
-  out.yaw_torque = blend(a.yaw_torque, b.yaw_torque, s);
-  out.rotor_thrusts = blend(a.rotor_thrusts, b.rotor_thrusts, s);
   out.gimbal_yaw_rate = blend(a.gimbal_yaw_rate, b.gimbal_yaw_rate, s);
   out.gimbal_pitch_rate = blend(a.gimbal_pitch_rate, b.gimbal_pitch_rate, s);
+}
+
+// States linearly, an orientation along the shortest turn; inputs as `held` says.
+void blend_columns(const Trajectory& trajectory, const Sample& a, const Sample& b, double s,
+                   Sample& out) {
+  for (const MotionColumn& column : trajectory.motion.columns) {
+    const auto from = a.columns.find(column.name), to = b.columns.find(column.name);
+    if (from.empty() || from.size() != to.size()) continue;
+    if (column.input && trajectory.inputs_held) continue;
+    if (column.name == "orientation" && from.size() == 4) {
+      out.columns.set(
+          column.name,
+          a.columns.quaternion(column.name).slerp(s, b.columns.quaternion(column.name)));
+      continue;
+    }
+    std::vector<double> mixed(from.size());
+    for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = blend(from[i], to[i], s);
+    out.columns.set(column.name, mixed);
+  }
 }
 
 void turn_gimbal(const Sample& a, const Sample& b, double h, double s, bool held, Sample& out) {
@@ -83,11 +97,12 @@ Sample sample_at(const Trajectory& trajectory, double time) {
   const double h = b.time - a.time, s = (time - a.time) / h;
   Sample out = a;
   out.time = time;
-  if (trajectory.model == MotionModel::path) {
+  if (!trajectory.motion.moves) {
     follow_line(a, b, h, s, out);
   } else {
     move(a, b, h, s, out);
     if (!trajectory.inputs_held) blend_inputs(a, b, s, out);
+    blend_columns(trajectory, a, b, s, out);
   }
   if (trajectory.has_gimbal) turn_gimbal(a, b, h, s, trajectory.inputs_held, out);
   if (trajectory.has_target) out.target = blend(a.target, b.target, s);

@@ -20,6 +20,17 @@ Environment environment_from(Fields fields);
 Value spans_to_value(const std::vector<TimeSpan>& cuts);
 std::vector<TimeSpan> spans_from(std::vector<Fields> entries);
 
+// Operations on earlier ones, in their order.
+Value operations_to_value(const std::vector<ConstraintStep>& operations);
+std::vector<ConstraintStep> operations_from(std::vector<Fields> entries);
+
+// The motion: one that has a name alone, or its columns, what follows it, and its table.
+Value motion_to_value(const Trajectory& trajectory);
+// Without samples.
+Trajectory motion_from(Fields fields);
+Value sample_to_value(const Trajectory& trajectory, const Sample& sample);
+Sample sample_from(const Trajectory& trajectory, Fields fields);
+
 // Those of the script, in its order.
 Value constraints_to_value(const std::vector<StatedConstraint>& constraints);
 std::vector<StatedConstraint> constraints_from(std::vector<Fields> entries);

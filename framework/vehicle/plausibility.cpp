@@ -35,6 +35,8 @@ constexpr OtherUnit kSpeeds[] = {{"km/h", 1 / 3.6}, {"cm/s", 1e-2}, {"mm/s", 1e-
 constexpr OtherUnit kAccelerations[] = {{"cm/s^2", 1e-2}, {"mm/s^2", 1e-3}};
 constexpr OtherUnit kAngularRates[] = {{"rad/s", 180 / std::numbers::pi}};
 
+constexpr OtherUnit kAngles[] = {{"rad", 180 / std::numbers::pi}};
+
 // The lightest that fly are toys of 10 g; the heaviest lift a person.
 constexpr Range kMass{0.005, 1000};    // kg
 constexpr Range kArm{0.01, 5};         // m
@@ -44,7 +46,9 @@ constexpr Range kDragTorque{1e-4, 1};  // m; a propeller's diameter times 0.01 t
 constexpr Range kYawShare{1e-3, 1};
 constexpr Range kLevelSpeed{0.01, 200};     // m/s; the fastest made flies 160
 constexpr Range kAcceleration{0.01, 1000};  // m/s^2
+constexpr Range kJerk{0.01, 1e5};           // m/s^3
 constexpr Range kYawRate{0.1, 1e4};         // deg/s
+constexpr Range kBank{2, 80};               // deg; below 2 no aircraft turns
 constexpr Range kFlightTime{5, 1e6};        // s; on a cable there is no end
 // The narrowest and slowest gimbals made turn by tens of degrees. In radians, half a turn is 3.
 constexpr Range kGimbalPitch{3.2, 181};  // deg, from end to end
@@ -80,11 +84,7 @@ class Plausibility {
 
   void check() {
     const bool mass = plain("mass", v_.mass, "kg", kMass, kMasses);
-    const bool arm = plain("rotors.arm_length", v_.rotors.arm_length, "m", kArm, kLengths, arms());
-    plain("rotors.torque_coefficient", v_.rotors.torque_coefficient, "m", kDragTorque, kLengths);
-    plain("yaw_share", v_.yaw_share, "", kYawShare, {});
-    if (mass && arm) inertia();
-    if (mass) thrust();
+    if (v_.has_rotors) rotors(mass);
     limits();
     if (v_.gimbal) {
       const GimbalLimits& g = *v_.gimbal;
@@ -95,6 +95,14 @@ class Plausibility {
   }
 
  private:
+  void rotors(bool mass) {
+    const bool arm = plain("rotors.arm_length", v_.rotors.arm_length, "m", kArm, kLengths, arms());
+    plain("rotors.torque_coefficient", v_.rotors.torque_coefficient, "m", kDragTorque, kLengths);
+    plain("yaw_share", v_.yaw_share, "", kYawShare, {});
+    if (mass && arm) inertia();
+    if (mass) thrust();
+  }
+
   // "; is it mm? Then write '230 mm'": the number that was written, with the first unit in which it
   // is one that real vehicles have. A file may have written another unit than `base`, in which the
   // value comes: the one that gives the shortest number, 900 h rather than 3.24e6 s.
@@ -119,12 +127,14 @@ class Plausibility {
     return hint;
   }
 
+  const char* kind() const { return v_.has_rotors ? "multirotor" : "drone"; }
+
   // Whether a figure lies in its range.
   bool plain(const std::string& key, double value, const char* unit, const Range& range,
              std::span<const OtherUnit> units, std::optional<Range> likely = {}) {
     if (range.holds(value)) return true;
-    add_(key, shown(value, unit) + " is not what a multirotor has (" + shown(range.low) + " to " +
-                  shown(range.high, unit) + ")" +
+    add_(key, shown(value, unit) + " is not what a " + kind() + " has (" + shown(range.low) +
+                  " to " + shown(range.high, unit) + ")" +
                   unit_hint(value, likely.value_or(range), units, unit));
     return false;
   }
@@ -174,6 +184,13 @@ class Plausibility {
     if (v_.acceleration_down_max)
       plain("limits.acceleration_down", *v_.acceleration_down_max, "m/s^2", kAcceleration,
             kAccelerations);
+    if (v_.jerk_max) plain("limits.jerk", *v_.jerk_max, "m/s^3", kJerk, {});
+    if (v_.wing) {
+      plain("wing.stall_speed", v_.wing->stall_speed, "m/s", kLevelSpeed, kSpeeds);
+      plain("wing.bank_deg", degrees(v_.wing->bank_max), "deg", kBank, kAngles);
+      plain("wing.bank_rate_deg", degrees(v_.wing->bank_rate_max), "deg/s", kYawRate,
+            kAngularRates);
+    }
     plain("limits.yaw_rate_deg", degrees(v_.yaw_rate_max), "deg/s", kYawRate, kAngularRates);
     if (v_.tilt_rate_max)
       plain("limits.tilt_rate_deg", degrees(*v_.tilt_rate_max), "deg/s", kYawRate, kAngularRates);

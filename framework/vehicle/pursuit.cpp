@@ -186,8 +186,8 @@ class Chase {
 
   void sample(const Vector3d& a, double spin) {
     now_.acceleration = a;
-    now_.force = vehicle_.mass * (a + Vector3d(0, 0, kGravity));
-    now_.yaw_torque = vehicle_.inertia.z() * spin;
+    now_.columns.set("force", Vector3d(vehicle_.mass * (a + Vector3d(0, 0, kGravity))));
+    now_.columns.set("yaw_torque", vehicle_.inertia.z() * spin);
     result_.trajectory.samples.push_back(now_);
   }
 

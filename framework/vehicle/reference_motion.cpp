@@ -17,19 +17,22 @@ constexpr double kLongestRamp = 0.2;  // s
 
 Trajectory forces_of(const Trajectory& rotors, const Vehicle& vehicle) {
   Trajectory forces = rotors;
-  forces.model = MotionModel::force;
+  forces.motion = force_motion();
   double before = 0;
   for (Sample& s : forces.samples) {
-    const Eigen::Quaterniond attitude = s.orientation.normalized();
+    const Eigen::Quaterniond attitude = s.columns.quaternion("orientation").normalized();
     // m r'' - m g: the thrust less the drag, which the controller adds again.
-    s.force = attitude * Vector3d(0, 0, s.rotor_thrusts.sum()) - vehicle.drag * s.velocity;
+    const double thrust = s.columns.vector<4>("rotor_thrusts").sum();
+    const Vector3d force = attitude * Vector3d(0, 0, thrust) - vehicle.drag * s.velocity;
+    s.columns = {};
+    s.columns.set("force", force);
     // The heading at right angles to the y axis (reading 3.7): with it the controller asks for the
     // planned attitude itself. Where the nose points differs by the product of two tilts.
     const Vector3d y = attitude * Vector3d::UnitY();
     const double yaw = std::atan2(-y.x(), y.y());
     const double turns = std::round((before - yaw) / (2 * std::numbers::pi));
     s.yaw = before = yaw + 2 * std::numbers::pi * turns;
-    s.yaw_torque = 0;
+    s.columns.set("yaw_torque", 0.0);
   }
   for (std::size_t i = 0; i + 1 < forces.samples.size(); ++i)
     forces.samples[i].yaw_rate = (forces.samples[i + 1].yaw - forces.samples[i].yaw) /
@@ -37,19 +40,55 @@ Trajectory forces_of(const Trajectory& rotors, const Vehicle& vehicle) {
   return forces;
 }
 
-ReferenceMotion::ReferenceMotion(const Trajectory& trajectory, const Vehicle& vehicle)
-    : forces_(trajectory.model == MotionModel::rotors
-                  ? std::optional<Trajectory>(forces_of(trajectory, vehicle))
-                  : std::nullopt),
-      trajectory_(forces_ ? *forces_ : trajectory),
-      mass_(vehicle.mass),
-      drag_(vehicle.drag),
-      yaw_inertia_(vehicle.inertia.z()) {
-  if (trajectory.model == MotionModel::path)
+Trajectory forces_of_accelerations(const Trajectory& accelerations, const Vehicle& vehicle) {
+  Trajectory forces = accelerations;
+  forces.motion = force_motion();
+  for (Sample& s : forces.samples) {
+    s.columns = {};
+    s.columns.set("force", Vector3d(vehicle.mass * (s.acceleration + Vector3d(0, 0, kGravity))));
+    s.columns.set("yaw_torque", 0.0);
+  }
+  // Accelerations change from sample to sample: they are no inputs that are held.
+  forces.inputs_held = false;
+  return forces;
+}
+
+namespace {
+
+// The trajectory as forces where its own columns are others. An error where no controller can
+// follow it.
+std::optional<Trajectory> as_forces(const Trajectory& trajectory, const Vehicle& vehicle) {
+  if (!vehicle.has_rotors)
+    throw InputError({}, "vehicle '" + vehicle.name +
+                             "' states no rotors: there is no simulated vehicle to fly this plan "
+                             "with. A vehicle file with inertia and rotors has one");
+  switch (trajectory.motion.tracked) {
+    case Tracking::force:
+      return std::nullopt;
+    case Tracking::rotors:
+      return forces_of(trajectory, vehicle);
+    case Tracking::acceleration:
+      return forces_of_accelerations(trajectory, vehicle);
+    case Tracking::none:
+      break;
+  }
+  if (!trajectory.motion.moves)
     throw InputError({},
                      "this plan is an exploration: straight lines without forces that a controller "
                      "could follow. Films, races, light paintings and scans can be flown; a scan "
                      "may begin with an exploration (examples/explore/explore_then_scan.lua)");
+  throw InputError({}, "the motion '" + trajectory.motion.name +
+                           "' says nothing that a simulated quadrotor could follow");
+}
+
+}  // namespace
+
+ReferenceMotion::ReferenceMotion(const Trajectory& trajectory, const Vehicle& vehicle)
+    : forces_(as_forces(trajectory, vehicle)),
+      trajectory_(forces_ ? *forces_ : trajectory),
+      mass_(vehicle.mass),
+      drag_(vehicle.drag),
+      yaw_inertia_(vehicle.inertia.z()) {
   if (trajectory.samples.size() < 2) throw InputError({}, "a flight needs two samples at least");
 }
 
@@ -61,7 +100,7 @@ std::size_t ReferenceMotion::interval(double time) const {
 }
 
 Vector3d ReferenceMotion::acceleration(std::size_t sample) const {
-  return trajectory_.samples[sample].force / mass_ - Vector3d(0, 0, kGravity);
+  return trajectory_.samples[sample].columns.vector3("force") / mass_ - Vector3d(0, 0, kGravity);
 }
 
 Vector3d ReferenceMotion::smoothed_acceleration(std::size_t interval, double time) const {
@@ -94,12 +133,12 @@ ReferencePoint ReferenceMotion::at(double time) const {
   const Sample& s = samples[i];
   const double t = time - s.time, h = samples[i + 1].time - s.time;
   const Vector3d a = acceleration(i);
-  const double spin = s.yaw_torque / yaw_inertia_;
+  const double spin = s.columns.scalar("yaw_torque") / yaw_inertia_;
   Vector3d jerk = Vector3d::Zero();
   double spin_rate = 0;
   if (!trajectory_.inputs_held) {
     jerk = (acceleration(i + 1) - a) / h;
-    spin_rate = (samples[i + 1].yaw_torque / yaw_inertia_ - spin) / h;
+    spin_rate = (samples[i + 1].columns.scalar("yaw_torque") / yaw_inertia_ - spin) / h;
   }
   point.position = s.position + t * (s.velocity + t * (a / 2 + t * jerk / 6));
   point.velocity = s.velocity + t * (a + t * jerk / 2);

@@ -19,6 +19,10 @@ struct ReferencePoint {
 // controller follows. The rest of the plan's attitude and its rotor thrusts are left to it.
 Trajectory forces_of(const Trajectory& rotors, const Vehicle& vehicle);
 
+// A trajectory of accelerations and yaw rates likewise: the force that gives a mass its
+// acceleration, without drag, linear from sample to sample.
+Trajectory forces_of_accelerations(const Trajectory& accelerations, const Vehicle& vehicle);
+
 // Of a trajectory of the motion model `force`: from each sample on by its inputs, held or linear.
 // Held accelerations jump from sample to sample; as feed-forward, which no body follows in jumps,
 // they change along a ramp around the jump, as long as the shorter interval and 0.2 s at most.

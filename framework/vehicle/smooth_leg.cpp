@@ -26,8 +26,10 @@ MotionLimits motion_limits(const Vehicle& v, double share) {
   limits.climb_speed = share * v.climb_speed_max;
   limits.descent_speed = share * v.descent_speed_max;
   limits.acceleration_across = share * v.acceleration_across_max;
-  const double up = (v.thrust_max() / v.mass - kGravity) / 2;
-  const double down = (kGravity - v.thrust_min() / v.mass) / 2;
+  // Of the rotors half, the rest is for the controller.
+  const double infinite = std::numeric_limits<double>::infinity();
+  const double up = v.has_rotors ? (v.thrust_max() / v.mass - kGravity) / 2 : infinite;
+  const double down = v.has_rotors ? (kGravity - v.thrust_min() / v.mass) / 2 : infinite;
   limits.acceleration_up = share * std::min(up, v.acceleration_up_max.value_or(up));
   limits.acceleration_down = share * std::min(down, v.acceleration_down_max.value_or(down));
   return limits;
@@ -44,9 +46,10 @@ MotionLimits within(MotionLimits limits, const PathLimits& others) {
 
 double smooth_leg_seconds(const Points& way, double turn, double tilt, const Vehicle& vehicle,
                           const SmoothLegSettings& settings) {
-  double seconds = turning_seconds(
-      std::abs(turn), kLimitShare * vehicle.yaw_rate_max,
-      kLimitShare * vehicle.yaw_torque_max() / vehicle.inertia.z());
+  const double spin = vehicle.has_rotors ? vehicle.yaw_torque_max() / vehicle.inertia.z()
+                                         : std::numeric_limits<double>::infinity();
+  double seconds =
+      turning_seconds(std::abs(turn), kLimitShare * vehicle.yaw_rate_max, kLimitShare * spin);
   if (vehicle.gimbal && tilt != 0)
     seconds = std::max(seconds, std::abs(tilt) / (kLimitShare * vehicle.gimbal->pitch_rate_max));
   if (length_of(way) > 0) {

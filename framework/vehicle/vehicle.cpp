@@ -1,6 +1,7 @@
 #include "framework/vehicle/vehicle.h"
 
 #include "framework/core/fields.h"
+#include "framework/core/units.h"
 #include "framework/vehicle/vehicle_check.h"
 
 namespace lapwing {
@@ -18,6 +19,16 @@ double Vehicle::thrust_min() const {
 
 double Vehicle::yaw_torque_max() const {
   return yaw_share * 2 * rotors.torque_coefficient * rotors.thrust_max;
+}
+
+double Vehicle::largest_acceleration_up() const {
+  const double stated = acceleration_up_max.value_or(std::numeric_limits<double>::infinity());
+  return has_rotors ? std::min(stated, thrust_max() / mass - kGravity) : stated;
+}
+
+// Rotors push and never pull: falling is the fastest way down.
+double Vehicle::largest_acceleration_down() const {
+  return std::min(acceleration_down_max.value_or(kGravity), kGravity);
 }
 
 namespace {
@@ -45,8 +56,19 @@ Value limits_to_value(const Vehicle& vehicle) {
   value.set("acceleration_across", vehicle.acceleration_across_max);
   if (vehicle.acceleration_up_max) value.set("acceleration_up", *vehicle.acceleration_up_max);
   if (vehicle.acceleration_down_max) value.set("acceleration_down", *vehicle.acceleration_down_max);
+  if (vehicle.jerk_max) value.set("jerk", *vehicle.jerk_max);
   value.set("yaw_rate", vehicle.yaw_rate_max);
   if (vehicle.tilt_rate_max) value.set("tilt_rate", *vehicle.tilt_rate_max);
+  return value;
+}
+
+Value wing_to_value(const Wing& wing) {
+  Value value = Value::map();
+  value.set("stall_speed", wing.stall_speed);
+  value.set("bank", wing.bank_max);
+  value.set("bank_rate", wing.bank_rate_max);
+  value.set("excess_thrust_min", wing.excess_thrust_min);
+  value.set("excess_thrust_max", wing.excess_thrust_max);
   return value;
 }
 
@@ -76,10 +98,12 @@ Value camera_to_value(const Camera& camera) {
 void read_body(Fields& fields, Vehicle& vehicle) {
   vehicle.name = fields.text("name");
   vehicle.mass = fields.number("mass");
-  vehicle.inertia = fields.vector3("inertia");
   vehicle.drag = fields.number("drag");
-  vehicle.yaw_share = fields.number("yaw_share");
   vehicle.flight_time = fields.number("flight_time");
+  vehicle.has_rotors = fields.has("rotors") || fields.has("inertia") || fields.has("yaw_share");
+  if (!vehicle.has_rotors) return;
+  vehicle.inertia = fields.vector3("inertia");
+  vehicle.yaw_share = fields.number("yaw_share");
   Fields rotors = fields.table("rotors");
   vehicle.rotors.thrust_min = rotors.number("thrust_min");
   vehicle.rotors.thrust_max = rotors.number("thrust_max");
@@ -97,9 +121,21 @@ void read_limits(Fields fields, Vehicle& vehicle) {
   vehicle.acceleration_across_max = fields.number("acceleration_across");
   vehicle.acceleration_up_max = fields.optional_number("acceleration_up");
   vehicle.acceleration_down_max = fields.optional_number("acceleration_down");
+  vehicle.jerk_max = fields.optional_number("jerk");
   vehicle.yaw_rate_max = fields.number("yaw_rate");
   vehicle.tilt_rate_max = fields.optional_number("tilt_rate");
   fields.finish();
+}
+
+Wing read_wing(Fields fields) {
+  Wing wing;
+  wing.stall_speed = fields.number("stall_speed");
+  wing.bank_max = fields.number("bank");
+  wing.bank_rate_max = fields.number("bank_rate");
+  wing.excess_thrust_min = fields.number("excess_thrust_min");
+  wing.excess_thrust_max = fields.number("excess_thrust_max");
+  fields.finish();
+  return wing;
 }
 
 GimbalLimits read_gimbal(Fields fields) {
@@ -139,12 +175,15 @@ Value to_value(const Vehicle& vehicle) {
   Value value = Value::map();
   value.set("name", vehicle.name);
   value.set("mass", vehicle.mass);
-  value.set("inertia", list_of(vehicle.inertia));
+  if (vehicle.has_rotors) value.set("inertia", list_of(vehicle.inertia));
   value.set("drag", vehicle.drag);
-  value.set("rotors", rotors_to_value(vehicle.rotors));
-  value.set("yaw_share", vehicle.yaw_share);
+  if (vehicle.has_rotors) {
+    value.set("rotors", rotors_to_value(vehicle.rotors));
+    value.set("yaw_share", vehicle.yaw_share);
+  }
   value.set("limits", limits_to_value(vehicle));
   value.set("flight_time", vehicle.flight_time);
+  if (vehicle.wing) value.set("wing", wing_to_value(*vehicle.wing));
   if (vehicle.gimbal) value.set("gimbal", gimbal_to_value(*vehicle.gimbal));
   value.set("camera", camera_to_value(vehicle.camera));
   return value;
@@ -156,6 +195,7 @@ Vehicle vehicle_from_value(const Value& value) {
   Fields fields(value, "vehicle", errors);
   read_body(fields, vehicle);
   read_limits(fields.table("limits"), vehicle);
+  if (fields.has("wing")) vehicle.wing = read_wing(fields.table("wing"));
   if (fields.has("gimbal")) vehicle.gimbal = read_gimbal(fields.table("gimbal"));
   vehicle.camera = read_camera(fields.table("camera"));
   fields.finish();

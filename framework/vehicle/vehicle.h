@@ -30,6 +30,15 @@ struct GimbalLimits {
   double pitch_rate_max = 0;            // rad/s
 };
 
+// What a wing can do, in still air (model `fixed_wing`).
+struct Wing {
+  double stall_speed = 0;    // m/s, airspeed in straight flight below which it does not carry
+  double bank_max = 0;       // rad
+  double bank_rate_max = 0;  // rad/s
+  // m/s^2, smallest and largest (thrust - drag) / mass: what speeds it up or lifts it.
+  double excess_thrust_min = 0, excess_thrust_max = 0;
+};
+
 struct Camera {
   std::string name;
   int width = 0, height = 0;                // pixels
@@ -42,6 +51,7 @@ struct Camera {
 struct Vehicle {
   std::string name;
   double mass = 0;                                    // kg
+  bool has_rotors = true;  // else inertia, rotors and yaw_share are unknown, and zero
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  // kg m^2, body axes, diagonal
   double drag = 0;                                    // N s/m, linear in the airspeed
   Rotors rotors;
@@ -52,9 +62,11 @@ struct Vehicle {
   double acceleration_across_max = 0;           // m/s^2, horizontal
   std::optional<double> acceleration_up_max;    // m/s^2; absent: the rotors alone limit it
   std::optional<double> acceleration_down_max;  // m/s^2
+  std::optional<double> jerk_max;               // m/s^3, norm; absent: nothing limits it
   double yaw_rate_max = 0;                      // rad/s
   std::optional<double> tilt_rate_max;          // rad/s, about x and y; absent: rotors limit it
   double flight_time = 0;                       // s on one battery
+  std::optional<Wing> wing;
   std::optional<GimbalLimits> gimbal;
   Camera camera;
 
@@ -64,6 +76,10 @@ struct Vehicle {
   double thrust_max() const;      // N, (1 - beta/2) 4 F_max
   double thrust_min() const;      // N, (beta/2) 4 F_max + 4 F_min
   double yaw_torque_max() const;  // N m, beta 2 M_max
+  // m/s^2 that the vehicle can accelerate upwards and downwards: what its file states and what its
+  // rotors give, whichever is less.
+  double largest_acceleration_up() const;
+  double largest_acceleration_down() const;
 };
 
 // The table of a vehicle file and of a camera file; angles in degrees, in keys that end in _deg.
@@ -71,7 +87,8 @@ ParameterTable vehicle_table();
 ParameterTable camera_table();
 
 // Throws InputError with everything that contradicts itself: limits, body, gimbal, camera, or a
-// vehicle that cannot hover between thrust_min and thrust_max.
+// vehicle that cannot hover between thrust_min and thrust_max. A file without rotors states how
+// fast the vehicle accelerates upwards and downwards.
 Vehicle vehicle_from(const Parameters& vehicle, const Parameters& camera, std::string name);
 
 // Round trip through a plan, SI and radians. `vehicle_from_value` throws InputError listing every

@@ -26,9 +26,10 @@ class Checker {
     limits();
     signs_are_sound_ =
         sound_ && v_.camera.width >= 1 && v_.camera.focal_x > 0 && v_.camera.focal_y > 0;
+    if (v_.wing) wing(*v_.wing);
     if (v_.gimbal) gimbal(*v_.gimbal);
     camera();
-    if (body_is_sound) hover();
+    if (body_is_sound && v_.has_rotors) hover();
     if (signs_are_sound_) check_plausible(v_, add_);
   }
 
@@ -44,6 +45,9 @@ class Checker {
 
   void body() {
     positive(v_.mass, "mass");
+    require(v_.drag >= 0 && v_.drag <= 100, "drag",
+            "must lie between 0 and 100 N s/m, is " + text_of(v_.drag, "N s/m"));
+    if (!v_.has_rotors) return;
     const Eigen::Vector3d& i = v_.inertia;
     require(i.allFinite() && (i.array() > 0).all(), "inertia", "each entry must be above 0");
     // A body's moments of inertia obey the triangle inequality; equality is a flat plate.
@@ -59,8 +63,6 @@ class Checker {
     positive(v_.rotors.arm_length, "rotors.arm_length");
     require(v_.rotors.lag >= 0 && v_.rotors.lag <= 1, "rotors.lag",
             "must lie between 0 and 1 s, is " + text_of(v_.rotors.lag, "s"));
-    require(v_.drag >= 0 && v_.drag <= 100, "drag",
-            "must lie between 0 and 100 N s/m, is " + text_of(v_.drag, "N s/m"));
     require(v_.yaw_share > 0 && v_.yaw_share < 1, "yaw_share",
             "must lie between 0 and 1, both excluded, is " + text_of(v_.yaw_share, ""));
   }
@@ -90,9 +92,36 @@ class Checker {
     positive(v_.acceleration_across_max, "limits.acceleration_across");
     if (v_.acceleration_up_max) positive(*v_.acceleration_up_max, "limits.acceleration_up");
     if (v_.acceleration_down_max) positive(*v_.acceleration_down_max, "limits.acceleration_down");
+    // Without rotors nothing else says how fast it climbs.
+    require(v_.has_rotors || v_.acceleration_up_max, "limits.acceleration_up",
+            "missing: a vehicle without rotors in its file states it");
+    require(v_.has_rotors || v_.acceleration_down_max, "limits.acceleration_down",
+            "missing: a vehicle without rotors in its file states it");
+    if (v_.jerk_max) positive(*v_.jerk_max, "limits.jerk");
     positive(v_.yaw_rate_max, "limits.yaw_rate_deg");
     if (v_.tilt_rate_max) positive(*v_.tilt_rate_max, "limits.tilt_rate_deg");
     positive(v_.flight_time, "flight_time");
+  }
+
+  void wing(const Wing& w) {
+    positive(w.stall_speed, "wing.stall_speed");
+    positive(w.bank_rate_max, "wing.bank_rate_deg");
+    require(w.bank_max > 0 && w.bank_max < radians(80), "wing.bank_deg",
+            "must lie between 0 and 80 degrees, both excluded, is " +
+                text_of(degrees(w.bank_max), "degrees"));
+    require(
+        w.excess_thrust_min < 0 && w.excess_thrust_max > 0, "wing.excess_thrust",
+        "expected a negative number, of the wing that slows down without thrust, and a positive "
+        "one; are " +
+            text_of(w.excess_thrust_min, "") + " and " + text_of(w.excess_thrust_max, "m/s^2"));
+    require(w.stall_speed < v_.speed_across_max, "wing.stall_speed",
+            text_of(w.stall_speed, "m/s") + " is not below the largest speed of " +
+                text_of(v_.speed_across_max, "m/s"));
+    const double turn = kGravity * std::tan(w.bank_max);
+    require(turn <= v_.acceleration_across_max, "limits.acceleration_across",
+            text_of(v_.acceleration_across_max, "m/s^2") + " is less than a turn at the bank of " +
+                text_of(degrees(w.bank_max), "degrees") + " takes: g tan(bank) is " +
+                text_of(turn, "m/s^2"));
   }
 
   void gimbal(const GimbalLimits& g) {

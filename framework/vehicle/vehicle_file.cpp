@@ -8,10 +8,10 @@ namespace {
 
 ParameterTable rotors_table() {
   ParameterTable table;
-  table.required_numbers("thrust", 2, "N", "smallest and largest thrust of one rotor", at_least(0))
-      .required_number("torque_coefficient", "m", "drag torque of a rotor over its thrust",
+  table.optional_numbers("thrust", 2, "N", "smallest and largest thrust of one rotor", at_least(0))
+      .optional_number("torque_coefficient", "m", "drag torque of a rotor over its thrust",
                        above(0))
-      .required_number("arm_length", "m", "from a rotor's axis to the centre of mass", above(0))
+      .optional_number("arm_length", "m", "from a rotor's axis to the centre of mass", above(0))
       .number("lag", 0, "s", "time constant of the thrust after its command", between(0, 1))
       .choice("layout", "diagonal", {"diagonal", "along_axes"},
               "arms at 45 degrees to the body's axes, or along them");
@@ -26,6 +26,7 @@ ParameterTable limits_table() {
       .required_number("acceleration_across", "m/s^2", "largest horizontal acceleration", above(0))
       .optional_number("acceleration_up", "m/s^2", "absent: the rotors alone limit it", above(0))
       .optional_number("acceleration_down", "m/s^2", "absent: the rotors alone limit it", above(0))
+      .optional_number("jerk", "m/s^3", "largest; absent: nothing limits it", above(0))
       .required_number("yaw_rate_deg", "deg/s", "largest yaw rate", above(0))
       .optional_number("tilt_rate_deg", "deg/s",
                        "largest body rate about x and about y; absent: the rotors alone limit it",
@@ -45,19 +46,75 @@ ParameterTable gimbal_table() {
   return table;
 }
 
+ParameterTable wing_table() {
+  ParameterTable table;
+  table
+      .optional_number("stall_speed", "m/s", "airspeed in straight flight below which it stalls",
+                       above(0))
+      .optional_number("bank_deg", "deg", "largest bank angle", {.minimum = 0, .maximum = 80})
+      .optional_number("bank_rate_deg", "deg/s", "largest rate of the bank angle", above(0))
+      .optional_numbers("excess_thrust", 2, "m/s^2",
+                        "smallest and largest (thrust - drag) / mass: negative, positive");
+  return table;
+}
+
+// All keys of a table that is present or absent as a whole; `what` names what needs them.
+bool is_whole(const Parameters& table, const ParameterTable& known, const std::string& name,
+              const std::string& what, Diagnostics& errors) {
+  std::vector<std::string> missing;
+  for (const ParameterSpec& spec : known.specs())
+    if (!table.has(spec.name)) missing.push_back(spec.name);
+  if (missing.size() == known.specs().size()) return false;
+  for (const std::string& key : missing)
+    errors.add(table.origin(), name + "." + key, "missing: " + what);
+  return missing.empty();
+}
+
+std::optional<Wing> wing_from(const Parameters& table, Diagnostics& errors) {
+  if (!is_whole(table, wing_table(), "wing", "a wing needs all of its figures", errors))
+    return std::nullopt;
+  const auto thrust = table.numbers("excess_thrust");
+  return Wing{.stall_speed = table.number("stall_speed"),
+              .bank_max = radians(table.number("bank_deg")),
+              .bank_rate_max = radians(table.number("bank_rate_deg")),
+              .excess_thrust_min = thrust[0],
+              .excess_thrust_max = thrust[1]};
+}
+
+// Inertia and rotors stand in a file together, or not at all.
+void read_rotors(const Parameters& vehicle, Vehicle& result, Diagnostics& errors) {
+  const Parameters& rotors = vehicle.table("rotors");
+  const std::vector<std::string> needed{"thrust", "torque_coefficient", "arm_length"};
+  result.has_rotors = vehicle.has("inertia");
+  for (const std::string& key : needed) result.has_rotors |= rotors.has(key);
+  if (!result.has_rotors) return;
+  bool whole = vehicle.has("inertia");
+  if (!whole)
+    errors.add(vehicle.origin(), "inertia",
+               "missing; expected 3 numbers in kg m^2: a vehicle with rotors states both");
+  for (const std::string& key : needed) {
+    if (rotors.has(key)) continue;
+    whole = false;
+    errors.add(rotors.origin(), "rotors." + key,
+               "missing: a vehicle with an inertia states its rotors as well");
+  }
+  if (!whole) return;
+  const auto inertia = vehicle.numbers("inertia");
+  result.inertia = {inertia[0], inertia[1], inertia[2]};
+  result.rotors = {.thrust_max = rotors.numbers("thrust")[1],
+                   .thrust_min = rotors.numbers("thrust")[0],
+                   .torque_coefficient = rotors.number("torque_coefficient"),
+                   .arm_length = rotors.number("arm_length"),
+                   .lag = rotors.number("lag"),
+                   .diagonal = rotors.text("layout") == "diagonal"};
+  result.yaw_share = vehicle.number("yaw_share");
+}
+
 // All of the gimbal's keys or none of them: a camera fixed to the body has no gimbal table.
 std::optional<GimbalLimits> gimbal_from(const Parameters& table, Diagnostics& errors) {
-  int given = 0;
-  const ParameterTable known = gimbal_table();
-  for (const ParameterSpec& spec : known.specs()) given += table.has(spec.name);
-  if (given == 0) return std::nullopt;
-  for (const ParameterSpec& spec : known.specs()) {
-    if (!table.has(spec.name)) {
-      errors.add(table.origin(), "gimbal." + spec.name,
-                 "missing: a gimbal needs both ranges and both rates");
-    }
-  }
-  if (given != static_cast<int>(known.specs().size())) return std::nullopt;
+  if (!is_whole(table, gimbal_table(), "gimbal", "a gimbal needs both ranges and both rates",
+                errors))
+    return std::nullopt;
   const auto yaw = table.numbers("yaw_deg");
   const auto pitch = table.numbers("pitch_deg");
   return GimbalLimits{.yaw_min = radians(yaw[0]),
@@ -94,6 +151,7 @@ void read_limits(const Parameters& limits, Vehicle& vehicle) {
   if (limits.has("acceleration_down")) {
     vehicle.acceleration_down_max = limits.number("acceleration_down");
   }
+  if (limits.has("jerk")) vehicle.jerk_max = limits.number("jerk");
   vehicle.yaw_rate_max = radians(limits.number("yaw_rate_deg"));
   if (limits.has("tilt_rate_deg")) vehicle.tilt_rate_max = radians(limits.number("tilt_rate_deg"));
 }
@@ -112,16 +170,18 @@ Origin origin_of(const Parameters& vehicle, const Parameters& camera, const std:
 ParameterTable vehicle_table() {
   ParameterTable table;
   table.required_number("mass", "kg", "take-off mass, camera included", above(0))
-      .required_numbers("inertia", 3, "kg m^2", "moments of inertia about the body's axes",
+      .optional_numbers("inertia", 3, "kg m^2",
+                        "moments of inertia about the body's axes; absent: no rotors are known",
                         above(0))
       .number("drag", 0, "N s/m", "linear drag against the air; needed to fly in wind",
               between(0, 100))
-      .table("rotors", rotors_table(), "four equal rotors")
+      .table("rotors", rotors_table(), "four equal rotors; absent: none are known")
       .number("yaw_share", 0.2, "",
               "share of the largest yaw moment that stays usable at every thrust (beta of 3.8.3)",
               {.minimum = 0, .maximum = 1, .minimum_excluded = true})
       .table("limits", limits_table(), "what the vehicle may do, whatever a problem asks for")
       .required_number("flight_time", "s", "time in the air on one battery", above(0))
+      .table("wing", wing_table(), "of a fixed-wing aircraft; absent: it has none")
       .table("gimbal", gimbal_table(), "absent: the camera is fixed to the body")
       .required_text("camera", "the camera file, such as cameras/action");
   return table;
@@ -140,19 +200,11 @@ Vehicle vehicle_from(const Parameters& vehicle, const Parameters& camera, std::s
   Vehicle result;
   result.name = std::move(name);
   result.mass = vehicle.number("mass");
-  const auto inertia = vehicle.numbers("inertia");
-  result.inertia = {inertia[0], inertia[1], inertia[2]};
   result.drag = vehicle.number("drag");
-  const Parameters& rotors = vehicle.table("rotors");
-  result.rotors = {.thrust_max = rotors.numbers("thrust")[1],
-                   .thrust_min = rotors.numbers("thrust")[0],
-                   .torque_coefficient = rotors.number("torque_coefficient"),
-                   .arm_length = rotors.number("arm_length"),
-                   .lag = rotors.number("lag"),
-                   .diagonal = rotors.text("layout") == "diagonal"};
-  result.yaw_share = vehicle.number("yaw_share");
+  read_rotors(vehicle, result, errors);
   result.flight_time = vehicle.number("flight_time");
   read_limits(vehicle.table("limits"), result);
+  result.wing = wing_from(vehicle.table("wing"), errors);
   result.gimbal = gimbal_from(vehicle.table("gimbal"), errors);
   const std::string& camera_file = vehicle.text("camera");
   result.camera =

@@ -3,7 +3,9 @@
 namespace lapwing {
 
 Check make_check(std::string_view name) {
-  for (const CheckKind& kind : kCheckKinds) {
+  std::vector<CheckKind> kinds(kCheckKinds.begin(), kCheckKinds.end());
+  kinds.insert(kinds.end(), kMotionCheckKinds.begin(), kMotionCheckKinds.end());
+  for (const CheckKind& kind : kinds) {
     if (name != kind.name) continue;
     Check check;
     check.name = kind.name;

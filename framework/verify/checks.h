@@ -78,6 +78,18 @@ inline constexpr std::array kCheckKinds{
     CheckKind{"coverage", CheckGroup::task, true, ""},
 };
 
+// Listed for the motions that have them alone, behind the limits that all have.
+inline constexpr std::array kMotionCheckKinds{
+    CheckKind{"defect_state", CheckGroup::safety, true, ""},
+    CheckKind{"jerk", CheckGroup::safety, true, "m/s^3"},
+    CheckKind{"stall_speed", CheckGroup::safety, true, "m/s"},
+    CheckKind{"bank", CheckGroup::safety, true, "rad"},
+    CheckKind{"bank_rate", CheckGroup::safety, true, "rad/s"},
+    CheckKind{"excess_thrust_max", CheckGroup::safety, true, "m/s^2"},
+    CheckKind{"excess_thrust_min", CheckGroup::safety, true, "m/s^2"},
+    CheckKind{"sideslip", CheckGroup::safety, true, "rad"},
+};
+
 // A check of that name, with its group, unit and whether it is required.
 Check make_check(std::string_view name);
 Check skipped_check(std::string_view name, std::string reason);

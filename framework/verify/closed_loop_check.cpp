@@ -8,8 +8,13 @@ std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& ce
   constexpr std::array kNames = {"closed_loop", "closed_loop_yaw", "rotors_saturated"};
   const Trajectory& trajectory = flight.plan.trajectory;
   std::string reason;
-  if (trajectory.model == MotionModel::path)
+  if (!trajectory.motion.moves)
     reason = "a path has no inputs that the controller could follow";
+  else if (trajectory.motion.tracked == Tracking::none)
+    reason = "the motion '" + trajectory.motion.name +
+             "' says nothing that a simulated quadrotor could follow";
+  else if (!flight.vehicle.has_rotors)
+    reason = "the vehicle states no rotors: there is no simulated vehicle to fly this plan";
   else if (trajectory.samples.size() < 2)
     reason = "a single sample is no flight";
   if (!reason.empty()) {

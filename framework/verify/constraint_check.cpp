@@ -44,6 +44,8 @@ MotionPoint between(const MotionPoint& a, const MotionPoint& b, double time) {
   p.orientation = a.orientation.slerp(share, b.orientation);
   p.body_rates = a.body_rates + share * (b.body_rates - a.body_rates);
   p.rotor_thrusts = a.rotor_thrusts + share * (b.rotor_thrusts - a.rotor_thrusts);
+  for (std::size_t i = 0; i < p.columns.size(); ++i)
+    p.columns[i] = mixed(a.columns[i], b.columns[i]);
   return p;
 }
 
@@ -52,7 +54,8 @@ class ConstraintJudge {
   ConstraintJudge(const Flight& flight, const StatedConstraint& constraint)
       : flight_(flight),
         constraint_(constraint),
-        evaluation_(constraint, {flight.plan.environment, flight.meshes, flight.maps}),
+        evaluation_(constraint, flight.plan.trajectory,
+                    {flight.plan.environment, flight.meshes, flight.maps}),
         samples_(flight.plan.trajectory.samples.size()),
         rows_(constraint.results.size()),
         found_(rows_, 0.0) {

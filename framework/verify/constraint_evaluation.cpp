@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/verify/operation_value.h"
 #include "framework/verify/tolerances.h"
 
 namespace lapwing {
@@ -20,13 +21,13 @@ bool always(const Trajectory&) {
   return true;
 }
 bool of_force(const Trajectory& trajectory) {
-  return trajectory.model == MotionModel::force;
+  return trajectory.motion.name == force_motion().name;
 }
 bool of_rotors(const Trajectory& trajectory) {
-  return trajectory.model == MotionModel::rotors;
+  return trajectory.motion.name == rotors_motion().name;
 }
 bool with_inputs(const Trajectory& trajectory) {
-  return trajectory.model != MotionModel::path;
+  return trajectory.motion.moves;
 }
 bool with_gimbal(const Trajectory& trajectory) {
   return trajectory.has_gimbal;
@@ -42,6 +43,7 @@ constexpr BlockReader kBlocks[] = {
     {"position", 3, always, [](Point p, int k) { return p.motion.position(k); }},
     {"yaw", 1, always, [](Point p, int) { return p.motion.yaw; }},
     {"velocity", 3, with_inputs, [](Point p, int k) { return p.motion.velocity(k); }},
+    {"acceleration", 3, with_inputs, [](Point p, int k) { return p.motion.acceleration(k); }},
     {"yaw_rate", 1, with_inputs, [](Point p, int) { return p.motion.yaw_rate; }},
     {"force", 3, of_force, [](Point p, int k) { return p.motion.force(k); }},
     {"yaw_torque", 1, of_force, [](Point p, int) { return p.motion.yaw_torque; }},
@@ -59,19 +61,27 @@ constexpr BlockReader kBlocks[] = {
     {"target", 3, with_target, [](Point p, int k) { return p.target(k); }},
 };
 
-const BlockReader* block_named(const std::string& name) {
+const BlockReader* block_named(const std::string& name, const Trajectory& trajectory) {
   for (const BlockReader& block : kBlocks)
-    if (name == block.name) return &block;
+    if (name == block.name && block.in(trajectory)) return &block;
   return nullptr;
 }
 
-// |x|, rounded within `width`: there the even polynomial of fourth degree that meets |x| at the
-// width with slope and curvature.
-double rounded_size(double x, double width) {
-  const double size = std::abs(x);
-  if (!(size < width)) return size;
-  const double share = size / width;
-  return width * (3.0 / 8 + 3.0 / 4 * share * share - 1.0 / 8 * std::pow(share, 4));
+// Where the numbers of a motion's own column begin in a point; -1 where it has none of that name.
+int column_place(const std::string& name, const Trajectory& trajectory) {
+  if (named_motion(trajectory.motion.name)) return -1;  // points have fields for theirs
+  int place = 0;
+  for (const MotionColumn& column : trajectory.motion.columns) {
+    if (column.name == name) return place;
+    place += column.size;
+  }
+  return -1;
+}
+
+// Numbers of what an input reads; 0 where the motion does not have it.
+int input_size(const std::string& name, const Trajectory& trajectory) {
+  if (const BlockReader* block = block_named(name, trajectory)) return block->size;
+  return column_place(name, trajectory) < 0 ? 0 : trajectory.motion.column(name)->size;
 }
 
 std::string place(std::size_t operation) {
@@ -90,10 +100,9 @@ std::string fault_of(const ConstraintStep& step, std::size_t at, const Plan& pla
                       step.op == ConstraintOp::maximum;
   if (rounds && step.number < 0) return "has a width below 0";
   if (step.op == ConstraintOp::input) {
-    const BlockReader* block = block_named(step.name);
-    if (!block || !block->in(plan.trajectory))
-      return "reads '" + step.name + "', which the motion does not have";
-    if (step.component < 0 || step.component >= block->size)
+    const int size = input_size(step.name, plan.trajectory);
+    if (size == 0) return "reads '" + step.name + "', which the motion does not have";
+    if (step.component < 0 || step.component >= size)
       return "reads component " + std::to_string(step.component) + " of '" + step.name + "'";
     if (step.later < 0 || step.later > StatedConstraint::kMostLater)
       return "reads a sample " + std::to_string(step.later) + " later";
@@ -161,16 +170,21 @@ std::string problem_of(const StatedConstraint& constraint, const Plan& plan) {
 }
 
 ConstraintEvaluation::ConstraintEvaluation(const StatedConstraint& constraint,
+                                           const Trajectory& trajectory,
                                            const ConstraintSurroundings& surroundings)
     : constraint_(constraint),
       surroundings_(surroundings),
       readers_(constraint.operations.size(), nullptr),
+      columns_(constraint.operations.size(), -1),
       subjects_(constraint.operations.size(), nullptr),
       values_(constraint.operations.size(), 0.0) {
   for (std::size_t i = 0; i < constraint.operations.size(); ++i) {
     const ConstraintStep& step = constraint.operations[i];
     if (step.op == ConstraintOp::input) {
-      readers_[i] = block_named(step.name)->read;
+      if (const BlockReader* block = block_named(step.name, trajectory))
+        readers_[i] = block->read;
+      else
+        columns_[i] = column_place(step.name, trajectory) + step.component;
       window_ = std::max(window_, step.later + 1);
     }
     if (step.op != ConstraintOp::subject) continue;
@@ -191,55 +205,22 @@ double ConstraintEvaluation::value_of(std::size_t operation,
   const ConstraintStep& step = constraint_.operations[operation];
   const auto operand = [&](int k) { return values_[static_cast<std::size_t>(step.operands[k])]; };
   switch (step.op) {
-    case ConstraintOp::constant:
-      return step.number;
     case ConstraintOp::input:
-      return readers_[operation](points[static_cast<std::size_t>(step.later)], step.component);
-    case ConstraintOp::add:
-      return operand(0) + operand(1);
-    case ConstraintOp::subtract:
-      return operand(0) - operand(1);
-    case ConstraintOp::multiply:
-      return operand(0) * operand(1);
-    case ConstraintOp::divide:
-      return operand(0) / operand(1);
-    case ConstraintOp::negate:
-      return -operand(0);
-    case ConstraintOp::sin:
-      return std::sin(operand(0));
-    case ConstraintOp::cos:
-      return std::cos(operand(0));
-    case ConstraintOp::tan:
-      return std::tan(operand(0));
-    case ConstraintOp::exp:
-      return std::exp(operand(0));
-    case ConstraintOp::log:
-      return std::log(operand(0));
-    case ConstraintOp::sqrt:
-      return std::sqrt(operand(0));
-    case ConstraintOp::power:
-      return std::pow(operand(0), step.number);
-    case ConstraintOp::atan2:
-      return std::atan2(operand(0), operand(1));
-    case ConstraintOp::absolute:
-      return rounded_size(operand(0), step.number);
-    case ConstraintOp::norm: {
-      const double root = std::sqrt(operand(0));
-      return root < step.number ? rounded_size(root, step.number) : root;
-    }
-    case ConstraintOp::maximum: {
-      const double a = operand(0), b = operand(1);
-      if (!(std::abs(a - b) < step.number)) return std::max(a, b);
-      return 0.5 * (a + b + rounded_size(a - b, step.number));
-    }
-    case ConstraintOp::select:
-      return operand(0) > 0 ? operand(1) : operand(2);
+      return input_value(operation, points[static_cast<std::size_t>(step.later)]);
     case ConstraintOp::subject:
       return subjects_[operation]->position(operand(0))(step.component);
     case ConstraintOp::distance:
       return distance_of(step, {operand(0), operand(1), operand(2)});
+    default:
+      return operation_value(step, values_);
   }
-  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double ConstraintEvaluation::input_value(std::size_t operation,
+                                         const ConstraintPoint& point) const {
+  if (columns_[operation] < 0)
+    return readers_[operation](point, constraint_.operations[operation].component);
+  return point.motion.columns[static_cast<std::size_t>(columns_[operation])];
 }
 
 double ConstraintEvaluation::distance_of(const ConstraintStep& step,

@@ -37,7 +37,7 @@ std::string problem_of(const StatedConstraint& constraint, const Plan& plan);
 class ConstraintEvaluation {
  public:
   // Of a constraint without problems; keeps references to all of it.
-  ConstraintEvaluation(const StatedConstraint& constraint,
+  ConstraintEvaluation(const StatedConstraint& constraint, const Trajectory& trajectory,
                        const ConstraintSurroundings& surroundings);
 
   // Samples that it reads, its own one included.
@@ -48,12 +48,14 @@ class ConstraintEvaluation {
 
  private:
   double value_of(std::size_t operation, std::span<const ConstraintPoint> points) const;
+  double input_value(std::size_t operation, const ConstraintPoint& point) const;
   double distance_of(const ConstraintStep& step, const Eigen::Vector3d& p_W) const;
 
   const StatedConstraint& constraint_;
   ConstraintSurroundings surroundings_;
   int window_ = 1;
   std::vector<double (*)(const ConstraintPoint&, int)> readers_;  // of inputs; else null
+  std::vector<int> columns_;  // of inputs that are columns of the motion: their place; else -1
   std::vector<const Subject*> subjects_;                          // of subjects; else null
   std::vector<double> values_;                                    // of all operations
 };

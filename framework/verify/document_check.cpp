@@ -5,6 +5,7 @@
 #include "framework/core/files.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/verify/checks.h"
+#include "framework/verify/motions/motion_integrator.h"
 
 namespace lapwing {
 namespace {
@@ -19,6 +20,7 @@ class Reader {
   Document read() {
     Document document;
     read_vehicle(document.vehicle);
+    if (problems_.empty()) motion(document.vehicle);
     samples();
     list_problems(plan_.environment, problems_);
     task();
@@ -90,9 +92,16 @@ class Reader {
     }
   }
 
-  static bool rotors_sound(const Sample& s) {
-    return sound(s.body_rates) && sound(s.rotor_thrusts[0]) && sound(s.rotor_thrusts[1]) &&
-           sound(s.rotor_thrusts[2]) && sound(s.rotor_thrusts[3]);
+  // What a motion with an orientation needs of it.
+  static bool unit_orientation(const Sample& s) {
+    const bool right = s.columns.find("orientation").size() == 4;
+    return right &&
+           std::abs(s.columns.vector<4>("orientation").norm() - 1) < tolerances::kUnitLength;
+  }
+
+  void motion(const Vehicle& vehicle) {
+    for (const std::string& problem : motion_problems(plan_.trajectory.motion, vehicle))
+      add(problem);
   }
 
   // Where the flight comes, as far as clearance is told apart, and what it films; of the map in
@@ -143,11 +152,22 @@ class Reader {
     }
   }
 
+  // "" where all columns of the motion are there and hold numbers.
+  std::string column_problem(const Sample& s) const {
+    for (const MotionColumn& column : plan_.trajectory.motion.columns) {
+      const auto values = s.columns.find(column.name);
+      if (values.size() != static_cast<std::size_t>(column.size))
+        return "lacks the column '" + column.name + "' of its motion";
+      for (const double value : values)
+        if (!sound(value)) return "holds a number that is not finite or beyond 1e7";
+    }
+    return "";
+  }
+
   static bool all_sound(const Sample& s) {
     return sound(s.time) && sound(s.position) && sound(s.velocity) && sound(s.acceleration) &&
-           sound(s.yaw) && sound(s.yaw_rate) && sound(s.force) && sound(s.yaw_torque) &&
-           sound(s.gimbal_yaw) && sound(s.gimbal_pitch) && sound(s.gimbal_yaw_rate) &&
-           sound(s.gimbal_pitch_rate) && sound(s.target);
+           sound(s.yaw) && sound(s.yaw_rate) && sound(s.gimbal_yaw) && sound(s.gimbal_pitch) &&
+           sound(s.gimbal_yaw_rate) && sound(s.gimbal_pitch_rate) && sound(s.target);
   }
 
   void samples() {
@@ -156,11 +176,14 @@ class Reader {
     if (!(std::abs(samples[0].time) <= tolerances::kStartTime)) {
       add("the first sample is not at time 0");
     }
+    const bool oriented = plan_.trajectory.motion.column("orientation");
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::string name = "sample " + std::to_string(i + 1);
-      if (!all_sound(samples[i]) || !rotors_sound(samples[i])) {
+      if (!all_sound(samples[i])) {
         add(name + " holds a number that is not finite or beyond 1e7");
-      } else if (!(std::abs(samples[i].orientation.norm() - 1) < tolerances::kUnitLength)) {
+      } else if (const std::string fault = column_problem(samples[i]); !fault.empty()) {
+        add(name + " " + fault);
+      } else if (oriented && !unit_orientation(samples[i])) {
         add(name + " has an orientation that is no unit quaternion");
       } else if (i > 0 && !(samples[i].time > samples[i - 1].time)) {
         at_ = samples[i].time;

@@ -3,6 +3,7 @@
 
 #include "framework/core/units.h"
 #include "framework/verify/checks.h"
+#include "framework/verify/motions/motion_integrator.h"
 
 namespace lapwing {
 namespace {
@@ -16,22 +17,14 @@ constexpr double kLimits[kDefects] = {tol::kPositionDefect, tol::kVelocityDefect
                                       tol::kYawRateDefect, tol::kGimbalDefect};
 using Defects = Eigen::Matrix<double, kDefects, 1>;
 
-Defects defects_of(const MotionPoint& reached, const MotionPoint& stated, bool has_gimbal) {
+Defects defects_of(const MotionIntegrator& integrator, const MotionPoint& reached,
+                   const MotionPoint& stated, bool has_gimbal) {
+  const std::array<double, 4> motion = integrator.defects(reached, stated);
   Defects d;
-  d << (reached.position - stated.position).norm(), (reached.velocity - stated.velocity).norm(),
-      std::abs(reached.yaw - stated.yaw), std::abs(reached.yaw_rate - stated.yaw_rate),
+  d << motion[0], motion[1], motion[2], motion[3],
       std::max(std::abs(reached.gimbal_yaw - stated.gimbal_yaw),
                std::abs(reached.gimbal_pitch - stated.gimbal_pitch));
   if (!has_gimbal) d[4] = 0;
-  return d;
-}
-
-// Of the model `rotors`: the angle between both orientations, the difference of body rates.
-Defects rotor_defects_of(const MotionPoint& reached, const MotionPoint& stated) {
-  Defects d;
-  d << (reached.position - stated.position).norm(), (reached.velocity - stated.velocity).norm(),
-      reached.orientation.angularDistance(stated.orientation),
-      (reached.body_rates - stated.body_rates).norm(), 0;
   return d;
 }
 
@@ -69,7 +62,7 @@ void check_stated_acceleration(const Flight& flight, Certificate& certificate) {
 }  // namespace
 
 void check_dynamics(const Flight& flight, Certificate& certificate) {
-  if (flight.plan.trajectory.model == MotionModel::path) {
+  if (!flight.plan.trajectory.motion.moves) {
     for (const char* name : {"defect_position", "defect_velocity", "defect_yaw", "defect_yaw_rate",
                              "defect_gimbal", "drift", "stated_acceleration"}) {
       certificate.checks.push_back(
@@ -79,15 +72,18 @@ void check_dynamics(const Flight& flight, Certificate& certificate) {
   }
   Motion& motion = flight.motion;
   const bool has_gimbal = flight.plan.trajectory.has_gimbal;
-  const bool rotors = flight.plan.trajectory.model == MotionModel::rotors;
+  const MotionIntegrator& integrator = motion.integrator();
   std::vector<Worst> worst;
   for (int k = 0; k < kDefects; ++k) worst.emplace_back(kDefectNames[k], kLimits[k], 0.0);
   Drift drift;
+  Worst state("defect_state", 1.0, 0.0);
+  bool has_state = false;
   for (std::size_t i = 0; i < motion.intervals(); ++i) {
     const MotionPoint reached = motion.integrate(i).back();
     const MotionPoint stated = motion.stated(i + 1);
-    const Defects defects =
-        rotors ? rotor_defects_of(reached, stated) : defects_of(reached, stated, has_gimbal);
+    const Defects defects = defects_of(integrator, reached, stated, has_gimbal);
+    state.see(std::max(0.0, integrator.state_defect(reached, stated)), reached.time);
+    has_state |= integrator.state_defect(reached, stated) >= 0;
     for (int k = 0; k < kDefects; ++k)
       worst[static_cast<std::size_t>(k)].see(defects[k], reached.time);
     drift.add(reached.time, defects);
@@ -104,6 +100,11 @@ void check_dynamics(const Flight& flight, Certificate& certificate) {
                                    ? drift.check()
                                    : skipped_check("drift", "a single sample has no interval"));
   check_stated_acceleration(flight, certificate);
+  if (has_state) certificate.checks.push_back(state.check());
+  if (const std::string source = integrator.source(); !source.empty())
+    for (Check& check : certificate.checks)
+      if (check.name == "defect_position")
+        check.detail += (check.detail.empty() ? "" : "; ") + source;
 }
 
 }  // namespace lapwing

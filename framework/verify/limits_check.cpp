@@ -1,6 +1,7 @@
 // The vehicle's limits along the continuous motion, whether or not the problem had such
 // constraints.
 #include "framework/verify/checks.h"
+#include "framework/verify/motions/motion_integrator.h"
 
 namespace lapwing {
 namespace {
@@ -20,10 +21,12 @@ Check nearer(const Worst& low, const Worst& high) {
 
 class Limits {
  public:
-  Limits(const Vehicle& v, MotionModel model)
+  Limits(const Vehicle& v, const MotionRecord& motion)
       : v_(v),
-        path_(model == MotionModel::path),
-        rotors_(model == MotionModel::rotors),
+        motion_(motion),
+        path_(!motion.moves),
+        rotors_(motion.name == rotors_motion().name),
+        force_(motion.name == force_motion().name),
         thrust_max_("thrust_max", v.thrust_max()),
         thrust_min_("thrust_min", v.thrust_min(), tolerance_of(v.thrust_min()), true),
         force_up_("force_up", 0, tolerances::kLimitFloor, true),
@@ -68,6 +71,11 @@ class Limits {
       for (const char* name : {"thrust_max", "thrust_min", "force_up", "yaw_torque"})
         checks.push_back(skipped_check(name, "for the model 'rotors' each rotor is judged"));
       checks.push_back(nearer(rotor_low_, rotor_high_));
+    } else if (!force_) {
+      for (const char* name :
+           {"thrust_max", "thrust_min", "force_up", "yaw_torque", "rotor_thrust"})
+        checks.push_back(
+            skipped_check(name, "nothing is known of thrust in the motion '" + motion_.name + "'"));
     } else {
       for (const Worst* worst : {&thrust_max_, &thrust_min_, &force_up_, &yaw_torque_})
         checks.push_back(worst->check());
@@ -77,7 +85,9 @@ class Limits {
     for (const Worst* worst : {&speed_across_, &climb_, &descent_, &acceleration_across_}) {
       checks.push_back(worst->check());
     }
-    const char* reason = "the vehicle states no such limit; its thrust bounds apply";
+    const std::string reason = v_.has_rotors
+                                   ? "the vehicle states no such limit; its thrust bounds apply"
+                                   : "the vehicle states no such limit";
     checks.push_back(v_.acceleration_up_max ? acceleration_up_.check()
                                             : skipped_check("acceleration_up", reason));
     checks.push_back(v_.acceleration_down_max ? acceleration_down_.check()
@@ -108,7 +118,8 @@ class Limits {
   }
 
   const Vehicle& v_;
-  bool path_, rotors_;
+  const MotionRecord& motion_;
+  bool path_, rotors_, force_;
   Worst thrust_max_, thrust_min_, force_up_, yaw_torque_;
   Worst speed_across_, climb_, descent_;
   Worst acceleration_across_, acceleration_up_, acceleration_down_;
@@ -160,11 +171,20 @@ void walk(const Flight& flight, See see, SeeBetween see_between) {
 }  // namespace
 
 void check_limits(const Flight& flight, Certificate& certificate) {
-  Limits limits(flight.vehicle, flight.plan.trajectory.model);
+  Limits limits(flight.vehicle, flight.plan.trajectory.motion);
+  const std::vector<OwnLimit> own = flight.motion.integrator().limits(flight.vehicle);
+  std::vector<Worst> worst;
+  for (const OwnLimit& limit : own)
+    worst.emplace_back(limit.check, limit.limit, tolerance_of(limit.limit), limit.at_least);
   walk(
-      flight, [&](const MotionPoint& p) { limits.see(p); },
+      flight,
+      [&](const MotionPoint& p) {
+        limits.see(p);
+        for (std::size_t i = 0; i < own.size(); ++i) worst[i].see(own[i].value(p), p.time);
+      },
       [&](const MotionPoint& a, const MotionPoint& b) { limits.see_between(a, b); });
   limits.append_to(certificate);
+  for (const Worst& one : worst) certificate.checks.push_back(one.check());
   if (!flight.plan.trajectory.has_gimbal) {
     for (const char* name :
          {"gimbal_yaw", "gimbal_pitch", "gimbal_yaw_rate", "gimbal_pitch_rate"}) {

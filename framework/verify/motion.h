@@ -1,19 +1,12 @@
-// The verifier's own integration of the motion model `force` (thesis 3.1), thesis 3.5.3 for the
-// gimbal:
-//
-//   m r'' = F + m g,   I_psi psi'' = M_psi,   gimbal angle' = gimbal rate
-//
-// Between two samples the inputs F, M_psi and the gimbal rates are held or linear. Each interval
-// starts from what its first sample states. Of the model `path`: straight lines at even speed from
-// sample to sample, yaw and gimbal likewise.
-//
-// Of the model `rotors` (3.11) to (3.13), with the vehicle's linear drag: position, velocity, unit
-// quaternion and body rates, thrusts held or linear. Its yaw is where the nose points, on the turn
-// of the interval's first point; its yaw rate is the body rate about z.
+// The verifier's own integration of a plan's motion, interval by interval. Each interval starts
+// from what its first sample states. motions/ holds an integrator for each motion that this version
+// knows; another motion is integrated from the derivatives that the plan states.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +15,8 @@
 #include "framework/vehicle/vehicle.h"
 
 namespace lapwing {
+
+class MotionIntegrator;
 
 struct MotionPoint {
   double time = 0;                                                  // s
@@ -35,20 +30,24 @@ struct MotionPoint {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // R_WB; model rotors
   Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();             // rad/s; model rotors
   Eigen::Vector4d rotor_thrusts = Eigen::Vector4d::Zero();          // N; model rotors
+  // Of motions that a plan states with their columns: their numbers, in the order of the columns.
+  std::vector<double> columns = {};
 };
 
 class Motion {
  public:
-  // Keeps references; `trajectory` must have finite numbers and increasing times.
+  // Keeps references; `trajectory` must have finite numbers, increasing times and a motion without
+  // problems (motions/motion_integrator.h).
   Motion(const Trajectory& trajectory, const Vehicle& vehicle);
+  ~Motion();
 
   std::size_t intervals() const { return trajectory_.samples.size() - 1; }
   // Steps of all intervals together, as a number: a hostile plan may ask for more than fit
   // anything.
   double total_steps() const;
 
-  // The motion from sample `interval` to the time of the next one by Runge-Kutta 4, both ends
-  // included. Steps are as tolerances.h says. Valid until the next call.
+  // The motion from sample `interval` to the time of the next one, both ends included. Steps are as
+  // tolerances.h says. Valid until the next call.
   std::span<const MotionPoint> integrate(std::size_t interval);
 
   // Told of every interval that `integrate` is asked for, beforehand; what it throws ends the call.
@@ -57,20 +56,13 @@ class Motion {
   // What sample `index` itself states.
   MotionPoint stated(std::size_t index) const;
 
+  const MotionIntegrator& integrator() const { return *integrator_; }
+
  private:
   double steps(std::size_t interval) const;
-  std::span<const MotionPoint> follow_line(std::size_t interval);
-  // motion_rotors.cpp
-  struct Body;
-  Body rates(const Body& body, const Eigen::Vector4d& thrusts) const;
-  MotionPoint point_of(const Body& body, const Eigen::Vector4d& thrusts, double time) const;
-  std::span<const MotionPoint> turn_rotors(std::size_t interval);
-  MotionPoint stated_rotors(std::size_t index) const;
 
   const Trajectory& trajectory_;
-  double mass_, yaw_inertia_, drag_;
-  Eigen::Vector3d inertia_;
-  Eigen::Matrix4d mixer_;
+  std::unique_ptr<MotionIntegrator> integrator_;
   std::vector<MotionPoint> points_;
   std::function<void(std::size_t)> watcher_;
 };

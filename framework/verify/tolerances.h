@@ -18,6 +18,10 @@ inline constexpr double kYawDefect = 3.4906585e-3;      // rad, 0.2 degrees
 inline constexpr double kYawRateDefect = 3.4906585e-2;  // rad/s, 2 degrees/s
 inline constexpr double kGimbalDefect = kYawDefect;     // rad
 
+// Of the states beyond position, velocity and yaw of a motion that the plan states: a share of
+// their size, and of 1 at least.
+inline constexpr double kTableDefect = 1e-3;
+
 // Defects of many short intervals add up: their sum over any kDriftWindow may not exceed this many
 // times the defect of one interval. Else samples a millisecond apart could teleport the vehicle.
 inline constexpr double kDriftWindow = 1.0;  // s
@@ -36,6 +40,7 @@ inline constexpr double kSaturated = 0.01;
 // motion leaves the straight line, or passes what both ends show, by no more than this.
 inline constexpr double kStepMaximum = 0.02;    // s
 inline constexpr double kRotorStep = 0.002;     // s, of the motion model `rotors`
+inline constexpr double kTableStep = 0.002;     // s, of a motion that the plan states
 inline constexpr double kBulge = 1e-4;          // m
 inline constexpr double kHiddenSpeed = 2e-5;    // m/s, across, up or down
 inline constexpr double kHiddenYawRate = 2e-5;  // rad/s

@@ -35,4 +35,9 @@ struct VerifyRequest {
 // The same. Throws Cancelled when told to stop, and nothing else.
 Certificate verify(const Plan& plan, const VerifyRequest& request);
 
+// Why no plan of this motion could be integrated, whatever the vehicle: an unknown name without
+// derivatives, columns that are not those of its name, a table that does not hold together. Empty
+// where it could.
+std::vector<std::string> motion_faults(const MotionRecord& motion);
+
 }  // namespace lapwing

@@ -76,6 +76,8 @@ local common = {
   { name = "line_of_sight", type = "choice", default = "required",
     choices = { "required", "reported" },
     summary = "of the subject, unhidden by obstacles for that share of the time" },
+  { name = "model", type = "plugin", kind = "vehicle_model", default = "quadrotor",
+    summary = "vehicle model: how the vehicle moves" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
     summary = "trajectory solver" },
   { name = "planner", type = "plugin", kind = "path_planner", default = "bit_star",

@@ -16,10 +16,15 @@ local MOST_STAGES = 3000
 local FEWEST_INTERVALS = 12
 local HARD_YAW = math.rad(8)    -- with `hard`: largest miss of yaw; the certificate allows 10 deg
 
-local function boundary(options, stretch, yaw)
-  local state = { type = "boundary_state", start_yaw = yaw }
+-- `free_yaw`: nothing else says where the vehicle heads.
+local function boundary(run, p, stretch, free_yaw)
+  local options = run.options
+  local state = { type = "boundary_state", start_yaw = free_yaw and p:rests() and 0 or nil }
   for _, name in ipairs { "start", "finish" } do
     state[name] = options[name]
+    if options[name] == "rest" then
+      point_mass.must_rest(run, p, name, "'rest' is asked for: give free or moving")
+    end
     local velocity = options[name .. "_velocity"]
     if velocity then state[name .. "_velocity"] = lapwing.vector(velocity) / stretch end
   end
@@ -29,7 +34,8 @@ end
 -- How the vehicle flies: what its motion costs, and with `inputs` its limits.
 local function motion_of(options, inputs)
   local weights = options.weights
-  return { smoothness = { order = options.order, weight = weights.smoothness },
+  return { model = options.model,
+           smoothness = { order = options.order, weight = weights.smoothness },
            yaw = { weight = weights.yaw }, effort = weights.effort, inputs = inputs }
 end
 
@@ -85,9 +91,20 @@ local function check_keyframes(run, p, request, camera, bystanders)
   end
 end
 
+-- The gimbal's yaw from the course to what is looked at, within half a turn.
+local function gimbal_yaws(looks, path)
+  local places, list = {}, {}
+  for i, time in ipairs(looks.times) do places[i] = tracks.at(path, time) end
+  for i, course in ipairs(point_mass.courses(places)) do
+    local turn = looks.yaws[i] - course
+    list[i] = { turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5) }
+  end
+  return list
+end
+
 -- The camera's part of thesis 3.5.3: a gimbal, a target that follows what is looked at, and the
 -- angle between the two.
-local function add_camera(p, weights, camera, environment)
+local function add_camera(p, weights, camera, environment, path)
   p:add_model { type = "gimbal" }
   p:add_block { name = "target", size = 3, unit = "m" }
   p:add_cost { type = "target_keyframe", weight = weights.target, keyframes = camera.pulls }
@@ -121,6 +138,7 @@ local function add_camera(p, weights, camera, environment)
   end
   local values = { gimbal_pitch = {}, target = camera.guess.targets }
   for i, pitch in ipairs(camera.guess.pitches) do values.gimbal_pitch[i] = { pitch } end
+  if not p:rests() then values.gimbal_yaw = gimbal_yaws(camera.guess, path) end
   for block, list in pairs(values) do
     p:guess_block { block = block, times = camera.guess.times, values = list }
   end
@@ -140,6 +158,16 @@ local function guess(keyframes, camera, path)
   end
   for i, time in ipairs(camera.guess.times) do positions[i] = tracks.at(path, time) end
   return { times = camera.guess.times, positions = positions, yaws = camera.guess.yaws }
+end
+
+-- The heading of a vehicle that cannot stand still is its course.
+local function check_yaws(run, p, request)
+  for i, k in ipairs(request.keyframes) do
+    if k.yaw then
+      point_mass.must_rest(run, p, "keyframes[" .. i .. "].yaw_deg",
+                           "a heading is asked for, which is that of the flight")
+    end
+  end
 end
 
 -- What a request asks for, as {problem, task, camera, legs}; `legs` as the request's, with the ways
@@ -173,7 +201,8 @@ function problem.state(run, request)
                  keyframes = track.places }
   end
   local yaws = keyframes.yaws
-  p:add_constraint(boundary(o, request.stretch, not camera and #yaws == 0 and 0 or nil))
+  p:add_constraint(boundary(run, p, request.stretch, not camera and #yaws == 0))
+  check_yaws(run, p, request)
   if #yaws > 0 then
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
                  weight = o.weights.keyframe, keyframes = yaws }
@@ -187,7 +216,7 @@ function problem.state(run, request)
   end
   local task = { keyframes = keyframes.task }
   if camera then
-    add_camera(p, o.weights, camera, environment)
+    add_camera(p, o.weights, camera, environment, path)
     task.framing = {}
     for i, span in ipairs(camera.spans) do
       task.framing[i] = { subject = span.subject.name, start = span.start, finish = span.finish }
@@ -197,7 +226,9 @@ function problem.state(run, request)
   if scope == "film" or scope == "unconstrained" then
     own.add(p, o, request.terms, scope == "film")
   end
-  p:guess_path(guess(keyframes, camera, path))
+  local guessed = guess(keyframes, camera, path)
+  if not p:rests() then guessed.yaws = point_mass.courses(guessed.positions) end
+  p:guess_path(guessed)
   p:finish()
   return { problem = p, task = task, camera = camera or nil, legs = way.legs }
 end

@@ -196,6 +196,7 @@ local function planned(run)
   local o = run.options
   check(run)
   local vehicle = run:vehicle(o.vehicle)
+  smooth.check(run, vehicle)
   exploration.check(run)
   local seconds = exploration.seconds(run, vehicle, budget_of(run))
   phases.expect(run, budget_of(run))

@@ -113,6 +113,8 @@ local DECLARATIONS = {
     { name = "smooth", type = "boolean", default = false,
       summary = "legs by a trajectory solver, instead of pure pursuit" },
     number("stray", 0.1, "m", "that smooth legs may leave their ways at corners", POSITIVE) } },
+  { name = "model", type = "plugin", kind = "vehicle_model", default = "quadrotor",
+    summary = "vehicle model; another than quadrotor needs flight.smooth" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
     summary = "of smooth legs" },
   { name = "closed_loop", type = "choice", default = "required",

@@ -15,6 +15,19 @@ local JERK = 1e-3          -- weight of the jerk, per (m/s^3)^2 s
 local HARDER, SLOWER = 10, 1.1
 local HARDEST, SLOWEST = 1e5, 3
 
+-- Pure pursuit flies a point mass; smooth legs are flown by any model that can rest in a view.
+function M.check(run, vehicle)
+  local o = run.options
+  local p = run:problem { vehicle = vehicle, duration = 1, environment = {} }
+  p:add_model(o.model)
+  point_mass.must_rest(run, p, "model", "a scan takes its images at rest")
+  if o.flight.smooth then return end
+  if o.model.type ~= "quadrotor" then
+    run:fail("model", string.format("pure pursuit flies the model 'quadrotor'; '%s' needs "
+                                    .. "flight.smooth = true", o.model.type))
+  end
+end
+
 -- Places along the way and the times at which they are passed, spread over `duration`.
 local function places_of(run, vehicle, leg, duration)
   local flight, count = run.options.flight, #leg.points
@@ -45,8 +58,10 @@ local function solved(run, vehicle, leg, duration, pull)
   local places = places_of(run, vehicle, leg, duration)
   local first, last = paths.point(leg.points, 1), paths.point(leg.points, #leg.points // 3)
   p:add_cost { type = "keyframe", name = "way", weight = pull / #places, keyframes = places }
-  point_mass.add(p, vehicle, { smoothness = { name = "jerk", order = 3, weight = JERK },
+  point_mass.add(p, vehicle, { model = run.options.model,
+                               smoothness = { name = "jerk", order = 3, weight = JERK },
                                yaw = { weight = 0.02 }, inputs = { across = "extent" } })
+  point_mass.must_rest(run, p, "model", "a scan takes its images at rest")
   p:add_constraint { type = "boundary_state", start_position = first, finish_position = last,
                      start_yaw = leg.yaw_from, finish_yaw = leg.yaw_to }
   local times, positions, yaws = {}, {}, {}

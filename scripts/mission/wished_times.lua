@@ -111,7 +111,8 @@ local function problem_of(run, request, memory)
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
                  weight = o.weights.keyframe, keyframes = keyframes.yaws }
   end
-  p:add_constraint(film_problem.parts.boundary(o, 1, #keyframes.yaws == 0 and 0 or nil))
+  point_mass.must_rest(run, p, "timing", "times are sought by 'free' for a flight that may stop")
+  p:add_constraint(film_problem.parts.boundary(run, p, 1, #keyframes.yaws == 0))
   surroundings.add(p, environment, nil, nil)
   surroundings.add_speed_limit(p, o, true)
   add_wishes(p, memory.wishes, memory.guess)

@@ -192,6 +192,8 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"model_curvature", "curvature", "rate"},
            {"model_halves", "halves", "one step and two of half its length end"},
            {"model_samples", "samples", "a sample read back differs by"},
+           {"model_motion", "motion", "the motion 'sledge' has no integrator in this version"},
+           {"model_columns", "motion", "samples lack the column 'force' of 3 numbers"},
            {"model_ranges", "ranges", "alone differs from the same in a range"},
            {"model_repeatable", "repeatable", "the same inputs give two answers"},
            {"model_threads", "threads", "four threads at once get other answers"},

@@ -54,7 +54,7 @@ TEST(FlightReport, DrawsMotionAndInputsAgainstTheVehiclesLimits) {
   EXPECT_NEAR(limit(flight_chart(named(sections, "Direction"), "Yaw rate"), "maximum"), 90, 1e-9);
   const Sample& s = plan.trajectory.samples[50];
   EXPECT_EQ(flight_chart(motion, "Speed across").series[0].y[50], s.velocity.head<2>().norm());
-  EXPECT_EQ(flight_chart(inputs, "Thrust").series[0].y[50], s.force.norm());
+  EXPECT_EQ(flight_chart(inputs, "Thrust").series[0].y[50], s.columns.vector3("force").norm());
   EXPECT_EQ(flight_chart(motion, "Position").series[2].y[50], s.position.z());
   EXPECT_EQ(flight_chart(motion, "Position").markers.size(), 6u);
 }
@@ -123,7 +123,7 @@ TEST(FlightReport, LeavesOutWhatThePlanDoesNotHold) {
   Plan plan = synthetic_flight(20, 201, 4);
   plan.solver = plan.certificate = plan.configuration = Value();
   plan.task.keyframes.clear();
-  plan.trajectory.model = MotionModel::path;
+  plan.trajectory.motion = path_motion();
   plan.trajectory.has_gimbal = false;
   const Report report = flight_report(plan);
   std::string titles;
@@ -135,7 +135,7 @@ TEST(FlightReport, LeavesOutWhatThePlanDoesNotHold) {
 
 TEST(FlightReport, DrawsRotorsAgainstTheirLimits) {
   Plan plan = synthetic_flight(20, 201, 4);
-  plan.trajectory.model = MotionModel::rotors;
+  plan.trajectory.motion = rotors_motion();
   plan.trajectory.inputs_held = false;
   const Section inputs = named(flight_sections(plan), "Inputs");
   const Chart& rotors = flight_chart(inputs, "Rotor thrusts");

@@ -29,8 +29,9 @@ inline Sample synthetic_sample(double time, double duration, double mass) {
   const double across2 = s.velocity.head<2>().squaredNorm();
   s.yaw_rate =
       (s.velocity.x() * s.acceleration.y() - s.velocity.y() * s.acceleration.x()) / across2;
-  s.force = mass * (s.acceleration + Eigen::Vector3d(0, 0, kGravity));
-  s.yaw_torque = 0.02 * std::sin(time);
+  s.columns.set("force",
+                Eigen::Vector3d(mass * (s.acceleration + Eigen::Vector3d(0, 0, kGravity))));
+  s.columns.set("yaw_torque", 0.02 * std::sin(time));
   s.gimbal_pitch = radians(-35 + 25 * std::sin(0.4 * time));
   s.gimbal_pitch_rate = radians(10 * std::cos(0.4 * time));
   return s;

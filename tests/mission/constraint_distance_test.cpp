@@ -71,7 +71,7 @@ TEST_F(ConstraintDistance, TheVerifierReadsWhatTheTapeReads) {
       if (one.name == "from " + name) stated = &one;
     ASSERT_TRUE(stated && stated->unjudged.empty()) << name;
     ASSERT_EQ(problem_of(*stated, result.plan), "") << name;
-    ConstraintEvaluation evaluation(*stated, {environment, meshes, maps});
+    ConstraintEvaluation evaluation(*stated, Trajectory{}, {environment, meshes, maps});
     Random random(11);
     double nearest = 1e9, farthest = -1e9;
     for (int trial = 0; trial < 2000; ++trial) {

@@ -43,7 +43,7 @@ class Race : public Filming {
   static void expect_flown_by_rotors(const Flown& flown, std::size_t gates) {
     expect_certified(flown);
     const Plan plan = read_plan(flown.folder / "plan.json");
-    EXPECT_EQ(plan.trajectory.model, MotionModel::rotors);
+    EXPECT_EQ(plan.trajectory.motion.name, "rotors");
     EXPECT_EQ(plan.task.gates.size(), gates);
     EXPECT_NE(read_file(flown.folder / "report.html").find("Rotor thrusts"), std::string::npos);
   }

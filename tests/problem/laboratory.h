@@ -68,7 +68,8 @@ class Tumbler final : public DifferentiableModel<Tumbler, 5, 4> {
   }
   void to_sample(const double* numbers, Sample& sample) const override {
     sample.position.z() = numbers[0];
-    sample.orientation = Eigen::Quaterniond(numbers[1], numbers[2], numbers[3], numbers[4]);
+    sample.columns.set("orientation",
+                       Eigen::Quaterniond(numbers[1], numbers[2], numbers[3], numbers[4]));
   }
   void from_sample(const Sample& sample, double* numbers) const override {
     std::fill_n(numbers, 9, 0.0);

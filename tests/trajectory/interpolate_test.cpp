@@ -45,18 +45,18 @@ TEST(Interpolate, HeldInputsStayUntilTheNextSample) {
   const Eigen::Vector3d a(1, -2, 0.5);
   Trajectory trajectory;
   trajectory.samples = {cubic_sample(0, a, {0, 0, 0}), cubic_sample(1, a, {0, 0, 0})};
-  trajectory.samples[0].force = {1, 2, 3};
-  trajectory.samples[1].force = {7, 8, 9};
+  trajectory.samples[0].columns.set("force", Eigen::Vector3d(1, 2, 3));
+  trajectory.samples[1].columns.set("force", Eigen::Vector3d(7, 8, 9));
   trajectory.samples[1].acceleration = {9, 9, 9};
   const Sample s = sample_at(trajectory, 0.6);
   EXPECT_NEAR((s.position - a * 0.18).norm(), 0, 1e-12);
   EXPECT_EQ(s.acceleration, a);
-  EXPECT_EQ(s.force, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.columns.vector3("force"), Eigen::Vector3d(1, 2, 3));
 }
 
 TEST(Interpolate, PathIsStraight) {
   Trajectory trajectory;
-  trajectory.model = MotionModel::path;
+  trajectory.motion = path_motion();
   trajectory.samples.resize(2);
   trajectory.samples[1].time = 2;
   trajectory.samples[1].position = {4, 0, 2};

@@ -12,14 +12,14 @@ namespace {
 
 using testing::HasSubstr;
 
-Plan small_plan(MotionModel model = MotionModel::force) {
+Plan small_plan(const MotionRecord& motion = force_motion()) {
   Plan plan;
   plan.mission = "castle \"flyover\" \xc3\xa9";
   plan.kind = "film";
   plan.geodetic_origin = GeodeticPoint{47.1, 8.2, 400};
   plan.vehicle = Value::map();
   plan.vehicle.set("name", "solo");
-  plan.trajectory.model = model;
+  plan.trajectory.motion = motion;
   plan.trajectory.has_gimbal = true;
   plan.trajectory.has_target = true;
   for (int i = 0; i < 3; ++i) {
@@ -30,11 +30,11 @@ Plan small_plan(MotionModel model = MotionModel::force) {
     s.acceleration = {1, 2, 3};
     s.yaw = 0.3;
     s.yaw_rate = -0.1;
-    s.force = {0, 0, 14.7};
-    s.yaw_torque = 0.01;
-    s.orientation = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5);
-    s.body_rates = {0.1, 0.2, 0.3};
-    s.rotor_thrusts = {1, 2, 3, 4};
+    s.columns.set("force", Eigen::Vector3d(0, 0, 14.7));
+    s.columns.set("yaw_torque", 0.01);
+    s.columns.set("orientation", Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5));
+    s.columns.set("body_rates", Eigen::Vector3d(0.1, 0.2, 0.3));
+    s.columns.set("rotor_thrusts", Eigen::Vector4d(1, 2, 3, 4));
     s.gimbal_pitch = -0.7;
     s.target = {5, 6, 7};
     plan.trajectory.samples.push_back(s);
@@ -68,8 +68,8 @@ void erase(Value& map, const std::string& key) {
 }
 
 TEST(Plan, RoundTripIsByteStableForEveryModel) {
-  for (const auto model : {MotionModel::force, MotionModel::rotors, MotionModel::path}) {
-    const Plan plan = small_plan(model);
+  for (const auto* motion : {&force_motion(), &rotors_motion(), &path_motion()}) {
+    const Plan plan = small_plan(*motion);
     const std::string text = plan_text(plan);
     EXPECT_EQ(plan_text(reread(plan)), text);
     EXPECT_EQ(plan_text(reread(reread(plan))), text);
@@ -181,19 +181,19 @@ TEST(Plan, ValuesSurvive) {
 }
 
 TEST(Plan, SampleHasTheFieldsOfItsModelAlone) {
-  const auto keys = [](MotionModel model) {
+  const auto keys = [](const MotionRecord& motion) {
     std::vector<std::string> names;
-    const Value plan = to_value(small_plan(model));
+    const Value plan = to_value(small_plan(motion));
     for (const auto& [key, value] : plan.at("samples").as_list()[0].as_map()) names.push_back(key);
     return names;
   };
   using testing::Contains;
   using testing::Not;
-  EXPECT_THAT(keys(MotionModel::force), Contains("force"));
-  EXPECT_THAT(keys(MotionModel::force), Not(Contains("orientation")));
-  EXPECT_THAT(keys(MotionModel::rotors), Contains("rotor_thrusts"));
-  EXPECT_THAT(keys(MotionModel::rotors), Not(Contains("yaw_torque")));
-  EXPECT_THAT(keys(MotionModel::path), Not(Contains("velocity")));
+  EXPECT_THAT(keys(force_motion()), Contains("force"));
+  EXPECT_THAT(keys(force_motion()), Not(Contains("orientation")));
+  EXPECT_THAT(keys(rotors_motion()), Contains("rotor_thrusts"));
+  EXPECT_THAT(keys(rotors_motion()), Not(Contains("yaw_torque")));
+  EXPECT_THAT(keys(path_motion()), Not(Contains("velocity")));
 }
 
 TEST(Plan, OptionalSectionsHaveNoKey) {

@@ -64,7 +64,7 @@ TEST(ClosedLoop, AKickDiesAway) {
     Trajectory even;
     Sample s;
     s.velocity = {0.3, 0.1, 0};
-    s.force = {0, 0, vehicle.mass * kGravity};
+    s.columns.set("force", Eigen::Vector3d(0, 0, vehicle.mass * kGravity));
     for (int i = 0; i <= 1200; ++i) {
       s.time = 0.05 * i;
       even.samples.push_back(s);
@@ -139,7 +139,7 @@ TEST(ClosedLoop, RefusesWhatMakesNoSense) {
   EXPECT_THROW(fly(trajectory, real_vehicle(), {.mass_error = -1}), InputError);
   EXPECT_THROW(fly(trajectory, real_vehicle(), {.step = 0}), InputError);
   Trajectory path = trajectory;
-  path.model = MotionModel::path;
+  path.motion = path_motion();
   EXPECT_THROW(fly(path, real_vehicle()), InputError);
 }
 

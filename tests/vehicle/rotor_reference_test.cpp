@@ -22,14 +22,14 @@ Vehicle dragging_vehicle() {
 Trajectory even_flight(const Vehicle& vehicle, const Vector3d& velocity, double yaw) {
   const Vector3d thrust = vehicle.drag * velocity + Vector3d(0, 0, vehicle.mass * kGravity);
   Trajectory trajectory;
-  trajectory.model = MotionModel::rotors;
+  trajectory.motion = rotors_motion();
   for (int i = 0; i <= 40; ++i) {
     Sample s;
     s.time = 0.1 * i;
     s.position = s.time * velocity;
     s.velocity = velocity;
-    s.orientation = attitude_of(thrust, yaw);
-    s.rotor_thrusts.setConstant(thrust.norm() / 4);
+    s.columns.set("orientation", attitude_of(thrust, yaw));
+    s.columns.set("rotor_thrusts", Eigen::Vector4d(Eigen::Vector4d::Constant(thrust.norm() / 4)));
     trajectory.samples.push_back(s);
   }
   return trajectory;
@@ -43,11 +43,13 @@ TEST(RotorReference, AsksForThePlannedAttitudeAndThrust) {
     const ReferencePoint point = reference.at(time);
     EXPECT_LT(point.acceleration.norm(), 1e-9);
     EXPECT_LT((point.position - time * Vector3d(8, -5, 1)).norm(), 1e-9);
-    EXPECT_NEAR(reference.force(point).norm(), plan.samples[0].rotor_thrusts.sum(), 1e-9);
+    EXPECT_NEAR(reference.force(point).norm(),
+                plan.samples[0].columns.vector<4>("rotor_thrusts").sum(), 1e-9);
     // Where the nose points is another yaw, and with it another attitude.
-    EXPECT_LT(
-        plan.samples[0].orientation.angularDistance(attitude_of(reference.force(point), point.yaw)),
-        1e-7);
+    EXPECT_LT(plan.samples[0]
+                  .columns.quaternion("orientation")
+                  .angularDistance(attitude_of(reference.force(point), point.yaw)),
+              1e-7);
   }
 }
 
@@ -61,7 +63,7 @@ TEST(RotorReference, IsFlownToTheCentimetre) {
 
 TEST(RotorReference, APathSaysWhatCanBeFlown) {
   Trajectory path = even_flight(dragging_vehicle(), {1, 0, 0}, 0);
-  path.model = MotionModel::path;
+  path.motion = path_motion();
   try {
     fly(path, dragging_vehicle());
     FAIL();

@@ -75,7 +75,7 @@ TEST(StatedConstraints, EveryOperationGivesWhatTheTapeGives) {
                                                  of(stated, 0, 1, 2, number)},
                                   .results = {{.operation = 3, .upper = 0.0}}};
       ASSERT_EQ(problem_of(constraint, plan), "") << name_of(stated);
-      ConstraintEvaluation evaluation(constraint, {plan.environment, {}, {}});
+      ConstraintEvaluation evaluation(constraint, plan.trajectory, {plan.environment, {}, {}});
       double result = 0;
       const ConstraintPoint point;
       evaluation.evaluate({&point, 1}, {&result, 1});
@@ -101,7 +101,7 @@ TEST(StatedConstraints, ASubjectIsWhereTheTapeHasIt) {
                                                         .name = "walker",
                                                         .component = component}},
                                         .results = {{.operation = 1, .upper = 0.0}}};
-      ConstraintEvaluation evaluation(constraint, {plan.environment, {}, {}});
+      ConstraintEvaluation evaluation(constraint, plan.trajectory, {plan.environment, {}, {}});
       double result = 0;
       const ConstraintPoint point;
       evaluation.evaluate({&point, 1}, {&result, 1});

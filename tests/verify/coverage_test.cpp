@@ -37,7 +37,7 @@ class Coverage : public testing::Test {
     plan.mission = "wall";
     plan.kind = "scan";
     plan.vehicle = to_value(reference_vehicle());
-    plan.trajectory.model = MotionModel::path;
+    plan.trajectory.motion = path_motion();
     plan.trajectory.has_gimbal = true;
     ScanTask scan;
     scan.region = {Vector3d(4, -4, 1), Vector3d(6, 4, 9)};

@@ -14,14 +14,17 @@ Plan gliding() {
   plan.mission = "glide";
   plan.kind = "race";
   plan.vehicle = to_value(vehicle);
-  plan.trajectory.model = MotionModel::rotors;
+  plan.trajectory.motion = rotors_motion();
   plan.trajectory.inputs_held = false;
   for (int i = 0; i <= 10; ++i) {
     Sample s;
     s.time = 0.5 * i;
     s.position = {2 * s.time, 0, 3};
     s.velocity = {2, 0, 0};
-    s.rotor_thrusts.setConstant(vehicle.mass * kGravity / 4);
+    s.columns.set("orientation", Eigen::Quaterniond::Identity());
+    s.columns.set("body_rates", Eigen::Vector3d(0, 0, 0));
+    s.columns.set("rotor_thrusts",
+                  Eigen::Vector4d(Eigen::Vector4d::Constant(vehicle.mass * kGravity / 4)));
     plan.trajectory.samples.push_back(s);
   }
   plan.task.closed_loop_required = false;
@@ -129,16 +132,23 @@ TEST(Rotors, AreJudgedOneByOne) {
   };
   EXPECT_TRUE(verify(gliding()).feasible());
   Plan plan = gliding();
-  plan.trajectory.samples[4].orientation = Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ());
+  SampleColumns* columns = &plan.trajectory.samples[4].columns;
+  columns->set("orientation",
+               Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ())));
   EXPECT_TRUE(fails(plan, "defect_yaw"));
   plan = gliding();
-  plan.trajectory.samples[4].orientation.coeffs() *= 1.1;
+  columns = &plan.trajectory.samples[4].columns;
+  columns->set("orientation", Eigen::Vector4d(1.1, 0, 0, 0));
   EXPECT_TRUE(fails(plan, "document"));
   plan = gliding();
-  plan.trajectory.samples[4].body_rates.x() = 0.1;
+  columns = &plan.trajectory.samples[4].columns;
+  columns->set("body_rates", Eigen::Vector3d(0.1, 0, 0));
   EXPECT_TRUE(fails(plan, "defect_yaw"));
   plan = gliding();
-  plan.trajectory.samples[4].rotor_thrusts[2] = 9;
+  columns = &plan.trajectory.samples[4].columns;
+  Eigen::Vector4d thrusts = columns->vector<4>("rotor_thrusts");
+  thrusts[2] = 9;
+  columns->set("rotor_thrusts", thrusts);
   EXPECT_TRUE(fails(plan, "rotor_thrust"));
 }
 

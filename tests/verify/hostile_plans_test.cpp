@@ -167,17 +167,49 @@ TEST(HostilePlans, VehicleTamperedWith) {
               HasSubstr("a gimbal that the vehicle does not have"));
 }
 
+void give_rotors(Plan& plan) {
+  plan.trajectory.motion = rotors_motion();
+  for (Sample& s : plan.trajectory.samples) {
+    s.columns = {};
+    s.columns.set("orientation", Eigen::Quaterniond::Identity());
+    s.columns.set("body_rates", Eigen::Vector3d(0, 0, 0));
+    s.columns.set("rotor_thrusts", Eigen::Vector4d(1, 1, 1, 1));
+  }
+}
+
 TEST(HostilePlans, RotorsWithoutAnAttitude) {
   EXPECT_THAT(refusal_after([](Plan& p) {
-                p.trajectory.model = MotionModel::rotors;
-                p.trajectory.samples[2].orientation.coeffs().setZero();
+                give_rotors(p);
+                p.trajectory.samples[2].columns.set("orientation", Eigen::Vector4d(0, 0, 0, 0));
               }),
               HasSubstr("sample 3 has an orientation that is no unit quaternion"));
   EXPECT_THAT(refusal_after([](Plan& p) {
-                p.trajectory.model = MotionModel::rotors;
-                p.trajectory.samples[1].rotor_thrusts[3] = std::nan("");
+                give_rotors(p);
+                p.trajectory.samples[1].columns.set("rotor_thrusts",
+                                                    Eigen::Vector4d(0, 0, 0, std::nan("")));
               }),
               HasSubstr("sample 2 holds a number that is not finite"));
+  EXPECT_THAT(refusal_after([](Plan& p) { p.trajectory.motion = rotors_motion(); }),
+              HasSubstr("sample 1 lacks the column 'orientation' of its motion"));
+}
+
+TEST(HostilePlans, MotionsThatNobodyCanIntegrate) {
+  const auto refusal = [](const MotionRecord& motion) {
+    return refusal_after([&](Plan& p) { p.trajectory.motion = motion; });
+  };
+  EXPECT_THAT(refusal({.name = "submarine"}),
+              HasSubstr("the motion 'submarine' has no integrator in this version, which knows "
+                        "force, rotors, path, velocity, coordinated_turn"));
+  EXPECT_THAT(
+      refusal({.name = "velocity"}),
+      HasSubstr("the motion 'velocity' has the columns jerk (3, input, m/s^3), and the plan "
+                "states none"));
+  EXPECT_THAT(refusal({.name = "coordinated_turn"}), HasSubstr("needs a wing, and vehicle"));
+  MotionRecord own = force_motion();
+  own.table = MotionTable{};
+  EXPECT_THAT(refusal(own), HasSubstr("a motion with derivatives of its own needs another name"));
+  own.name = "sled";
+  EXPECT_THAT(refusal(own), HasSubstr("its derivatives lack 'acceleration', component 0"));
 }
 
 TEST(HostilePlans, IntervalsTooCoarseToFollow) {

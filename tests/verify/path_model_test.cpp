@@ -39,7 +39,7 @@ class PathModel : public testing::Test {
     plan.mission = "path";
     plan.kind = "scan";
     plan.vehicle = to_value(reference_vehicle());
-    plan.trajectory.model = MotionModel::path;
+    plan.trajectory.motion = path_motion();
     Sample sample;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i > 0) sample.time += (points[i] - points[i - 1]).norm() / speed;
@@ -147,7 +147,7 @@ TEST_F(PathModel, ThePlanCarriesItsMeshes) {
   ASSERT_EQ(back.environment.meshes.size(), 1u);
   EXPECT_EQ(back.environment.meshes[0].file, "wall.ply");
   EXPECT_EQ(back.environment.meshes[0].sha256, p.environment.meshes[0].sha256);
-  EXPECT_EQ(back.trajectory.model, MotionModel::path);
+  EXPECT_EQ(back.trajectory.motion.name, "path");
   EXPECT_TRUE(verify(back, folder_).feasible());
   EXPECT_EQ(plan_text(back), plan_text(p));
 }

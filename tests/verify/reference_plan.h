@@ -70,8 +70,10 @@ class PlanBuilder {
  private:
   void drive(Sample& sample, const Drive& d) const {
     sample.acceleration = d.acceleration;
-    sample.force = vehicle_.mass * (d.acceleration + Eigen::Vector3d(0, 0, kGravity));
-    sample.yaw_torque = vehicle_.inertia.z() * d.yaw_acceleration;
+    const Eigen::Vector3d force =
+        vehicle_.mass * (d.acceleration + Eigen::Vector3d(0, 0, kGravity));
+    sample.columns.set("force", force);
+    sample.columns.set("yaw_torque", vehicle_.inertia.z() * d.yaw_acceleration);
     sample.gimbal_yaw_rate = d.gimbal_yaw_rate;
     sample.gimbal_pitch_rate = d.gimbal_pitch_rate;
   }

@@ -51,7 +51,7 @@ class Regions : public testing::Test {
     plan.mission = "hall";
     plan.kind = "scan";
     plan.vehicle = to_value(reference_vehicle());
-    plan.trajectory.model = MotionModel::path;
+    plan.trajectory.motion = path_motion();
     Sample sample;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i > 0) sample.time += (points[i] - points[i - 1]).norm();

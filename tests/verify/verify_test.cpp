@@ -247,7 +247,7 @@ TEST(Verify, ManyTinyDefectsMayNotTeleport) {
 
 TEST(Verify, TheLastSampleIsJudgedToo) {
   Plan plan = reference_plan();
-  plan.trajectory.samples.back().force.setZero();
+  plan.trajectory.samples.back().columns.set("force", Eigen::Vector3d(0, 0, 0));
   plan.trajectory.samples.back().acceleration = {0, 0, -kGravity};
   EXPECT_FALSE(check_of(verify(plan), "thrust_min").pass);
 }

@@ -1,8 +1,9 @@
 // How a flight begins and ends: at rest, moving, or freely.
 //
-//   rest:    v = 0, yaw_rate = 0, force = (0, 0, m g), yaw_torque = 0: neither speed nor
-//   acceleration moving:  v = the given velocity free:    nothing, but a position or a yaw where
-//   one is given
+//   rest:    v = 0, yaw_rate = 0, force = (0, 0, m g), yaw_torque = 0, acceleration = 0: neither
+//            speed nor acceleration
+//   moving:  v = the given velocity
+//   free:    nothing, but a position or a yaw where one is given
 //
 // All of it is bounds on the first and the last stage. A model without forces is at rest when its
 // velocities are zero; one with an orientation is level then, with any heading, and its body rates
@@ -44,7 +45,7 @@ class BoundaryState final : public DifferentiableConstraint<BoundaryState> {
     for (const End& end : ends_)
       if (whole && !end.yaw.empty())
         throw InputError(end.name + "_yaw: this model has an orientation, no yaw");
-    for (const char* name : {"yaw_rate", "force", "yaw_torque", "body_rates"})
+    for (const char* name : {"yaw_rate", "force", "yaw_torque", "body_rates", "acceleration"})
       if (layout.find(name) >= 0 && (whole || std::string(name) != "body_rates"))
         blocks.push_back(layout.find(name));
     FunctionShape shape{.blocks = blocks,

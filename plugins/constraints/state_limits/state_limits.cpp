@@ -2,6 +2,7 @@
 //
 //   d_k . v_xy  <= cos(pi/n) speed_across           d_k: n directions around a circle, so that the
 //   d_k . F_xy  <= cos(pi/n) m acceleration_across  polygon lies inside the circle of the limit
+//   or d_k . a_xy <= cos(pi/n) acceleration_across  of a model whose state has an acceleration
 //   -descent <= v_z <= climb,  |yaw_rate| <= its limit,  lower <= position <= upper
 //
 // Limits are the vehicle's; a parameter may tighten one, never loosen it. Velocity is linear
@@ -63,9 +64,13 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
     const double inscribed = std::cos(std::numbers::pi / sides_);
     FunctionShape shape{.affine = true};
     BlocksRead reads(setting.layout, shape.blocks);
-    in_ = {reads.add<3>("velocity"), {}, {}, {}};
+    in_ = {reads.add<3>("velocity"), {}, {}, {}, {}};
     if (reads.has("yaw_rate")) in_.yaw_rate = reads.add("yaw_rate");
-    if (reads.has("force")) in_.force = reads.add<3>("force");
+    if (reads.has("force")) {
+      in_.force = reads.add<3>("force");
+    } else if (reads.has("acceleration")) {
+      in_.acceleration = reads.add<3>("acceleration");
+    }
     if (inside_) in_.position = reads.add<3>("position");
     polygon("speed_across", inscribed * limit("speed_across", vehicle.speed_across_max));
     row("climb", -limit("descent_speed", vehicle.descent_speed_max),
@@ -77,6 +82,12 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
               inscribed * limit("acceleration_across", vehicle.acceleration_across_max));
       row("acceleration_up", -vehicle.acceleration_down_max.value_or(kInfinity),
           vehicle.acceleration_up_max.value_or(kInfinity));
+    }
+    if (in_.acceleration) {
+      polygon("acceleration_across",
+              inscribed * limit("acceleration_across", vehicle.acceleration_across_max));
+      row("acceleration_up", -vehicle.largest_acceleration_down(),
+          vehicle.largest_acceleration_up());
     }
     if (inside_) place();
     shape.rows = static_cast<int>(names_.size());
@@ -97,6 +108,12 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
       for (const Eigen::Vector2d& d : directions_)
         rows[r++] = (d.x() * force.x() + d.y() * force.y()) / mass_;
       rows[r++] = force.z() / mass_ - kGravity;
+    }
+    if (in_.acceleration) {
+      const auto acceleration = stage(*in_.acceleration);
+      for (const Eigen::Vector2d& d : directions_)
+        rows[r++] = d.x() * acceleration.x() + d.y() * acceleration.y();
+      rows[r++] = acceleration.z();
     }
     if (!inside_) return;
     const auto position = stage(in_.position);
@@ -145,9 +162,10 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
   bool inside_ = false;
   struct {
     VectorHandle velocity;
-    std::optional<NumberHandle> yaw_rate;  // of models that have one
-    std::optional<VectorHandle> force;     // likewise
-    VectorHandle position;                 // where it is limited
+    std::optional<NumberHandle> yaw_rate;      // of models that have one
+    std::optional<VectorHandle> force;         // likewise
+    std::optional<VectorHandle> acceleration;  // of models without a force
+    VectorHandle position;                     // where it is limited
   } in_;
   std::vector<Eigen::Vector2d> directions_;
   std::vector<std::string> names_;

@@ -61,33 +61,29 @@ class Csv final : public Exporter {
     }
   }
 
-  static void add_rotors(std::vector<Column>& columns) {
-    columns.push_back({"orientation_w", "1", [](const Sample& s) { return s.orientation.w(); }});
-    columns.push_back({"orientation_x", "1", [](const Sample& s) { return s.orientation.x(); }});
-    columns.push_back({"orientation_y", "1", [](const Sample& s) { return s.orientation.y(); }});
-    columns.push_back({"orientation_z", "1", [](const Sample& s) { return s.orientation.z(); }});
-    add(columns, "body_rates", "rad/s", &Sample::body_rates);
-    for (int rotor = 0; rotor < 4; ++rotor) {
-      columns.push_back({"rotor_thrust_" + std::to_string(rotor + 1), "N",
-                         [rotor](const Sample& s) { return s.rotor_thrusts[rotor]; }});
+  // Those of the motion, with the units that it states.
+  static void add_columns(std::vector<Column>& columns, const MotionRecord& motion) {
+    for (const MotionColumn& column : motion.columns) {
+      const std::vector<std::string> names = component_names(column);
+      for (std::size_t i = 0; i < names.size(); ++i)
+        columns.push_back({names[i], column.unit, [name = column.name, i](const Sample& s) {
+                             const auto values = s.columns.find(name);
+                             return i < values.size() ? values[i] : 0.0;
+                           }});
     }
   }
 
   // Only what the plan has.
   static std::vector<Column> columns_of(const Trajectory& trajectory) {
     std::vector<Column> columns;
-    const bool moves = trajectory.model != MotionModel::path;
+    const bool moves = trajectory.motion.moves;
     add(columns, "time", "s", &Sample::time);
     add(columns, "position", "m", &Sample::position);
     if (moves) add(columns, "velocity", "m/s", &Sample::velocity);
     if (moves) add(columns, "acceleration", "m/s^2", &Sample::acceleration);
     add(columns, "yaw", "rad", &Sample::yaw);
     if (moves) add(columns, "yaw_rate", "rad/s", &Sample::yaw_rate);
-    if (trajectory.model == MotionModel::force) {
-      add(columns, "force", "N", &Sample::force);
-      add(columns, "yaw_torque", "N m", &Sample::yaw_torque);
-    }
-    if (trajectory.model == MotionModel::rotors) add_rotors(columns);
+    add_columns(columns, trajectory.motion);
     if (trajectory.has_gimbal) {
       add(columns, "gimbal_yaw", "rad", &Sample::gimbal_yaw);
       add(columns, "gimbal_pitch", "rad", &Sample::gimbal_pitch);

@@ -20,6 +20,11 @@ class Quadrotor final : public DifferentiableModel<Quadrotor, 8, 4> {
   explicit Quadrotor(const Parameters&) {}
 
   void bind(const Vehicle& vehicle) override {
+    if (!vehicle.has_rotors)
+      throw InputError(
+          "vehicle '" + vehicle.name +
+          "' states no rotors, whose thrust moves the model 'quadrotor': its file "
+          "needs inertia and rotors, or another model must fly it, such as 'velocity'");
     mass_ = vehicle.mass;
     yaw_inertia_ = vehicle.inertia.z();
   }
@@ -51,9 +56,10 @@ class Quadrotor final : public DifferentiableModel<Quadrotor, 8, 4> {
     sample.yaw = numbers[3];
     sample.velocity = Eigen::Vector3d(numbers + 4);
     sample.yaw_rate = numbers[7];
-    sample.force = Eigen::Vector3d(numbers + 8);
-    sample.yaw_torque = numbers[11];
-    sample.acceleration = sample.force / mass_ - kGravity * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d force(numbers + 8);
+    sample.columns.set("force", force);
+    sample.columns.set("yaw_torque", numbers[11]);
+    sample.acceleration = force / mass_ - kGravity * Eigen::Vector3d::UnitZ();
   }
 
   void from_sample(const Sample& sample, double* numbers) const override {
@@ -61,8 +67,10 @@ class Quadrotor final : public DifferentiableModel<Quadrotor, 8, 4> {
     numbers[3] = sample.yaw;
     Eigen::Map<Eigen::Vector3d>(numbers + 4) = sample.velocity;
     numbers[7] = sample.yaw_rate;
-    Eigen::Map<Eigen::Vector3d>(numbers + 8) = sample.force;
-    numbers[11] = sample.yaw_torque;
+    Eigen::Map<Eigen::Vector3d>(numbers + 8) =
+        sample.columns.has("force") ? sample.columns.vector3("force")
+                                    : Eigen::Vector3d(0, 0, mass_ * kGravity);  // it hovers
+    numbers[11] = sample.columns.scalar("yaw_torque");
   }
 
   // The limits of the vehicle are constraints of their own: input_limits, state_limits.
@@ -72,7 +80,7 @@ class Quadrotor final : public DifferentiableModel<Quadrotor, 8, 4> {
   }
 
   void describe(Trajectory& trajectory) const override {
-    trajectory.model = MotionModel::force;
+    trajectory.motion = force_motion();
     trajectory.inputs_held = true;
   }
 

@@ -37,6 +37,10 @@ class QuadrotorFull final : public VehicleModel {
         rate_share_(parameters.number("rate_share")) {}
 
   void bind(const Vehicle& vehicle) override {
+    if (!vehicle.has_rotors)
+      throw InputError("vehicle '" + vehicle.name +
+                       "' states no rotors, which move the model 'quadrotor_full': its file needs "
+                       "inertia and rotors, or another model must fly it, such as 'velocity'");
     step_.mass_ = vehicle.mass;
     step_.drag_ = vehicle.drag / vehicle.mass;
     for (int i = 0; i < 3; ++i) step_.inertia_[i] = vehicle.inertia[i];
@@ -90,14 +94,17 @@ class QuadrotorFull final : public VehicleModel {
   void to_sample(const double* x, Sample& sample) const override {
     sample.position = Eigen::Vector3d(x);
     sample.velocity = Eigen::Vector3d(x + 3);
-    sample.orientation = Eigen::Quaterniond(x[6], x[7], x[8], x[9]);
-    sample.body_rates = Eigen::Vector3d(x + 10);
-    sample.rotor_thrusts = Eigen::Vector4d(x + 13);
-    sample.rotor_thrust_rates = Eigen::Vector4d(x + 17);
-    const Eigen::Vector3d axis = sample.orientation * Eigen::Vector3d::UnitZ();
-    sample.acceleration = sample.rotor_thrusts.sum() / step_.mass_ * axis -
-                          step_.drag_ * sample.velocity - kGravity * Eigen::Vector3d::UnitZ();
-    set_yaw(sample);
+    const Eigen::Quaterniond orientation(x[6], x[7], x[8], x[9]);
+    const Eigen::Vector3d body_rates(x + 10);
+    const Eigen::Vector4d thrusts(x + 13);
+    sample.columns.set("orientation", orientation);
+    sample.columns.set("body_rates", body_rates);
+    sample.columns.set("rotor_thrusts", thrusts);
+    sample.columns.set("rotor_thrust_rates", Eigen::Vector4d(x + 17));  // not in plans
+    const Eigen::Vector3d axis = orientation * Eigen::Vector3d::UnitZ();
+    sample.acceleration = thrusts.sum() / step_.mass_ * axis - step_.drag_ * sample.velocity -
+                          kGravity * Eigen::Vector3d::UnitZ();
+    set_yaw(orientation, body_rates, sample);
   }
 
   // A sample without thrusts of its own, such as that of a point mass, stands along its force and
@@ -105,17 +112,18 @@ class QuadrotorFull final : public VehicleModel {
   void from_sample(const Sample& sample, double* x) const override {
     Eigen::Map<Eigen::Vector3d>(x + 0) = sample.position;
     Eigen::Map<Eigen::Vector3d>(x + 3) = sample.velocity;
-    Eigen::Quaterniond q = sample.orientation;
-    Eigen::Vector4d thrusts = sample.rotor_thrusts;
-    if (const double force = sample.force.norm(); thrusts.isZero(0)) {
+    Eigen::Quaterniond q = sample.columns.quaternion("orientation");
+    Eigen::Vector4d thrusts = sample.columns.vector<4>("rotor_thrusts");
+    const Eigen::Vector3d pull = sample.columns.vector3("force");
+    if (const double force = pull.norm(); thrusts.isZero(0)) {
       const bool pushed = force > 0;
       thrusts.setConstant(pushed ? force / 4 : step_.mass_ * kGravity / 4);
-      if (pushed) q = upright_to(sample.force / force);
+      if (pushed) q = upright_to(pull / force);
     }
     Eigen::Map<Eigen::Vector4d>(x + 6) = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
-    Eigen::Map<Eigen::Vector3d>(x + 10) = sample.body_rates;
+    Eigen::Map<Eigen::Vector3d>(x + 10) = sample.columns.vector3("body_rates");
     Eigen::Map<Eigen::Vector4d>(x + 13) = thrusts;
-    Eigen::Map<Eigen::Vector4d>(x + 17) = sample.rotor_thrust_rates;
+    Eigen::Map<Eigen::Vector4d>(x + 17) = sample.columns.vector<4>("rotor_thrust_rates");
   }
 
   void bounds(double* lower, double* upper) const override {
@@ -130,7 +138,7 @@ class QuadrotorFull final : public VehicleModel {
   }
 
   void describe(Trajectory& trajectory) const override {
-    trajectory.model = MotionModel::rotors;
+    trajectory.motion = rotors_motion();
     trajectory.inputs_held = false;
   }
 
@@ -143,9 +151,10 @@ class QuadrotorFull final : public VehicleModel {
   }
 
   // Where the nose points, and how fast that turns; the trajectory makes turns of it.
-  static void set_yaw(Sample& sample) {
-    const Eigen::Vector3d nose = sample.orientation * Eigen::Vector3d::UnitX();
-    const Eigen::Vector3d spin = (sample.orientation * sample.body_rates).cross(nose);
+  static void set_yaw(const Eigen::Quaterniond& orientation, const Eigen::Vector3d& body_rates,
+                      Sample& sample) {
+    const Eigen::Vector3d nose = orientation * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d spin = (orientation * body_rates).cross(nose);
     const double squared = nose.head<2>().squaredNorm();
     sample.yaw = squared > 0 ? std::atan2(nose.y(), nose.x()) : 0.0;
     sample.yaw_rate = squared > 1e-12 ? (nose.x() * spin.y() - nose.y() * spin.x()) / squared : 0.0;

@@ -24,20 +24,20 @@ std::vector<std::vector<std::string>> cells(const std::string& text) {
   return rows;
 }
 
-Plan two_samples(MotionModel model) {
+Plan two_samples(const MotionRecord& motion) {
   Plan plan;
-  plan.trajectory.model = model;
+  plan.trajectory.motion = motion;
   plan.trajectory.samples.resize(2);
   Sample& s = plan.trajectory.samples[1];
   s.time = 0.1;
   s.position = {1.0 / 3, -2e-17, 12345.678};
-  s.force = {0.1 + 0.2, 0, 14.7};
+  s.columns.set("force", Eigen::Vector3d(0.1 + 0.2, 0, 14.7));
   s.target = {7, 8, 9};
   return plan;
 }
 
 TEST(Csv, HeaderNamesColumnsAndUnits) {
-  const auto rows = cells(csv()->write(two_samples(MotionModel::force)));
+  const auto rows = cells(csv()->write(two_samples(force_motion())));
   const std::vector<std::string> header{"time [s]",
                                         "position_x [m]",
                                         "position_y [m]",
@@ -60,7 +60,7 @@ TEST(Csv, HeaderNamesColumnsAndUnits) {
 }
 
 TEST(Csv, NumbersReadBackExactly) {
-  const auto rows = cells(csv()->write(two_samples(MotionModel::force)));
+  const auto rows = cells(csv()->write(two_samples(force_motion())));
   EXPECT_EQ(std::stod(rows[2][1]), 1.0 / 3);
   EXPECT_EQ(std::stod(rows[2][2]), -2e-17);
   EXPECT_EQ(std::stod(rows[2][3]), 12345.678);
@@ -72,15 +72,15 @@ TEST(Csv, OnlyColumnsThatThePlanHas) {
     const std::string text = csv()->write(plan);
     return text.substr(0, text.find('\n'));
   };
-  Plan path = two_samples(MotionModel::path);
+  Plan path = two_samples(path_motion());
   EXPECT_EQ(header(path), "time [s],position_x [m],position_y [m],position_z [m],yaw [rad]");
   path.trajectory.has_target = true;
   EXPECT_NE(header(path).find("target_z [m]"), std::string::npos);
-  const std::string rotors = header(two_samples(MotionModel::rotors));
+  const std::string rotors = header(two_samples(rotors_motion()));
   EXPECT_NE(rotors.find("orientation_w [1]"), std::string::npos);
   EXPECT_NE(rotors.find("rotor_thrust_4 [N]"), std::string::npos);
   EXPECT_EQ(rotors.find("force_x"), std::string::npos);
-  Plan gimbal = two_samples(MotionModel::force);
+  Plan gimbal = two_samples(force_motion());
   EXPECT_EQ(header(gimbal).find("gimbal"), std::string::npos);
   gimbal.trajectory.has_gimbal = true;
   EXPECT_NE(header(gimbal).find("gimbal_pitch_rate [rad/s]"), std::string::npos);

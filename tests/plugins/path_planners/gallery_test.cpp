@@ -29,7 +29,7 @@ Certificate judged(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>&
   plan.mission = "gallery";
   plan.kind = "scan";
   plan.vehicle = to_value(reference_vehicle());
-  plan.trajectory.model = MotionModel::path;
+  plan.trajectory.motion = path_motion();
   plan.environment.margin = kGalleryReach;
   plan.environment.meshes = {{"gallery", "gallery.ply", sha256(read_file(folder / "gallery.ply"))}};
   Sample sample;

@@ -121,7 +121,7 @@ TEST(OmplPlanners, FindTheWayThroughAMine) {
   plan.mission = "mine";
   plan.kind = "scan";
   plan.vehicle = to_value(reference_vehicle());
-  plan.trajectory.model = MotionModel::path;
+  plan.trajectory.motion = path_motion();
   plan.environment.margin = kReach;
   plan.environment.meshes = {{"mine", "mine.ply", sha256(read_file(folder / "mine.ply"))}};
   const auto flown_through = [&](const std::vector<Vector3d>& points) {

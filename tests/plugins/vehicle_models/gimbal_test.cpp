@@ -53,7 +53,7 @@ TEST(Gimbal, FillsItsPartOfASampleAlone) {
   at.row(offset_of(problem, "position")).setConstant(7.0);
   const Trajectory trajectory = problem.trajectory(at);
   EXPECT_TRUE(trajectory.has_gimbal);
-  EXPECT_EQ(trajectory.model, MotionModel::force);
+  EXPECT_EQ(trajectory.motion.name, "force");
   const Sample& sample = trajectory.samples[2];
   EXPECT_EQ(sample.gimbal_yaw, 0.25);
   EXPECT_EQ(sample.gimbal_pitch, -0.7);

@@ -65,12 +65,12 @@ TEST(Quadrotor, TellsSamplesTheirAcceleration) {
   model->to_sample(numbers.data(), sample);
   EXPECT_NEAR(sample.acceleration.z(), 20 / 1.5 - kGravity, 1e-15);
   EXPECT_EQ(sample.position, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(sample.yaw_torque, 0.03);
+  EXPECT_EQ(sample.columns.scalar("yaw_torque"), 0.03);
   Trajectory trajectory;
   trajectory.inputs_held = false;
   model->describe(trajectory);
   EXPECT_TRUE(trajectory.inputs_held);
-  EXPECT_EQ(trajectory.model, MotionModel::force);
+  EXPECT_EQ(trajectory.motion.name, "force");
 }
 
 }  // namespace
