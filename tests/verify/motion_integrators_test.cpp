@@ -103,22 +103,22 @@ TEST(TurnIntegrator, FliesACircleAtConstantBank) {
 TEST(TurnIntegrator, ClimbsStraight) {
   Trajectory trajectory;
   trajectory.motion = turning_motion();
-  // From 16 m/s with 1 m/s^2, at 4 m/s upwards.
+  // From 16 m/s with 1 m/s^2, at 3 m/s upwards.
   for (const double t : {0.0, 2.0, 4.0})
     trajectory.samples.push_back(
-        turning(t, {16 * t + t * t / 2, 0, 4 * t}, {16 + t, 0, 4}, 0, 0, 1));
+        turning(t, {16 * t + t * t / 2, 0, 3 * t}, {16 + t, 0, 3}, 0, 0, 1));
   const Vehicle vehicle = winged();
   Motion motion(trajectory, vehicle);
   for (std::size_t i = 0; i < motion.intervals(); ++i)
     for (const MotionPoint& p : motion.integrate(i)) {
       EXPECT_NEAR(p.position.x(), 16 * p.time + p.time * p.time / 2, 1e-9);
-      EXPECT_NEAR(p.position.z(), 4 * p.time, 1e-12);
+      EXPECT_NEAR(p.position.z(), 3 * p.time, 1e-12);
     }
   const Certificate certificate = verify(plan_of(vehicle, trajectory));
   EXPECT_TRUE(certificate.feasible());
   // The most where it is slowest: (U a + g w) / V.
   EXPECT_NEAR(*certificate.find("excess_thrust_max")->worst,
-              (16 + kGravity * 4) / std::hypot(16, 4), 1e-9);
+              (16 + kGravity * 3) / std::hypot(16, 3), 1e-9);
 }
 
 TEST(TurnIntegrator, FindsWhatAWingCannotDo) {
