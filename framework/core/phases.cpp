@@ -32,6 +32,7 @@ std::optional<std::pair<std::string, double>> PhaseTimes::begin(const std::strin
                                                                 double now) {
   if (begun_ && phase == name_) return std::nullopt;
   std::optional<std::pair<std::string, double>> ended;
+  ended_ = begun_;
   if (begun_) {
     ended.emplace(name_, now - began_);
     if (now_) {
@@ -74,9 +75,11 @@ PhaseTimes::Standing PhaseTimes::standing(double now) {
   if (now_) standing.number = static_cast<int>(*now_) + 1;
   standing.count = static_cast<int>(phases_.size());
   const std::optional<double> own = own_total(now);
-  // Work without phases: its share is all there is to know.
+  // Work without phases: its share is all there is to know. Of several that nobody expected, the
+  // share of one tells nothing of all.
   if (phases_.empty()) {
-    if (fell_ || !fraction_) return standing;
+    if (ended_ && whole_ > 0) standing.whole = whole_;
+    if (ended_ || fell_ || !fraction_) return standing;
     whole_ = std::max(whole_, *fraction_);
     standing.whole = whole_;
     if (own && *fraction_ < 1) standing.left = *own - (now - began_);

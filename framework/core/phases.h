@@ -62,7 +62,7 @@ class PhaseTimes {
   std::size_t next_ = 0;            // the first expected phase that has not begun
   std::optional<std::size_t> now_;  // the expected phase that runs
   std::string name_;
-  bool begun_ = false;
+  bool begun_ = false, ended_ = false;  // of phases, expected or not: one has
   double began_ = 0;
   std::optional<double> fraction_;
   bool fell_ = false;  // the phase began again by itself: its share tells nothing

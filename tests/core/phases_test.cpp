@@ -92,6 +92,27 @@ TEST(PhaseTimes, WithoutWeightsNobodyKnowsTheWhole) {
   EXPECT_FALSE(standing.left);
 }
 
+// A film is solved, then judged: how far its certificate is, is not how far the run is.
+TEST(PhaseTimes, TheShareOfAnUnexpectedPhaseIsNotTheWhole) {
+  PhaseTimes times;
+  times.begin("film", 0);
+  times.report(-1, 5);
+  times.begin("certificate", 10);
+  times.report(0.5, 12);
+  EXPECT_EQ(times.standing(12).fraction, 0.5);
+  EXPECT_FALSE(times.standing(12).whole);
+  EXPECT_FALSE(times.standing(12).left);
+  // What was told of a first one is not taken back.
+  PhaseTimes exploring;
+  exploring.begin("exploration", 0);
+  exploring.report(0.9, 90);
+  EXPECT_EQ(exploring.standing(90).whole, 0.9);
+  exploring.begin("certificate", 100);
+  exploring.report(0.1, 101);
+  EXPECT_EQ(exploring.standing(101).whole, 0.9);
+  EXPECT_FALSE(exploring.standing(101).left);
+}
+
 // Later phases that are most of the work, and none like them measured.
 TEST(PhaseTimes, AGuessOfMostOfTheWorkIsNotTold) {
   PhaseTimes times;
