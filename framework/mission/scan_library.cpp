@@ -1,7 +1,6 @@
 // The graph of views that tours are planned on, and tours.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <lua.hpp>
 
@@ -187,36 +186,6 @@ std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
   return seconds;
 }
 
-// Which views are joined by motions: each with the lowest number of its island.
-std::vector<int> islands_of(const ScanGraph& graph) {
-  std::vector<int> island(graph.candidates.viewpoints.size());
-  std::iota(island.begin(), island.end(), 0);
-  const auto root = [&](int v) {
-    while (island[static_cast<std::size_t>(v)] != v) v = island[static_cast<std::size_t>(v)];
-    return v;
-  };
-  for (const ViewMotion& m : graph.motions.motions) {
-    const int a = root(m.a), b = root(m.b);
-    island[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  for (int v = 0; v < static_cast<int>(island.size()); ++v)
-    island[static_cast<std::size_t>(v)] = root(v);
-  return island;
-}
-
-// The first of the given views that most views are joined to by motions.
-int best_home(const ScanWork& work) {
-  std::vector<int> sizes(work.island.size(), 0);
-  for (const int island : work.island) ++sizes[static_cast<std::size_t>(island)];
-  const auto joined = [&](int v) {
-    return sizes[static_cast<std::size_t>(work.island[static_cast<std::size_t>(v)])];
-  };
-  int best = 0;
-  for (int v = 1; v < work.graph.candidates.given; ++v)
-    if (joined(v) > joined(best)) best = v;
-  return best;
-}
-
 const Vehicle& vehicle_argument(lua_State* state, int table) {
   lua_getfield(state, table, "vehicle");
   return object_argument<Vehicle>(state, -1, kVehicleType);
@@ -293,9 +262,9 @@ int scan_graph_of_run(lua_State* state) {
       make_scan_graph(*space, sight.across > 0 ? coarser : *work->visible, *work->information,
                       starts, settings, run.settings.cancellation, run.settings.progress);
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
-  work->island = islands_of(work->graph);
-  if (!given.boolean("fixed")) work->home = best_home(*work);
   const ScanGraph& graph = work->graph;
+  work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);
+  if (!given.boolean("fixed")) work->home = work->islands.best_start(graph.candidates.given);
   logging::info("candidates: " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
                 std::to_string(graph.candidates.blocked) + " places blocked, " +
                 std::to_string(graph.candidates.crowded) +
@@ -310,17 +279,20 @@ int scan_graph_of_run(lua_State* state) {
   return 1;
 }
 
-// "12 of 300 candidates are joined to the start; the largest island of the others has 200"
+// "12 of 300 candidates are joined to the start by motions; the largest island of the others has
+// 200, about (1.5, 20, 8)"
 std::string reach_in_words(const ScanWork& work, int start) {
-  std::vector<int> sizes(work.island.size(), 0);
-  for (const int island : work.island) ++sizes[static_cast<std::size_t>(island)];
-  const auto own = static_cast<std::size_t>(work.island[static_cast<std::size_t>(start)]);
-  const int joined = sizes[own];
-  sizes[own] = 0;
-  const int other = *std::max_element(sizes.begin(), sizes.end());
-  return std::to_string(joined) + " of " + std::to_string(work.island.size()) +
-         " candidates are joined to the start by motions" +
-         (other > 0 ? "; the largest island of the others has " + std::to_string(other) : "");
+  std::string text = std::to_string(work.islands.joined(start)) + " of " +
+                     std::to_string(work.graph.candidates.viewpoints.size()) +
+                     " candidates are joined to the start by motions";
+  const auto& views = work.graph.candidates.viewpoints;
+  if (const auto other = work.islands.largest_beside(start, views)) {
+    const Eigen::Vector3d& p = views[static_cast<std::size_t>(other->middle)].position;
+    char place[100];
+    std::snprintf(place, sizeof place, ", about (%.4g, %.4g, %.4g)", p.x(), p.y(), p.z());
+    text += "; the largest island of the others has " + std::to_string(other->views) + place;
+  }
+  return text;
 }
 
 constexpr BoundField kGraphFields[] = {
@@ -332,6 +304,7 @@ constexpr BoundField kGraphFields[] = {
     {"voxels", "integer", "that are scored"},
     {"total", "number", "score of seeing all of them perfectly"},
     {"home", "integer", "the candidate in which tours begin, from 1"},
+    {"joined", "integer", "views that motions join to that one, itself included"},
     {"reach", "string", "how many views can be reached from the start, in words"}};
 
 int graph_field(lua_State* state) {
@@ -346,6 +319,7 @@ int graph_field(lua_State* state) {
   fields.set("voxels", static_cast<std::int64_t>(graph.voxels.size()));
   fields.set("total", graph.score->total());
   fields.set("home", static_cast<std::int64_t>(work.home + 1));
+  fields.set("joined", work.islands.joined(work.home));
   fields.set("reach", reach_in_words(work, work.home));
   const std::string field = text_argument(state, 2, "scan graph");
   return push_field(state, "a scan graph", field, fields, kGraphFields);

@@ -15,6 +15,7 @@
 #include "framework/vehicle/smooth_leg.h"
 #include "framework/view/scan_graph.h"
 #include "framework/view/tour_solver.h"
+#include "framework/view/tour_start.h"
 
 namespace lapwing {
 
@@ -55,7 +56,7 @@ struct ScanWork : LegFlight {
   std::shared_ptr<const ViewInformation> information;
   ScanGraph graph;
   std::vector<double> seconds;  // of each motion, a view's own included
-  std::vector<int> island;      // of the views that are joined by motions, per view
+  ViewIslands islands{0, {}};   // of the views that are joined by motions
   int home = 0;                 // of the views, where tours begin
   Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
   Eigen::Vector3d body;         // half edges of the vehicle's box, m

@@ -79,7 +79,7 @@ local function graph_of(run, known, vehicle, starts, finish)
       distance_apart = c.distance_apart, angle_apart_deg = c.angle_apart_deg,
       pitch_min_deg = gimbal and math.max(-90, math.deg(gimbal.pitch_min)) or -90,
       pitch_max_deg = gimbal and math.min(0, math.deg(gimbal.pitch_max)) or 0 },
-    motions = o.motions, camera = o.camera, across = o.effort.pixels, range = o.range,
+    motions = o.motions, camera = o.camera, across = o.effort.pixels, range = space.range(run),
     flight = o.flight,
     information = o.information, planner = o.planner,
   }
@@ -142,18 +142,23 @@ local function flown(run, vehicle, tour, notes, begin)
   return legs
 end
 
+-- What is said where the start leads to few of the views, however much of the battery is used.
+local function cut_off(graph)
+  if graph.joined >= LITTLE * graph.candidates then return nil end
+  return graph.reach .. ". What the others would show is not seen. Another start, more candidates "
+         .. "(candidates.most), first flights nearer to the region or a lower motions.alpha would "
+         .. "join more"
+end
+
 -- What is said of a tour that leaves most of the battery although it may have more images.
 local function little_used(run, graph, tour, budget)
   local most = run.options.tour.images
   if run:cancelled() or tour.seconds >= LITTLE * budget or (most > 0 and tour.images >= most) then
     return nil
   end
-  local warning = string.format("the tour takes %.3g of %.6g s (%s: %s); %s", tour.seconds, budget,
-                                tour.name, tour.message ~= "" and tour.message or tour.status,
-                                graph.reach)
-  if tour.reachable >= LITTLE * graph.candidates then return warning end
-  return warning .. ". Another start, first flights nearer to the region or a lower motions.alpha "
-    .. "would join more"
+  return string.format("the tour takes %.3g of %.6g s (%s: %s); %d views lie within the budget",
+                       tour.seconds, budget, tour.name,
+                       tour.message ~= "" and tour.message or tour.status, tour.reachable)
 end
 
 -- `begin` tells which phase begins.
@@ -170,6 +175,8 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     notes[#notes + 1] = first.sparse(run)
     local little = little_used(run, graph, tour, budget)
     notes[#notes + 1] = little
+    local apart = cut_off(graph)
+    notes[#notes + 1] = apart
     local legs = flown(run, vehicle, tour, notes, begin)
     begin("flight")
     local plan = run:scan_plan {
@@ -186,6 +193,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     local over = plan.duration - asked
     if over <= 0 or round == TIGHTER then
       if little then print("warning: " .. little) end
+      if apart then print("warning: " .. apart) end
       return plan, tour
     end
     budget = budget - 1.5 * over

@@ -60,7 +60,7 @@ end
 -- steepest of its images; where none sees the floor that is said, for nothing down there will be
 -- known.
 local function check_range(run)
-  local o, region = run.options, space.region_of(run)
+  local o, region, range = run.options, space.region_of(run), space.range(run)
   local half = math.atan(o.camera.height / 2, o.camera.focal)
   local function nearest(z)
     local least = math.huge
@@ -74,15 +74,15 @@ local function check_range(run)
   end
   local cure = "a longer range, steeper images (flights, pitch_deg) or a lower safe_height"
   local floor, upper = nearest(region.lower[3]), nearest(region.upper[3])
-  if upper > o.range then
+  if upper > range then
     run:fail("range", string.format(
       "no first flight would see anything of the region: to its upper side the shortest ray is "
-      .. "%.4g m long, and depth is measured to %g m; %s would help", upper, o.range, cure))
+      .. "%.4g m long, and depth is measured to %g m; %s would help", upper, range, cure))
   end
-  if floor <= o.range then return nil end
+  if floor <= range then return nil end
   local warning = string.format(
     "no first flight sees the region's floor: the shortest ray is %.4g m long, and depth is "
-    .. "measured to %g m; %s would show it", floor, o.range, cure)
+    .. "measured to %g m; %s would show it", floor, range, cure)
   print("warning: " .. warning)
   return warning
 end
@@ -106,15 +106,15 @@ end
 -- Depth images from the poses, into the map and the surface.
 function M.look(run, known, surface, poses)
   local o = run.options
-  known:look { surface = surface, poses = poses, camera = depth_camera(run), range = o.range,
-               noise = o.noise }
+  known:look { surface = surface, poses = poses, camera = depth_camera(run),
+               range = space.range(run), noise = o.noise }
 end
 
 local function new_prior(run)
   local o = run.options
   local map = type(o.map) == "table" and o.map or { type = o.map }
-  map.resolution, map.maximum_range = space.resolution(run), o.range
-  return run:prior { map = map, spacing = o.surface.spacing, range = o.range,
+  map.resolution, map.maximum_range = space.resolution(run), space.range(run)
+  return run:prior { map = map, spacing = o.surface.spacing, range = space.range(run),
                      stride = o.surface.stride }
 end
 
@@ -151,7 +151,8 @@ function M.knowledge(run, seconds, vehicle)
   end
   local known, poses = new_prior(run), {}
   if files then
-    known:load { map = files.map, mesh = files.mesh, camera = depth_camera(run), range = o.range }
+    known:load { map = files.map, mesh = files.mesh, camera = depth_camera(run),
+                 range = space.range(run) }
   end
   if surface and not (files and #o.flights == 0) then
     if not files then warnings[run] = check_range(run) end

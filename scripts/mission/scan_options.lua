@@ -76,7 +76,8 @@ local DECLARATIONS = {
   { name = "noise", type = "table", summary = "of measured depth", table = {
     number("dropped", 0, "", "share of pixels without a measurement", { minimum = 0, maximum = 1 }),
     number("sigma", 0, "m", "deviation", { minimum = 0, maximum = 100 }) } },
-  number("range", 60, "m", "of depth and of rays", POSITIVE),
+  number("range", nil, "m", "of depth and of rays; absent: 60 m, or so far that the first flight "
+         .. "sees the region's floor in the middle of its images", POSITIVE),
   { name = "effort", type = "table", summary = "of computing; the plan keeps its camera", table = {
     integer("pixels", 0, 0, 10000, "a row, of the smaller images that the first flight takes and "
             .. "views are weighed by; 0: the camera's"),

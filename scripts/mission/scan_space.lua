@@ -13,6 +13,9 @@ local VIEW = 4            -- m from a wall, to look along it: beside the body, r
 local DOWN_APART = 0.5    -- heights over the floor, between images that look down
 local FEWEST_DOWN, MOST_DOWN = 6, 200
 local MOST_CROSSED = 400  -- images of a crosshatch, unless said otherwise
+local RANGE = 60          -- m, where nothing asks for more
+local FARTHEST = 200      -- m; farther than that a user says so
+local LOOKS_DOWN = 0.5    -- sine of the pitch below the horizon; what looks flatter is no measure
 local OVERHEAD = 2        -- m of free air above the highest first flight
 
 local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
@@ -147,6 +150,35 @@ function M.poses_of(run, flight)
                                       .. "for", #poses, views))
   end
   return poses, times
+end
+
+local ranges = setmetatable({}, { __mode = "k" })  -- of runs
+
+-- How far depth is measured and rays go: as given, else so far that every first flight sees the
+-- region's floor in the middle of its images, where that is possible.
+function M.range(run)
+  if ranges[run] then return ranges[run] end
+  local o, range = run.options, run.options.range
+  if not range then
+    range = RANGE
+    if M.surface_of(run) and not exploration.wanted(run) and not (M.prior_files(run)
+                                                                  and #o.flights == 0) then
+      local floor = M.region_of(run).lower[3]
+      for _, flight in ipairs(M.flights_of(run)) do
+        local down = math.sin(math.rad(-M.pitch_of(flight)))
+        if down >= LOOKS_DOWN then
+          local needed = math.ceil((M.height_of(run, flight) - floor) / down)
+          range = math.max(range, math.min(needed, FARTHEST))
+        end
+      end
+    end
+    if range > RANGE then
+      print(string.format("note: range is %g m, for a first flight over such heights sees no floor "
+                          .. "within %g m", range, RANGE))
+    end
+  end
+  ranges[run] = range
+  return range
 end
 
 -- What is said where a large region has fewer images than overlap wants, or nothing: only of
