@@ -70,14 +70,6 @@ TEST_F(Covering, TheTerminalThePlanAndTheReportSayTheSame) {
   EXPECT_THAT(plan(), HasSubstr("camera.focal"));
 }
 
-// Rays of few pixels are farther apart than small voxels: the gaps between them hide nothing.
-TEST_F(Covering, AClosedCourtSeenByFewPixelsHasNoUnknown) {
-  write_file_atomically(folder_ / "house.obj", kCourtMesh);
-  const Value answer = of_house("--set resolution=0.2");
-  const Value& surface = answer.at("tour").at("surface");
-  EXPECT_LT(number(surface, "unknown"), 0.01 * number(surface, "known")) << to_json(surface);
-}
-
 // Quick looks change effort, never the task.
 TEST_F(Covering, ASmallScanKeepsBudgetRegionCameraAndRange) {
   const auto options = [&](const std::string& more) {
@@ -88,9 +80,13 @@ TEST_F(Covering, ASmallScanKeepsBudgetRegionCameraAndRange) {
     EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0);
     return from_json(read_file(folder_ / "options.json"), "options");
   };
+  const auto shown = [](const Value& options, const char* key) {
+    const Value* found = options.find(key);
+    return found ? to_json(*found) : std::string("absent");
+  };
   const Value stated = options(""), small = options("--config scan/small");
   for (const char* task : {"tour", "camera", "range", "region", "flights", "vehicle", "reach"})
-    EXPECT_EQ(to_json(small.at(task)), to_json(stated.at(task))) << task;
+    EXPECT_EQ(shown(small, task), shown(stated, task)) << task;
   EXPECT_NE(to_json(small.at("effort")), to_json(stated.at("effort")));
 }
 

@@ -30,5 +30,32 @@ TEST_F(Covering, LessEffortLeavesTheCameraOfThePlan) {
   EXPECT_EQ(made.task.scan->camera.focal_x, 92);
 }
 
+// Rays of few pixels are farther apart than small voxels: the gaps between them hide nothing.
+TEST_F(Covering, AClosedCourtSeenByFewPixelsHasNoUnknown) {
+  write_file_atomically(folder_ / "house.obj", kCourtMesh);
+  const Value answer = of_house("--set resolution=0.2");
+  const Value& surface = answer.at("tour").at("surface");
+  EXPECT_LT(number(surface, "unknown"), 0.01 * number(surface, "known")) << to_json(surface);
+  // Nor does a vehicle pass into the wings, which are solid.
+  for (const Value& note : answer.at("notes").as_list())
+    EXPECT_EQ(note.as_text().find("would pass"), std::string::npos) << note.as_text();
+}
+
+// A mast of 60 m beside the house: flights over it see the ground all the same.
+TEST_F(Covering, AFirstFlightOverAMastSeesTheFloor) {
+  write_file_atomically(folder_ / "house.obj", std::string(kHouseMesh) + R"(v 9 0 0
+v 9.4 0 0
+v 9.4 0 60
+v 9 0 60
+f 9 10 11 12
+)");
+  const auto first_flight = [&](const std::string& more) {
+    const Value answer = of_house("--config scan/small " + more);
+    return number(answer.at("tour").at("surface").at("true"), "first_flight_share");
+  };
+  EXPECT_LT(first_flight("--set range=60"), 0.6);
+  EXPECT_GT(first_flight(""), 0.85);
+}
+
 }  // namespace
 }  // namespace lapwing
