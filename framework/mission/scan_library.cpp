@@ -279,18 +279,20 @@ int scan_graph_of_run(lua_State* state) {
   return 1;
 }
 
-// "12 of 300 candidates are joined to the start by motions; the largest island of the others has
-// 200, about (1.5, 20, 8)"
+// "12 of 300 candidates are joined to the start by motions; 200 are joined to a start near
+// (1.5, 20, 8)": the last where they are more.
 std::string reach_in_words(const ScanWork& work, int start) {
   std::string text = std::to_string(work.islands.joined(start)) + " of " +
                      std::to_string(work.graph.candidates.viewpoints.size()) +
                      " candidates are joined to the start by motions";
   const auto& views = work.graph.candidates.viewpoints;
-  if (const auto other = work.islands.largest_beside(start, views)) {
+  const auto other = work.islands.largest_beside(start, views);
+  if (other && other->views > work.islands.joined(start)) {
     const Eigen::Vector3d& p = views[static_cast<std::size_t>(other->middle)].position;
     char place[100];
-    std::snprintf(place, sizeof place, ", about (%.4g, %.4g, %.4g)", p.x(), p.y(), p.z());
-    text += "; the largest island of the others has " + std::to_string(other->views) + place;
+    std::snprintf(place, sizeof place, " are joined to a start near (%.4g, %.4g, %.4g)", p.x(), p.y(),
+                  p.z());
+    text += "; " + std::to_string(other->views) + place;
   }
   return text;
 }

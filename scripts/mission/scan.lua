@@ -145,9 +145,9 @@ end
 -- What is said where the start leads to few of the views, however much of the battery is used.
 local function cut_off(graph)
   if graph.joined >= LITTLE * graph.candidates then return nil end
-  return graph.reach .. ". What the others would show is not seen. Another start, more candidates "
-         .. "(candidates.most), first flights nearer to the region or a lower motions.alpha would "
-         .. "join more"
+  return graph.reach .. ". What the others would show is not seen. More candidates "
+         .. "(candidates.most), first flights nearer to the region or a lower motions.alpha "
+         .. "would join more"
 end
 
 -- What is said of a tour that leaves most of the battery although it may have more images.
