@@ -4,6 +4,7 @@
 #include <iostream>
 #include <map>
 
+#include "framework/app/mission_loading.h"
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
 
@@ -48,6 +49,19 @@ Names plugins_of(const Invocation& invocation, const std::string& kind) {
   const Registry registry = invocation.registry();
   for (const PluginEntry& entry : registry.entries())
     if (entry.kind == kind) names.push_back(entry.name);
+  return names;
+}
+
+// Sorted, and without those that a shell would read as more than a name.
+Names without_signs(Names names) {
+  std::erase_if(names, [](const std::string& name) {
+    return name.empty() || !std::all_of(name.begin(), name.end(), [](char c) {
+             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                    std::string_view("_-./+=").find(c) != std::string_view::npos;
+           });
+  });
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 
@@ -102,6 +116,10 @@ const std::vector<NamedValue>& named_values() {
                                            {"lapwing new plugin", "kind", "plugin_kind", false},
                                            {"lapwing new mission", "kind", "mission_kind", false},
                                            {"lapwing schema", "kind", "schema_kind", false},
+                                           {"lapwing run", "--set", kSettings, false},
+                                           {"lapwing config", "--set", kSettings, false},
+                                           {"lapwing sweep", "--set", kSettings, false},
+                                           {"lapwing sweep", "--vary", kSettings, false},
                                            {"", "--utility", "utility", false},
                                            {"", "--explorer", "utility", false},
                                            {"", "--world", "world", true},
@@ -122,16 +140,7 @@ std::vector<std::string> names_in_list(const std::string& list, const Invocation
     for (const std::string& name : name_lists()) all += (all.empty() ? "" : ", ") + name;
     throw InputError("there is no list of names '" + list + "'; there are: " + all);
   }
-  Names names = found->second(invocation);
-  std::erase_if(names, [](const std::string& name) {
-    return name.empty() || !std::all_of(name.begin(), name.end(), [](char c) {
-             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                    std::string_view("_-./+").find(c) != std::string_view::npos;
-           });
-  });
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
+  return without_signs(found->second(invocation));
 }
 
 std::string no_scene(const std::string& name) {
@@ -142,6 +151,33 @@ std::string no_scene(const std::string& name) {
   const std::string nearest = nearest_name(name, known);
   return "'" + name + "' is no scene of scripts/scene (" +
          (nearest.empty() ? "" : "did you mean '" + nearest + "'? There are ") + all + ")";
+}
+
+std::vector<std::string> settings_of(const std::string& script, const std::string& typed,
+                                     const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  Invocation quiet = invocation;
+  quiet.quiet = true;
+  const bool of_value = typed.find('=') != typed.npos;
+  Names names;
+  for (const SettableOption& option : load_mission(script, quiet, registry)->settable()) {
+    if (!of_value) {
+      names.push_back(option.key + "=");
+      continue;
+    }
+    for (const std::string& value : option.values) names.push_back(option.key + "=" + value);
+    if (!option.vehicle) continue;
+    for (const std::string& name : names_in_list("vehicle", invocation))
+      names.push_back(option.key + "=" + name);
+  }
+  std::erase_if(names, [&](const std::string& name) { return !name.starts_with(typed); });
+  return without_signs(std::move(names));
+}
+
+ExitStatus print_settings(const std::string& script, const std::string& typed,
+                          const Invocation& invocation) {
+  for (const std::string& name : settings_of(script, typed, invocation)) std::cout << name << "\n";
+  return ExitStatus::done;
 }
 
 ExitStatus print_names(const std::string& list, const Invocation& invocation) {

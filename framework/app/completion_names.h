@@ -27,7 +27,17 @@ std::vector<std::string> names_in_list(const std::string& list, const Invocation
 // "'chruch' is no scene of scripts/scene (did you mean 'church'? There are arcade, ...)"
 std::string no_scene(const std::string& name);
 
+// The list of what --set takes: it depends on the mission, and on what is typed already.
+inline constexpr const char* kSettings = "setting";
+
+// For the beginning `typed` of KEY=VALUE: keys of the mission's options, "weights.yaw="; behind a
+// '=' the values that the option may have. InputError where the mission cannot be read.
+std::vector<std::string> settings_of(const std::string& script, const std::string& typed,
+                                     const Invocation& invocation);
+
 // Prints them, one a line.
 ExitStatus print_names(const std::string& list, const Invocation& invocation);
+ExitStatus print_settings(const std::string& script, const std::string& typed,
+                          const Invocation& invocation);
 
 }  // namespace lapwing

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "framework/app/command_reference.h"
+#include "framework/app/completion_names.h"
 #include "framework/core/error.h"
 
 namespace lapwing {
@@ -111,6 +112,7 @@ std::string walk_of_words(const CommandEntry& tree, const std::string& first,
 
 // A statement of bash that fills COMPREPLY.
 std::string bash_offer(const Offer& offer) {
+  if (offer.names == kSettings) return "_lapwing_settings; ";
   std::string text;
   if (!offer.words.empty())
     text += "_lapwing_words " + shell_quoted(joined(offer.words, " ")) + "; ";
@@ -129,15 +131,58 @@ std::string bash_script(const CommandEntry& tree) {
       "_lapwing_names() {\n"
       "  \"${COMP_WORDS[0]}\" complete \"$1\" 2>/dev/null\n"
       "}\n"
+      "_lapwing_settings() {\n"
+      "  local word\n"
+      "  for word in \"${words[@]}\"; do\n"
+      "    [[ $word == *.lua ]] || continue\n"
+      "    [[ $word == '~/'* ]] && word=$HOME/${word:2}\n"
+      "    mapfile -t COMPREPLY < <(\"${COMP_WORDS[0]}\" complete setting \"$word\" \"$cur\" "
+      "2>/dev/null)\n"
+      "    [[ $cur == *=* ]] || compopt -o nospace 2>/dev/null\n"
+      "    return\n"
+      "  done\n"
+      "}\n"
       "_lapwing_files() {\n"
       "  local before=${#COMPREPLY[@]}\n"
       "  mapfile -t -O \"$before\" COMPREPLY < <(compgen \"$1\" -- \"$cur\")\n"
       "  ((before == 0)) && compopt -o filenames 2>/dev/null\n"
       "}\n"
+      // Bash takes '=' and ':' for ends of words: what stands together is put together again.
+      "_lapwing_join() {\n"
+      "  local i piece line=$COMP_LINE\n"
+      "  words=()\n"
+      "  for ((i = 0; i <= COMP_CWORD; i++)); do\n"
+      "    piece=${COMP_WORDS[i]}\n"
+      "    if [[ -z $COMP_LINE || $line == [[:space:]]* ]] || ((i == 0)); then\n"
+      "      words+=(\"$piece\")\n"
+      "    else\n"
+      "      words[${#words[@]}-1]+=$piece\n"
+      "    fi\n"
+      "    line=${line#\"${line%%[![:space:]]*}\"}\n"
+      "    line=${line#\"$piece\"}\n"
+      "  done\n"
+      "}\n"
+      // The offers in the form that bash puts in place of the last piece.
+      "_lapwing_cut() {\n"
+      "  local i piece=${COMP_WORDS[COMP_CWORD]} before= after=\n"
+      "  [[ $piece == *[!=:]* ]] || piece=\n"
+      "  if [[ $piece == *\"$cur\" ]]; then before=${piece%\"$cur\"}; else "
+      "after=${cur%\"$piece\"}; fi\n"
+      "  for i in \"${!COMPREPLY[@]}\"; do\n"
+      "    COMPREPLY[i]=$before${COMPREPLY[i]#\"$after\"}\n"
+      "  done\n"
+      "}\n"
       "_lapwing() {\n"
-      "  local words=(\"${COMP_WORDS[@]}\") cur=${COMP_WORDS[COMP_CWORD]}\n"
-      "  COMPREPLY=()\n" +
-      walk_of_words(tree, "1", "COMP_CWORD") + "  case \"$at ${words[COMP_CWORD - 1]}\" in\n";
+      "  local words cur prev\n"
+      "  COMPREPLY=()\n"
+      "  _lapwing_join\n"
+      "  cur=${words[-1]} prev=${words[-2]}\n"
+      "  if [[ $cur == --*=* ]]; then prev=${cur%%=*} cur=${cur#*=}; fi\n"
+      "  _lapwing_offer\n"
+      "  ((${#COMPREPLY[@]})) && _lapwing_cut\n"
+      "}\n"
+      "_lapwing_offer() {\n" +
+      walk_of_words(tree, "1", "${#words[@]} - 1") + "  case \"$at $prev\" in\n";
   for (const CommandEntry* command : every_command(tree))
     for (const CompletedValue& value : values_of(*command, tree))
       text += "    " + shell_quoted(value.pattern) + ") " + bash_offer(value.offer) + "return ;;\n";
@@ -165,6 +210,7 @@ std::string described(const std::string& name, const std::string& help) {
 
 // Statements of zsh that offer names and files; words have descriptions where they are commands.
 std::string zsh_offer(const Offer& offer) {
+  if (offer.names == kSettings) return "_lapwing_settings; ";
   std::string text;
   if (!offer.names.empty())
     text += "compadd -- ${(f)\"$(${(Q)words[1]} complete " + offer.names + " 2>/dev/null)\"}; ";
@@ -177,9 +223,22 @@ std::string zsh_script(const CommandEntry& tree) {
   std::string text =
       "#compdef lapwing\n"
       "# Completion of lapwing for zsh: a file _lapwing in a folder of $fpath.\n"
+      "_lapwing_settings() {\n"
+      "  local script=${${(M)words:#*.lua}[1]} end=' '\n"
+      "  [[ -n $script ]] || return\n"
+      "  local -a found=(${(f)\"$(${(Q)words[1]} complete setting ${(Q)~script} \"$cur\" "
+      "2>/dev/null)\"})\n"
+      "  [[ $cur == *=* ]] || end=\n"
+      "  compadd -S \"$end\" -- $found\n"
+      "}\n"
       "_lapwing() {\n"
-      "  local -a offered\n" +
-      walk_of_words(tree, "2", "CURRENT") + "  case \"$at ${words[CURRENT-1]}\" in\n";
+      "  local -a offered\n"
+      "  local cur=${words[CURRENT]} prev=${words[CURRENT-1]}\n"
+      "  if [[ $cur == --*=* ]]; then\n"
+      "    prev=${cur%%=*} cur=${cur#*=}\n"
+      "    compset -P 1 '*='\n"
+      "  fi\n" +
+      walk_of_words(tree, "2", "CURRENT") + "  case \"$at $prev\" in\n";
   for (const CommandEntry* command : every_command(tree))
     for (const CompletedValue& value : values_of(*command, tree)) {
       text += "    " + shell_quoted(value.pattern) + ") ";
@@ -225,7 +284,9 @@ std::string fish_quoted(const std::string& text) {
 // The arguments of `complete` that offer it. Of an option: -x takes nothing else, -r -F files too.
 std::string fish_offer(const Offer& offer, bool of_option) {
   std::string words = joined(offer.words, " ");
-  if (!offer.names.empty())
+  if (offer.names == kSettings)
+    words += "(__lapwing_settings)";
+  else if (!offer.names.empty())
     words += (words.empty() ? "" : " ") + ("(__lapwing_names " + offer.names + ")");
   if (offer.kind == ValueKind::folders)
     words += (words.empty() ? "" : " ") + std::string("(__fish_complete_directories)");
@@ -280,6 +341,13 @@ std::string fish_script(const CommandEntry& tree) {
       "function __lapwing_names\n"
       "  set -l typed (commandline -opc)\n"
       "  command $typed[1] complete $argv[1] 2>/dev/null\n"
+      "end\n"
+      "function __lapwing_settings\n"
+      "  set -l typed (commandline -opc)\n"
+      "  set -l script (string match -- '*.lua' $typed)[1]\n"
+      "  set script (string replace -r -- '^~/' \"$HOME/\" \"$script\")\n"
+      "  set -l at (string replace -r -- '^--[^=]*=' '' (commandline -ct))\n"
+      "  command $typed[1] complete setting \"$script\" \"$at\" 2>/dev/null\n"
       "end\n"
       "complete -c lapwing -f\n";
   for (const CommandEntry* command : every_command(tree)) {

@@ -136,7 +136,16 @@ void add_help_commands(CLI::App& app, const Invocation& invocation, HelpRequest&
   add_text(*names, "list", "LIST", "which list", [&](const std::string& name) {
     asked.names = name;
   })->required();
-  names->callback([&] { command = [&] { return print_names(asked.names, invocation); }; });
+  add_text(*names, "script", "MISSION.lua", "whose settings",
+           [&](const std::string& path) { asked.script = path; });
+  add_text(*names, "typed", "KEY=", "what they begin with",
+           [&](const std::string& text) { asked.typed = text; });
+  names->callback([&] {
+    command = [&] {
+      return asked.names == kSettings ? print_settings(asked.script, asked.typed, invocation)
+                                      : print_names(asked.names, invocation);
+    };
+  });
   CLI::App* man = app.add_subcommand("man", "the manual page, in roff");
   man->callback([&] {
     command = [] {

@@ -16,6 +16,7 @@ struct HelpRequest {
   std::vector<std::string> words;  // of `help`: the command
   std::string shell;               // of `completion`
   std::string names;               // of `complete`: the list
+  std::string script, typed;       // of its list of settings: the mission, what stands there
 };
 
 // version, help, completion, man, and complete, which no help shows. `app` is the whole program's.

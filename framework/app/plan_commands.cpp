@@ -138,15 +138,19 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
 }
 
 ExitStatus show_configuration(const std::filesystem::path& script, const Invocation& invocation) {
+  const Interruption interruption;
   const Registry registry = invocation.registry();
-  const auto mission = load_mission(script, invocation, registry);
+  const auto mission = load_mission(script, invocation, registry, &interruption.token());
   if (invocation.json) {
+    mission->judge();
     print_json(mission->configuration());
-  } else {
-    std::cout << "# " << visible_line(mission->kind()) << ": " << visible_line(mission->name())
-              << "\n"
-              << visible_text(annotated_yaml(mission->configuration()));
+    return ExitStatus::done;
   }
+  // Whoever still has to name an input wants to see what there is to set.
+  std::cout << "# " << visible_line(mission->kind()) << ": " << visible_line(mission->name())
+            << "\n"
+            << visible_text(annotated_yaml(mission->configuration())) << std::flush;
+  mission->judge();
   return ExitStatus::done;
 }
 

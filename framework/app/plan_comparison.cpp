@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "framework/app/provenance.h"
 #include "framework/trajectory/interpolate.h"
 
 namespace lapwing {
@@ -46,7 +47,7 @@ void compare_values(const std::string& key, const Value* first, const Value* sec
 ComparedPlan read_compared(const std::filesystem::path& given) {
   ComparedPlan read;
   read.file = plan_file(given);
-  read.plan = read_plan(read.file);
+  read.plan = read_plan_file(read.file);
   read.document = to_value(read.plan);
   read.figures = figures_of(read.plan);
   if (!read.plan.certificate.is_null())

@@ -286,13 +286,40 @@ class Examination {
   std::vector<std::string> faults_, remarks_, not_compared_;
 };
 
-Value plan_document(const std::string& text, const std::string& name) {
+[[noreturn]] void refuse_file(const fs::path& file, const std::string& what,
+                              const std::string& wanted) {
+  throw InputError("'" + file.string() + "' is " + what + "; " + wanted);
+}
+
+constexpr const char* kWantedPlan = "expected a document such as plan.json in the folder of a run";
+
+// Of what is given in place of a plan, as far as its name tells.
+void refuse_other_kinds(const fs::path& file) {
+  const std::string ending = file.extension().string();
+  std::error_code code;
+  if (fs::is_directory(file, code)) {
+    const fs::path plan = file / "plan.json";
+    refuse_file(file, "a folder",
+                fs::exists(plan, code) ? "its plan is '" + plan.string() + "'"
+                                       : "expected a plan, such as plan.json in the folder of a "
+                                         "run");
+  }
+  if (ending == ".lua")
+    refuse_file(
+        file, "a script, not a plan",
+        "`lapwing run " + file.string() + "` makes one, plan.json in the folder that it names");
+  if (ending == ".yaml" || ending == ".yml")
+    refuse_file(file, "a configuration, not a plan", kWantedPlan);
+}
+
+Value plan_document(const std::string& text, const fs::path& file) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
-  if (begin == text.npos || text[begin] != '{')
-    throw InputError("'" + name +
-                     "' is no plan; expected a document such as plan.json in the "
-                     "folder of a run");
-  return from_json(text, name);
+  if (begin == text.npos) refuse_file(file, "empty", kWantedPlan);
+  if (text[begin] != '{') refuse_file(file, "no plan", kWantedPlan);
+  Value document = from_json(text, file.string());
+  if (!document.find("format") && !document.find("samples"))
+    refuse_file(file, "no plan: JSON without `format` and `samples`", kWantedPlan);
+  return document;
 }
 
 // Of the plan as it was planned, not of what a judge put into it.
@@ -322,19 +349,11 @@ JudgedPlan judge(Plan plan, const fs::path& folder, const DigestFindings* digest
 }
 
 Plan read_plan_file(const fs::path& file, DigestFindings* digest) {
-  if (file.extension() == ".lua")
-    throw InputError("'" + file.string() + "' is a script, not a plan; `lapwing run " +
-                     file.string() + "` makes one, plan.json in the folder that it names");
-  if (fs::is_directory(file)) {
-    const bool of_a_run = fs::exists(file / "plan.json");
-    throw InputError("'" + file.string() + "' is a folder; " +
-                     (of_a_run ? "its plan is '" + (file / "plan.json").string() + "'"
-                               : "expected a plan, such as plan.json in the folder of a run"));
-  }
+  refuse_other_kinds(file);
   const std::string left =
       complete_run_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
   if (!left.empty()) logging::warning(left);
-  const Value document = plan_document(read_file(file), file.string());
+  const Value document = plan_document(read_file(file), file);
   Plan plan = plan_from_value(document);
   if (digest) *digest = check_digest(document);
   return plan;

@@ -20,7 +20,9 @@ struct Line {
 
 std::string shown_origin(const Origin& origin) {
   if (origin.source.empty()) return "";
-  if (origin.line == 0) return origin.source;  // "default", "--set"
+  if (origin.source.starts_with("--"))  // "--set step=0.1": the value stands beside it
+    return origin.source.substr(0, origin.source.find(' '));
+  if (origin.line == 0) return origin.source;  // "default"
   return "from " + origin.to_string();
 }
 

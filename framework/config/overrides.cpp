@@ -19,11 +19,21 @@ struct Step {
 struct Override {
   std::vector<Step> path;
   Value value;
+  Origin origin;  // "--set step=0.1"
 };
 
 // `text` with its option, as the user wrote it.
 [[noreturn]] void malformed(const std::string& text, const std::string& why) {
   throw InputError(text + ": " + why);
+}
+
+// Of a long list, its beginning tells which one it is.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kLongest = 80;
+  if (text.size() <= kLongest) return text;
+  std::size_t end = kLongest - 3;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // in UTF-8
+  return text.substr(0, end) + "...";
 }
 
 void set_origins(Value& value, const Origin& origin) {
@@ -96,7 +106,8 @@ Override parse_override(const std::string& text, const std::string& option) {
   }
   if (read.as_map().size() != 1) malformed(shown, "the value must be one value");
   result.value = read.at("value");
-  set_origins(result.value, {option, 0});
+  result.origin = {shortened(shown), 0};
+  set_origins(result.value, result.origin);
   return result;
 }
 
@@ -148,7 +159,7 @@ void apply_override(Value& base, const std::string& text, const std::string& opt
   Value layer = over.value;
   for (std::size_t i = over.path.size(); i > used; --i) {
     Value map = Value::map();
-    map.with_origin({option, 0});
+    map.with_origin(over.origin);
     map.set(over.path[i - 1].key, std::move(layer));
     layer = std::move(map);
   }

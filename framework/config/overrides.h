@@ -11,8 +11,8 @@ namespace lapwing {
 // Lays one override on `base`, by the rules of `merge`. The value is read as YAML:
 // `weights.snap=2`, `solver=ipopt`, `start.velocity=[1, 0, 0]`, `name='4'`, `speed=36 km/h`. A list
 // entry is named by its number, from 1 as in Lua: `keyframes[2].time=3`; it must exist. Nodes that
-// are set get the origin `option`. InputError says what is malformed, or which part of the path is
-// not there; `base` is then as it was.
+// are set get the origin "--set keyframes[2].time=3". InputError says what is malformed, or which
+// part of the path is not there; `base` is then as it was.
 void apply_override(Value& base, const std::string& text, const std::string& option = "--set");
 
 // `lowest`, with `layers` laid on it in order, then `overrides` in order. Each value keeps the

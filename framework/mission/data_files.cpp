@@ -1,6 +1,7 @@
 #include "framework/mission/data_files.h"
 
 #include <algorithm>
+#include <optional>
 #include <system_error>
 
 #include "framework/config/read_note.h"
@@ -20,6 +21,27 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
          folder.end();
 }
 
+// The option that names a file.
+struct NamedFile {
+  std::string key;
+  Origin origin;
+};
+
+std::optional<NamedFile> naming(const Value& options, const std::string& file,
+                                const std::string& key = "") {
+  if (options.is_text() && options.as_text() == file && !options.origin().source.empty() &&
+      options.origin().source != "default")
+    return NamedFile{key, options.origin()};
+  if (options.is_map())
+    for (const auto& [name, value] : options.as_map())
+      if (auto found = naming(value, file, (key.empty() ? "" : key + ".") + name)) return found;
+  if (options.is_list())
+    for (std::size_t i = 0; i < options.as_list().size(); ++i)
+      if (auto found = naming(options.as_list()[i], file, key + "[" + std::to_string(i + 1) + "]"))
+        return found;
+  return std::nullopt;
+}
+
 }  // namespace
 
 DataFiles::DataFiles(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
@@ -30,15 +52,25 @@ void DataFiles::allow(const fs::path& file) {
   if (!error) allowed_.push_back(canonical);
 }
 
+fs::path DataFiles::found(const std::string& name, const std::string& inside, bool folder) const {
+  try {
+    return find_entry(name, inside, folder);
+  } catch (const InputError& error) {
+    const std::optional<NamedFile> option = options_ ? naming(*options_, name) : std::nullopt;
+    if (!option) throw;
+    throw InputError(option->origin, option->key + ": " + error.what());
+  }
+}
+
 // Whoever finds a file reads it.
 fs::path DataFiles::find(const std::string& name, const std::string& inside) const {
-  const fs::path file = find_entry(name, inside, false);
+  const fs::path file = found(name, inside, false);
   note_read(file);
   return file;
 }
 
 fs::path DataFiles::find_folder(const std::string& name) const {
-  const fs::path folder = find_entry(name, "", true);
+  const fs::path folder = found(name, "", true);
   note_read(folder);
   return folder;
 }

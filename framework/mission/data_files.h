@@ -20,6 +20,10 @@ class DataFiles {
   // relative to the current folder.
   void allow(const std::filesystem::path& file);
 
+  // The option whose value is the name of a file is blamed where that cannot be found. `options`
+  // outlives this.
+  void blame(const Value& options) { options_ = &options; }
+
   // `inside`: a sub-folder of the folders that is asked as well ("shots"). InputError says what was
   // looked for and where.
   std::filesystem::path find(const std::string& name, const std::string& inside = "") const;
@@ -38,9 +42,12 @@ class DataFiles {
  private:
   std::filesystem::path find_entry(const std::string& name, const std::string& inside,
                                    bool folder) const;
+  std::filesystem::path found(const std::string& name, const std::string& inside,
+                              bool folder) const;
 
   std::vector<std::filesystem::path> folders_;
   std::vector<std::filesystem::path> allowed_;  // canonical
+  const Value* options_ = nullptr;
 };
 
 }  // namespace lapwing

@@ -430,6 +430,7 @@ int explore_surface(lua_State* state) try {
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const GroundTruth truth = truth_for(surface, given, e->map->grid().resolution());
   e->start = start_in(truth, given, e->settings, run.settings.seed);
+  begin_planning(run);
   ObservedSurface observed(truth, e->settings.sensor, new_map);
   e->record.utility = chosen.type;
   e->record.cut = cut_height(truth.scene(), e->start);

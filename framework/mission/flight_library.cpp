@@ -36,6 +36,7 @@ namespace {
 // from them.
 int fly_plan(lua_State* state) {
   const PlanObject& object = object_argument<PlanObject>(state, 2, kPlanType);
+  begin_planning(run_of(state));
   Value result = Value::map();
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
@@ -215,6 +216,7 @@ int pursue_path(lua_State* state) {
   for (const Parameters& entry : given.tables("views"))
     views.push_back({static_cast<std::size_t>(entry.integer("point") - 1), entry.number("yaw")});
   const Points path = points_of(given, "points");
+  begin_planning(run_of(state));
   Value passed = Value::list(), result = Value::map();
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));

@@ -1,11 +1,13 @@
 // The table `lapwing`: what a script needs before there is a run.
 #include <lua.hpp>
 
+#include "framework/core/files.h"
 #include "framework/geometry/geodetic.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/options.h"
 #include "framework/mission/run.h"
+#include "framework/mission/script_lines.h"
 
 namespace lapwing {
 
@@ -33,6 +35,15 @@ int local_from_geodetic(lua_State* state) {
   return 1;
 }
 
+// Values that are written in the script's call have their own lines.
+void locate_in_script(lua_State* state, const Origin& call, Value& given) {
+  if (call.source != Sandbox::of(state).script()) return;
+  try {
+    locate_argument(given, read_file(call.source), call.line);
+  } catch (const InputError&) {  // removed since it was run: the line of the call must do
+  }
+}
+
 // lapwing.options(declarations, given): the options of a mission.
 int options(lua_State* state) {
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -47,6 +58,7 @@ int options(lua_State* state) {
         origin, "lapwing.options: expected a table of options, got " + made.given.describe_type());
   }
   made.given.with_origin(origin);
+  locate_in_script(state, origin, made.given);
   new_object(state, kOptionsType, std::move(made));
   return 1;
 }
@@ -62,6 +74,7 @@ int arguments(lua_State* state) {
   if (!given.is_map())
     throw InputError(origin, what + ": expected a table, got " + given.describe_type());
   given.with_origin(origin);
+  locate_in_script(state, origin, given);
   push_value(state, declarations.check(given, *run_of(state).settings.registry, what));
   return 1;
 }

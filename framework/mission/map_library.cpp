@@ -213,6 +213,7 @@ int scan(lua_State* state) {
     poses.push_back(
         camera_pose(vector_of(pose.numbers("position")), pose.number("yaw"), pose.number("pitch")));
   if (poses.empty()) throw InputError(given.origin("poses"), "scan: no pose to look from");
+  begin_planning(run);
   const Sandbox::ClockPause pause(Sandbox::of(state));
   map_surface(mapping, *surface.scene, poses, sensor, run.settings.seed, work_of(run));
   mapping.source = scanned(mapping, poses.size(), "views") + " of '" + surface.name + "'";
@@ -226,6 +227,7 @@ int scan_folder(lua_State* state) {
   const std::string name = text_argument(state, 2, "scan_folder");
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const DepthFolder folder(run.files.find_folder(name));
+  begin_planning(run);
   map_folder(mapping, folder, work_of(run));
   mapping.source = scanned(mapping, folder.size(), "depth images") + " of '" + name + "'";
   return 0;

@@ -12,6 +12,7 @@
 #include "framework/mission/options.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scene_script.h"
+#include "framework/mission/script_lines.h"
 #include "framework/mission/term_recording.h"
 
 namespace lapwing {
@@ -70,13 +71,14 @@ struct Mission::Impl {
   void read_mission(lua_State* state);
 
   std::filesystem::path script;
+  std::string script_text = {};
   MissionRun run;
   MissionOptions options;
   Sandbox sandbox;  // last: its state holds references to the run
 };
 
 void Mission::Impl::load() {
-  static_cast<void>(read_file(script));  // what cannot be read has no line to blame
+  script_text = read_file(script);  // what cannot be read has no line to blame
   sandbox.protect([this](lua_State* state) {
     open_script_libraries(state, run);
     sandbox.run_script(state, script);
@@ -122,6 +124,7 @@ void Mission::Impl::read_mission(lua_State* state) {
     throw InputError(origin, "options: expected a table, got " + options.given.describe_type());
   }
   options.given.with_origin(origin);
+  locate_in_result(options.given, script_text, "options");
   options.declarations = OptionDeclarations::from_options(options.given);
 }
 
@@ -140,6 +143,11 @@ const std::string& Mission::kind() const {
 }
 const Value& Mission::configuration() const {
   return impl_->run.configuration;
+}
+
+std::vector<SettableOption> Mission::settable() const {
+  return impl_->options.declarations.settable(impl_->run.configuration,
+                                              *impl_->run.settings.registry);
 }
 
 void Mission::configure(std::span<const Value> layers, std::span<const std::string> overrides) {
@@ -161,14 +169,36 @@ void Mission::configure(std::span<const Value> layers, std::span<const std::stri
                               own_layers, own_overrides);
   impl_->run.configuration =
       impl_->options.declarations.check(given, *impl_->run.settings.registry);
+  impl_->run.files.blame(impl_->run.configuration);
   const Value* input = impl_->run.configuration.find("input");
   const bool from_script = input && input->origin().source == impl_->sandbox.script();
   if (input && input->is_text() && !from_script) impl_->run.files.allow(input->as_text());
 }
 
+void Mission::judge() {
+  MissionRun& run = impl_->run;
+  struct Judging {
+    explicit Judging(bool& flag) : judging(flag) { judging = true; }
+    ~Judging() { judging = false; }
+    bool& judging;
+  } const judging(run.judging);
+  try {
+    plan();
+  } catch (const PlanningBegins&) {
+  } catch (const InputError&) {
+    // A script that goes on after planning has begun fails for want of its results.
+    if (!run.planning_began) throw;
+  }
+}
+
+bool Mission::planning_began() const {
+  return impl_->run.planning_began;
+}
+
 MissionResult Mission::plan() {
   MissionResult result;
   Impl& impl = *impl_;
+  impl.run.planning_began = false;
   impl.sandbox.protect([&](lua_State* state) {
     lua_getfield(state, LUA_REGISTRYINDEX, kPlanFunction);
     push_run(state);

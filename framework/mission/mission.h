@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "framework/mission/map_work.h"
+#include "framework/mission/options.h"
 #include "framework/mission/run.h"
 
 namespace lapwing {
@@ -54,8 +55,16 @@ class Mission {
   // is one that the script may read. Keys `sandbox.*` are taken for limits and must be given to
   // `sandbox_limits` before.
   void configure(std::span<const Value> layers, std::span<const std::string> overrides);
+  // What --set may be given, for whoever completes it. InputError for an unknown plugin.
+  std::vector<SettableOption> settable() const;
   // Effective options; every value with its origin.
   const Value& configuration() const;
+
+  // Calls the script's plan function up to where planning begins: whatever it finds wrong before,
+  // `plan` finds as well, with the same message. Files that the mission names are read. InputError.
+  void judge();
+  // Whether the last `plan` or `judge` came to where planning begins.
+  bool planning_began() const;
 
   // Calls the script's plan function. InputError for errors of the script; everything that a solver
   // has to say is in the result.

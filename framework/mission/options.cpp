@@ -238,6 +238,46 @@ std::string OptionDeclarations::spelled_out(const std::string& override_text) co
   return override_text;
 }
 
+namespace {
+
+void add_settable(const ParameterTable& table, const std::string& before,
+                  std::vector<SettableOption>& all) {
+  for (const ParameterSpec& spec : table.specs()) {
+    if (spec.type == ParameterType::tables) continue;
+    if (spec.type == ParameterType::table) {
+      add_settable(*spec.table, before + spec.name + ".", all);
+      continue;
+    }
+    SettableOption option{before + spec.name, spec.choices};
+    if (spec.type == ParameterType::boolean) option.values = {"false", "true"};
+    all.push_back(std::move(option));
+  }
+}
+
+}  // namespace
+
+std::vector<SettableOption> OptionDeclarations::settable(const Value& given,
+                                                         const Registry& registry) const {
+  Value values = given.is_map() ? given : Value::map();
+  std::vector<SettableOption> all;
+  add_settable(table_for(values, registry), "", all);
+  for (const Option& option : options_) {
+    if (option.plugins) continue;
+    std::vector<std::string> plugins;
+    for (const PluginEntry& entry : registry.entries())
+      if (entry.kind == option.plugin_kind) plugins.push_back(entry.name);
+    for (SettableOption& one : all) {
+      if (one.key == option.name) {
+        one.vehicle = option.vehicle;
+        one.values.insert(one.values.end(), option.words.begin(), option.words.end());
+      }
+      if (!plugins.empty() && one.key == option.name + "." + option.under) one.values = plugins;
+    }
+    if (!plugins.empty()) all.push_back({option.name, plugins});
+  }
+  return all;
+}
+
 // Each entry against the table of the plugin that it names.
 Value OptionDeclarations::checked_plugins(const Option& option, const Value* given,
                                           const Registry& registry, Diagnostics& errors) {

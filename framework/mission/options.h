@@ -50,6 +50,13 @@ inline constexpr BoundField kDeclarationKeys[] = {
     {"replaced_by?", "string", "an option that takes this one's place where it is set"},
     {"also?", "string", "what else a script may give, for editors: a type as LuaLS writes it"}};
 
+// What may be written behind --set: "weights.yaw", and the words that its value may be.
+struct SettableOption {
+  std::string key;
+  std::vector<std::string> values;
+  bool vehicle = false;  // a vehicle file's name
+};
+
 class OptionDeclarations {
  public:
   // From what a script gave to lapwing.options. InputError naming what is malformed.
@@ -63,6 +70,11 @@ class OptionDeclarations {
   // plugins chosen included; no code is loaded. InputError with all errors, whose keys begin with
   // `what`.
   Value check(const Value& given, const Registry& registry, const std::string& what = "") const;
+
+  // Every option with a single value, nested ones with their path, those of the plugins that
+  // `given` chooses included. Entries of lists are left out. InputError where a plugin is not
+  // known.
+  std::vector<SettableOption> settable(const Value& given, const Registry& registry) const;
 
   // A plugin's name alone, where the mission has entries of its own beside the plugin's, becomes a
   // table with that name, so that it takes nothing else away: "tour=greedy" is

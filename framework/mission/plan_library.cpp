@@ -97,6 +97,7 @@ int solve(lua_State* state) {
   request.progress = run.settings.progress;
   const auto solver =
       run.settings.registry->create<TrajectorySolver>(argument.type, argument.parameters, "solver");
+  begin_planning(run);
   if (run.settings.observe_problem) run.settings.observe_problem(object.problem);
   SolutionObject solution;
   solution.problem = object.problem;

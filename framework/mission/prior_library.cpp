@@ -93,6 +93,7 @@ int look(lua_State* state) {
   const DepthNoise sensor{errors.number("dropped"), errors.number("sigma")};
   const auto poses = given.tables("poses");
   if (poses.empty()) throw InputError(given.origin("poses"), "look: no pose to look from");
+  begin_planning(run);
   if (run.settings.observe_surface) run.settings.observe_surface(surface.scene);
   const Sandbox::ClockPause pause(Sandbox::of(state));
   prior.mapping.map->set_threads(run.settings.threads);
@@ -294,6 +295,7 @@ ParameterTable reconstruct_table() {
 int reconstruct(lua_State* state) {
   Prior& prior = prior_argument(state);
   const Parameters given = table_argument(state, 2, reconstruct_table(), "reconstruct");
+  begin_planning(run_of(state));
   const Sandbox::ClockPause pause(Sandbox::of(state));
   std::vector<FusedPoint> points = prior.fusion->points();
   points.insert(points.end(), prior.earlier.begin(), prior.earlier.end());

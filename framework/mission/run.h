@@ -94,7 +94,19 @@ struct MissionRun {
   Value configuration = Value::map();
   double solve_seconds = 0;
   ObstacleFiles obstacles = {};
+  bool judging = false;         // the plan function ends where planning would begin
+  bool planning_began = false;  // since the plan function was called
 };
+
+// Ends the plan function of a mission that is only judged; no error of anybody.
+class PlanningBegins : public Error {
+ public:
+  PlanningBegins() : Error("planning begins") {}
+};
+
+// Called first by every function that computes what a mission asks for, once its arguments are
+// checked. Throws PlanningBegins where the mission is only judged.
+void begin_planning(MissionRun& run);
 
 // The run that a state belongs to.
 MissionRun& run_of(lua_State* state);

@@ -12,6 +12,12 @@
 #include "framework/mission/value_path.h"
 
 namespace lapwing {
+
+void begin_planning(MissionRun& run) {
+  run.planning_began = true;
+  if (run.judging) throw PlanningBegins();
+}
+
 namespace {
 
 int cancelled(lua_State* state) {

@@ -182,6 +182,7 @@ void Sandbox::hook(lua_State* state, lua_Debug* record) {
     lua_getinfo(state, "S", record);
     if (record->source[0] == '@' && self.script_ == record->source + 1) {
       self.last_line_ = record->currentline;
+      if (std::string_view(record->what) == "main") self.last_main_line_ = record->currentline;
     }
     return;
   }
@@ -233,7 +234,8 @@ Origin Sandbox::script_position(lua_State* state) const {
       return {script_, record.currentline};
     }
   }
-  return {script_, std::max(last_line_, 1)};
+  // `return film.shot {...}` is a tail call, after which the script has no frame any more.
+  return {script_, std::max(last_main_line_, 1)};
 }
 
 void Sandbox::protect(const std::function<void(lua_State*)>& body) {
@@ -330,7 +332,7 @@ void Sandbox::load(lua_State* state, const std::filesystem::path& file, const st
 
 void Sandbox::run_script(lua_State* state, const std::filesystem::path& script) {
   script_ = script.string();
-  last_line_ = 0;
+  last_line_ = last_main_line_ = 0;
   const std::filesystem::path folder = script.parent_path();
   module_folders_.insert(module_folders_.begin(), folder.empty() ? "." : folder);
   load(state, script, script_);

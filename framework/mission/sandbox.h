@@ -68,7 +68,7 @@ class Sandbox {
   void run_script(lua_State* state, const std::filesystem::path& script);
 
   // Where the script is: the innermost frame of the script's own file, else the last of its lines
-  // that ran.
+  // outside of functions that ran.
   Origin script_position(lua_State* state) const;
   const std::string& script() const { return script_; }
   const SandboxLimits& limits() const { return limits_; }
@@ -127,8 +127,9 @@ class Sandbox {
   std::vector<std::filesystem::path> module_folders_;
   std::function<void(const std::string&)> print_;
   lua_State* state_ = nullptr;
-  std::string script_;  // as the user typed it
-  int last_line_ = 0;   // of the script
+  std::string script_;      // as the user typed it
+  int last_line_ = 0;       // of the script, that ran
+  int last_main_line_ = 0;  // the same outside of its functions
   SandboxHeap heap_;
   std::int64_t executed_ = 0;
   bool watching_lines_ = false;

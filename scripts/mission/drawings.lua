@@ -5,22 +5,23 @@ local svg = require "mission.svg"
 
 local M = {}
 
--- Strokes of an SVG file, y up, and notes of what of it is not drawn.
-local function picture(name)
+-- Strokes of the SVG file that the option names, y up, and notes of what of it is not drawn.
+local function picture(run, option)
+  local name = run.options[option]
+  local function fail(text) run:fail(option, name .. ": " .. text) end
   local good, strokes, notes = pcall(svg.strokes, lapwing.read_text(name, "strokes"))
-  if not good then lapwing.fail(name .. ": " .. tostring(strokes):gsub("^[^ ]*:%d+: ", "")) end
+  if not good then fail((tostring(strokes):gsub("^[^ ]*:%d+: ", ""))) end
   for _, stroke in ipairs(strokes) do
     for _, p in ipairs(stroke) do
       p[2] = -p[2]
       if p[1] ~= p[1] or p[2] ~= p[2] or math.abs(p[1]) > 1e9 or math.abs(p[2]) > 1e9 then
-        lapwing.fail(name .. ": a path holds a number that is not finite or too large")
+        fail("a path holds a number that is not finite or too large")
       end
     end
   end
   for i, note in ipairs(notes) do notes[i] = name .. ", " .. note end
   if #strokes == 0 then
-    lapwing.fail(name .. ": no path is drawn in it"
-                 .. (#notes > 0 and "; " .. table.concat(notes, "; ") or ""))
+    fail("no path is drawn in it" .. (#notes > 0 and "; " .. table.concat(notes, "; ") or ""))
   end
   return strokes, notes
 end
@@ -64,7 +65,7 @@ function M.read(run)
     end
     return strokes
   end
-  local strokes, notes = picture(o.svg or o.input)
+  local strokes, notes = picture(run, o.svg and "svg" or "input")
   return strokes, nil, notes
 end
 

@@ -70,14 +70,14 @@ end
 -- its request, with the ways that are known; `why` it fails; `told`: notes on passages.
 local function stretched(run, failing, again, why, least, told)
   local o = run.options
-  local request, good = stretching.first(again, least), nil
+  local request, good, last = stretching.first(again, least), nil, nil
   if request and not run:cancelled() then
-    local outcome = attempts.pursue(run, request, stretching.next)
-    good = outcome.request.scope == "film" and outcome.holds and outcome
+    last = attempts.pursue(run, request, stretching.next)
+    good = last.request.scope == "film" and last.holds and last
   end
   local certified = good and good.request.stretch or nil
-  local note = good and string.format("%s; certified from a stretch of %.2f", why, certified)
-    or string.format("%s; no stretch up to %g is certified", why, stretching.LARGEST)
+  local note = why .. "; " .. (good and string.format("certified from a stretch of %.2f", certified)
+                               or stretching.in_vain(again, least, request, last))
   if run:cancelled() then note = why .. "; the search for a stretch was cancelled" end
   if o.stretch == "auto" and good then
     return finished(run, good, { notes = { note }, certified = certified, details = told.notes,

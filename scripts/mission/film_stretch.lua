@@ -53,4 +53,17 @@ function M.next(_, outcome)
   return next_flight(again, { low = low, good = good, more = more, most = bracket.most })
 end
 
+-- What a search that found nothing tried, in words: from the request `first` to the outcome `last`.
+-- Where nothing was tried, a stretch of more than `least` is needed.
+function M.in_vain(request, least, first, last)
+  if not first then
+    return string.format("it would take a stretch of more than %.4g, and none beyond %.4g is tried",
+                         least, M.LARGEST * request.stretch)
+  end
+  local from, to = first.stretch, last and last.request.stretch or first.stretch
+  if to <= from then return string.format("a stretch of %.3g is not certified either", from) end
+  return string.format("of the stretches that were tried, from %.3g to %.3g, none is certified",
+                       from, to)
+end
+
 return M

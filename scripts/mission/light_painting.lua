@@ -167,6 +167,7 @@ local function painted(run)
   local strongest = 0.9 * vehicle.acceleration_across
   local share, best = 1, nil
   while true do
+    run:phase(share == 1 and "painting" or string.format("painting at %.2g of the speed", share))
     local timed = run:time_path {
       points = paths.flat(path), spacing = SPACING, rounding = o.rounding,
       speed = share * math.min(o.speed, fastest),

@@ -126,7 +126,7 @@ TEST_F(CommandLine, ConfigShowsValuesAndOrigins) {
   Finished finished = run({"config", "shot.lua", "--config", "mine.yaml", "--set", "order=3"});
   EXPECT_EQ(finished.status, 0) << finished.err;
   for (const char* fragment : {"# film: hop", "mine.yaml:2", "# --set", "# default", "type: iqp",
-                               "iterations: ", "shot.lua:2"}) {
+                               "iterations: ", "shot.lua:4"}) {
     EXPECT_NE(finished.out.find(fragment), std::string::npos) << fragment << "\n" << finished.out;
   }
   EXPECT_FALSE(fs::exists(folder_ / "out"));
@@ -186,7 +186,7 @@ TEST_F(CommandLine, BadInputWithJsonIsStillOneObject) {
   EXPECT_EQ(finished.status, 2);
   const Value object = from_json(finished.out, "stdout");
   EXPECT_EQ(object.at("status").as_text(), "failed");
-  EXPECT_NE(object.at("error").as_text().find("shot.lua:2: wieghts: unknown key"),
+  EXPECT_NE(object.at("error").as_text().find("shot.lua:7: wieghts: unknown key"),
             std::string::npos);
 }
 
@@ -207,10 +207,10 @@ TEST_F(CommandLine, TextThatIsNotUtf8IsRefused) {
 
 // Everything that can be wrong with a mission: one clear message, exit 2, nothing written.
 TEST_F(CommandLine, BadMissionsAreRefused) {
-  refused_script(film("wieghts = {},"), {"shot.lua:2: wieghts: unknown key", "'weights'"});
-  refused_script(film("solver = 'ipq',"), {"shot.lua:2", "'ipq'", "'iqp'"});
-  refused_script(film("duration = '3 kg',"), {"shot.lua:2: duration: '3 kg' is no quantity in s"});
-  refused_script(film("hard = -0.5,"), {"shot.lua:2: hard: expected above 0 m, got -0.5"});
+  refused_script(film("wieghts = {},"), {"shot.lua:7: wieghts: unknown key", "'weights'"});
+  refused_script(film("solver = 'ipq',"), {"shot.lua:7", "'ipq'", "'iqp'"});
+  refused_script(film("duration = '3 kg',"), {"shot.lua:7: duration: '3 kg' is no quantity in s"});
+  refused_script(film("hard = -0.5,"), {"shot.lua:7: hard: expected above 0 m, got -0.5"});
   refused_script(film("hard = 0/0,"), {"shot.lua:2: hard: expected a finite number, got NaN"});
   refused_script(
       "\nreturn require('mission.film').shot { keyframes = {"
@@ -249,7 +249,7 @@ TEST_F(CommandLine, BadMissionsAreRefused) {
           {"bad.yaml:2: weights.yaww: unknown key; did you mean 'yaw'?",
            "bad.yaml:3: step: '3 m' is no quantity in s"});
   refused({"run", "shot.lua", "--set", "solver.iteration=3"},
-          {"--set: solver.iteration: unknown key; did you mean 'iterations'?"});
+          {"--set solver.iteration=3: solver.iteration: unknown key; did you mean 'iterations'?"});
   refused({"run", "shot.lua", "--set", "sandbox.memroy=3"}, {"did you mean 'memory'?"});
 }
 

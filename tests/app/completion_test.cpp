@@ -35,10 +35,33 @@ class Completing : public CommandLine {
                              "'%s\\n' \"${COMPREPLY[@]}\"")
         .out;
   }
+  // As bash itself calls the function, with the words cut at its word breaks. What it would put in
+  // place of the last piece.
+  std::string in_bash_line(const std::string& line) {
+    std::string pieces, piece;
+    const auto end_piece = [&] {
+      if (!piece.empty()) pieces += " '" + piece + "'";
+      piece.clear();
+    };
+    for (const char c : line) {
+      const bool breaks = c == '=' || c == ':';
+      if (c == ' ' || breaks != (piece == "=" || piece == ":")) end_piece();
+      if (c != ' ') piece += c;
+    }
+    const bool between = line.ends_with(" ");
+    end_piece();
+    return shell("bash", "source <(lapwing completion bash)\nCOMP_LINE='" + line +
+                             "'\nCOMP_WORDS=(" + pieces + (between ? " ''" : "") +
+                             ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_lapwing\nprintf "
+                             "'%s\\n' \"${COMPREPLY[@]}\"")
+        .out;
+  }
   // The parts of zsh's completion system that the function calls print what they are given.
   std::string in_zsh(const std::string& words) {
     return shell("zsh -f",
-                 "compdef() {}\ncompadd() { shift; for w in $@; do [[ $w == ${words[CURRENT]}* ]] "
+                 "compdef() {}\ncompset() { words[CURRENT]=${words[CURRENT]#*=} }\n"
+                 "compadd() { while [[ $1 != -- ]]; do shift; done; shift; for w in $@; do [[ $w "
+                 "== ${words[CURRENT]}* ]] "
                  "&& print -r -- $w; done; return 0 }\n"
                  "_files() { print FILES $@ }\n"
                  "_describe() { for w in $offered; do [[ $w == ${words[CURRENT]}* ]] && print -r "
@@ -108,6 +131,56 @@ TEST_F(Completing, FishCompletesNames) {
     EXPECT_EQ(in_fish(words + std::string(" ") + typed), offered) << words;
 }
 
+// Options of the mission that is typed, and the values that they may have.
+TEST_F(Completing, SettingsAreThoseOfTheMission) {
+  write("shot.lua", film(""));
+  const std::string run_it = "lapwing run shot.lua --set";
+  const std::vector<std::array<std::string, 2>> all = {
+      {"weights.s", "weights.skewness=\nweights.smoothness=\nweights.speed=\n"},
+      {"timing=g", "timing=given\n"},
+      {"solver=", "solver=ipopt\nsolver=iqp\nsolver=nlopt\n"},
+      {"solver.it", "solver.iterations=\n"},
+      {"vehicle=vehicles/r", "vehicle=vehicles/racer\n"},
+      {"stretch=", "stretch=auto\n"},
+      {"ste", "step=\n"}};
+  for (const auto& [typed, offered] : all) {
+    EXPECT_EQ(in_bash(run_it + " " + typed), offered);
+    std::string whole;  // the word as bash has it where '=' does not end words
+    for (std::size_t at = 0; at < offered.size(); at = offered.find('\n', at) + 1)
+      whole += "--set=" + offered.substr(at, offered.find('\n', at) + 1 - at);
+    EXPECT_EQ(in_bash("lapwing config shot.lua --seed 3 --set=" + typed), whole);
+    if (installed("zsh")) {
+      EXPECT_EQ(in_zsh(run_it + " " + typed), offered);
+      EXPECT_EQ(in_zsh("lapwing sweep shot.lua --vary=" + typed), offered);
+    }
+    if (installed("fish")) {
+      EXPECT_EQ(in_fish(run_it + " " + typed), offered);
+    }
+  }
+  EXPECT_EQ(in_bash("lapwing run --set ti"), "\n") << "of no mission";
+  EXPECT_EQ(in_bash("lapwing run absent.lua --set ti"), "\n");
+  EXPECT_EQ(run({"complete", "setting", "shot.lua", "tim"}).out, "timing=\n");
+}
+
+// Bash cuts words at '=' and ':', and puts offers in place of the last piece.
+TEST_F(Completing, BashPutsItsPiecesTogether) {
+  write("shot.lua", film(""));
+  EXPECT_EQ(in_bash_line("lapwing run --config=scan/s"), "scan/small\n");
+  EXPECT_EQ(in_bash_line("lapwing verify --vehicle=v"), "vehicles/racer\nvehicles/solo\n");
+  EXPECT_EQ(in_bash_line("lapwing run shot.lua --set timing=g"), "given\n");
+  EXPECT_EQ(in_bash_line("lapwing run shot.lua --set timing="),
+            "free\ngiven\npath_first\ntime_first\n");
+  EXPECT_EQ(in_bash_line("lapwing run shot.lua --set=timing=g"), "given\n");
+  EXPECT_EQ(in_bash_line("lapwing run shot.lua --set=weights.sk"), "weights.skewness=\n");
+  EXPECT_EQ(in_bash_line("lapwing run shot.lua --set timing=given --qu"), "--quiet\n");
+  EXPECT_EQ(in_bash_line("lapwing export --format="), "colmap\ncsv\n");
+  write("a=b.lua", "");
+  write("c:d.lua", "");
+  EXPECT_EQ(in_bash_line("lapwing run a=b"), "b.lua\n");
+  EXPECT_EQ(in_bash_line("lapwing run c:"), "d.lua\n");
+  EXPECT_EQ(in_bash_line("lapwing ru"), "run\n");
+}
+
 // Files stand beside the names, and a name of another list does not.
 TEST_F(Completing, FilesJoinTheNames) {
   write("scan.yaml", "");
@@ -126,6 +199,7 @@ TEST_F(Completing, ListsAreOfDeclaredOptionsAndHoldNames) {
         found += (*value.command == '\0' || command->path == value.command) &&
                  option.names.back() == value.option && option.names_list == value.names;
     EXPECT_GT(found, 0) << value.command << " " << value.option;
+    if (value.names == std::string(kSettings)) continue;  // of a mission
     EXPECT_FALSE(run({"complete", value.names}).out.empty()) << value.names;
   }
   refused({"complete", "moods"}, {"there is no list of names 'moods'", "vehicle", "world"});

@@ -73,7 +73,8 @@ TEST_F(Helping, ErrorsBlameWhatIsWrong) {
   refused({"run", folder_.string()}, {"lapwing: cannot read '" + folder_.string() + "': it is a"});
   write("shot.lua", film("name = 'hop',"));
   refused({"run", "shot.lua", "--set", "vehicle=vehicles/sola"},
-          {"lapwing: --set: no configuration 'vehicles/sola'; did you mean 'vehicles/solo'?"});
+          {"lapwing: --set vehicle=vehicles/sola: no configuration 'vehicles/sola'; did you mean "
+           "'vehicles/solo'?"});
   write("mine.yaml", "step: 0.1\nvehicle: vehicles/sola\n");
   refused({"run", "shot.lua", "--config", "mine.yaml"},
           {"lapwing: mine.yaml:2: no configuration 'vehicles/sola'"});

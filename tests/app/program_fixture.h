@@ -63,9 +63,28 @@ class CommandLine : public ::testing::Test {
     write_file_atomically(folder_ / name, text);
   }
 
+  // What `lapwing run` refuses, `lapwing config` refuses in the same words: with every bad input of
+  // these tests, unless it is one of an option that only `run` has.
+  void judged_alike(std::vector<std::string> arguments, const Finished& of_run) {
+    if (arguments.empty() || arguments[0] != "run") return;
+    arguments[0] = "config";
+    for (const std::string& word : arguments)
+      if (word == "-o" || word == "--threads" || word.starts_with("--out")) return;
+    std::erase_if(arguments, [](const std::string& word) {
+      return word == "--quiet" || word == "--keep" || word == "--verbose";
+    });
+    std::string expected = of_run.err;
+    const std::string command = "'lapwing run";
+    for (std::size_t at = 0; (at = expected.find(command, at)) != std::string::npos;)
+      expected.replace(at, command.size(), "'lapwing config");
+    const Finished judged = run(arguments);
+    EXPECT_EQ(judged.status, 2) << "lapwing config: " << judged.err;
+    EXPECT_EQ(judged.err, expected) << "lapwing config";
+  }
+
   // Bad input: exit 2, the fragments on standard error, nothing written.
-  void refused(const std::vector<std::string>& arguments,
-               const std::vector<std::string>& fragments) {
+  void refused(const std::vector<std::string>& arguments, const std::vector<std::string>& fragments,
+               bool of_run_alone = false) {
     std::vector<fs::path> before, after;
     for (const auto& entry : fs::directory_iterator(folder_)) before.push_back(entry.path());
     const Finished finished = run(arguments);
@@ -77,6 +96,7 @@ class CommandLine : public ::testing::Test {
           << "expected: " << fragment << "\ngot: " << finished.err;
     }
     EXPECT_EQ(before.size(), after.size()) << "something was written";
+    judged_alike(arguments, finished);
   }
 
   void refused_script(const std::string& text, const std::vector<std::string>& fragments) {

@@ -1,5 +1,6 @@
 // Lines that a newcomer types wrongly: one message each, with what, where, and what would be right.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "tests/app/program_fixture.h"
 
@@ -24,6 +25,7 @@ class Slips : public CommandLine {
     EXPECT_THAT(finished.err, testing::StartsWith("lapwing: " + message)) << words[0];
     EXPECT_LE(std::count(finished.err.begin(), finished.err.end(), '\n'), 2) << finished.err;
     EXPECT_LT(finished.err.size(), 700u) << finished.err;
+    judged_alike(words, finished);
   }
 };
 
@@ -53,6 +55,59 @@ TEST_F(Slips, AFileOfAnotherSort) {
   slip({"verify", "out"}, "'out' is a folder; expected a plan, such as plan.json");
 }
 
+// Whatever is given in place of a plan, every command that takes one says what it is and what is
+// wanted, in the same words.
+TEST_F(Slips, InPlaceOfAPlan) {
+  struct Given {
+    const char *file, *message;
+  };
+  const std::string wanted = "; expected a document such as plan.json in the folder of a run\n";
+  write("empty.json", " \n");
+  write("binary", std::string("\x7f"
+                              "ELF\0\0{\"",
+                              8));
+  write("list.json", "[1]");
+  write("settings.json", "{\"margin\": 1}");
+  write("whole.json", "{\"format\": 1}");
+  fs::create_directories(folder_ / "nothing");
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  const Given all[] = {
+      {"shot.lua", "'shot.lua' is a script, not a plan; `lapwing run shot.lua` makes one, "},
+      {"mine.yaml", "'mine.yaml' is a configuration, not a plan; expected a document such as "},
+      {"nothing", "'nothing"},
+      {"pipe", "cannot read 'pipe': nobody has written into it for 5 s"},
+      {"empty.json", "'empty.json' is empty; expected a document such as plan.json in the "},
+      {"binary", "'binary' is no plan; expected a document such as plan.json in the folder "},
+      {"list.json", "'list.json' is no plan; expected a document such as plan.json in the "},
+      {"settings.json", "'settings.json' is no plan: JSON without `format` and `samples`; "},
+      {"house.obj", "'house.obj' is no plan; expected a document such as plan.json in the "},
+      {"absent.json", ""},
+      {"whole.json", "whole.json:1: "}};
+  write("log.csv", "time,forward,left\n0,0,0\n");
+  for (const Given& given : all) {
+    const std::vector<std::vector<std::string>> commands = {
+        {"verify", given.file},
+        {"simulate", given.file},
+        {"export", given.file, "--format", "csv", "-o", "x.csv"},
+        {"race", given.file, "--pilot", "log.csv"},
+        {"diff", given.file, given.file}};
+    for (const std::vector<std::string>& words : commands) {
+      if (words[0] != "verify" && words[0] != "diff" && given.file == std::string("pipe"))
+        continue;  // 5 s each
+      const Finished finished = run(words);
+      EXPECT_EQ(finished.status, 2) << words[0] << " " << given.file;
+      EXPECT_EQ(finished.out, "") << words[0] << " " << given.file;
+      EXPECT_THAT(finished.err, testing::StartsWith(std::string("lapwing: ") + given.message))
+          << words[0] << " " << given.file;
+      EXPECT_THAT(finished.err, testing::HasSubstr(given.file)) << words[0];
+    }
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "x.csv"));
+  slip({"verify", "nothing"}, "'nothing' is a folder; expected a plan, such as plan.json in the");
+  slip({"diff", "nothing", "nothing"}, "'nothing': there is no plan 'nothing/plan.json'");
+  slip({"verify", "empty.json"}, "'empty.json' is empty" + wanted);
+}
+
 TEST_F(Slips, MeshesAndScenes) {
   slip({"scene", "view", "chruch", "-o", "x.html"},
        "'chruch' is no scene of scripts/scene (did you mean 'church'? There are arcade, church, ");
@@ -63,14 +118,14 @@ TEST_F(Slips, MeshesAndScenes) {
   slip({"evaluate", "explore", "--world", "chruch"}, "'chruch' is no scene of scripts/scene (did");
   write("map.lua", "return require('mission.map').of_scene {\n  scene = 'stret' }");
   slip({"run", "map.lua"},
-       "map.lua:1: scene: there is no scene 'stret'; did you mean 'street'?; expected arcade, ");
+       "map.lua:2: scene: there is no scene 'stret'; did you mean 'street'?; expected arcade, ");
 }
 
 TEST_F(Slips, Settings) {
   slip({"run", "shot.lua", "--set", "keyframes.2.time=3"},
        "--set keyframes.2.time=3: '.2' is no key; an entry of a list is written keyframes[2]");
   slip({"run", "race.lua", "--set", "gates=[]", "--set", "keyframes=3"},
-       "--set: keyframes: expected a list of tables, got 3");
+       "--set keyframes=3: keyframes: expected a list of tables, got 3");
   // A list of all keys is shown once.
   write("mine.yaml", "margn: 1\ncolour: red\nflavour: sweet\n");
   const Finished keys = run({"config", "shot.lua", "--config", "mine.yaml"});

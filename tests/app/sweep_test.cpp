@@ -210,7 +210,7 @@ TEST_F(Sweeping, WhatNoRunCouldDoIsRefusedBefore) {
           {"lapwing: --vary: weights.efort: unknown key; did you mean 'effort'?"});
   refused({"sweep", "nothing.lua", "--vary", "step=0.1"}, {"there is no script 'nothing.lua'"});
   refused({"sweep", "shot.lua"}, {"expected --vary KEY=VALUE,VALUE,..."});
-  refused({"sweep", "shot.lua", "--vary", "step=0.1", "--set", "hard=x"}, {"--set: hard"});
+  refused({"sweep", "shot.lua", "--vary", "step=0.1", "--set", "hard=x"}, {"--set hard=x: hard"});
 }
 
 // A module of one's own counts as the script does.

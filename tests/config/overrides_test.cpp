@@ -86,7 +86,7 @@ TEST(Layers, TheHighestWinsAndKeepsItsOrigin) {
   EXPECT_EQ(value, parsed("duration: 20\nsolver: iqp\nweights: {snap: 7, yaw: 9}\n"));
   EXPECT_EQ(value.at("duration").origin(), (Origin{"shot.lua", 1}));
   EXPECT_EQ(value.at("weights").at("snap").origin(), (Origin{"two.yaml", 3}));
-  EXPECT_EQ(value.at("weights").at("yaw").origin(), (Origin{"--set", 0}));
+  EXPECT_EQ(value.at("weights").at("yaw").origin(), (Origin{"--set weights.yaw=9", 0}));
 }
 
 TEST(Annotated, SaysWhereEveryLeafCameFrom) {

@@ -138,7 +138,7 @@ TEST_F(FilmOwnTerms, ParametersOfPluginsAreOptions) {
   const Value& options = mission->configuration();
   const Value& cost = options.at("costs").as_list()[0];
   EXPECT_EQ(cost.at("height").as_number(), 4);
-  EXPECT_EQ(cost.at("height").origin().source, "--set");
+  EXPECT_EQ(cost.at("height").origin().source, "--set costs[1].height=4 m");
   EXPECT_EQ(cost.at("weight").as_number(), 1);
   EXPECT_EQ(cost.at("weight").origin().source, "default");
   EXPECT_TRUE(cost.find("spans")) << "a default of the plugin's own";
@@ -149,7 +149,7 @@ TEST_F(FilmOwnTerms, ParametersOfPluginsAreOptions) {
   expect(text, "costs[1].height", {"costs[1].height=-1"});
   expect(shot("costs = { { type = 'skewnes', height = 6 } }"), "did you mean 'skewness'?");
   expect(shot("costs = { { type = 'skewness', hight = 6 } }"),
-         "shot.lua:1: costs[1].hight: unknown key; did you mean 'height'?");
+         "shot.lua:4: costs[1].hight: unknown key; did you mean 'height'?");
 }
 
 TEST_F(FilmOwnTerms, BoundsAndCertificateOfAFunctionAreOptions) {
@@ -160,7 +160,7 @@ TEST_F(FilmOwnTerms, BoundsAndCertificateOfAFunctionAreOptions) {
                                               "constraints[1].certificate=reported"});
   const Value& set = mission->configuration().at("constraints").as_list()[0];
   EXPECT_EQ(set.at("upper").as_number(), 9);
-  EXPECT_EQ(set.at("upper").origin().source, "--set");
+  EXPECT_EQ(set.at("upper").origin().source, "--set constraints[1].upper=9");
   const MissionResult result = mission->plan();
   ASSERT_EQ(result.plan.constraints.size(), 1u);
   EXPECT_EQ(result.plan.constraints[0].results[0].upper, 9);

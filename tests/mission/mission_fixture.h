@@ -39,6 +39,20 @@ class MissionTest : public ::testing::Test {
     return std::make_unique<Mission>(folder_ / "shot.lua", std::move(settings));
   }
 
+  // What is wrong before planning begins is found by judging as well, in the same words.
+  void judged_alike(const std::string& text, const std::vector<std::string>& overrides,
+                    const std::vector<Value>& layers, const std::string& expected) {
+    std::string message = "no error";
+    try {
+      const auto mission = load(text);
+      mission->configure(layers, overrides);
+      mission->judge();
+    } catch (const InputError& e) {
+      message = e.what();
+    }
+    EXPECT_EQ(message, expected) << text;
+  }
+
   // The message of loading, configuring and planning, without the folder.
   std::string error(const std::string& text, std::vector<std::string> overrides = {},
                     std::vector<Value> layers = {}) {
@@ -46,7 +60,13 @@ class MissionTest : public ::testing::Test {
     try {
       const auto mission = load(text);
       mission->configure(layers, overrides);
-      mission->plan();
+      try {
+        mission->plan();
+      } catch (const InputError& e) {
+        const bool judged = !mission->planning_began();
+        judged_alike(text, overrides, layers, judged ? e.what() : "no error");
+        throw;
+      }
     } catch (const InputError& e) {
       message = e.what();
     }

@@ -29,9 +29,9 @@ TEST_F(MissionTest, OptionsKnowWhereTheyComeFrom) {
                                "sandbox.memory=100", "keyframes[2].time=4"});
   const Value& options = mission->configuration();
   EXPECT_EQ(options.at("step").as_number(), 0.2);
-  EXPECT_EQ(options.at("step").origin().line, 2);
+  EXPECT_EQ(options.at("step").origin().line, 8);
   EXPECT_EQ(options.at("weights").at("keyframe").origin(), (Origin{"c.yaml", 3}));
-  EXPECT_EQ(options.at("weights").at("effort").origin().source, "--set");
+  EXPECT_EQ(options.at("weights").at("effort").origin().source, "--set weights.effort=0.5");
   EXPECT_EQ(options.at("weights").at("smoothness").origin().source, "default");
   EXPECT_EQ(options.at("solver").at("type").as_text(), "iqp");
   EXPECT_EQ(options.at("solver").at("iterations").as_integer(), 7);
@@ -42,7 +42,7 @@ TEST_F(MissionTest, OptionsKnowWhereTheyComeFrom) {
 }
 
 TEST_F(MissionTest, WrongOptionsAreNamed) {
-  expect(film("wieghts = {},"), "shot.lua:2: wieghts: unknown key; did you mean 'weights'?");
+  expect(film("wieghts = {},"), "shot.lua:8: wieghts: unknown key; did you mean 'weights'?");
   expect(film("weights = { snap = 1 },"), "weights.snap: unknown key");
   expect(film("duration = '20 m',"), "duration: '20 m' is no quantity in s");
   expect(film("duration = -1,"), "duration: expected above 0 and at most 100000 s, got -1");
@@ -57,9 +57,9 @@ TEST_F(MissionTest, WrongOptionsAreNamed) {
   expect(film("vehicle = 'vehicles/sool',"), "vehicles/solo");
   expect(film("vehicle = { mass = 1 },"), "missing");
   expect(film("name = 3,"), "mission.name: expected a text");
-  expect(film(""), "--set: wieghts: unknown key", {"wieghts.snap=2"});
+  expect(film(""), "--set wieghts.snap=2: wieghts: unknown key", {"wieghts.snap=2"});
   expect(film(""), "did you mean 'weights'?", {"wieghts.snap=2"});
-  expect(film(""), "--set: duration: 'soon' is no quantity in s", {"duration=soon"});
+  expect(film(""), "--set duration=soon: duration: 'soon' is no quantity in s", {"duration=soon"});
   expect(film(""), "keyframes[9]", {"keyframes[9].time=2"});
 }
 
