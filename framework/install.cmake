@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` lays down, and what find_package(lapwing) finds: in an install, or in a build
 # tree by -Dlapwing_DIR=BUILD.
 include(CMakePackageConfigHelpers)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The Debian package that scripts/package.sh writes: what `cmake --install` lays down, under /usr. dpkg-shlibdeps finds the packages that it needs.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME lapwing)

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds and runs the benchmarks, each against its named opponent: scripts/bench.sh [options of the
 # benchmark program, such as --benchmark_filter=REGEX]. Prints medians and ratios.
 set -euo pipefail

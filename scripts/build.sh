@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Configuring and building, sourced by the other scripts. Everything that CMake and the compiler say
 # goes to build/PRESET.log; a failure prints its end.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Checks the sources of build/release, which must be built: scripts/check_sources.sh [--alone].
 # No source compiles longer than 15 s; with --alone, every one compiles by itself.
 set -euo pipefail

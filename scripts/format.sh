@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Formats the C++ sources by .clang-format: scripts/format.sh [--check] [FILE...]
 # With --check it changes nothing, names the files that differ, and exits with 1 if there are any.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Feeds every reader of foreign bytes with what libFuzzer makes up, under the sanitizers for addresses
 # and undefined behaviour: scripts/fuzz.sh [--minutes N] [READER...]
 # The minutes (10) are for all of them, one after the other. A finding is kept as a file in

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Prints how many times slower this machine compiles now than one with two free cores, on which a cold
 # build takes 300 s: two compilers at a time, on a source that is always the same. Never less than 1.
 #   scripts/machine_speed.sh

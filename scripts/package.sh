@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds the program and its plugins and writes a Debian package, build/lapwing_VERSION_ARCH.deb:
 #   scripts/package.sh
 # `apt install ./build/lapwing_*.deb` then puts `lapwing` on the PATH of Debian 12.

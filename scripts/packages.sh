@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Debian packages that Lapwing needs; sourced by the other scripts.
 # What building needs, and authors of plugins: CMake's own default calls make.
 lapwing_packages=(

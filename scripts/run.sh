@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds what is needed, then runs a mission: scripts/run.sh MISSION.lua [options of `lapwing run`].
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds everything with sanitizers and runs the tests:
 #   scripts/sanitize.sh address [ctest options]   the whole suite, with AddressSanitizer and
 #                                                 UndefinedBehaviorSanitizer (preset asan)

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs the Debian packages that building, testing, benchmarking and so on need.
 #   scripts/setup.sh [--yes] [--for build|test|bench|fuzz|learn|fresh|check|package]...
 # Prints what it would install; asks first on a terminal unless --yes. Default: build and test.
@@ -41,7 +42,7 @@ for what in "${wanted[@]}"; do
 done
 
 if ! command -v dpkg-query >/dev/null; then
-  echo "setup.sh: this is no Debian; install by hand: ${packages[*]}" >&2
+  echo "setup.sh: this is not a Debian; install by hand: ${packages[*]}" >&2
   exit 2
 fi
 mapfile -t missing < <(lapwing_missing "${packages[@]}")

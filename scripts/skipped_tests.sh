@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Counts and names the tests that were skipped, by reason: scripts/skipped_tests.sh LastTest.log, the
 # log that ctest leaves in BUILD/Testing/Temporary. The tests' own output is what counts.
 set -euo pipefail

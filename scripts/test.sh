@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds everything and runs the tests: scripts/test.sh [--long] [--sources] [ctest options].
 # Checks the budgets on the way: cold build 10 minutes, tests 5 minutes, on two free cores. With
 # --sources, and with --long, check_sources.sh looks at the sources too; that takes minutes.

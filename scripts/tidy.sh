@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs clang-tidy, with .clang-tidy, over the sources that changed; a warning is an error.
 #   scripts/tidy.sh [--since COMMIT] [--minutes N] [FILE...]
 # Without files: what differs from COMMIT, or else what the commits of the last day changed, the last

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Snippets of the guides: what a README tells its reader to type.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that a test calls. They are looked for when it runs, never when CMake configures: what
 // is installed later counts, and a test without its tool is skipped with the package to install.
 #pragma once

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A drone that knows nothing of a city centre maps as much of it, from a street on, as 200 images
 -- or its battery allow.
 --   --set utility=frontier (average_entropy, proximity_count, learned, oracle)

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A church that nobody has seen before: the drone explores it, then scans it for a 3D model with
 -- the map and the mesh that it made, in one visit.
 --   --set utility=frontier --set exploration.images=80

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A kind of mission that the library does not have: the inspection of a facade. The camera keeps
 -- its distance, looks along the normal of the wall, and goes over it as a lawn is mown.
 --   lapwing run examples/facade/facade.lua

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Over a castle and down on its far side, in twenty seconds, with the camera on it all the way.
 --   lapwing run examples/filming/castle_flyover.lua
 local film = require "mission.film"

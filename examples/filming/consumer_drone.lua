@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A consumer drone around a fountain. Its maker states speeds, a tilt and a yaw rate, and nothing
 -- of its thrust: the model `velocity` keeps within what is stated.
 local film = require "mission.film"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Two takes in one flight: up as on a crane beside a gate, then a cut while the vehicle turns, then
 -- along the garden as on rails.
 --   lapwing run examples/filming/crane_and_cut.lua

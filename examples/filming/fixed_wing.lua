@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A fixed-wing aircraft past a lighthouse and round it. It can neither stop nor turn on the spot.
 -- The film therefore begins and ends in flight, with keyframes hundreds of metres apart.
 local film = require "mission.film"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Beside somebody who walks along a winding path: the subject is a function of time, kept in the
 -- right third of the image and from five metres away.
 --   lapwing run examples/filming/follow_walker.lua

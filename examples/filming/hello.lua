@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- The first film: up, across, and a look back.
 --   lapwing run examples/filming/hello.lua
 local film = require "mission.film"

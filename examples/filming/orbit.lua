@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Once around a tower, with the camera on it.
 --   lapwing run examples/filming/orbit.lua
 local film = require "mission.film"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A designer's shot from a file of yours:
 --   lapwing run examples/filming/own_shot.lua --set input=shot_01.json --data ../shared/data
 -- Keyframes are met within half a metre; all times are stretched as little as that takes.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- At a walking pace past an audience that is not filmed, with a wall that the script states itself.
 --   lapwing run examples/filming/past_the_audience.lua
 local film = require "mission.film"

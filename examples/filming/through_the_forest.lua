@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Between sixty trunks after a walker: no straight way is free, so a way is planned to begin with.
 -- `--seed 7` makes another forest.
 local film = require "mission.film"

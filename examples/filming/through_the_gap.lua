@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Three keyframes, and in the straight way between them two trees and a wall: the flight finds the
 -- gap, and the camera stays on the well behind it.
 --   lapwing run examples/filming/through_the_gap.lua

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- From one actor to another: the camera leaves the first, and settles on the second, without a cut.
 --   lapwing run examples/filming/two_actors.lua
 local film = require "mission.film"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A word in the air, two metres tall.
 local light_painting = require "mission.light_painting"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A picture from an SVG file.
 local light_painting = require "mission.light_painting"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A map from a folder of depth images with poses:
 --   lapwing run examples/mapping/own_depth.lua --set input=FOLDER
 local map = require "mission.map"

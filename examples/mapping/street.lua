@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A street as a depth camera sees it that flies over and through it.
 local map = require "mission.map"
 

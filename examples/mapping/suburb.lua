@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Gardens and houses, mapped by a sensor with noise; the map counts how often each voxel was seen.
 local map = require "mission.map"
 

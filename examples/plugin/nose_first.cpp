@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The vehicle flies nose first: no speed sideways.
 //
 //   E = sum_i h (s_i / tolerance)^2,   s = v_y cos yaw - v_x sin yaw, m/s to the left

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A flight without a camera that keeps its nose ahead, by the plugin in this folder:
 --   lapwing --plugin-path build/lib/plugins run nose_first.lua
 local film = require "mission.film"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Three gates, flown round and round: two laps, the end of the last one is the start of the first.
 --   lapwing run examples/racing/round_course.lua
 local race = require "mission.race"

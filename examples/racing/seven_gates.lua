@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Seven gates of five shapes, one of them the middle of a tunnel, once from hover to hover at the
 -- limit of the rotors: lapwing run examples/racing/seven_gates.lua
 --

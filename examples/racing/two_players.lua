@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A course flown by hand: two pilots, from the logs of their sticks, in simulation.
 --   lapwing run examples/racing/two_players.lua
 --   lapwing race out/two_players/plan.json --pilot examples/racing/pilots/leaver.csv:weight=1

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A church on a square, from a first flight over it to a tour of views for its 3D model.
 local scan = require "mission.scan"
 

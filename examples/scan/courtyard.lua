@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Houses round a court that is seen from above and from within.
 local scan = require "mission.scan"
 

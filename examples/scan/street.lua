@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A street between tall houses: most of it can be seen from between the buildings only.
 local scan = require "mission.scan"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts every heap allocation of a program that is linked with it, those of the libraries that it
 // loads included. For programs alone: in a library it would replace its users' allocator.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line for authors of plugins and missions.
 #include <CLI/CLI.hpp>
 

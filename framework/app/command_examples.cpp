@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Examples and exit statuses of every command, as its help and the manual show them.
 #include <CLI/CLI.hpp>
 #include <stdexcept>

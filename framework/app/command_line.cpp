@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/command_line.h"
 #include "framework/app/command_options.h"
 #include "framework/app/command_reference.h"

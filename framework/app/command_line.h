@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The `lapwing` command line: what may be asked, and how every command ends.
 #pragma once
 

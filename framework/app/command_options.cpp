@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/command_options.h"
 
 #include <CLI/CLI.hpp>
@@ -43,9 +44,10 @@ CLI::Option* add_page(CLI::App& command, std::filesystem::path& target) {
                   [&](const std::string& path) {
                     target = path;
                     if (target.extension() != ".html")
-                      throw CLI::ValidationError("-o", "'" + path +
-                                                           "' is no name for a page: expected one "
-                                                           "that ends in .html");
+                      throw CLI::ValidationError("-o",
+                                                 "'" + path +
+                                                     "' is not a name for a page: expected one "
+                                                     "that ends in .html");
                   });
 }
 

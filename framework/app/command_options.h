@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options that several commands take, and the groups of commands that have sources of their own.
 //
 // Options go through CLI11's callbacks on text: its typed ones instantiate a conversion of every

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the command line understands, as data: help, completion and the manual are made of it.
 #pragma once
 

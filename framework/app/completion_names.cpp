@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/completion_names.h"
 
 #include <algorithm>
@@ -149,7 +150,7 @@ std::string no_scene(const std::string& name) {
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
   const std::string nearest = nearest_name(name, known);
-  return "'" + name + "' is no scene of scripts/scene (" +
+  return "'" + name + "' is not a scene of scripts/scene (" +
          (nearest.empty() ? "" : "did you mean '" + nearest + "'? There are ") + all + ")";
 }
 

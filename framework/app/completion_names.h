@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names that a shell completes and that only the installed files and plugins tell.
 #pragma once
 
@@ -24,7 +25,7 @@ std::vector<std::string> name_lists();
 // than a name. InputError for an unknown list.
 std::vector<std::string> names_in_list(const std::string& list, const Invocation& invocation);
 
-// "'chruch' is no scene of scripts/scene (did you mean 'church'? There are arcade, ...)"
+// "'chruch' is not a scene of scripts/scene (did you mean 'church'? There are arcade, ...)"
 std::string no_scene(const std::string& name);
 
 // The list of what --set takes: it depends on the mission, and on what is typed already.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Completion for bash, zsh and fish. All three walk the typed words from command to command, skip
 // options and their values, and offer what may come next; the tables are the declared commands.
 // Names of plugins, configurations and the like are asked of the program that is typed.

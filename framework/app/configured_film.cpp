@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A film against its configuration: what it passes, keeps away from and has in its image.
 #include "framework/app/configured_task.h"
 #include "framework/app/stated_values.h"

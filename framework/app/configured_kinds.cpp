@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Races, scans and light paintings against their configurations.
 #include "framework/app/configured_task.h"
 #include "framework/app/stated_values.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/configured_task.h"
 
 #include "framework/app/stated_values.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a plan's own configuration says of its obstacles and its task.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing annotations, schema, plugins show --markdown: what the program says of itself, for
 // editors and for READMEs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing diff: what two plans have in common and in what they differ.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing evaluate scan: rivals on the same candidates, judged by what their images would make.
 #include <algorithm>
 #include <iostream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/exploration_settings.h"
 
 #include "framework/core/checksum.h"

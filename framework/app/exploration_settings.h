@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What figures and samples of explorations were made with, as it is kept beside them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The worlds that explorations are trained on and judged in: made by a script, or a mesh file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands about the program itself, and what is said of a line that is no command.
 #pragma once
 

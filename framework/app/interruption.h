@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ctrl-C: the first asks the work to end with the best so far, the second ends the program.
 #pragma once
 

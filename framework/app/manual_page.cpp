@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The manual page: what the help says of every command, in roff.
 #include <sstream>
 

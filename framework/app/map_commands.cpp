@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing map info, convert and view; lapwing scene view.
 #include <cstdio>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a run of a mapping mission ends: there is a map instead of a plan.
 #pragma once
 

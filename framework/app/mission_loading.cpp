@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/mission_loading.h"
 
 #include <cstdlib>
@@ -33,7 +34,7 @@ std::vector<fs::path> data_folders(const Invocation& invocation) {
     if (fs::is_directory(folder)) {
       folders.emplace_back(folder);
     } else {
-      logging::warning("LAPWING_DATA names " + folder + ", which is no folder");
+      logging::warning("LAPWING_DATA names " + folder + ", which is not a folder");
     }
   }
   return folders;
@@ -53,12 +54,12 @@ void require_script(const fs::path& script) {
   const std::string file = script.string();
   if (script.extension() == ".json")
     throw InputError("'" + file +
-                     "' is no mission script, NAME.lua; a plan is judged by `lapwing "
+                     "' is not a mission script, NAME.lua; a plan is judged by `lapwing "
                      "verify " +
                      file + "`");
   if (script.extension() == ".yaml")
     throw InputError("'" + file +
-                     "' is no mission script, NAME.lua; a configuration is laid over "
+                     "' is not a mission script, NAME.lua; a configuration is laid over "
                      "one by --config " +
                      file);
   if (!fs::exists(script) && fs::exists(file + ".lua"))

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mission as the command line asks for it: loaded, configured and checked, nothing solved.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/new_files.h"
 
 #include <algorithm>
@@ -62,7 +63,8 @@ void expect_snake_case(const std::string& name) {
   if (!name.empty() && name[0] >= 'a' && name[0] <= 'z' && name.back() != '_' &&
       name.find("__") == std::string::npos && std::all_of(name.begin(), name.end(), fits))
     return;
-  throw InputError("'" + name + "' is no name for a plugin: expected snake_case, such as keep_low");
+  throw InputError("'" + name +
+                   "' is not a name for a plugin: expected snake_case, such as keep_low");
 }
 
 // A class of the kernel's that has the name: pages of errors by the compiler, said in one line.
@@ -122,7 +124,7 @@ ExitStatus new_plugin(const NewFiles& wanted, const Invocation& invocation) {
   expect_free_class(wanted.name, in_pascal_case(wanted.name), templates.parent_path());
   std::error_code code;
   if (!wanted.folder.empty() && !fs::is_directory(wanted.folder, code))
-    throw InputError("--in: '" + wanted.folder.string() + "' is no folder");
+    throw InputError("--in: '" + wanted.folder.string() + "' is not a folder");
   const fs::path folder = wanted.folder / wanted.name;
   if (fs::exists(folder)) throw InputError("'" + folder.string() + "' exists already");
   const Registry registry = invocation.registry();
@@ -161,7 +163,7 @@ ExitStatus new_mission(const NewFiles& wanted, const Invocation& invocation) {
     throw InputError("cannot write '" + file.string() + "': " + code.message());
   if (file.extension() != ".lua")
     throw InputError("'" + wanted.name +
-                     "' is no name for a script: expected one that ends in .lua");
+                     "' is not a name for a script: expected one that ends in .lua");
   if (fs::exists(file)) throw InputError("'" + file.string() + "' exists already");
   const std::string text = read_file(templates / (wanted.kind + ".lua.in"));
   write_file_atomically(file, filled_in(text, "@NAME@", file.stem().string()));

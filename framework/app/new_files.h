@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing new: files to begin from, made of the templates in scripts/templates.
 #pragma once
 

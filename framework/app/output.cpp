@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Standard output: whether what was written to it arrived.
 #include <poll.h>
 #include <unistd.h>

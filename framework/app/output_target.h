@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file that a command writes beside its answer (-o).
 #pragma once
 

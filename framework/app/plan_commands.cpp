@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing verify, export and config.
 #include <cstdio>
 #include <iostream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // In what two plans differ: options, task, figures, certificates, paths.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What two plans are compared by, read from the plans alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/plan_sources.h"
 
 #include <algorithm>
@@ -88,7 +89,7 @@ VehicleSource loaded(const std::string& source, const Value& stated, const fs::p
   try {
     return {source, load_vehicle(stated, {configs})};
   } catch (const InputError&) {
-    return {source, std::nullopt, "what " + source + " holds is no vehicle"};
+    return {source, std::nullopt, "what " + source + " holds is not a vehicle"};
   }
 }
 

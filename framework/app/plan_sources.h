@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a plan's vehicle and obstacles come from: the file that it names, its own configuration, or
 // files of whoever judges it.
 #pragma once

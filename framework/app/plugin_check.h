@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing plugins check: what every plugin of a kind must pass, each test in a process of its own.
 #pragma once
 

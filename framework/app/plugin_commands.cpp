@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing plugins list, show and path. Reads sidecars; loads no code.
 #include <cstdio>
 #include <iostream>

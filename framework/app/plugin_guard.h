@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the program does when a plugin's code crashes, or does not return.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Progress of long work on a terminal: one line, redrawn; elsewhere plain lines, few of them.
 #pragma once
 

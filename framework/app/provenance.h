@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whose limits, obstacles and task a plan is judged by, said and compared.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run simulates beside its certificate, where a plan has something for it: a photograph of a
 // plan with lights, a game of a plan with players.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing run: load, check, plan, certify, write, report.
 #include <chrono>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/run_target.h"
 
 #include "framework/core/error.h"

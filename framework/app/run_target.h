@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The folder that a run writes: whose it is, and what is said of an older run in it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing scene view: a mesh file, or a scene that a Lua script makes.
 #include <iostream>
 

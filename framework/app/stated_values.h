@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a plan's configuration states, read without trust: whatever has another form is not stated.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing sweep: one mission with several values of its options, several runs at once, one table.
 #pragma once
 

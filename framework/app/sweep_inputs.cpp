@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/sweep_inputs.h"
 
 #include <map>
@@ -78,7 +79,7 @@ bool has_inputs(const fs::path& run_folder) {
 std::string changed_input(const fs::path& run_folder) {
   const fs::path file = run_folder / kInputs;
   const Value sums = from_json(read_file(file), file.string());
-  if (!sums.is_map()) throw InputError("'" + file.string() + "' is no table of checksums");
+  if (!sums.is_map()) throw InputError("'" + file.string() + "' is not a table of checksums");
   for (const auto& [path, sum] : sums.as_map())
     if (!sum.is_text() || checksum_of(path) != sum.as_text()) return path;
   return "";

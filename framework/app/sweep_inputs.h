@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run of a sweep has read beside its script, so that --resume never mixes results of
 // different inputs.
 #pragma once

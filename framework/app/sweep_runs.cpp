@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/app/sweep_runs.h"
 
 #include <fcntl.h>
@@ -144,7 +145,7 @@ void read_results(SweepRun& run) {
   if (!fs::exists(run.folder / kExit, code)) return;
   const std::string exit = read_file(run.folder / kExit);
   if (exit.empty() || exit.find_first_not_of("0123456789\n") != exit.npos || exit.size() > 4)
-    throw InputError("'" + (run.folder / kExit).string() + "' is no exit status; remove it");
+    throw InputError("'" + (run.folder / kExit).string() + "' is not an exit status; remove it");
   run.exit = std::stoi(exit);
   run.errors = read_file(run.folder / kErrors);
   if (const std::string text = read_file(run.folder / kAnswer); !text.empty())

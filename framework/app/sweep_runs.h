@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The runs of a sweep: which there are, the processes that do them, and what they left behind.
 #pragma once
 

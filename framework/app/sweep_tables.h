@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a sweep comes to: tables for the terminal and for files, an object, a page.
 #pragma once
 

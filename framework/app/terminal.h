@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What standard output and standard error may show: colour, and texts from outside.
 #pragma once
 

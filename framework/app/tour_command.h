@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing tour: tour solvers on published instances of the orienteering problem.
 #pragma once
 

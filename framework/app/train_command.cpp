@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing train: samples of oracle episodes, training, judging a model.
 #include <cmath>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Effective values as YAML that says where each came from.
 #pragma once
 

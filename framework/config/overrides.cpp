@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/config/overrides.h"
 
 #include <algorithm>
@@ -75,8 +76,8 @@ std::vector<Step> parse_path(std::string_view rest, const std::string& text) {
     if (length == 0) malformed(text, "a key is missing; expected key.path=value");
     const std::string key(rest.substr(0, length));
     if (!path.empty() && key.find_first_not_of("0123456789") == key.npos)
-      malformed(text, "'." + key + "' is no key; an entry of a list is written " + path.back().key +
-                          "[" + key + "]");
+      malformed(text, "'." + key + "' is not a key; an entry of a list is written " +
+                          path.back().key + "[" + key + "]");
     path.push_back({key, 0});
     rest.remove_prefix(length);
     while (!rest.empty() && rest.front() == '[') path.push_back(read_index(rest, text));

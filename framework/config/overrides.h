@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `--set key.path=value`, and laying configurations on one another.
 #pragma once
 

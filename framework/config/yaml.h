@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // YAML text to Value. The one place that includes yaml-cpp.
 //
 // What is read is YAML 1.2's core: maps with text keys, lists, and scalars. A plain scalar is null,

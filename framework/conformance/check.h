@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every plugin of a kind must pass.
 //
 // Each check is a library function that returns its findings, so that tests, `lapwing plugins

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a plugin says of itself, and what it makes of rubbish.
 #include <algorithm>
 #include <cmath>

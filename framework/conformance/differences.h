@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Derivatives compared with central differences. Internal to the room.
 #pragma once
 

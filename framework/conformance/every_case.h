@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plugin tried with every case of its parameters. Internal to the room.
 #pragma once
 

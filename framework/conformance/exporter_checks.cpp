@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every exporter must pass.
 #include "framework/conformance/every_case.h"
 #include "framework/export/exporter.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/conformance/findings.h"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ bool Findings::survives(const std::string& check, const std::string& where,
   } catch (const std::exception& error) {
     fail(check, where + " throws: " + error.what());
   } catch (...) {
-    fail(check, where + " throws something that is no exception");
+    fail(check, where + " throws something that is not an exception");
   }
   return false;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects the outcome of named checks, the first failure of each. Internal to the room.
 #pragma once
 

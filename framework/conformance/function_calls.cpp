@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a function may be called: in ranges, again, from several threads, without allocating.
 #include <cmath>
 #include <thread>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One bound function under all checks of its derivatives and calls. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/conformance/function_checks.h"
 
 #include <cmath>
@@ -28,7 +29,7 @@ bool shape_fits(const FunctionShape& shape, const StandardSetting& standard, Fin
     fits &= need(stage >= 0 && stage + shape.window <= standard.horizon.stages,
                  "asks for a stage outside the horizon");
   for (const double time : shape.times)
-    fits &= need(std::isfinite(time), "asks for a time that is no number");
+    fits &= need(std::isfinite(time), "asks for a time that is not a number");
   return fits;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks common to cost terms and constraints. Internal to the room.
 #pragma once
 

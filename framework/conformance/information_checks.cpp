@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every plugin of kind `information` must pass.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every map must do: the same as the reference, bit for bit.
 #include <array>
 #include <cmath>
@@ -398,7 +399,7 @@ class MapCheck {
           Eigen::Vector3f::Constant(static_cast<float>(3 * voxel_)), point};
       map_->integrate(points, origin);
     };
-    refuses("a point that is no number", [&] { scan({NAN, 0, 0}, here); });
+    refuses("a point that is not a number", [&] { scan({NAN, 0, 0}, here); });
     refuses("a point at infinity", [&] { scan({0, INFINITY, 0}, here); });
     refuses("a point outside the largest map", [&] { scan({0, 0, far}, here); });
     refuses("an origin outside the largest map", [&] { scan(here, {far, 0, 0}); });
@@ -406,7 +407,7 @@ class MapCheck {
       const std::vector<VoxelLeaf> leaves{{{9, 9, 9}, 0, 0, 1.0f}, bad};
       map_->import(leaves);
     };
-    refuses("a leaf that is no number", [&] { leaf({{8, 8, 8}, 0, 0, NAN}); });
+    refuses("a leaf that is not a number", [&] { leaf({{8, 8, 8}, 0, 0, NAN}); });
     refuses("a leaf of level 17", [&] { leaf({{0, 0, 0}, 17, 0, 1}); });
     refuses("a leaf between two cubes", [&] { leaf({{2, 0, 0}, 2, 0, 1}); });
     MapRayHit hit;
@@ -415,7 +416,7 @@ class MapCheck {
                               MapRay{{0, 0, 0}, Eigen::Vector3d::UnitX(), 0},
                               MapRay{{0, 0, 2.0 * far}, Eigen::Vector3d::UnitX(), 1}})
       refuses("a ray without start, direction or range", [&] { map_->cast({&ray, 1}, {&hit, 1}); });
-    refuses("a box that is no number", [&] { (void)map_->box_free({0, 0, NAN}, {1, 1, 1}); });
+    refuses("a box that is not a number", [&] { (void)map_->box_free({0, 0, NAN}, {1, 1, 1}); });
   }
 
   const std::function<std::unique_ptr<Map>()>& create_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every vehicle model must pass.
 #include <cmath>
 #include <thread>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/conformance/path_worlds.h"
 
 #include <algorithm>
@@ -74,7 +75,7 @@ std::vector<PathWorld> path_worlds() {
   PathProblem nowhere = across;
   nowhere.start.z() = std::nan("");
   worlds.push_back(
-      {"a start that is no number", BlockSpace({}), nowhere, PathStatus::unsupported, 0});
+      {"a start that is not a number", BlockSpace({}), nowhere, PathStatus::unsupported, 0});
   return worlds;
 }
 

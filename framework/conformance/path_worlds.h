@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small worlds of blocks in which path planners are checked. Internal to the room.
 #pragma once
 

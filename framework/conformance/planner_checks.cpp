@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every path planner must pass.
 #include <atomic>
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameters to try a plugin with, made from its table alone. Internal to the room.
 #pragma once
 

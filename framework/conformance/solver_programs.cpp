@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quadratic programs on the shelf: small and dense, some with scales that make solvers call them
 // infeasible. Their optima come from the conditions of Karush, Kuhn and Tucker, by trying every set
 // of active limits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/conformance/solver_shelf.h"
 
 #include <chrono>

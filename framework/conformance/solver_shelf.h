@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small problems with known answers, on which trajectory solvers are checked. Internal to the room.
 #pragma once
 

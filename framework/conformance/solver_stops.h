@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a trajectory solver stops when it is told to. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The problem that terms are bound to when they are checked. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every tour solver must pass.
 #include <chrono>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small tour problems whose answers are known by enumeration. Internal to the room and to tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every plugin of kind `utility` must pass.
 #include <cmath>
 #include <deque>
@@ -58,8 +59,8 @@ struct UtilityWorld {
     means = std::make_unique<MapMeans>(*map);
     if (const auto bounds = map->bounds()) means->touch(*bounds);
     const double pitch = -10 * EIGEN_PI / 180;
-    known = {map.get(), means.get(), {160, 120, 80, 80, 79.5, 59.5}, 20, pitch, &told, 1,
-             hidden.get()};
+    known = {map.get(), means.get(), {160, 120, 80, 80, 79.5, 59.5}, 20, pitch, &told,
+             1,         hidden.get()};
     views = {{{0.1, 0.1, 1.6}, 0.2, pitch},
              {{2.6, 1.5, 1.6}, 2.9, pitch},
              {{5.9, 0, 1.5}, 3.1, pitch},

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which plugin's code a thread is in: so that a crash, an exit, or a call that does not return, has
 // a name.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors and collected diagnostics.
 //
 // Exceptions are for bad input and for defects; outcomes of solvers are values (solve/report). An

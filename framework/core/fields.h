@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Strict reading of a map that this project wrote itself: plan, vehicle in a plan, certificate.
 //
 //   Fields fields(value, "plan", errors);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/core/file_set.h"
 
 #include <fcntl.h>
@@ -96,7 +97,7 @@ void make_folder(const fs::path& folder) {
   std::error_code code;
   fs::create_directories(folder, code);
   if (code) cannot_exchange(folder, code.message());
-  if (!fs::is_directory(folder, code)) cannot_exchange(folder, "it is no folder");
+  if (!fs::is_directory(folder, code)) cannot_exchange(folder, "it is not a folder");
 }
 
 struct Order {
@@ -123,7 +124,7 @@ std::vector<Order> read_orders(const fs::path& ready, const NameTest& is_own) {
   const fs::path list = ready / kOrders;
   const fs::file_status status = fs::symlink_status(list, code);
   if (!fs::exists(status)) return {};
-  if (!fs::is_regular_file(status)) refuse("its list is no file");
+  if (!fs::is_regular_file(status)) refuse("its list is not a file");
   std::vector<Order> orders;
   std::istringstream lines(read_file(list, kLargestList));
   for (std::string line; std::getline(lines, line);) {
@@ -131,12 +132,12 @@ std::vector<Order> read_orders(const fs::path& ready, const NameTest& is_own) {
     const std::string what = line.substr(0, space);
     const Order order{what == "put", space == std::string::npos ? "" : line.substr(space + 1)};
     if (what != "put" && what != "drop") refuse("line '" + line + "'");
-    if (!is_plain(order.name)) refuse("'" + order.name + "' is no plain name of a file");
-    if (!is_own(order.name)) refuse("'" + order.name + "' is no file of its own");
+    if (!is_plain(order.name)) refuse("'" + order.name + "' is not a plain name of a file");
+    if (!is_own(order.name)) refuse("'" + order.name + "' is not a file of its own");
     for (const fs::path& path : {ready / order.name, ready.parent_path() / order.name}) {
       const fs::file_status there = fs::symlink_status(path, code);
       if (fs::exists(there) && !fs::is_regular_file(there) && !fs::is_symlink(there))
-        refuse("'" + order.name + "' is no file");
+        refuse("'" + order.name + "' is not a file");
     }
     orders.push_back(order);
   }

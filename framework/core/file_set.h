@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of one folder that change together: after a full disk, a crash or a kill the folder holds
 // all of the new ones or all of the old ones.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/core/files.h"
 
 #include <fcntl.h>
@@ -172,7 +173,8 @@ void require_writable(const fs::path& path) {
   const fs::path target = target_of(path);
   mode_there(path, target);
   const fs::path folder = nearest_there(target);
-  if (!fs::is_directory(folder, code)) cannot_write(path, "'" + folder.string() + "' is no folder");
+  if (!fs::is_directory(folder, code))
+    cannot_write(path, "'" + folder.string() + "' is not a folder");
   require_access(path, folder, W_OK | X_OK);
 }
 

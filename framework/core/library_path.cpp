@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/core/library_path.h"
 
 #include <dlfcn.h>

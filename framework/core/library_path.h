@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where this library was loaded from, for what lies beside it: plugins, configurations, scripts.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The log: to stderr for the user, and to a run's own file. Thread-safe. Control characters of a
 // message are shown as text (visible_text.h).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers in messages: as short as so many significant digits allow, "0.3", "1e-09", "nan".
 #pragma once
 

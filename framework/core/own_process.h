@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Work in a process of its own: what ends that process, or keeps it for ever, harms nobody else.
 // For libraries that do not survive hostile files.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops over several threads. What a loop computes must not depend on how many there are: each
 // index writes to its own place, and whatever is summed up is summed in order afterwards.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checking a map against a parameter table, and reading the checked values.
 
 #include <algorithm>
@@ -185,8 +186,9 @@ class ParameterChecker {
       const std::optional<double> converted = parse_quantity(value.as_text(), spec.unit);
       if (!converted) {
         errors_.add(value.origin(), path,
-                    shown(value) + " is no quantity in " + spec.unit + "; expected a number in " +
-                        spec.unit + ", or a text with a unit of that kind");
+                    shown(value) + " is not a quantity in " + spec.unit +
+                        "; expected a number in " + spec.unit +
+                        ", or a text with a unit of that kind");
         return std::nullopt;
       }
       number = *converted;
@@ -363,7 +365,8 @@ double Parameters::number(std::string_view name) const {
 
 std::span<const double> Parameters::numbers(std::string_view name) const {
   const Entry& found = entry(name);
-  if (!value_.at(name).is_list()) throw Error("parameter '" + std::string(name) + "' is no list");
+  if (!value_.at(name).is_list())
+    throw Error("parameter '" + std::string(name) + "' is not a list");
   return found.numbers;
 }
 
@@ -374,14 +377,15 @@ const std::string& Parameters::text(std::string_view name) const {
 
 const Parameters& Parameters::table(std::string_view name) const {
   const Entry& found = entry(name);
-  if (!value_.at(name).is_map()) throw Error("parameter '" + std::string(name) + "' is no table");
+  if (!value_.at(name).is_map())
+    throw Error("parameter '" + std::string(name) + "' is not a table");
   return found.tables.front();
 }
 
 const std::vector<Parameters>& Parameters::tables(std::string_view name) const {
   const Entry& found = entry(name);
   if (!value_.at(name).is_list()) {
-    throw Error("parameter '" + std::string(name) + "' is no list of tables");
+    throw Error("parameter '" + std::string(name) + "' is not a list of tables");
   }
   return found.tables;
 }

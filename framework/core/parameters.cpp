@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/core/parameters.h"
 
 #include <cmath>
@@ -195,16 +196,16 @@ ParameterTable& ParameterTable::numbers(std::string_view name, std::vector<doubl
 }
 
 ParameterTable& ParameterTable::required_numbers(std::string_view name, int size,
-                                                 std::string_view unit,
-                                                 std::string_view summary, Range range) {
+                                                 std::string_view unit, std::string_view summary,
+                                                 Range range) {
   optional_numbers(name, size, unit, summary, range);
   specs_.back().required = true;
   return *this;
 }
 
 ParameterTable& ParameterTable::optional_numbers(std::string_view name, int size,
-                                                 std::string_view unit,
-                                                 std::string_view summary, Range range) {
+                                                 std::string_view unit, std::string_view summary,
+                                                 Range range) {
   ParameterSpec spec = make_spec(name, ParameterType::numbers, summary);
   spec.size = size;
   spec.unit = unit;
@@ -245,8 +246,7 @@ ParameterTable& ParameterTable::table(std::string_view name, ParameterTable tabl
 }
 
 ParameterTable& ParameterTable::tables(std::string_view name, ParameterTable table,
-                                       std::string_view summary,
-                                       bool required) {
+                                       std::string_view summary, bool required) {
   ParameterSpec spec = make_spec(name, ParameterType::tables, summary);
   spec.table = std::make_shared<const ParameterTable>(std::move(table));
   spec.required = required;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameter tables: what a plugin, a vehicle file or a mission accepts, declared once.
 //
 // From the table come the checks of YAML and Lua input, the output of `lapwing plugins show`, and
@@ -32,8 +33,12 @@ struct Range {
   // "at least 0", "above 0", "between 1 and 4", "" when unbounded.
   std::string to_string() const;
 };
-inline Range at_least(double minimum) { return {.minimum = minimum}; }
-inline Range above(double minimum) { return {.minimum = minimum, .minimum_excluded = true}; }
+inline Range at_least(double minimum) {
+  return {.minimum = minimum};
+}
+inline Range above(double minimum) {
+  return {.minimum = minimum, .minimum_excluded = true};
+}
 inline Range between(double minimum, double maximum) {
   return {.minimum = minimum, .maximum = maximum};
 }
@@ -45,14 +50,14 @@ class ParameterTable;
 struct ParameterSpec {
   std::string name;
   ParameterType type = ParameterType::number;
-  std::string unit;                          // "m/s"; empty for none
-  Value default_value;                       // null: no default
+  std::string unit;     // "m/s"; empty for none
+  Value default_value;  // null: no default
   bool required = false;
-  Range range;                               // of a number, or of every entry of numbers
-  std::vector<std::string> choices;          // of a choice
-  int size = 0;                              // of numbers; 0 accepts any count
+  Range range;                                  // of a number, or of every entry of numbers
+  std::vector<std::string> choices;             // of a choice
+  int size = 0;                                 // of numbers; 0 accepts any count
   std::shared_ptr<const ParameterTable> table;  // of a table, or of every entry of tables
-  std::string summary;                       // one line
+  std::string summary;                          // one line
 
   std::string type_name() const;  // "number", "3 numbers", "list of tables", ...
 };
@@ -79,8 +84,7 @@ class ParameterTable {
   ParameterTable& optional_number(std::string_view name, std::string_view unit,
                                   std::string_view summary, Range range = {});
   ParameterTable& numbers(std::string_view name, std::vector<double> default_value,
-                          std::string_view unit, std::string_view summary,
-                          Range range = {});
+                          std::string_view unit, std::string_view summary, Range range = {});
   ParameterTable& required_numbers(std::string_view name, int size, std::string_view unit,
                                    std::string_view summary, Range range = {});
   ParameterTable& optional_numbers(std::string_view name, int size, std::string_view unit,
@@ -158,8 +162,7 @@ Parameters check(const ParameterTable& table, const Value& given, const std::str
                  Diagnostics& errors);
 
 // As above; throws InputError with all errors.
-Parameters check(const ParameterTable& table, const Value& given,
-                 const std::string& key_path = "");
+Parameters check(const ParameterTable& table, const Value& given, const std::string& key_path = "");
 
 // The candidate with the smallest edit distance, or "" when none is near.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);

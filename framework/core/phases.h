@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Long work that has phases: what each of them takes, and what is left of the whole.
 #pragma once
 

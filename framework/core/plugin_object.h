@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every interface that plugins implement has: the name of the plugin that an object is of. So
 // the kernel can say whose code it is in when that crashes, throws or does not come back.
 //

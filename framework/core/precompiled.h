@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Headers that nearly every source reads, compiled once per build.
 #pragma once
 

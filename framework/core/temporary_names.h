@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names of what is written beside its place, and what dead processes left of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/core/value.h"
 
 #include <algorithm>
@@ -27,15 +28,21 @@ Value::Value(Value&& other) noexcept = default;
 Value& Value::operator=(const Value& other) = default;
 Value& Value::operator=(Value&& other) noexcept = default;
 Value::~Value() = default;
-Value Value::list() { return Value(List{}); }
-Value Value::map() { return Value(Map{}); }
+Value Value::list() {
+  return Value(List{});
+}
+Value Value::map() {
+  return Value(Map{});
+}
 
 Value& Value::with_origin(Origin origin) {
   origin_ = std::move(origin);
   return *this;
 }
 
-bool Value::operator==(const Value& other) const { return data_ == other.data_; }
+bool Value::operator==(const Value& other) const {
+  return data_ == other.data_;
+}
 
 std::string Value::describe_type() const {
   switch (type()) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The neutral tree that YAML, Lua tables, JSON and --set become before they are checked.
 //
 // Every node remembers where it was written, so that an error found late still names file and line.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text from outside (names, messages, a script's prints) as a terminal may show it.
 #pragma once
 

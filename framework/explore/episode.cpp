@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How: each step takes an image into the map, adds the neighbours of the viewpoint to the graph,
 // and takes the next view from a queue by value. Values may be of older maps. They usually fall as
 // the map grows, so an old value counts as an upper bound: the top entries are valued anew, four at

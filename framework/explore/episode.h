@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An exploration: look, update the map, score the views that could be reached, go to the best one,
 // look again (thesis 5.3, 5.4.1, 5.4.4).
 //

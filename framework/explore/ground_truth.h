@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What there is to be found: the voxels of a surface that can be seen from the space around it, and
 // how much of them a map has observed (thesis 5.4.1, 5.4.2). Only a simulation has it.
 #pragma once

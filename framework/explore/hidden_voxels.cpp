@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/explore/hidden_voxels.h"
 
 #include <algorithm>
@@ -49,8 +50,7 @@ void HiddenVoxels::saw(std::span<const Eigen::Vector3f> points_W, const Eigen::V
   for (const Eigen::Vector3f& point : points_W) {
     const Eigen::Vector3d surface = point.cast<double>(), ray = surface - origin_W;
     const double depth = ray.norm();
-    if (!(depth > 0 && depth <= map_->settings().maximum_range) ||
-        !map_->grid().contains(surface))
+    if (!(depth > 0 && depth <= map_->settings().maximum_range) || !map_->grid().contains(surface))
       continue;
     RayWalk walk(map_->grid(), surface, ray / depth);
     for (walk.advance(); walk.inside() && walk.entered < farthest_; walk.advance()) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What lies behind the surfaces that images saw: the voxels within some distance behind each
 // measured point, along the image's own ray (Isler et al. 2016; Delmerico et al. 2018).
 //

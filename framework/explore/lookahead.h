@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of ways of several views, in place of one (thesis 6.1).
 #pragma once
 

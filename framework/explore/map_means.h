@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Means of a map at several scales, kept up to date while the map grows (thesis 5.4.3).
 //
 // Level l holds the mean occupancy and uncertainty of aligned cubes of (2^l)^3 voxels (reading

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/explore/ray_utility.h"
 
 #include "framework/core/parallel.h"

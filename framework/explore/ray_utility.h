@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Utilities that count along the rays of a view: what they share.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/explore/sample_file.h"
 
 #include <algorithm>
@@ -47,7 +48,7 @@ void write_samples(const SampleSet& samples, const std::filesystem::path& path) 
 SampleSet read_samples(const std::filesystem::path& path) {
   const std::string bytes = read_file(path, kMostBytes);
   const auto refuse = [&](const std::string& why) {
-    return InputError("'" + path.string() + "' is no file of samples: " + why +
+    return InputError("'" + path.string() + "' is not a file of samples: " + why +
                       "; delete it or leave it out");
   };
   if (bytes.starts_with("lapwing samples ") && !bytes.starts_with(kMagic))
@@ -82,7 +83,7 @@ SampleSet read_samples(const std::filesystem::path& path) {
   const std::size_t numbers = samples.targets.size() * sizeof(float);
   std::memcpy(samples.targets.data(), bytes.data() + begin, numbers);
   for (const float target : samples.targets)
-    if (!std::isfinite(target)) throw refuse("a target is no finite number");
+    if (!std::isfinite(target)) throw refuse("a target is not a finite number");
   samples.grids.assign(bytes.begin() + static_cast<std::ptrdiff_t>(begin + numbers), bytes.end());
   return samples;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Training samples of one episode: what the map looked like around viewpoints, and what the oracle
 // said of them (thesis 5.4.5).
 //

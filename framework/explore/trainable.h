@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A utility that is learned from samples: the extension `trainable` of plugins of kind `utility`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/explore/view_grid.h"
 
 #include <algorithm>
@@ -145,7 +146,7 @@ Value mapping_of(const EpisodeView& known) {
 }
 
 std::string mapping_fault(const Value& value) {
-  if (!value.is_map()) return "it is no map";
+  if (!value.is_map()) return "it is not a map";
   for (const char* key : kMappingKeys) {
     const Value* found = value.find(key);
     if (!found) return std::string("it has no ") + key;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a map looks like around a camera: grids of several scales, turned with the camera (thesis
 // 5.4.3, figure 5.3). The input of a learned utility.
 #pragma once

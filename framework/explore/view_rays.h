@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rays of a view through what a map knows: what hand-made utilities count along.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The depth camera of an exploration, simulated: true depth, noisy depth, stereo (thesis 5.5.5).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/explore/view_utility.h"
 
 #include <algorithm>
@@ -20,9 +21,8 @@ void ViewUtility::score(const EpisodeView& known, std::span<const Viewpoint> vie
   // One call values a few views, so that what hangs can be told from what has much to do.
   for (std::size_t first = 0; first < views.size(); first += kViewsAtOnce) {
     const std::size_t count = std::min(kViewsAtOnce, views.size() - first);
-    in_plugin(*this, "values_of", [&] {
-      values_of(known, views.subspan(first, count), values.subspan(first, count));
-    });
+    in_plugin(*this, "values_of",
+              [&] { values_of(known, views.subspan(first, count), values.subspan(first, count)); });
   }
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (std::isfinite(values[i])) continue;
@@ -31,7 +31,7 @@ void ViewUtility::score(const EpisodeView& known, std::span<const Viewpoint> vie
                               ", " + plain_number(view.position.y()) + ", " +
                               plain_number(view.position.z()) + ") with yaw " +
                               plain_number(view.yaw) + " is " + plain_number(values[i]) +
-                              ", which is no finite number";
+                              ", which is not a finite number";
     if (!plugin_name()) throw Error(wrong);
     throw plugin_failure(plugin_name(), "values_of", wrong);
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How useful a view of what is known so far would be. The plugin kind `utility`.
 //
 // Thesis 5.3, (5.5): an exploration asks for the utility of every viewpoint that it could reach and
@@ -36,13 +37,13 @@ class TrueGain {
 
 // What an exploration knows when it asks. Everything outlives the call; nothing changes during it.
 struct EpisodeView {
-  const Map* map = nullptr;         // counts observations
-  const MapMeans* means = nullptr;  // of that map
-  Pinhole pinhole;                  // of the camera
-  double range = 0;                 // m, of the camera
-  double pitch = 0;                 // rad, of the camera; the same for every view
-  const TrueGain* truth = nullptr;  // null but for a utility that needs it
-  int threads = 1;                  // results are the same for any number
+  const Map* map = nullptr;              // counts observations
+  const MapMeans* means = nullptr;       // of that map
+  Pinhole pinhole;                       // of the camera
+  double range = 0;                      // m, of the camera
+  double pitch = 0;                      // rad, of the camera; the same for every view
+  const TrueGain* truth = nullptr;       // null but for a utility that needs it
+  int threads = 1;                       // results are the same for any number
   const HiddenVoxels* hidden = nullptr;  // of the images in the map; null where there are none
 };
 

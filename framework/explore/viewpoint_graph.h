@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The viewpoints of an exploration and the free ways between them.
 #pragma once
 

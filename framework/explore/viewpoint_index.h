@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Viewpoints by where they are: whether one has been met before.
 #pragma once
 

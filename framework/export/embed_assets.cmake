@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes a C++ source with the report's style and scripts as raw strings.
 #   cmake -DOUTPUT=FILE -DSTYLE=FILE -DSCRIPTS=FILE,FILE,... -P embed_assets.cmake
 function(append_string name)

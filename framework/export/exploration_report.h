@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the report of an exploration shows beside its flight.
 #pragma once
 

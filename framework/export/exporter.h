@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plan as a file for something else to read: the plugin kind `exporter`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera of a flight: its film strip, its gimbal, and how it sees its subjects.
 #pragma once
 

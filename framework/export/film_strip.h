@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the planned camera would film: rendered frames, and where the subjects are in the image.
 #pragma once
 

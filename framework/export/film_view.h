@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the planned camera looks at, for strips and charts.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Drawings of a flight: its path, its motion, its inputs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/export/light_painting.h"
 
 #include <algorithm>
@@ -12,8 +13,8 @@ using Eigen::Vector3d;
 constexpr double kMargin = 0.15;               // of the drawing's size, around it
 constexpr double kCore = 0.010, kHalo = 0.05;  // standard deviations of the light's image, of the
                                                // picture's shorter side
-constexpr double kHaloShare = 0.1;  // of the core's peak
-constexpr double kFullSpeed = 1.0;  // m/s, at which a stroke is as bright as white paper
+constexpr double kHaloShare = 0.1;             // of the core's peak
+constexpr double kFullSpeed = 1.0;             // m/s, at which a stroke is as bright as white paper
 constexpr double kColor[] = {1.0, 0.86, 0.62};
 constexpr double kNight[] = {0.010, 0.013, 0.028};
 

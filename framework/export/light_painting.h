@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A light painting as it comes out: the flight in simulation, photographed with an open shutter.
 #pragma once
 

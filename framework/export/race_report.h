@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report page of a race that was flown by hand in simulation.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/export/report.h"
 
 #include <charconv>
@@ -283,7 +284,7 @@ class Page {
   }
 
   void require_png(const std::string& bytes, const std::string& where) const {
-    if (bytes.compare(0, 8, "\x89PNG\r\n\x1a\n") != 0) fail(where, "the image is no PNG file");
+    if (bytes.compare(0, 8, "\x89PNG\r\n\x1a\n") != 0) fail(where, "the image is not a PNG file");
   }
 
   const Report& report_;

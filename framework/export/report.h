@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page model of a run's report, and its rendering as one HTML file.
 //
 // Neutral: it knows series, drawings, tables, images and text, and nothing of any mission kind;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Style and scripts of the report page, as the build embeds them (embed_assets.cmake).
 #pragma once
 

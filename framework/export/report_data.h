@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The numbers of a report as the JSON that its page script draws from.
 #pragma once
 

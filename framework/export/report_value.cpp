@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/export/report_value.h"
 
 #include "framework/core/fields.h"

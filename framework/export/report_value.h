@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports as data, so that mission scripts and files state their own sections.
 //
 //   report   title, subtitle, status, result, sections

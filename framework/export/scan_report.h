@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of a scan: what was known, what was considered, what was chosen, what it shows.
 #pragma once
 

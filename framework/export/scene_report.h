@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report page of a scene: what it is made of, and what it looks like.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report page of a plan that was flown in simulation.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the images of a scan are large enough for what is to be made of them.
 #pragma once
 

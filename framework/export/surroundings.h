@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What surrounds a flight, drawn: obstacles, zones and the outlines of meshes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Charts of one plan over time, with its keyframes as markers and its cuts as spans.
 #pragma once
 

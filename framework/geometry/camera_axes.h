@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a gimballed camera looks: yaw and pitch in the world, no roll. Camera frame: x right, y
 // down, z forward. T is double or a dual number.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pinhole camera at a place: where points of the world fall in its image.
 //
 // Pixel coordinates count from the centre of the upper left pixel, x right and y down, so that the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light of rendered pictures: one sun, a sky, haze. Internal to this room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a camera sees of a mesh: depth, normals, triangles; and what a real sensor makes of depth.
 #pragma once
 

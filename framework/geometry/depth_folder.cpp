@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/geometry/depth_folder.h"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ Eigen::MatrixXd read_matrix(const fs::path& file, int size) {
     double number = 0;
     const auto [stop, error] = std::from_chars(*word == '+' ? word + 1 : word, at, number);
     if (error != std::errc{} || stop != at || !std::isfinite(number)) {
-      fail(file, "'" + std::string(word, at) + "' is no finite number");
+      fail(file, "'" + std::string(word, at) + "' is not a finite number");
     }
     if (count < size * size) matrix(count / size, count % size) = number;
     ++count;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth images of a real sensor, from a folder:
 //
 //   camera-intrinsics.txt   3 x 3 numbers: focal lengths and principal point in pixels

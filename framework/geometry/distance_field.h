@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The distance to what blocks the way, whatever it is made of: meshes and maps answer alike.
 #pragma once
 

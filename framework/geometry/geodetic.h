@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Geodetic points and the local frame: east, north, up in metres at an origin on WGS 84.
 #pragma once
 

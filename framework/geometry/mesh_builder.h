@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a mesh out of boxes, prisms, tubes, balls and faces, each placed in the frame that is on
 // top of a stack.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/geometry/mesh_doubts.h"
 
 #include <cmath>
@@ -97,7 +98,7 @@ std::string doubt_of(const MeshFile& file) {
   if (unit_stated(file)) return "";
   if (size.maxCoeff() < kSmall)
     return text_of(
-        "it is %.2g m large: if one unit of the file is no metre, state its unit (unit = "
+        "it is %.2g m large: if one unit of the file is not a metre, state its unit (unit = "
         "..., in m)",
         size.maxCoeff());
   const double width = std::max(size.x(), size.y());

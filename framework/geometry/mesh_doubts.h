@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the coordinates of a mesh file can be what they are taken for: metres near the origin.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/geometry/mesh_file.h"
 
 #include <assimp/config.h>
@@ -40,9 +41,10 @@ std::string format_of(const fs::path& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const Format& format : kFormats)
     if (extension == format.extension) return format.name;
-  throw InputError("'" + path.string() +
-                   "' is no mesh file that can be read: expected .obj, .ply, .stl, .gltf, .glb or "
-                   ".dae");
+  throw InputError(
+      "'" + path.string() +
+      "' is not a mesh file that can be read: expected .obj, .ply, .stl, .gltf, .glb or "
+      ".dae");
 }
 
 // What the file, its standard or the caller says of unit and axis.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangle meshes from and to files: Wavefront OBJ, PLY, STL, glTF (.gltf, .glb), Collada (.dae).
 //
 // A mesh comes out in metres with z up, whatever the file says of itself, and the caller is told

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of meshes by daylight: scenes as a user would look at them.
 #pragma once
 

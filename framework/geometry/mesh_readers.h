@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Readers of single mesh formats, and what they share. Internal to this room; callers include
 // mesh_file.h.
 #pragma once

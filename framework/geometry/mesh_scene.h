@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh that rays are cast into and distances are measured to, by Embree. World frame, metres.
 //
 // Embree walks its tree in single precision (robust mode: no ray slips between two triangles); the

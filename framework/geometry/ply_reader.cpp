@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -82,7 +83,7 @@ class Numbers {
     if (error != std::errc{} || end != last) {
       fail_ply(name_,
                "'" + std::string(bytes_.substr(begin, std::min<std::size_t>(at_ - begin, 40))) +
-                   "' is no number");
+                   "' is not a number");
     }
     return value;
   }
@@ -132,7 +133,7 @@ Property read_property(std::istringstream& words, const std::string& line,
   property.type = type_named(type);
   words >> property.name;
   if (!property.type.bytes || property.name.empty()) {
-    fail_ply(name, "its header states '" + line + "', which is no property");
+    fail_ply(name, "its header states '" + line + "', which is not a property");
   }
   return property;
 }
@@ -155,7 +156,7 @@ void read_line(const std::string& line, const std::string& name, bool& has_forma
     const char* last = third.data() + third.size();
     const auto [end, error] = std::from_chars(third.data(), last, element.count);
     if (error != std::errc{} || end != last) {
-      fail_ply(name, "'" + third + "' in its header is no number of elements");
+      fail_ply(name, "'" + third + "' in its header is not a number of elements");
     }
     header.elements.push_back(std::move(element));
   } else if (first == "property") {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a camera or a vehicle is and which way it is turned, in the world.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of simple bodies by daylight, for previews: what a planned camera would film.
 //
 // One sun with hard shadows, a sky, a checkered ground that fades into haze at the horizon. The

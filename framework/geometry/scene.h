@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene that rays are cast into: bodies, boards and the ground, ray-traced by Embree. World
 // frame, metres.
 //

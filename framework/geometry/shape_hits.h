@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays against single shapes, in double precision. Internal to this room; callers include scene.h.
 #pragma once
 

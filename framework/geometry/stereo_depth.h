@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth as a pair of cameras measures it: both pictures rendered with a texture, matched by
 // semi-global matching (thesis 5.5.5). OpenCV does the matching.
 #pragma once

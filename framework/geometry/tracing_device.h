@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Embree's device, one for the process. Internal to this room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/geometry/triangle_mesh.h"
 
 #include <bit>
@@ -9,7 +10,7 @@
 namespace lapwing {
 namespace {
 
-constexpr double kFarthestVertex = 1e5;          // m
+constexpr double kFarthestVertex = 1e5;             // m
 constexpr std::size_t kLargestCount = 100'000'000;  // of vertices or triangles
 
 struct Cell {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/geometry/triangle_tests.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Single triangles against rays, points and swept boxes, in double precision. Internal to this
 // room.
 #pragma once

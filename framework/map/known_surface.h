@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much surface a region has, as far as a map and a mesh know it.
 #pragma once
 

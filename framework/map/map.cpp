@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/map/map.h"
 
 #include <cmath>
@@ -54,7 +55,8 @@ bool castable(const VoxelGrid& grid, const MapRay& ray) {
   if (!grid.contains(ray.origin))
     throw InputError(name + " starts at " + text(ray.origin) + "; " + reach_of(grid));
   if (!is_unit(ray.direction))
-    throw InputError(name + " points along " + text(ray.direction) + ", which is no unit vector");
+    throw InputError(name + " points along " + text(ray.direction) +
+                     ", which is not a unit vector");
   throw InputError(name + " has range " + text(ray.range) + "; it must be positive and finite");
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is known of a space: which voxels are free, occupied or unknown. The plugin kind `map`.
 //
 // Thesis 2.2, 5.4.1, 5.4.3; readings 2.2, 2.3, 4.0, 5.1, 5.4 in this room's README. World frame,

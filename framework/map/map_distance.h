@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The distance to what blocks flight in a map, and where it grows.
 #pragma once
 

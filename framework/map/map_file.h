@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps as files: OctoMap's .bt (two states) and .ot (log odds), and .ply (points, written only).
 //
 // Written files are canonical: equal maps give equal bytes, whatever backend holds them. Files are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reading half of the map files.
 #include <bit>
 #include <charconv>
@@ -66,8 +67,8 @@ class Reader {
     if (first.starts_with(kTwoStates))
       file_.two_states = true;
     else if (!first.starts_with(kLogOdds))
-      fail("is no OctoMap file: its first line is neither '" + std::string(kTwoStates) + "' nor '" +
-           std::string(kLogOdds) + "'");
+      fail("is not an OctoMap file: its first line is neither '" + std::string(kTwoStates) +
+           "' nor '" + std::string(kLogOdds) + "'");
     bool has_size = false, has_id = false;
     for (std::string_view text = line(); text != "data"; text = line()) {
       if (text.empty() || text.starts_with('#')) continue;
@@ -82,7 +83,7 @@ class Reader {
       } else if (key == "size") {
         const char* end = value.data() + value.size();
         has_size = std::from_chars(value.data(), end, size_).ptr == end && !value.empty();
-        if (!has_size) fail("has size '" + value + "', which is no number of nodes");
+        if (!has_size) fail("has size '" + value + "', which is not a number of nodes");
       } else if (key == "res") {
         const char* end = value.data() + value.size();
         if (std::from_chars(value.data(), end, file_.resolution).ptr != end) file_.resolution = 0;
@@ -148,7 +149,7 @@ class Reader {
     ++nodes_;
     std::memcpy(&value, node, sizeof value);
     if (!std::isfinite(value))
-      fail("has a node whose log odds is no finite number, near byte " + std::to_string(at_));
+      fail("has a node whose log odds is not a finite number, near byte " + std::to_string(at_));
     const auto children = static_cast<unsigned char>(node[node_bytes() - 1]);
     if (children == 0) return add_leaf(key, level, value);
     if (level == 0) too_deep();

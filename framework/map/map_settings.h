@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every map is told when it is made, whichever backend holds it.
 #pragma once
 

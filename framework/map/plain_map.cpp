@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/map/plain_map.h"
 
 #include <algorithm>
@@ -50,8 +51,7 @@ VoxelReading PlainMap::read(const VoxelKey& key) const {
   return {true, settings().state(voxel.log_odds), voxel.log_odds, voxel.observations};
 }
 
-void PlainMap::insert(std::span<const Eigen::Vector3f> points_W,
-                          const Eigen::Vector3f& origin_W) {
+void PlainMap::insert(std::span<const Eigen::Vector3f> points_W, const Eigen::Vector3f& origin_W) {
   std::vector<Eigen::Vector3f> ends(points_W.begin(), points_W.end());
   if (settings().mode == IntegrationMode::discretised) {
     Keys keys;
@@ -138,7 +138,7 @@ void PlainMap::cast_checked(std::span<const MapRay> rays, std::span<MapRayHit> h
 }
 
 void PlainMap::means_checked(int level, std::span<const VoxelKey> keys,
-                                 std::span<MeanReading> means) const {
+                             std::span<MeanReading> means) const {
   const int edge = 1 << level;
   for (std::size_t k = 0; k < keys.size(); ++k) {
     double occupancy = 0, uncertain = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A map that is slow and plainly right: one entry for every known voxel, every question answered
 // voxel by voxel. What other backends are compared with, and may begin from: whoever overrides a
 // function must give the same answers.

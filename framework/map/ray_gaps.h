@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How wide the gaps are that the rays of depth images leave between them.
 #pragma once
 

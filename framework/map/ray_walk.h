@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The voxels along a ray, in one arithmetic for every backend.
 //
 // The n-th crossing of a face along an axis is at distance `first + n * spacing`, computed afresh

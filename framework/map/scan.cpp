@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/map/scan.h"
 
 #include <cmath>
@@ -21,7 +22,7 @@ void check(const PosedDepthImage& measured) {
   if (!camera.position.allFinite() || !camera.orientation.coeffs().allFinite())
     throw InputError("the pose of a depth image has a number that is not finite");
   if (std::abs(camera.orientation.norm() - 1) > 1e-3)
-    throw InputError("the pose of a depth image is no rotation: its quaternion has length " +
+    throw InputError("the pose of a depth image is not a rotation: its quaternion has length " +
                      std::to_string(camera.orientation.norm()) + ", not 1");
 }
 

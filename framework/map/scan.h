@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth images as the points that maps integrate.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/map/surface_voxels.h"
 
 #include <Eigen/Geometry>

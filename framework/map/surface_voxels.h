@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The voxels that a surface of triangles goes through: what a map of it would hold at best.
 #pragma once
 

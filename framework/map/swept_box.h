@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which voxels a box meets while it moves in a straight line.
 #pragma once
 

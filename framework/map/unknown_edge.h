@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a map ends within a region: openings behind which surface hides that nobody saw.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Voxels: cubes of one size, their keys, and what a map knows of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which voxels of a block lie in balls that fit among marked ones: a morphological opening.
 #pragma once
 

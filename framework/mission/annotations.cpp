@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What scripts may call, as LuaLS reads it and as a table of a README.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What scripts are given, and what is said of it: one list serves the interpreter, the annotations
 // for editors and the README's table.
 //

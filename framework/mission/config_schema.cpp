@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A JSON schema (draft 7, which editors of YAML read) from the declarations of mission kinds.
 #include <algorithm>
 #include <cmath>

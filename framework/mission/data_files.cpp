@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/mission/data_files.h"
 
 #include <algorithm>
@@ -78,7 +79,7 @@ fs::path DataFiles::find_folder(const std::string& name) const {
 fs::path DataFiles::find_entry(const std::string& name, const std::string& inside,
                                bool folder_wanted) const {
   if (name.empty() || name.find('\0') != std::string::npos) {
-    throw InputError("a text that is empty or holds a NUL is no file name");
+    throw InputError("a text that is empty or holds a NUL is not a file name");
   }
   const fs::path wanted(name);
   std::error_code error;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files that a script may read: those below the folders it is confined to.
 //
 // Names are relative to one of the folders, which are asked in order. Links are followed before the

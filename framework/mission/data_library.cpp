@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What scripts read from data files, and errors that name the line of the file.
 #include <algorithm>
 
@@ -59,8 +60,8 @@ int read_json(lua_State* state) {
 int read_yaml_data(lua_State* state) {
   const DataName data = data_argument(state, "lapwing.read_yaml");
   claim_data(state, data, 0);
-  return push_file(
-      state, from_yaml(run_of(state).files.read_text(data.name, data.folder), data.name));
+  return push_file(state,
+                   from_yaml(run_of(state).files.read_text(data.name, data.folder), data.name));
 }
 
 // lapwing.read_text(name [, folder]): the text of a file, found as read_json finds it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The environment of a flight as a space to plan ways in.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Explorations: run:explore and what it returns.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flying plans and timing paths: methods of `run`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The border between Lua and C++: no exception crosses it unseen.
 //
 // Lua here is built with C++ exceptions, so its own errors unwind C++ frames properly; they are

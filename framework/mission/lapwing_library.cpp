@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table `lapwing`: what a script needs before there is a run.
 #include <lua.hpp>
 

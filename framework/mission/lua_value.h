@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Between Lua's tables and the neutral tree of core/value.h.
 //
 // A table whose keys are 1..n is a list, one with texts as keys a map (its keys sorted, because Lua

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps and surfaces as Lua holds them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What mapping missions have the kernel do: look at surfaces, and put what was seen into a map.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mission: a Lua script that states what is to be planned, and the plan that comes of it.
 //
 //   Mission mission("shot.lua", settings);        // runs the script's text; nothing is solved

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes and maps that flights keep away from: read once a mission, with their distances, and
 // copied to a folder of the mission's own as the plan will name them.
 #pragma once

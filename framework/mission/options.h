@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of a mission: what its script declares, and the values that they come to have.
 //
 // A declaration is an entry of a parameter table as data (core/parameters.h: name, type, summary,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solving and planning: methods of `run`, solutions, vehicles and plans.
 #include <algorithm>
 #include <cmath>

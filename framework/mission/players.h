@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who fly a race by hand, as a script says it.
 #pragma once
 

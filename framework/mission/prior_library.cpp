@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is known of a place: depth images of a first flight in a scene, or files of a real one.
 #include <cmath>
 

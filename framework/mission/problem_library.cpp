@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stating a problem: run:vehicle, run:problem, and the methods of a problem.
 #include <lua.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recorded term as the operations that a plan states.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the bindings of one mission share: settings, files, effective options, and what was planned.
 #pragma once
 

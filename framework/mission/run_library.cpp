@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `run`, which a mission's `plan` gets: the methods of all libraries, and what the user is told.
 #include <lua.hpp>
 

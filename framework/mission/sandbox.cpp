@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/mission/sandbox.h"
 
 #include <algorithm>
@@ -292,8 +293,8 @@ int Sandbox::describe_error(lua_State* state) {
     const char* const text = lua_tolstring(state, 1, &length);
     message = as_message({text, length});
   } else {
-    message =
-        std::string("the script raised an error that is no text but a ") + luaL_typename(state, 1);
+    message = std::string("the script raised an error that is not a text but a ") +
+              luaL_typename(state, 1);
   }
   lua_Debug record;
   for (int level = 0; level < 20 && lua_getstack(state, level, &record); ++level) {
@@ -354,7 +355,7 @@ std::string module_path(const std::string& module) {
           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.") == module.npos;
   if (!well_formed) {
     throw InputError("'" + module +
-                     "' is no module name; expected names joined by dots, such as "
+                     "' is not a module name; expected names joined by dots, such as "
                      "\"mission.film\"");
   }
   std::string relative = module;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Lua 5.4 state that a stranger's script may run in.
 //
 // What a script can reach is an allow-list: base functions without load and its kin, string, table,

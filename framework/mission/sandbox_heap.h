@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The memory of one Lua state: capped, and with a number for every object.
 //
 // Lua names an object by its address (in `tostring`, in the order of `next`), and addresses differ

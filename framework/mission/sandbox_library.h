@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The functions of Lua's own libraries that a script may use, some of them wrapped.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Iteration in an order that is the same in every run.
 //
 // Lua's own order follows addresses and a random seed. Here keys come as numbers by value, texts

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/mission/sandbox_text.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace lapwing {
 namespace {
 
 constexpr std::size_t kLongestMessage = 4u << 10;  // bytes
-constexpr std::size_t kLongestLine = 1u << 20;      // bytes, a line; Sandbox counts them all
+constexpr std::size_t kLongestLine = 1u << 20;     // bytes, a line; Sandbox counts them all
 
 bool is_object(int type) {
   return type == LUA_TTABLE || type == LUA_TFUNCTION || type == LUA_TUSERDATA ||

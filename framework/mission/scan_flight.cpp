@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a tour to a plan: stop-and-shoot along its motions, the images that it takes, what it has to
 // keep away from.
 #include <algorithm>
@@ -221,7 +222,7 @@ int scan_plan_of_run(lua_State* state) {
       table_argument(state, 2, scan_plan_table(), "scan_plan", kScanPlanObjects);
   lua_getfield(state, 2, "tour");
   const TourObject& tour = object_argument<TourObject>(state, -1, kTourType);
-  if (tour.walk.size() < 2) throw InputError("scan_plan: a tour of one view is no flight");
+  if (tour.walk.size() < 2) throw InputError("scan_plan: a tour of one view is not a flight");
   lua_getfield(state, 2, "notes");
   const Value notes = value_from_lua(state, lua_gettop(state), origin, "scan_plan.notes");
   lua_getfield(state, 2, "figures");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The legs of a tour as problems of their own, and the flight that their solutions make.
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,9 @@ const ViewMotion& leg_motion(const TourObject& tour, std::size_t leg) {
       .motions[tour.work->motion_between(tour.walk[leg], tour.walk[leg + 1])];
 }
 
-double turn_between(double from, double to) { return std::remainder(to - from, 2 * EIGEN_PI); }
+double turn_between(double from, double to) {
+  return std::remainder(to - from, 2 * EIGEN_PI);
+}
 
 void check_end(const Sample& s, const Viewpoint& view, std::size_t leg, const char* which) {
   const double miss = (s.position - view.position).norm();
@@ -56,13 +59,12 @@ double LegFlight::seconds(const Points& way, const Viewpoint& from, const Viewpo
   for (const bool back : {false, true}) {
     const Viewpoint &a = back ? to : from, &b = back ? from : to;
     if (back) std::reverse(points.begin(), points.end());
-    const double flown =
-        smooth ? smooth_leg_seconds(points, turn_between(a.yaw, b.yaw), b.pitch - a.pitch, vehicle,
-                                    *smooth) +
-                     flight.pause
-               : pursue(points, stops_of(points, a, b, vehicle), vehicle, flight)
-                         .trajectory.duration() -
-                     flight.pause;
+    const double flown = smooth ? smooth_leg_seconds(points, turn_between(a.yaw, b.yaw),
+                                                     b.pitch - a.pitch, vehicle, *smooth) +
+                                      flight.pause
+                                : pursue(points, stops_of(points, a, b, vehicle), vehicle, flight)
+                                          .trajectory.duration() -
+                                      flight.pause;
     most = std::max(most, flown);
   }
   return most;
@@ -89,8 +91,7 @@ Value legs_of(const TourObject& tour) {
   return legs;
 }
 
-Pursuit joined_flight(const TourObject& tour,
-                      const std::vector<const SolutionObject*>& solutions) {
+Pursuit joined_flight(const TourObject& tour, const std::vector<const SolutionObject*>& solutions) {
   if (solutions.size() + 1 != tour.walk.size())
     throw InputError("scan_plan: expected a solution for each of the tour's " +
                      std::to_string(tour.walk.size() - 1) + " legs, got " +
@@ -106,7 +107,7 @@ Pursuit joined_flight(const TourObject& tour,
     const Trajectory flown = solution.problem->trajectory(solution.result.point.stages);
     if (flown.motion.column("orientation") || flown.samples.size() < 2)
       throw InputError("scan_plan: leg " + std::to_string(leg + 1) +
-                       " is no solution of a model with a yaw, such as 'quadrotor'");
+                       " is not a solution of a model with a yaw, such as 'quadrotor'");
     check_end(flown.samples.front(), stop_of(tour, leg), leg, "begins");
     check_end(flown.samples.back(), stop_of(tour, leg + 1), leg, "ends");
     if (samples.empty()) {
@@ -125,8 +126,8 @@ Pursuit joined_flight(const TourObject& tour,
     }
     clock = samples.back().time;
     samples.back() = at_rest(vehicle, flown.motion, samples.back());
-    flight.views.push_back({clock, clock + pause,
-                            (samples.back().position - stop_of(tour, leg + 1).position).norm()});
+    flight.views.push_back(
+        {clock, clock + pause, (samples.back().position - stop_of(tour, leg + 1).position).norm()});
     clock += pause;
   }
   if (pause > 0) {

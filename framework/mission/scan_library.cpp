@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The graph of views that tours are planned on, and tours.
 #include <algorithm>
 #include <cmath>
@@ -291,8 +292,8 @@ std::string reach_in_words(const ScanWork& work, int start) {
   if (other && other->views > work.islands.joined(start)) {
     const Eigen::Vector3d& p = views[static_cast<std::size_t>(other->middle)].position;
     char place[100];
-    std::snprintf(place, sizeof place, " are joined to a start near (%.4g, %.4g, %.4g)", p.x(), p.y(),
-                  p.z());
+    std::snprintf(place, sizeof place, " are joined to a start near (%.4g, %.4g, %.4g)", p.x(),
+                  p.y(), p.z());
     text += "; " + std::to_string(other->views) + place;
   }
   return text;

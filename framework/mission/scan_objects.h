@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What scan missions hold: what is known of a place, the graph of views made from it, tours.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing.scene and what a scene can be asked for: bodies, frames, colours, random numbers.
 #include <lua.hpp>
 

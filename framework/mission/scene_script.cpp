@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/mission/scene_script.h"
 
 #include <lua.hpp>

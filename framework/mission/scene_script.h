@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes that a Lua script makes: a file that returns a function from options to a scene.
 //
 //   return function(options)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that a script may call and a user may set, as data: what the bindings and the mission kinds
 // say of themselves. Annotations for editors, the schema of configurations and tables in READMEs
 // are written from it.

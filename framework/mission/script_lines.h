@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // On which lines of a script the fields of a table are written, so that an error of an option names
 // its own line and not that of the call.
 //

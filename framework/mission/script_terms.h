@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost terms and constraints written in a script:
 //
 //   p:add_cost { name = "keep_low", weight = 5,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage that the function of a term is given: blocks, neighbours, subjects, distances.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The functions of the table `lapwing` that terms are written with.
 #include "framework/mission/guard.h"
 #include "framework/mission/symbolic_values.h"

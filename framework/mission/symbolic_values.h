@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers and vectors that the function of a cost term or constraint computes with.
 //
 // While a term is recorded they are nodes of an expression; when its recording is checked they are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the tape of a term says what its function says on plain numbers, and where it is tried.
 #include <algorithm>
 #include <cctype>
@@ -135,7 +136,7 @@ void TermRecording::check(int function, const TapeFunction& result, const Eigen:
   if (never != finite.end())
     throw InputError(place,
                      setting_.what + ": result " + std::to_string(never - finite.begin() + 1) +
-                         " is no finite number at any of " + std::to_string(tried) +
+                         " is not a finite number at any of " + std::to_string(tried) +
                          " points tried, the first guess among them, such as " + values_here());
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recording what the function of a term does, as a tape (problem/tape.h).
 //
 // The function runs once on symbolic values of a stage; what it returns is compiled. Lua cannot
@@ -91,7 +92,7 @@ class TermRecording {
   SymbolicSetting setting_;
   bool symbolic_ = true;
   std::vector<Input> inputs_;
-  std::vector<int> outputs_;  // nodes
+  std::vector<int> outputs_;                                    // nodes
   std::map<std::pair<int, int>, std::vector<double>> numbers_;  // of a point, by stage and block
   std::vector<double> point_parameters_;
   Random random_{1};

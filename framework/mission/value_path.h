@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places in a tree of values, as messages name them: "keyframes[2].time", "" for the whole.
 #pragma once
 

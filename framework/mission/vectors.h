@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Three numbers of a parameter table as a vector.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/mission/vehicle_source.h"
 
 #include "framework/config/lookup.h"

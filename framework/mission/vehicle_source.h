@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A vehicle from what a mission says of it: the name of a vehicle file, or its contents.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ways round what stands in the way: methods of a problem.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/path/free_space.h"
 
 #include "framework/core/error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a body may be: the same questions to meshes and to maps. World frame, metres.
 //
 // Bodies are boxes parallel to the axes, as the thesis has its drone (4.3; reading 4.11). Touching

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How find_passage leaves the passages of failed ways: the first try plans in the true space. Each
 // further try closes a ball about the narrowest place of every failed way, larger each time but
 // never over an end, and takes another seed. A path found there is compared with the failed ways in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Passages: classes of ways that deform into one another while every point sees its counterpart
 // (thesis 6.1), and convex regions grown round a way. World frame, metres.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A path planner: a free way between two places for a body that is a box (thesis 2.1). The plugin
 // kind `path_planner`.
 //

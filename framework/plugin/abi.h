@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ABI tag: everything that must be equal for host and plugin to share C++ types.
 #pragma once
 

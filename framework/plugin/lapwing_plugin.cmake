@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # lapwing_add_plugin(KIND NAME [FAMILY name...] [SOURCES file...] [LIBRARIES target...]
 #                    [OUTPUT folder])
 #

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opening a plugin library. The one place that calls dlopen.
 #pragma once
 

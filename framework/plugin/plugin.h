@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plugin contract: what a shared library says about itself.
 //
 // A library exports one C symbol, `lapwing_plugin_library`, written by LAPWING_PLUGINS. It returns
@@ -81,12 +82,16 @@ PluginDescriptor describe() {
     return static_cast<Interface*>(new P(parameters));
   };
   d.presets = +[]() -> std::vector<Preset> {
-    if constexpr (requires { P::presets(); }) return P::presets();
-    else return {};
+    if constexpr (requires { P::presets(); })
+      return P::presets();
+    else
+      return {};
   };
   d.extensions = +[]() -> std::span<const Extension> {
-    if constexpr (requires { P::extensions(); }) return P::extensions();
-    else return {};
+    if constexpr (requires { P::extensions(); })
+      return P::extensions();
+    else
+      return {};
   };
   return d;
 }
@@ -100,8 +105,8 @@ const PluginLibrary* plugin_library() {
 
 }  // namespace lapwing
 
-#define LAPWING_PLUGINS(...)                                                          \
-  extern "C" __attribute__((visibility("default"))) const lapwing::PluginLibrary*     \
-  lapwing_plugin_library() {                                                          \
-    return lapwing::plugin_library<__VA_ARGS__>();                                    \
+#define LAPWING_PLUGINS(...)                                                      \
+  extern "C" __attribute__((visibility("default"))) const lapwing::PluginLibrary* \
+  lapwing_plugin_library() {                                                      \
+    return lapwing::plugin_library<__VA_ARGS__>();                                \
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/plugin/registry.h"
 
 #include <algorithm>
@@ -59,7 +60,7 @@ std::optional<Value> sidecar_in(const fs::path& file) {
   if (fs::exists(fs::path(file).replace_extension(".so")))
     throw InputError("malformed plugin sidecar " + in_quotes(file.string()) + ": " + why);
   logging::warning(in_quotes(file.string()) +
-                   " lies in a folder of plugins and is no plugin's sidecar: " + why +
+                   " lies in a folder of plugins and is not a plugin's sidecar: " + why +
                    "; it is left out");
   return std::nullopt;
 }

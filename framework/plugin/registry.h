@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds plugins on the search path, lists them from their sidecars, opens a library at first use.
 //
 // A sidecar is `NAME.json` beside `NAME.so`: the descriptors as data, written by the build. Listing

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where plugins are looked for.
 
 #include <cstdlib>
@@ -26,7 +27,7 @@ void add_from_environment(std::vector<fs::path>& folders) {
     list = end == list.npos ? "" : list.substr(end + 1);
     if (folder.empty()) continue;
     if (!fs::is_directory(folder)) {
-      logging::warning("LAPWING_PLUGIN_PATH names '" + folder + "', which is no folder");
+      logging::warning("LAPWING_PLUGIN_PATH names '" + folder + "', which is not a folder");
     }
     folders.push_back(folder);
   }
@@ -46,8 +47,7 @@ void add_from_tree(std::vector<fs::path>& folders) {
   if (folder.empty()) return;
   std::error_code code;
   const fs::path installed = folder / "lapwing" / "plugins";
-  folders.push_back(fs::is_directory(installed, code) ? installed
-                                                      : folder / "plugins");
+  folders.push_back(fs::is_directory(installed, code) ? installed : folder / "plugins");
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& from_comma
   for (const fs::path& folder : from_command_line) {
     std::error_code code;
     if (!fs::is_directory(folder, code)) {
-      throw InputError("--plugin-path: '" + folder.string() + "' is no folder");
+      throw InputError("--plugin-path: '" + folder.string() + "' is not a folder");
     }
     folders.push_back(folder);
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/plugin/sidecar.h"
 
 #include <algorithm>
@@ -150,7 +151,7 @@ std::vector<PluginEntry> entries_from_sidecar(const Value& sidecar,
     }
     const std::filesystem::path library = sidecar.at("library").as_text();
     if (library.empty() || library != library.filename()) {
-      throw InputError(sidecar.at("library").origin(), "'library' is no plain file name");
+      throw InputError(sidecar.at("library").origin(), "'library' is not a plain file name");
     }
     for (const Value& map : sidecar.at("plugins").as_list()) {
       const PluginEntry plugin = entry_from_value(map);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sidecars: what a plugin library says about itself, as a JSON file beside it.
 //
 // {"sidecar": 1, "library": "NAME.so", "abi_tag": "...", "plugins": [{"kind", "name", "version",

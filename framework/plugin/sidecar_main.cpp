@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing_sidecar LIBRARY OUT.json: writes a plugin library's sidecar. Run by the build.
 #include <cstdio>
 #include <exception>

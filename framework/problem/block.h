@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blocks: the named parts of a stage.
 //
 // A stage x_i of the trajectory problem is a column of numbers, cut into blocks: position[3], yaw,

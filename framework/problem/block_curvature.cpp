@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Second derivatives of the difference of two orientations, by dual numbers.
 #include "framework/core/error.h"
 #include "framework/problem/block.h"

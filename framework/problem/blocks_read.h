@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The blocks that a function reads, by name. Handles are bound once, in `declare`; reading through
 // one is a load at an offset known by then.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Evaluates a stage function of a plugin in the columns of a problem.
 //
 // How: the constructor lists the instances and, for each, the columns of its inputs. An evaluation

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stage function inside a problem: which instances it has, how their inputs are gathered from the
 // stages, and what its Jacobian is with respect to the solver's columns. Internal to the room.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers of functions that are none: whose fault, where, and what to write instead.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What cost terms of a camera share: how far a direction is from the one wanted, and what becomes
 // of formulas with directions in them where camera and target coincide.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A constraint: what must hold.
 //
 //   lower_k <= g_k(x_i, ..., x_{i+window-1}) <= upper_k,   lower == upper for an equation

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cost term: how bad a trajectory is, as residuals.
 //
 //   cost = weight * sum over instances of || r_k(x_i, ..., x_{i+window-1}) ||^2

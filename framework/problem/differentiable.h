@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The authoring layer: write the formula once, the kernel differentiates it.
 //
 //   class KeepLow final : public DifferentiableCost<KeepLow> {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dual numbers of fixed size: forward-mode derivatives without allocation.
 //
 // Dual<S, N> is v + sum_k d[k] eps_k with eps_j eps_k = 0. With S = double it carries N first

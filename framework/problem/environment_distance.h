@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The distance to everything that is in the way, as an expression.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An expression of numbers that are not known yet: what a term written in a script is recorded as.
 //
 // Nodes are numbered in the order they came to be, operands before what uses them. Equal nodes are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The point that a camera term looks at: the free block `target`, or a subject of the environment
 // on its track.
 #pragma once

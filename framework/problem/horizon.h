@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stages in time: one step for all of them, or legs with a step each.
 #pragma once
 

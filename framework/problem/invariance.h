@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a cost term or a constraint may declare of itself, and is then held to by the checks of
 // plugins: that its answers stay the same when all its inputs are moved together. Obstacles,
 // subjects and what its parameters name stay where they are.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far from an obstacle stages must be so that the path between them keeps its distance.
 //
 // Between two stages, h apart, the vehicle flies a parabola that leaves the chord of its ends by at

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A periodic flight: the last stage closes onto the first.
 //
 //   x_last - x_first = 0      for every state; of yaw 2 pi times the turns

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the steps of a solution lead from what many smaller ones would do.
 #include <cmath>
 #include <numbers>

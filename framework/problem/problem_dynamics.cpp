@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rows that the kernel makes itself: dynamics, held last inputs, the clock.
 #include "framework/problem/trajectory_problem_impl.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values, local models and violations of a trajectory problem.
 #include <cmath>
 

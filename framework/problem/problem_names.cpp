@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names of rows and columns, and violations by name.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sparsity and slots of the local model, computed once.
 #include "framework/problem/trajectory_problem_impl.h"
 

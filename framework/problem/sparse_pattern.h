@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sparse matrix whose non-zeros are known once and whose values are written many times.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the numbers of a stage stand in the solver's columns, and how models read a stage.
 // Internal to the room.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Functions of a few neighbouring stages: the form of every cost term and constraint.
 //
 //   y_k = f_k(x_i, ..., x_{i+window-1}),   k one *instance*, i its first stage

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How: the constructor drops unused nodes of the graph and numbers the others as registers:
 // constants, parameters, inputs, then one per instruction. For each row it lists the instructions
 // between the row and its inputs (`reach`, last first).

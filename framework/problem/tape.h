@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tape: an expression compiled to a list of instructions, evaluated for several stages at once
 // and differentiated in reverse on the part of it that each row reads.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost terms and constraints that are tapes: how a function written in a script reaches solvers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The operations of a tape (tape.h): what each gives, and its derivatives.
 //
 // Kinks are rounded within a width w that every such operation carries, and exact outside of it:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spans of time in which a function is asked for, or not asked: the cuts of a film.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values that a block is to have at given times: what the terms of keyframes share.
 #pragma once
 

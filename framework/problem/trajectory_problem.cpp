@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds a trajectory problem and translates between its points and trajectories.
 //
 // How: while models, blocks and terms are added, they are only stored. `finish` then

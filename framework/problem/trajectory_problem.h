@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The trajectory problem (thesis 3.5):
 //
 //   minimise    sum_k  w_k  sum_i  || r_k(x_i, ..., x_{i+q}) ||^2     cost terms

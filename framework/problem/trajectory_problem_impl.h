@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a TrajectoryProblem holds. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A vehicle model: which blocks are state and input, and how the state flows.
 //
 //   x+ = f(x, u, h)   with the inputs u held over h seconds (thesis 3.3)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The prism of a zone, for constraints: a signed distance that can be differentiated.
 //
 // The nearest edge or corner is found by value; inside, the distance is minus that to the nearest

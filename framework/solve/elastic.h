@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The elastic form of a quadratic program whose rows or bounds contradict each other.
 //
 //   minimise  x'Px/2 + c'x + penalty * (sum of p + sum of q)   with   lower <= A x + p - q <= upper

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ruiz equilibration of a quadratic program (CERFACS TR/PA/01/35, 2001): x = D x^, rows by E, cost
 // by sigma, so that the columns of [P A'; A 0] have about unit norm. Internal to the room.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Proofs that a quadratic program has no solution. Internal to the room.
 #pragma once
 

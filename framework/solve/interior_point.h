@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sparse primal-dual interior point for convex quadratic programs.
 //
 // Mehrotra's predictor-corrector (SIAM J. Optim. 2(4), 1992) from an infeasible start, on the

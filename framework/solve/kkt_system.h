@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The quasi-definite system of the interior point: ordered and assembled once, refactored with new
 // diagonals. Internal to the room.
 #pragma once

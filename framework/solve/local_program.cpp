@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/solve/local_program.h"
 
 namespace lapwing {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The quadratic program of a local model: what one step of sequential quadratic programming solves.
 #pragma once
 

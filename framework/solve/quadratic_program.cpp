@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/solve/quadratic_program.h"
 
 #include <algorithm>
@@ -76,9 +77,9 @@ QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::Vecto
   const double dual = -0.5 * quadratic +
                       support(row_multipliers, problem.row_lower, problem.row_upper, leak, terms) +
                       support(bound_multipliers, problem.x_lower, problem.x_upper, leak, terms);
-  const double dual_scale = 1.0 + std::max({largest_size(px), largest_size(aty),
-                                            largest_size(problem.gradient),
-                                            largest_size(bound_multipliers)});
+  const double dual_scale =
+      1.0 + std::max({largest_size(px), largest_size(aty), largest_size(problem.gradient),
+                      largest_size(bound_multipliers)});
   result.dual =
       std::max(leak, largest_size(px + problem.gradient - aty - bound_multipliers)) / dual_scale;
   result.gap = std::abs(primal - dual) / (1.0 + std::abs(primal));

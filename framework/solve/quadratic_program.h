@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sparse convex quadratic program and what a solver says of it.
 //
 //   minimise  x'Px/2 + c'x   subject to  row_lower <= A x <= row_upper,  x_lower <= x <= x_upper

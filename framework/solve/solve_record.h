@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every trajectory solver keeps while it works: the clock, the reasons to stop, the history;
 // and what it says of its point at the end.
 #pragma once

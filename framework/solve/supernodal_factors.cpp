@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How, in the terms of the multifrontal method:
 //   1. analyse: the elimination tree gives the pattern of L. Neighbouring columns of similar
 //      pattern are merged into supernodes (supernodal_tree.h). A supernode has a dense panel: its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // L D L' factors of a sparse symmetric quasi-definite matrix, in dense blocks of columns. Internal
 // to the room.
 //

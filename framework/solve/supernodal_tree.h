@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which columns of L D L' factors go together, and in which order. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/solve/trajectory_solver.h"
 
 #include <cmath>
@@ -21,9 +22,9 @@ std::string mistake_in(const SolveResult& result, const TrajectoryProblem& probl
       const BlockSpec& block = problem.layout().block(b);
       if (!stages.col(stage).segment(problem.layout().offset(b), block.size).allFinite())
         return claims + "'" + block.name + "' of stage " + std::to_string(stage) +
-               " is no finite number";
+               " is not a finite number";
     }
-  if (!std::isfinite(report.cost)) return claims + "its cost is no finite number";
+  if (!std::isfinite(report.cost)) return claims + "its cost is not a finite number";
   for (const TermCost& term : report.terms)
     if (!std::isfinite(term.cost)) return claims + "the cost of '" + term.name + "' is not finite";
   for (const Violation& violation : report.violations)

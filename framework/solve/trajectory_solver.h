@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A trajectory solver: from a problem and an initial guess to the best trajectory it finds.
 //
 // A solver reports, it never throws or aborts for what happens inside a solve. It honours its work

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/study/exploration_figures.h"
 
 #include <algorithm>
@@ -51,8 +52,9 @@ Flown flown(const Trial& trial, const fs::path& folder, int steps) {
     of = {object.at("world").as_text(), object.at("utility").as_text(),
           object.at("episode").as_integer()};
   } catch (const InputError& error) {
-    throw InputError("'" + path.string() + "' is no whole episode: delete it, and --resume flies " +
-                     "it again (" + error.what() + ")");
+    throw InputError("'" + path.string() +
+                     "' is not a whole episode: delete it, and --resume flies " + "it again (" +
+                     error.what() + ")");
   }
   // "a b.obj" and "a_b.obj" have the same files.
   if (of.world != trial.world)

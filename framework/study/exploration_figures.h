@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The figures of an evaluation of explorations (tables 5.1 to 5.5, figure 5.10), made of the files
 // of its episodes.
 #pragma once

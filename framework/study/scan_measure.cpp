@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One row of a study: a tour by one method, and what its images make of the true surface.
 #include <cmath>
 #include <limits>

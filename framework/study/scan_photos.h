@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structure from motion, for real: textured photographs at planned views, and how many of them
 // COLMAP registers into one model, which is what (4.8) of the thesis promises.
 #pragma once

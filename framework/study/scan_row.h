@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a study of scans compares, and what it writes down of each: methods and rows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measuring scan tours as the thesis does (4.5, 4.9): methods against each other on the same
 // candidates, by what their images would make of the true surface.
 //

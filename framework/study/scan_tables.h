@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a study of scan tours comes to: tables as in thesis 4.2 to 4.7 and 4.9, curves as in figure
 // 4.12, as text, CSV and a page.
 #pragma once

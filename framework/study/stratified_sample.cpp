@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/study/stratified_sample.h"
 
 #include <boost/math/distributions/students_t.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Means of values that come in groups, such as those of one world, and how sure they are.
 #pragma once
 

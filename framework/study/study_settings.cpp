@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/study/study_settings.h"
 
 #include <cctype>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The settings that a study was made with, as maps, and how two of them differ; names of files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hash table of places of a grid, by open addressing. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points with normals from many depth images, one for every small cube of space (thesis 4.5.4).
 #pragma once
 

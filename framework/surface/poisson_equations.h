@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The linear equations of a Poisson reconstruction, in the shape in which CGAL fills them in: a
 // symmetric, positive definite matrix. Internal to this room; without Eigen, whose headers would
 // double what poisson_field.cpp takes to compile.

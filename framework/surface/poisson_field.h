@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The function whose gradient agrees with the normals of points: Poisson reconstruction by CGAL.
 // Internal to this room; callers include surface_mesh.h.
 #pragma once

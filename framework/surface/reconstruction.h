@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What images of a surface would make of it: points that enough of them agree on, and how well
 // those cover the surface (thesis 4.5.1, 4.5.4; readings 4.7, 4.11).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh from points with normals: what a first flight saw, for planning the second (reading 4.9).
 #pragma once
 

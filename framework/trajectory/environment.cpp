@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/trajectory/environment.h"
 
 #include <algorithm>
@@ -69,8 +70,8 @@ void see_fields(const std::vector<Source>& sources, const char* kind, const Eige
     const double distance = sources[i].distance->distance(p, nullptr);
     if (!(distance < nearest.distance)) continue;
     nearest.distance = distance;
-    nearest.name = sources[i].name.empty() ? std::string(kind) + " " + std::to_string(i + 1)
-                                           : sources[i].name;
+    nearest.name =
+        sources[i].name.empty() ? std::string(kind) + " " + std::to_string(i + 1) : sources[i].name;
   }
 }
 

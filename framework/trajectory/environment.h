@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one statement of what surrounds a flight: obstacle constraints read it, the plan carries it,
 // the verifier checks all of it. World frame, metres.
 #pragma once
@@ -50,8 +51,8 @@ struct MeshObstacle {
 // A map in a file beside the plan (.ot): what is occupied or unknown is closed to flight.
 struct MapObstacle {
   std::string name;
-  std::string file;    // as of a mesh
-  std::string sha256;  // likewise
+  std::string file;                                         // as of a mesh
+  std::string sha256;                                       // likewise
   std::shared_ptr<const DistanceField> distance = nullptr;  // likewise
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gates: openings of a race course that are flown through in order.
 //
 // A flat gate stands at its position, is flown through along its direction, and may be the middle

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a path goes through a gate: where, when, and how far outside its opening at worst.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading a trajectory between its samples, for reports, views and exporters.
 //
 // The verifier does not use this: it integrates the motion model itself.

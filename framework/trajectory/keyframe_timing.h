@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When the keyframes along a path are passed: where on the path each one is, and the cheapest times
 // that grant what each asks for.
 #pragma once

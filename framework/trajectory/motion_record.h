@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a vehicle moves between two samples, as a record with a name: which columns its samples have,
 // what a simulated vehicle follows, and where the differential equation comes from.
 //

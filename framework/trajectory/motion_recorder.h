@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a differential equation down as the table of a motion: formulas in C++ become operations.
 //
 //   MotionRecorder motion;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plan document: all that a flight needs and all that the verifier may look at.
 //
 // `plan.json` holds no wall-clock figure: the same script, configuration and seed give the same
@@ -63,9 +64,9 @@ struct Plan {
   std::optional<double> budget;  // s of flight
   Task task;
   std::vector<StatedConstraint> constraints;  // of the script
-  Value configuration;  // effective, with overrides
-  Value solver;         // solver report
-  Value certificate;    // as verify writes it
+  Value configuration;                        // effective, with overrides
+  Value solver;                               // solver report
+  Value certificate;                          // as verify writes it
 };
 
 // The document. SI and radians; a sample has the fields of its motion model alone; sections that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The digest of a plan document: tells that something in it was changed after it was written, and
 // in which section. It is no signature: whoever edits a plan can compute it anew.
 #pragma once

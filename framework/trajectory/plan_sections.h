@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The larger sections of plan.json. Internal to this room; callers include plan.h.
 #pragma once
 

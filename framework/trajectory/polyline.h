@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paths made of straight pieces: their distances, their smoothing, and how fast they can be flown.
 // World frame, metres.
 #pragma once

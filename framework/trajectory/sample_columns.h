@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The columns of a sample beyond those that every motion has, by name: force, bank rate, jerk.
 #pragma once
 

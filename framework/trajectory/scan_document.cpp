@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The region and the views of a scan in plan.json.
 #include "framework/trajectory/plan_sections.h"
 

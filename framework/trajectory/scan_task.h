@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a scan is to photograph: a region of interest, and the views that are taken of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A constraint that a script states itself, as a plan carries it: the operations that compute its
 // values, and their bounds. Whoever reads the plan can evaluate it without the script.
 #pragma once
@@ -68,11 +69,11 @@ struct StatedConstraint {
   static constexpr int kMostLater = 63;
 
   std::string name;
-  bool required = true;            // else what comes of it is reported alone
-  std::string unjudged = {};       // why it cannot be evaluated; then there is nothing below
+  bool required = true;       // else what comes of it is reported alone
+  std::string unjudged = {};  // why it cannot be evaluated; then there is nothing below
   std::vector<ConstraintStep> operations = {};
   std::vector<ConstraintResult> results = {};
-  std::vector<double> times = {};              // s, when it is asked; none: always
+  std::vector<double> times = {};                 // s, when it is asked; none: always
   std::vector<TimeSpan> spans = {}, except = {};  // asked inside one of these, and in none of those
 };
 

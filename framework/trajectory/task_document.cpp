@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The task and the cuts in plan.json.
 #include "framework/trajectory/plan_sections.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A span of time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A time-sampled trajectory: what every planner produces and every exporter and verifier reads.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plan flown by the whole quadrotor under control (thesis 3.8): how far it strays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/vehicle/flight_controller.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ constexpr double kVelocity = 0.5;      // m/s
 constexpr double kIntegral = 0.1;      // m s
 constexpr double kAttitude = 0.5;      // rad, that asks for a share of the free moment
 constexpr double kMomentShare = 0.5;
-constexpr double kLagShare = 0.5;  // bandwidth of the attitude times the rotors' lag
+constexpr double kLagShare = 0.5;   // bandwidth of the attitude times the rotors' lag
 constexpr double kResponse = 0.15;  // s, of an attitude that is fast enough for these weights
 constexpr double kFastestTilt = 20.0, kFastestYaw = 4.0;  // rad/s
 constexpr double kDifference = 0.01;                      // s, of the attitude's derivatives

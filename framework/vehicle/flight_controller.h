@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The controller that a plan is flown with (thesis 3.8.2): a linear quadratic regulator with
 // integral action for the place, (3.14), and Lee's attitude law on SO(3) (CDC 2010) for the rest.
 #pragma once

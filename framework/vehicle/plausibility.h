@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a vehicle could be a real one: multirotors from 10 g to 1000 kg.
 //
 // What is far outside is a slip of units, and would come back later as a solver or a controller

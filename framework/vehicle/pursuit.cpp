@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/vehicle/pursuit.h"
 
 #include <algorithm>
@@ -12,14 +13,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPursuitResponse = 0.15;    // s, in which a wrong velocity is mended
-constexpr double kApproach = 0.7;     // s, of the last centimetres to a stop
-constexpr double kThere = 0.02;       // m, from a view where the vehicle stops
-constexpr double kStill = 0.04;       // m/s, of a vehicle at rest
-constexpr double kPassed = 0.1;       // m, from a view that is flown by
-constexpr double kTurning = 1.5;      // rad/s, bandwidth of the heading
-constexpr double kTurned = 0.01;      // rad, from the heading of a view, at rest
-constexpr double kLongest = 100'000;  // s, of a flight
+constexpr double kPursuitResponse = 0.15;  // s, in which a wrong velocity is mended
+constexpr double kApproach = 0.7;          // s, of the last centimetres to a stop
+constexpr double kThere = 0.02;            // m, from a view where the vehicle stops
+constexpr double kStill = 0.04;            // m/s, of a vehicle at rest
+constexpr double kPassed = 0.1;            // m, from a view that is flown by
+constexpr double kTurning = 1.5;           // rad/s, bandwidth of the heading
+constexpr double kTurned = 0.01;           // rad, from the heading of a view, at rest
+constexpr double kLongest = 100'000;       // s, of a flight
 
 void check(const Points& path, std::span<const PursuitView> views, const Vehicle& vehicle,
            const PursuitSettings& s) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flying along straight lines by pure pursuit (thesis 4.7; reading 4.6): after a point that runs
 // ahead on the path, fast on the way and slowly where images are taken.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/vehicle/race_flight.h"
 
 #include <algorithm>
@@ -183,8 +184,7 @@ RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilo
     const Eigen::Vector2d stick = source(time, state, controller.progress());
     // Past the end of the course, or, where it ends at rest, as good as there.
     const Vector3d beyond = state.position - finish.position;
-    const bool past =
-        controller.progress() >= reference.finish() && beyond.dot(onward) >= 0;
+    const bool past = controller.progress() >= reference.finish() && beyond.dot(onward) >= 0;
     const bool near = finish.velocity.norm() < kAtRest &&
                       controller.progress() >= reference.finish() - kLastLeg &&
                       beyond.norm() <= limits.finish_radius;

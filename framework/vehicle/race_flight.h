@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One pilot's flight round a planned course (thesis 3.7.2, fig. 3.9; reading 3.8).
 //
 // The controller of 3.8.2 holds height, heading and the way across the course; the stick takes the

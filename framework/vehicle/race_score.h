@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a race flown by hand is worth (reading 3.8): the time of all laps, plus a price for straying
 // and for gates that were not flown through. The lower wins.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/vehicle/reference_motion.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rotor thrusts for a wanted thrust and moment, within the rotors' limits.
 #pragma once
 

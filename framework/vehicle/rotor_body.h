@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole quadrotor (thesis 3.8.1): a rigid body with four rotors, in moving air.
 //
 //   F_i, M_i = k F_i                        rotor i; k is the vehicle's torque coefficient

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/vehicle/smooth_leg.h"
 
 #include <algorithm>
@@ -54,8 +55,8 @@ double smooth_leg_seconds(const Points& way, double turn, double tilt, const Veh
     seconds = std::max(seconds, std::abs(tilt) / (kLimitShare * vehicle.gimbal->pitch_rate_max));
   if (length_of(way) > 0) {
     const Points smooth = rounded(resampled(way, kPathSpacing), settings.stray);
-    const MotionLimits limits = within(motion_limits(vehicle, kLimitShare),
-                                       {settings.speed, settings.acceleration});
+    const MotionLimits limits =
+        within(motion_limits(vehicle, kLimitShare), {settings.speed, settings.acceleration});
     seconds = std::max(seconds, kSmoother * fastest_times(smooth, limits).back());
   }
   return seconds;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long a leg takes that is flown smoothly, from rest to rest: past its corners, not from stop
 // to stop as pursuit.h does it. A trajectory solver finds the flight itself.
 #pragma once

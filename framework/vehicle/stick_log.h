@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a pilot's stick did, as a CSV file: a line `time,forward,left`, then one line a sample with
 // the time in s and two deflections from -1 to 1.
 #pragma once

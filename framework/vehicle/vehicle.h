@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a vehicle file states: body, rotors, limits, gimbal, camera. SI, radians.
 //
 // The body is a rigid quadrotor; the limits are those of the vehicle, whatever a problem asks for.
@@ -50,7 +51,7 @@ struct Camera {
 
 struct Vehicle {
   std::string name;
-  double mass = 0;                                    // kg
+  double mass = 0;         // kg
   bool has_rotors = true;  // else inertia, rotors and yaw_share are unknown, and zero
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  // kg m^2, body axes, diagonal
   double drag = 0;                                    // N s/m, linear in the airspeed

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every vehicle must satisfy, wherever its numbers come from.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vehicle and camera files: tables and conversion from degrees.
 #include "framework/core/units.h"
 #include "framework/vehicle/vehicle.h"

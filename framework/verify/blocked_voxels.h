@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a map file closes to flight, for the verifier: every voxel that is not known to be free.
 //
 // Internal to this room. World frame, metres.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The certificate: what was checked, how it came out, and whether the plan may fly.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the verifier checks: the list, and how the worst value of a check is kept.
 //
 // Internal to this room; callers include verify.h.

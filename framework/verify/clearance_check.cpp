@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance of the continuous path from every obstacle and zone, never overestimated.
 //
 // The path between two integrated points is replaced by their chord; it leaves the chord by at most

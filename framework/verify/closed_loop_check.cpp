@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plan flown by the whole quadrotor under control (vehicle/closed_loop.h), in still air.
 #include "framework/vehicle/closed_loop.h"
 
@@ -16,7 +17,7 @@ std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& ce
   else if (!flight.vehicle.has_rotors)
     reason = "the vehicle states no rotors: there is no simulated vehicle to fly this plan";
   else if (trajectory.samples.size() < 2)
-    reason = "a single sample is no flight";
+    reason = "a single sample is not a flight";
   if (!reason.empty()) {
     for (const char* name : kNames) certificate.checks.push_back(skipped_check(name, reason));
     return std::nullopt;

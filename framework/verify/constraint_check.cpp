@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constraints that the script states: at every sample, and between two samples.
 //
 // A problem holds such a constraint at its stages, which are the samples. Between two of them a

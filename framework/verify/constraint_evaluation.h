@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The verifier's own reading of a constraint that a script states: the operations that the plan
 // holds, one after the other. trajectory/README.md says what each gives.
 //
@@ -56,8 +57,8 @@ class ConstraintEvaluation {
   int window_ = 1;
   std::vector<double (*)(const ConstraintPoint&, int)> readers_;  // of inputs; else null
   std::vector<int> columns_;  // of inputs that are columns of the motion: their place; else -1
-  std::vector<const Subject*> subjects_;                          // of subjects; else null
-  std::vector<double> values_;                                    // of all operations
+  std::vector<const Subject*> subjects_;  // of subjects; else null
+  std::vector<double> values_;            // of all operations
 };
 
 }  // namespace lapwing

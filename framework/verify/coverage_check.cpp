@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The images of a scan: whether the flight is where they are taken, and what of the region they
 // see, by rays of this room's own through the map that the plan names.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the plan holds together at all: everything that the other checks take for granted.
 #include <cstdio>
 
@@ -184,7 +185,7 @@ class Reader {
       } else if (const std::string fault = column_problem(samples[i]); !fault.empty()) {
         add(name + " " + fault);
       } else if (oriented && !unit_orientation(samples[i])) {
-        add(name + " has an orientation that is no unit quaternion");
+        add(name + " has an orientation that is not a unit quaternion");
       } else if (i > 0 && !(samples[i].time > samples[i - 1].time)) {
         at_ = samples[i].time;
         add(name + " is not later than the one before it");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the light is from the drawing, and the drawing from the light.
 //
 // Means over length: of every span of light to the nearest stroke, and of every stroke to the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Does the vehicle move as the samples say? Integrates every interval and compares.
 #include <deque>
 

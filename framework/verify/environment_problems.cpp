@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the environment holds together: shapes that exist, tracks without gaps.
 #include <set>
 

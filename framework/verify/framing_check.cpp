@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Is the camera on what it was asked to film? Shares of the time asked for, on the continuous
 // motion; cuts ask for nothing.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Is every gate flown through in its order, in its direction, inside its opening, and its tunnel
 // held from end to end? On the continuous path, by the chords of the integrated motion.
 //
@@ -34,8 +35,7 @@ void check_gates(const Flight& flight, Certificate& certificate) {
   double share = 0;
   std::string name;
   for (std::size_t g = 0; g < gates.size(); ++g) {
-    const GatePassage passage =
-        gate_passage(gates[g], path, from, tolerances::kClearance, share);
+    const GatePassage passage = gate_passage(gates[g], path, from, tolerances::kClearance, share);
     if (passage.outside > worst.outside) {
       worst = passage;
       name = "gate " + std::to_string(g + 1) + " (" + gates[g].name + ")";

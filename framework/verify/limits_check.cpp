@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The vehicle's limits along the continuous motion, whether or not the problem had such
 // constraints.
 #include "framework/verify/checks.h"

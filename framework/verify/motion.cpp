@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/verify/motion.h"
 
 #include "framework/verify/motions/motion_integrator.h"

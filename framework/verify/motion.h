@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The verifier's own integration of a plan's motion, interval by interval. Each interval starts
 // from what its first sample states. motions/ holds an integrator for each motion that this version
 // knows; another motion is integrated from the derivatives that the plan states.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an operation of a stated constraint or of a motion's derivatives gives. Internal to this
 // room.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whose limits, obstacles and task a certificate is about. The numbers of a plan do not tell; who
 // knows the vehicle's file and the plan's configuration states it here.
 #pragma once

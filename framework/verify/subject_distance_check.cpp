@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The distance that the path keeps from subjects that ask for one, never overestimated.
 //
 // Between two integrated points, and between two corners of the subject's track, both move along

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Does the flight do what the mission asked? Keyframes, each against its own tolerances.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every tolerance of the verifier, with its unit.
 #pragma once
 

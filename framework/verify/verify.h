@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Judges a plan from its numbers alone.
 //
 // Nothing of the planner is used: the verifier reads the vehicle inside the plan, integrates the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the verifier has come, for whoever waits, and whether it is to end.
 //
 // Internal to this room.

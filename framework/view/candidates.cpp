@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/view/candidates.h"
 
 #include <cmath>
-#include <numeric>
 #include <numbers>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -120,8 +121,8 @@ class Generator {
     while (!front.empty()) {
       throw_if_cancelled();
       // Any of the front, which then closes over it.
-      const auto pick = static_cast<std::size_t>(
-          random_.integer(0, static_cast<std::int64_t>(front.size()) - 1));
+      const auto pick =
+          static_cast<std::size_t>(random_.integer(0, static_cast<std::int64_t>(front.size()) - 1));
       const Vector3d from = places_[static_cast<std::size_t>(front[pick])];
       front[pick] = front.back();
       front.pop_back();

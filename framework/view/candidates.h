@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Viewpoints worth considering around a region of interest (thesis 4.4.4, 4.8, algorithm 3;
 // readings 4.5, 4.11).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a view counts once views are taken to be independent: a published simplification of the
 // coverage problem (Roberts et al., "Submodular Trajectory Optimization for Aerial 3D Scanning",
 // ICCV 2017; thesis 4.5.2).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Growing a tour view by view, each time the one that promises most (thesis 4.4.3, 2.4).
 #pragma once
 

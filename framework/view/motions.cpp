@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/view/motions.h"
 
 #include <algorithm>
@@ -75,9 +76,9 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
   MotionGraph graph;
   if (viewpoints.size() < 2) return graph;
   const auto match = [&](const Pair& pair) {
-    return settings.alpha == 0 || matchable(seen[static_cast<std::size_t>(pair.first)],
-                                            seen[static_cast<std::size_t>(pair.second)],
-                                            settings.alpha);
+    return settings.alpha == 0 ||
+           matchable(seen[static_cast<std::size_t>(pair.first)],
+                     seen[static_cast<std::size_t>(pair.second)], settings.alpha);
   };
   const std::vector<Pair> pairs =
       neighbour_pairs(viewpoints, settings, threads, cancellation, match, graph.unmatched);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ways between viewpoints that a vehicle can fly and whose pictures can be matched (thesis 4.4.4,
 // algorithm 4; reading 4.5).
 #pragma once
@@ -20,7 +21,7 @@ struct MotionSettings {
   // Each viewpoint is joined with so many of the nearest `among` whose pictures match its own
   // (reading 4.11): views of one place look everywhere, and few of the nearest look the same way.
   int neighbours = 12, among = 120;
-  double alpha = 0.4;                  // of (4.8); 0: every pair can be matched
+  double alpha = 0.4;  // of (4.8); 0: every pair can be matched
   // Where the straight line is blocked; null: such neighbours stay apart.
   const PathPlanner* planner = nullptr;
   // A way round that is longer than this many straight lines is none.

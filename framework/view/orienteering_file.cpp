@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/view/orienteering_file.h"
 
 #include <charconv>
@@ -142,7 +143,7 @@ class TsplibReader {
       if (key == "TYPE" && value != "OP") words_.fail("TYPE must be OP, not " + value);
       return value;
     }
-    words_.fail("'" + key + "' is no field of an orienteering problem");
+    words_.fail("'" + key + "' is not a field of an orienteering problem");
   }
 
   void take_dimension(const std::string& value) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instances of the orienteering problem, read from files: a tour problem whose score is a sum over
 // views.
 //

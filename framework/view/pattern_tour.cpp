@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/view/pattern_tour.h"
 
 #include <algorithm>
@@ -233,7 +234,9 @@ int different(std::vector<int> views) {
 
 }  // namespace
 
-bool flown_freely(PatternKind kind) { return kind != PatternKind::hemisphere; }
+bool flown_freely(PatternKind kind) {
+  return kind != PatternKind::hemisphere;
+}
 
 FreePattern fly_freely(const std::vector<Viewpoint>& pattern, double budget,
                        const LegSeconds& leg_seconds) {

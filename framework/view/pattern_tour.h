@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The regular patterns that planned tours are measured against (thesis 4.5.4, 4.8; reading 4.10):
 // circle, ellipse, meander and hemisphere.
 //
@@ -64,10 +65,10 @@ FreePattern fly_freely(const std::vector<Viewpoint>& pattern, double budget,
 struct PatternTour {
   // A tour of the problem; empty where not even one viewpoint of the pattern fits.
   std::vector<int> walk;
-  int asked = 0;   // viewpoints of the pattern
-  int wanted = 0;  // different candidates that these take
+  int asked = 0;     // viewpoints of the pattern
+  int wanted = 0;    // different candidates that these take
   double moved = 0;  // m, by which candidates are off their viewpoints, on average
-  int flown = 0;   // of those
+  int flown = 0;     // of those
   // s: what the whole pattern takes.
   double whole_seconds = std::numeric_limits<double>::infinity();
   std::string message;  // one sentence: whether the budget sufficed

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How: part(list, a, b, B) appends the tour from view a to view b within B seconds.
 //   1. Find the view m with the largest gain of those with leg(a, m) + leg(m, b) <= B. Gains only
 //      shrink as the tour grows. So the list is sorted by old gains: the first possible entry is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Algorithm 2 of the thesis: a tour that grows from its middle (4.4.3; lazy list of 4.7).
 //
 // Between two views and with a budget for the part between them it takes the reachable view with

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that a tour of views is planned on, made from what is known of a place: candidates, what each
 // of them tells of which voxels, and the ways between those whose pictures match (thesis 4.4.4).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What no tour can exceed (submodularity; thesis 2.4).
 //
 // For any set S of views: best <= f(S) + what the gains f(v|S) of further views bring at most

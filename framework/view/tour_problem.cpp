@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How: the seconds of views move into the legs, half to each side, so that the cost of a walk is a
 // sum of legs. Views and motions form a graph. The shortest ways from a view are a tree (Dijkstra),
 // computed at the first request and kept. If two threads compute the same tree, one is dropped. A

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One tour problem (thesis 4.1): which views to take, and in which order, within a budget.
 //
 // A tour is a walk: views in order, from `start` to `end`, neighbours joined by a motion. It costs

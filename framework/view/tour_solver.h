@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tour solver: the most information within a budget (thesis 4.1, 4.4.3). The plugin kind
 // `tour_solver`.
 //

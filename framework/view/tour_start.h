@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which views motions join, and where a tour may begin so that it reaches many of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much of a true surface images see: for judging a scan in simulation. Planning knows nothing
 // of it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a view tells of a voxel that it sees. The plugin kind `information`.
 //
 // The kernel sums the contributions of all views of a tour and saturates the sum at 1 (thesis 4.4),

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How: amounts are integers, multiples of a power of two. `seen_` holds the sum of each voxel over
 // the included views. It is not clamped, so that a view can be removed again. The score is the sum
 // of min(seen, capacity). A gain reads only the voxels of one view: the sum of min(amount, capacity

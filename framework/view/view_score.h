@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How good a set of views is: saturated coverage, summed over voxels (thesis 4.2, 4.4 to 4.6).
 //
 //   f(S) = sum over voxels of min(capacity, sum of what the views in S contribute)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which voxels a viewpoint sees in a map, and how (thesis 4.4.4).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order of a walk: as short as exchanging legs and moving views make it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tour while a solver changes it: its walk, its seconds, and the score of its views. Copyable.
 #pragma once
 

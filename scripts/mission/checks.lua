@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- The checks of a certificate, as `run:certify` gives them.
 local M = {}
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What is drawn: strokes from a text, an SVG picture or points, placed in the world and joined.
 local fonts = require "mission.stroke_font"
 local paths = require "mission.paths"

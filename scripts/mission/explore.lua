@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Exploration: an agent that knows nothing looks, maps what it sees, scores the views that it could
 -- reach, goes to the best one, looks again (thesis chapter 5).
 --

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Films: fly through keyframes with the camera on a subject, smoothly, within what the vehicle can
 -- do and clear of obstacles (thesis 3.5, 3.6).
 --

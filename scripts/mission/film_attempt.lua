@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- One attempt at a film: request in, outcome out; nothing else is read or changed.
 local checks = require "mission.checks"
 local problem = require "mission.film_problem"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What surrounds a film: obstacles, flight zones and the tracking volume, as a problem wants them.
 local tracks = require "mission.tracks"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Why a film came to nothing, in words: the leg that is too fast, the limit that the vehicle lacks,
 -- the subject that the gimbal cannot see, the script's constraint that is in the way. What the
 -- failing film alone does not tell is asked of the same film with less held.

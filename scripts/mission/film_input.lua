@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What a film's script may give: the short forms written out, and the options declared.
 local input = {}
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A film as a trajectory problem: blocks, cost terms, constraints, a first guess, and the task that
 -- its plan is judged by (thesis 3.5).
 local surroundings = require "mission.film_environment"

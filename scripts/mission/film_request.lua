@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What one attempt at a film is asked for (film_attempt.lua), and what came of it. Neither is ever
 -- changed: strategies make new requests from outcomes.
 local record = require "mission.record"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- From what a film's script asks for to its plan: the first request, the strategy that its timing
 -- asks for, and what to do where the film comes to nothing.
 local attempts = require "mission.film_attempt"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- The smallest stretch at which a film is certified, to 1 %: a strategy for a film that asks for
 -- more than the vehicle can do. The flight alone is what takes time, so that is looked for first,
 -- by doubling steps and then by halving; it is stretched further only where the camera needs more.

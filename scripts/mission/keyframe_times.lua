@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- When keyframes are flown through, and with which turn of yaw. Lists of keyframes are never
 -- changed; others are returned.
 local times = {}

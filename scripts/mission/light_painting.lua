@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Light paintings (thesis 3.7.1): strokes of a drawing, flown with a light that is on along them.
 --
 --   local light_painting = require "mission.light_painting"

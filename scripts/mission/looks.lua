@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Which look follows which: what keyframes look at, cuts between looks, and when each subject is to
 -- be in the image.
 local tracks = require "mission.tracks"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Maps: what depth images, files or views of a scene tell of a space.
 --
 --   local map = require "mission.map"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- The scene that a mission's options `scene` and `scene_seed` name, made (scripts/scene).
 local SCENES = "arcade, church, courtyard, district, downtown, office, street, suburb or towers"
 

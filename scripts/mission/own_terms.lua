@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Cost terms and constraints that a script brings along, beside those of its kind of mission: a
 -- function of a stage, or a plugin by name.
 --

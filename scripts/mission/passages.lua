@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Passage after passage (thesis 6.1): a strategy for a film that came to nothing where something
 -- stands in the way. The passage of the leg that fails is tried again within a corridor of free
 -- boxes; if that fails as well, another passage is planned for the leg.

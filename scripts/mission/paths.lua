@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Paths as the calls of the kernel have them: x, y, z of each point in turn.
 local M = {}
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- How the vehicle of a film, a race, a light painting or a scan moves: the vehicle model, what its
 -- motion costs, and its limits. The model says by its blocks which of them there are: the point
 -- mass (`quadrotor`, thesis 3.1 and 3.2) has a force, others have an acceleration, or a wing.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Races (thesis 3.7.2): gates flown through in order, in their direction, as fast as the vehicle
 -- can; or in a given time, as smoothly as that allows.
 --

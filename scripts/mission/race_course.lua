@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A course: the gates in the order of flight, laps written out, with everything checked that can be
 -- checked before a flight is planned.
 local files = require "mission.race_file"

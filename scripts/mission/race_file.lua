@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Courses in files, and what a gate has, in a script or in a file.
 local M = {}
 

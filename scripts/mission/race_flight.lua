@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- The flight of a course: planned in rounds until it is certified, each with more stages where
 -- those of a leg are too coarse, and with slower forces where the controller strays.
 local checks = require "mission.checks"

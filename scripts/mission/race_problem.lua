@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A course as a trajectory problem: legs from gate to gate, each with a step of its own, limits,
 -- gates, and a straight first guess (thesis 3.7.2).
 local courses = require "mission.race_course"

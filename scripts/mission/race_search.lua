@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What would fly, where the controller cannot follow the fastest flight: the largest share of the
 -- thrust at which the whole quadrotor stays on the course, found by trying. Every try is the flight
 -- that a run with the printed settings makes.

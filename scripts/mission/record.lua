@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Records: tables with declared fields that are never changed after they were made. A field that is
 -- not declared can be neither given nor read, so that a slip of the pen is an error.
 --

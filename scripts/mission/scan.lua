@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Scans (thesis chapter 4): which images to take of a region, and in which order, so that one
 -- battery gives the best model.
 --

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- An exploration in place of a scan's first flight (thesis 6.1): a drone that knows nothing maps
 -- the place, then scans with the map and the mesh that it made, in one visit.
 local patterns = require "mission.scan_patterns"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- The first flight of a scan, and what is known after it (thesis 4.3): a map, a mesh, places that
 -- are free. What was flown in is asked by the simulator alone.
 local exploration = require "mission.scan_exploration"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What a scan can be told (readings 4.3, 4.6, 4.11 for defaults that the thesis never gives).
 local exploration = require "mission.scan_exploration"
 

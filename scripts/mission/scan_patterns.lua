@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Where a first flight takes its images: patterns at one height over a region (thesis 4.5.4).
 local M = {}
 

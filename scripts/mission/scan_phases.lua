@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What a scan consists of, for whoever waits: each phase with what it takes in s, as measured on
 -- one machine. Only their shares count, and what a run measures itself corrects them.
 local exploration = require "mission.scan_exploration"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Legs of a tour by a trajectory solver, in place of pure pursuit: from rest to rest, with little
 -- jerk, past the corners of ways round obstacles instead of stopping at them. Each leg is a problem
 -- of its own.

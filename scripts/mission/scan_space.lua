@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Where a scan goes on: the surface that is flown in, the region of interest, and the heights and
 -- places of its first flights.
 local exploration = require "mission.scan_exploration"

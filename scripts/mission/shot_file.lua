@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Camera shots as designers draw them: JSON with a camera pose and a point looked at per keyframe.
 --
 -- lookFromNED and lookAtNED are metres north, east and down of refLLH; a shot without them carries

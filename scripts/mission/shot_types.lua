@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Named shots as keyframes: how a film crew asks for a camera move.
 --
 -- Each takes a table and gives keyframes for film.shot, in time from `start` (0) over `duration`

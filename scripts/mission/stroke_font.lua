@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Letters as strokes: a font of our own, and Hershey's from .jhf files.
 local M = {}
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- In which order, and from which end, to draw strokes so that little is flown between them.
 local M = {}
 

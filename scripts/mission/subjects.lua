@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What a film looks at, and when: subjects and their tracks, looks, cuts, and a first guess of
 -- where the camera points.
 local looks = require "mission.looks"

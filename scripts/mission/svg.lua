@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- An SVG picture as strokes: lists of {x, y}, y down as in the file, curves as short straight
 -- pieces. What a light cannot draw, or what is not read, is said; nothing is left out in silence.
 local frames = require "mission.svg_frame"

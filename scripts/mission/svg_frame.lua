@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What of strokes lies within a rectangle.
 local M = {}
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- The path data of SVG: all commands; curves become short straight pieces.
 local M = {}
 

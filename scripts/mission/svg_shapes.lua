@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Shapes of an SVG picture as path data, and its transforms as matrices.
 local path = require "mission.svg_path"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What of an SVG file's styles matters to a light: whether a shape is seen, and in what colour.
 -- Read from attributes, `style` and rules for one tag, class or id; the rest is said.
 local M = {}

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- An SVG file as a tree: { name =, attributes =, line =, children = { ... }, text = } per element.
 -- Names lose an `svg:` before them; entities of XML itself are read, those of a file's own are not.
 local M = {}

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- path_first: the fastest timing along a path that is kept. A strategy: the film at its own pace
 -- gives the path; then it is flown as fast as the vehicle allows, with the times of keyframes as
 -- wishes, and slower until the vehicle follows within the tolerance.

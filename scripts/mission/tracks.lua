@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Subjects on their tracks, and the directions from which they are seen.
 local tracks = {}
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Where a depth camera looks from to see a whole scene.
 local M = {}
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Global before local (thesis 2.1, 6.1): ways between keyframes, straight or round what stands
 -- between them, at which solvers begin; and corridors of free boxes about them.
 --

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- timing = "free": the times of keyframes are found together with the flight, where no path is
 -- kept. Every leg between two keyframes has a step of its own; a keyframe's time is exact,
 -- preferred with a weight, within a window or free, and each second of flight costs `weights.time`.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Covered markets: halls, shops, stores and passages under ceilings of 2.6 to 5 m, with doorways
 -- and arches between them, columns, shelves, stalls, counters and crates; now and then a court that
 -- is open to the sky. Every seed is another plan. For training indoors.

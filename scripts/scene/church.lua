@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A renaissance church on a square: nave and aisles, transept with a dome, a tower, a porch with
 -- columns before a portal of nested arches (after thesis 4.5.5: "geometric concavities such as the
 -- portal").

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Walls and columns of churches. Metres.
 local colors = require "scene.colors"
 local walls = require "scene.walls"

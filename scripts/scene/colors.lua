@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Colours of materials, 0 to 255.
 local colors = {
   asphalt = {92, 92, 96},    pavement = {168, 164, 156}, cobbles = {140, 132, 122},

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A block of houses around three inner courts, reached through archways (after thesis 4.5.1,
 -- "Courtyard": the inner facades are shielded by the opposite buildings).
 local colors = require "scene.colors"

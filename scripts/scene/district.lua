@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Parts of a town like `downtown`, each of another kind: alleys or avenues, small blocks or large
 -- ones, houses of two storeys or towers. For training, where what differs from world to world is
 -- what teaches.

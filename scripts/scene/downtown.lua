@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A city centre: towers of glass and stone up to 110 m around a square, with setbacks, bridges
 -- between them, roof machines and a street grid (after thesis 5.4.5: "tall buildings never seen
 -- before").

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Whole buildings of four walls and a roof. A house stands in its frame from the origin to
 -- {width, depth}, its front towards -y. Metres.
 local colors = require "scene.colors"

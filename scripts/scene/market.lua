@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What markets and their stores are full of: racks, crates, counters, columns, galleries. Metres.
 local colors = require "scene.colors"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Trees, hedges and ground. Metres.
 local colors = require "scene.colors"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A floor of offices, indoors: a corridor with rooms on both sides, an open-plan hall, a kitchen,
 -- desks, chairs, screens, shelves, lamps under the ceiling (after thesis 5.5.6, indoor scenes).
 local colors = require "scene.colors"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Roofs over a rectangle of `width` (x) by `depth` (y) whose walls end at height z. Metres.
 local colors = require "scene.colors"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A street of town houses, about 100 m long, closed at both ends, with arcades, balconies, trees
 -- and cars, and yards behind the houses (after thesis 4.5.1, "Street": many surfaces can be seen
 -- from between the buildings only).

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What stands in streets: lamps, cars, benches, poles with wires. Metres.
 local colors = require "scene.colors"
 

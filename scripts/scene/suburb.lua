@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Houses in their gardens along two lanes on gentle hills: trees, hedges, sheds, fences, cars, and
 -- power lines on poles (after thesis 5.4.5, the suburban scene).
 local colors = require "scene.colors"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- Walls with what is in them. A wall stands in the frame's plane y = 0, x to the right and z up as
 -- seen from outside, which is towards -y. Metres.
 local colors = require "scene.colors"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What authors of plugins and missions meet: `new`, and `plugins check` on what is right and on
 // what has one mistake each.
 #include <sys/resource.h>
@@ -234,8 +235,8 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"information_without_normal", "finite", "it tells nan"},
            {"information_crowd", "submodular", "to fewer"},
            {"information_throws", "finite", "its contributions throws: no"},
-           {"utility_finite", "finite", "which is no finite number"},
-           {"utility_somewhere", "finite", "which is no finite number"},
+           {"utility_finite", "finite", "which is not a finite number"},
+           {"utility_somewhere", "finite", "which is not a finite number"},
            {"utility_many", "alone", "has another value when asked alone"},
            {"utility_monotone", "monotone", "less than nothing"},
            {"utility_submodular", "submodular", "with less known"},
@@ -434,7 +435,7 @@ TEST_F(Authoring, TheGuideOfPluginsHolds) {
   refused({"new", "plugin", "cost_term", "keyframe"}, {"choose another name"});
   refused({"plugins", "show", "keep_low"}, {"--plugin-path FOLDER"});
   refused({"new", "plugin", "cost_term", "low", "--in", "nowhere/at/all"},
-          {"--in: 'nowhere/at/all' is no folder"});
+          {"--in: 'nowhere/at/all' is not a folder"});
 }
 
 TEST_F(Authoring, NewMissionsOfEveryKindAreRight) {

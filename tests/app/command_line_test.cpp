@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line as a user meets it: the program run as a process of its own.
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -209,7 +210,8 @@ TEST_F(CommandLine, TextThatIsNotUtf8IsRefused) {
 TEST_F(CommandLine, BadMissionsAreRefused) {
   refused_script(film("wieghts = {},"), {"shot.lua:7: wieghts: unknown key", "'weights'"});
   refused_script(film("solver = 'ipq',"), {"shot.lua:7", "'ipq'", "'iqp'"});
-  refused_script(film("duration = '3 kg',"), {"shot.lua:7: duration: '3 kg' is no quantity in s"});
+  refused_script(film("duration = '3 kg',"),
+                 {"shot.lua:7: duration: '3 kg' is not a quantity in s"});
   refused_script(film("hard = -0.5,"), {"shot.lua:7: hard: expected above 0 m, got -0.5"});
   refused_script(film("hard = 0/0,"), {"shot.lua:2: hard: expected a finite number, got NaN"});
   refused_script(
@@ -247,7 +249,7 @@ TEST_F(CommandLine, BadMissionsAreRefused) {
   write("bad.yaml", "weights:\n  yaww: 1\nstep: 3 m\n");
   refused({"run", "shot.lua", "--config", "bad.yaml"},
           {"bad.yaml:2: weights.yaww: unknown key; did you mean 'yaw'?",
-           "bad.yaml:3: step: '3 m' is no quantity in s"});
+           "bad.yaml:3: step: '3 m' is not a quantity in s"});
   refused({"run", "shot.lua", "--set", "solver.iteration=3"},
           {"--set solver.iteration=3: solver.iteration: unknown key; did you mean 'iterations'?"});
   refused({"run", "shot.lua", "--set", "sandbox.memroy=3"}, {"did you mean 'memory'?"});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Completion in bash, zsh and fish, each run for real.
 #include <array>
 #include <cstring>

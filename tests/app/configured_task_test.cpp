@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans whose task was edited against their own configuration, with a digest made anew.
 #include <gmock/gmock.h>
 

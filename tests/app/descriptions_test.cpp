@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is described once: tables in READMEs, schemas beside configurations and annotations are what
 // the program writes. LAPWING_DESCRIBE=write in the environment writes them anew.
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing diff: two plans beside each other.
 #include <regex>
 

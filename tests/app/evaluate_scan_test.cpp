@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing evaluate scan, as a user runs it, on a hut that is written here.
 #include <gtest/gtest.h>
 #include <signal.h>

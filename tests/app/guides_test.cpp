@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The guides, followed to the letter: files are saved under the name in their first line, commands
 // are typed in the order in which they stand.
 #include <iterator>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the program says of itself: help, errors of usage, completion, the manual, colour.
 #include <regex>
 
@@ -185,7 +186,7 @@ TEST_F(Helping, AFolderOfOtherFilesStopsNoCommand) {
   EXPECT_EQ(finished.status, 0) << finished.err;
   EXPECT_NE(finished.out.find("keyframe"), std::string::npos);
   EXPECT_NE(finished.err.find("notes.json"), std::string::npos) << finished.err;
-  EXPECT_NE(finished.err.find("is no plugin's sidecar"), std::string::npos) << finished.err;
+  EXPECT_NE(finished.err.find("is not a plugin's sidecar"), std::string::npos) << finished.err;
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `lapwing` as a command: what README.md says of PATH and installing, typed as it stands there.
 #include <sstream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Too little memory is said in words, whoever asked for it.
 #include "framework/plugin/abi.h"
 #include "tests/app/program_fixture.h"

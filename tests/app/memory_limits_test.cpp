@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a script or a file makes the program hold stays within the limit of memory, copies outside
 // of Lua included: the peak of the whole process is measured.
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that commands write (-o) replace no input, script, plan or part of a run.
 #include "framework/core/files.h"
 #include "tests/app/program_fixture.h"

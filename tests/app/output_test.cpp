@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is written and where: run folders that are shared, output that does not arrive, and files
 // that are no plans.
 #include <fcntl.h>

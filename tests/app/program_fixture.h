@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program run as a process of its own, in a folder of the test's own.
 #pragma once
 

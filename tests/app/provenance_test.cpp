@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whose limits and obstacles a certificate is about, and what an edited plan is told.
 #include <gmock/gmock.h>
 

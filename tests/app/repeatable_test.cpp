@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same script gives the same plan in every process, also where it asks for what Lua makes of
 // addresses, of a random seed or of the clock.
 #include "tests/app/program_fixture.h"

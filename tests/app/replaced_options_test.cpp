@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options that a file takes the place of are not told as if they were flown.
 #include "framework/core/json.h"
 #include "tests/app/program_fixture.h"

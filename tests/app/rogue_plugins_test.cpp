@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plugins of every kind that crash, end the program, throw, answer NaN or do not come back in one
 // of their calls: each is told by its name, with what to do about it.
 #include <cmath>
@@ -229,8 +230,8 @@ TEST(RoguePlugins, AnswersThatAreNoneAreNamed) {
   };
   const std::string failed = "plugin 'rogue_solver' failed in solve: it reports 'optimal', but ";
   EXPECT_EQ(solver("solve"),
-            failed + "'position' of stage 1 is no finite number" + cure("rogue_solver"));
-  EXPECT_EQ(solver("cost"), failed + "its cost is no finite number" + cure("rogue_solver"));
+            failed + "'position' of stage 1 is not a finite number" + cure("rogue_solver"));
+  EXPECT_EQ(solver("cost"), failed + "its cost is not a finite number" + cure("rogue_solver"));
   EXPECT_EQ(solver("size"), failed + "its point is not the problem's" + cure("rogue_solver"));
   const std::string term =
       failure([&] { state_problem(Value::map(), misdeed("evaluate", "nan"), Value::map()); });

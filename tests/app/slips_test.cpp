@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines that a newcomer types wrongly: one message each, with what, where, and what would be right.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
@@ -41,15 +42,16 @@ TEST_F(Slips, WordsOfTheCommandLine) {
 }
 
 TEST_F(Slips, AFileOfAnotherSort) {
-  slip(
-      {"run", "plan.json"},
-      "'plan.json' is no mission script, NAME.lua; a plan is judged by `lapwing verify plan.json`");
-  slip({"config", "mine.yaml"}, "'mine.yaml' is no mission script, NAME.lua; a configuration is");
+  slip({"run", "plan.json"},
+       "'plan.json' is not a mission script, NAME.lua; a plan is judged by `lapwing verify "
+       "plan.json`");
+  slip({"config", "mine.yaml"},
+       "'mine.yaml' is not a mission script, NAME.lua; a configuration is");
   slip({"run", "shot"}, "cannot read 'shot'; did you mean 'shot.lua'?");
   slip({"run", "shot.lua", "--config", "vehicles/solo"},
        "--config vehicles/solo: this is a vehicle, not a configuration of a mission; expected "
        "--set vehicle=vehicles/solo");
-  slip({"verify", "house.obj"}, "'house.obj' is no plan; expected a document such as plan.json");
+  slip({"verify", "house.obj"}, "'house.obj' is not a plan; expected a document such as plan.json");
   write("out/shot/plan.json", "{}");
   slip({"verify", "out/shot"}, "'out/shot' is a folder; its plan is 'out/shot/plan.json'");
   slip({"verify", "out"}, "'out' is a folder; expected a plan, such as plan.json");
@@ -77,10 +79,10 @@ TEST_F(Slips, InPlaceOfAPlan) {
       {"nothing", "'nothing"},
       {"pipe", "cannot read 'pipe': nobody has written into it for 5 s"},
       {"empty.json", "'empty.json' is empty; expected a document such as plan.json in the "},
-      {"binary", "'binary' is no plan; expected a document such as plan.json in the folder "},
-      {"list.json", "'list.json' is no plan; expected a document such as plan.json in the "},
-      {"settings.json", "'settings.json' is no plan: JSON without `format` and `samples`; "},
-      {"house.obj", "'house.obj' is no plan; expected a document such as plan.json in the "},
+      {"binary", "'binary' is not a plan; expected a document such as plan.json in the folder "},
+      {"list.json", "'list.json' is not a plan; expected a document such as plan.json in the "},
+      {"settings.json", "'settings.json' is not a plan: JSON without `format` and `samples`; "},
+      {"house.obj", "'house.obj' is not a plan; expected a document such as plan.json in the "},
       {"absent.json", ""},
       {"whole.json", "whole.json:1: "}};
   write("log.csv", "time,forward,left\n0,0,0\n");
@@ -110,12 +112,14 @@ TEST_F(Slips, InPlaceOfAPlan) {
 
 TEST_F(Slips, MeshesAndScenes) {
   slip({"scene", "view", "chruch", "-o", "x.html"},
-       "'chruch' is no scene of scripts/scene (did you mean 'church'? There are arcade, church, ");
+       "'chruch' is not a scene of scripts/scene (did you mean 'church'? There are arcade, "
+       "church, ");
   slip({"scene", "view", "house.obj", "-o", "x.html", "--unit", "-1"},
        "--unit: expected a number of metres above 0, got -1");
   slip({"scene", "view", "house.obj", "-o", "x.html", "--up", "w"},
        "--up: expected x, y or z, got 'w'");
-  slip({"evaluate", "explore", "--world", "chruch"}, "'chruch' is no scene of scripts/scene (did");
+  slip({"evaluate", "explore", "--world", "chruch"},
+       "'chruch' is not a scene of scripts/scene (did");
   write("map.lua", "return require('mission.map').of_scene {\n  scene = 'stret' }");
   slip({"run", "map.lua"},
        "map.lua:2: scene: there is no scene 'stret'; did you mean 'street'?; expected arcade, ");
@@ -123,7 +127,7 @@ TEST_F(Slips, MeshesAndScenes) {
 
 TEST_F(Slips, Settings) {
   slip({"run", "shot.lua", "--set", "keyframes.2.time=3"},
-       "--set keyframes.2.time=3: '.2' is no key; an entry of a list is written keyframes[2]");
+       "--set keyframes.2.time=3: '.2' is not a key; an entry of a list is written keyframes[2]");
   slip({"run", "race.lua", "--set", "gates=[]", "--set", "keyframes=3"},
        "--set keyframes=3: keyframes: expected a list of tables, got 3");
   // A list of all keys is shown once.

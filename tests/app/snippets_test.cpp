@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every fenced block of every README does what it says: it is run as it stands, or within the least
 // that its place in the text takes for granted. Blocks without a language are no code; "lua
 // excerpt" marks the few that nobody could run.

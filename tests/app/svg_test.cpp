@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What of an SVG picture is drawn, and that the rest is said: nothing is left out in silence.
 #include "tests/app/program_fixture.h"
 

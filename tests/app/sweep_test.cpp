@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing sweep: what it prints and writes, how it ends, how it goes on.
 #include <signal.h>
 

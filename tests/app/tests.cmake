@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The program and its plugins are run as a user runs them.
 if(TARGET test_app)
   get_property(plugins GLOBAL PROPERTY LAPWING_PLUGINS)

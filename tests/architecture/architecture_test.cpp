@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/architecture/rules.h"
 
 #include "framework/core/files.h"
@@ -23,6 +24,7 @@ TEST(Architecture, TheTreeKeepsItsRules) {
     append(all, check_includes(file));
     append(all, check_third_party(file));
     append(all, check_style(file));
+    append(all, check_licence(file));
   }
   EXPECT_TRUE(all.empty()) << listed(all);
 }
@@ -175,6 +177,21 @@ TEST(Rules, TextIsFinishedAndFitsTheScreen) {
   EXPECT_EQ(count("scripts/mission/film.lua", lines), 0u);
   EXPECT_EQ(count("scripts/mission/film.lua", lines + "x = 1\n"), 1u);
   EXPECT_EQ(count("scripts/scene/castle.lua", lines + "x = 1\n"), 0u);
+}
+
+TEST(Rules, SourcesStateTheirLicence) {
+  const auto count = [](const std::string& path, const std::string& text) {
+    return check_licence({path, text}).size();
+  };
+  const std::string licence = " SPDX-License-Identifier: Apache-2.0\n";
+  EXPECT_EQ(count("framework/core/a.cpp", "//" + licence + "int a;\n"), 0u);
+  EXPECT_EQ(count("framework/core/a.cpp", "int a;\n//" + licence), 0u);
+  EXPECT_EQ(count("framework/core/a.cpp", "int a;\nint b;\n//" + licence), 1u);
+  EXPECT_EQ(count("scripts/test.sh", "#!/usr/bin/env bash\n#" + licence), 0u);
+  EXPECT_EQ(count("scripts/test.sh", "#!/usr/bin/env bash\n"), 1u);
+  EXPECT_EQ(count("plugins/CMakeLists.txt", "# Plugins.\n"), 1u);
+  EXPECT_EQ(count("scripts/templates/CMakeLists.txt", "# Yours.\n"), 0u);
+  EXPECT_EQ(count("scripts/README.md", "Scripts.\n"), 0u);
 }
 
 TEST(Rules, SourcesWithTestsAreNamedAlike) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tests/fresh_machine, without a machine: its limit, its ends, and what it takes from the READMEs.
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/architecture/rules.h"
 
 #include <algorithm>
@@ -150,7 +151,7 @@ std::vector<Include> includes_of(const SourceFile& file) {
 
 // What a file of `room` may not do with an include of framework/`other`; empty if it may.
 std::string room_violation(const std::string& room, const std::string& other) {
-  if (!rooms().count(other)) return "'" + other + "' is no room";
+  if (!rooms().count(other)) return "'" + other + "' is not a room";
   if (other == room || other == "core" || rooms().at(room).count(other)) return "";
   return "room " + room + " may not include room " + other;
 }
@@ -158,7 +159,7 @@ std::string room_violation(const std::string& room, const std::string& other) {
 std::string framework_violation(const std::vector<std::string>& file,
                                 const std::vector<std::string>& include) {
   if (file.size() < 3) return "";
-  if (!rooms().count(file[1])) return "'" + file[1] + "' is no room";
+  if (!rooms().count(file[1])) return "'" + file[1] + "' is not a room";
   if (include[0] == "plugins") return "the framework knows no plugin";
   if (include[0] != "framework" || include.size() < 3) return "not written from the root";
   return room_violation(file[1], include[1]);
@@ -168,7 +169,7 @@ std::string plugin_violation(const std::vector<std::string>& file,
                              const std::vector<std::string>& include) {
   if (file.size() < 4) return "";
   const auto kind = kinds().find(file[1]);
-  if (kind == kinds().end()) return "'" + file[1] + "' is no kind of plugin";
+  if (kind == kinds().end()) return "'" + file[1] + "' is not a kind of plugin";
   if (include[0] == "plugins") {
     const bool own = include.size() > 3 && include[1] == file[1] && include[2] == file[2];
     return own ? "" : "a plugin may not include another plugin";
@@ -242,6 +243,18 @@ Violations check_third_party(const SourceFile& file) {
     found.push_back(file.path + ": dlopen belongs in framework/plugin/");
   }
   return found;
+}
+
+Violations check_licence(const SourceFile& file) {
+  // The templates become sources of somebody else.
+  if (file.path.starts_with("scripts/templates/")) return {};
+  if (!has_extension(file.path, {".h", ".cpp", ".lua", ".sh", ".cmake"}) &&
+      !file.path.ends_with("CMakeLists.txt")) {
+    return {};
+  }
+  const std::string head = file.text.substr(0, file.text.find('\n', file.text.find('\n') + 1));
+  if (head.find("SPDX-License-Identifier: Apache-2.0") != head.npos) return {};
+  return {file.path + ": no 'SPDX-License-Identifier: Apache-2.0' in its first two lines"};
 }
 
 Violations check_style(const SourceFile& file) {
@@ -329,7 +342,7 @@ void check_plugin(const std::string& folder, const std::map<std::string, std::st
   require(!text_of("README.md").empty(), "no README.md");
   const auto kind = kinds().find(parts[1]);
   if (kind == kinds().end()) {
-    found.push_back(folder + ": '" + parts[1] + "' is no kind of plugin");
+    found.push_back(folder + ": '" + parts[1] + "' is not a kind of plugin");
     return;
   }
   const std::regex line("lapwing_add_plugin\\(\\s*" + kind->second.name + "\\s+" + name + "\\b");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rules of the source tree, as functions of file names and texts.
 #pragma once
 
@@ -21,6 +22,8 @@ Violations check_includes(const SourceFile& file);
 Violations check_third_party(const SourceFile& file);
 // Names of files and types, `#pragma once`, line lengths, unfinished work, length of mission kinds.
 Violations check_style(const SourceFile& file);
+// The line by which a source states its licence.
+Violations check_licence(const SourceFile& file);
 // Rules over several files: one name per plugin, headers that one source alone may include.
 Violations check_tree(const std::vector<SourceFile>& files);
 // The kernel's map, framework/README.md: it lists every existing room, and what it says that a room

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tools of tests are found when a test runs (tests/tool.h): what CMake looked for is what was there
 // when the program was built, before the tests' packages were installed.
 #include <gtest/gtest.h>

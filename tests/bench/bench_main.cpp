@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the benchmarks and prints the ratios that the READMEs claim, each with its bound and whether
 // it holds: from medians of repetitions that are taken in turn, so that what else the machine does
 // disturbs both sides of a ratio alike. All but one are single-threaded, so that processor time is

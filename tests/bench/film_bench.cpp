@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shipped films: iqp against Ipopt with the same derivatives, on the very problem that the script
 // states; and a keyframe moved by a metre, from the plan before.
 #include <benchmark/benchmark.h>

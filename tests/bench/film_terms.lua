@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- A film with three terms beside its own: written in Lua, and the same three as plugins.
 local film = require "mission.film"
 

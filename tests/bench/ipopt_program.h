@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ipopt on a quadratic program, for benchmarks: same matrices, told that they are constant.
 #pragma once
 

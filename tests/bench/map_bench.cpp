@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps: brick against octomap on the same scans, rays and boxes.
 #include <benchmark/benchmark.h>
 #include <octomap/OcTree.h>

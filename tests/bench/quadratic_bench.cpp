@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The quadratic core against Ipopt, on the identical program.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The seven gates: Ipopt with exact second derivatives against Ipopt that estimates them from
 // gradients, on the very problems that the script states: a point mass from straight lines, and the
 // whole quadrotor from there.

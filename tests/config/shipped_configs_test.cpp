@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shipped configurations change effort and method, never what is asked for: budget, region, camera,
 // range, flights, vehicle and keyframes are the user's own.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Large and dense YAML: read in time that grows with it, or refused before it takes memory.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps broken on purpose, each of which must be caught.
 #include <atomic>
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The checks catch what authors get wrong: subjects broken on purpose, one mistake each.
 #include <atomic>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A vehicle model with a motion that the verifier does not know: it brings its derivatives.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

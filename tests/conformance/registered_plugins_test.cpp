@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every plugin of the build tree passes what its kind must pass.
 #include "framework/app/allocation_counter.h"
 #include "framework/conformance/check.h"

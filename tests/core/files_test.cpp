@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/core/files.h"
 
 #include <fcntl.h>
@@ -150,9 +151,9 @@ TEST_F(FilesTest, WhatCannotBeWrittenIsKnownBefore) {
   EXPECT_EQ(refused(folder_ / "a/b/c.json"), "");
   EXPECT_EQ(refused("out_of_nowhere.json"), "");
   EXPECT_NE(refused(folder_).find("it is a folder"), std::string::npos);
-  EXPECT_EQ(refused(folder_ / "file/a/b.json"), "cannot write '" +
-                                                    (folder_ / "file/a/b.json").string() + "': '" +
-                                                    (folder_ / "file").string() + "' is no folder");
+  EXPECT_EQ(refused(folder_ / "file/a/b.json"),
+            "cannot write '" + (folder_ / "file/a/b.json").string() + "': '" +
+                (folder_ / "file").string() + "' is not a folder");
   EXPECT_NE(refusal(folder_ / "file/a/b.json", "x").find("Not a directory"), std::string::npos);
   EXPECT_EQ(names(), std::vector<std::string>{"file"});
   fs::permissions(folder_, fs::perms::owner_write, fs::perm_options::remove);

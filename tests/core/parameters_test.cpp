@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/core/parameters.h"
 
 #include "framework/core/json.h"
@@ -68,12 +69,13 @@ TEST(Parameters, ReadsWhatIsGivenWithItsOrigin) {
 }
 
 TEST(Parameters, CollectsEveryError) {
-  EXPECT_EQ(why_not("{\"wieght\": 1,\n\"speed\": \"3 kg\",\n\"order\": 5,\n\"stretch\": \"atuo\"}"),
-            "shot.yaml:1: wieght: unknown key; did you mean 'weight'?\n"
-            "shot.yaml:2: speed: '3 kg' is no quantity in m/s; expected a number in m/s, or a text "
-            "with a unit of that kind\n"
-            "shot.yaml:3: order: expected between 1 and 4, got 5\n"
-            "shot.yaml:4: stretch: expected one of none, auto, got 'atuo'; did you mean 'auto'?");
+  EXPECT_EQ(
+      why_not("{\"wieght\": 1,\n\"speed\": \"3 kg\",\n\"order\": 5,\n\"stretch\": \"atuo\"}"),
+      "shot.yaml:1: wieght: unknown key; did you mean 'weight'?\n"
+      "shot.yaml:2: speed: '3 kg' is not a quantity in m/s; expected a number in m/s, or a text "
+      "with a unit of that kind\n"
+      "shot.yaml:3: order: expected between 1 and 4, got 5\n"
+      "shot.yaml:4: stretch: expected one of none, auto, got 'atuo'; did you mean 'auto'?");
 }
 
 TEST(Parameters, RefusesEachMistakeInItsPlace) {
@@ -82,9 +84,10 @@ TEST(Parameters, RefusesEachMistakeInItsPlace) {
             "yaw_deg, start, keyframes");
   EXPECT_EQ(why_not(R"({"keyframes": [{"position": [1, 2, 3]}, {"position": [1, 2]}]})"),
             "shot.yaml:1: keyframes[2].position: expected a list of 3 numbers in m, got 2");
-  EXPECT_EQ(why_not(R"({"keyframes": [{"position": [1, "x", 3]}]})"),
-            "shot.yaml:1: keyframes[1].position[2]: 'x' is no quantity in m; expected a number in "
-            "m, or a text with a unit of that kind");
+  EXPECT_EQ(
+      why_not(R"({"keyframes": [{"position": [1, "x", 3]}]})"),
+      "shot.yaml:1: keyframes[1].position[2]: 'x' is not a quantity in m; expected a number in "
+      "m, or a text with a unit of that kind");
   EXPECT_EQ(why_not(R"({"keyframes": [{}]})"),
             "shot.yaml:1: keyframes[1].position: missing; expected a list of 3 numbers in m");
   EXPECT_EQ(why_not(R"({"start": {"velocity": {"x": 1}}})"),

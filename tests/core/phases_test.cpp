@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is said of work that has phases: shares never fall, and an estimate is one that came true.
 #include "framework/core/phases.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a terminal would obey is shown as text.
 #include "framework/core/visible_text.h"
 

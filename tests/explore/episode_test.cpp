@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -374,11 +375,12 @@ TEST(RandomStart, LiesWhereTheBoxIsFree) {
   Eigen::AlignedBox3d bounds = world.truth.region();
   bounds.max().x() = bounds.center().x();
   for (int k = 0; k < 20; ++k)
-    EXPECT_TRUE(bounds.contains(
-        random_start(world.truth, 6, 10, world.pitch, random, bounds).position));
+    EXPECT_TRUE(
+        bounds.contains(random_start(world.truth, 6, 10, world.pitch, random, bounds).position));
   bounds.translate(Eigen::Vector3d(500, 0, 0));
-  EXPECT_NE(refusal([&] { random_start(world.truth, 6, 10, world.pitch, random, bounds); })
-                .find("nothing of the region"),
+  EXPECT_NE(refusal([&] {
+              random_start(world.truth, 6, 10, world.pitch, random, bounds);
+            }).find("nothing of the region"),
             std::string::npos);
 }
 

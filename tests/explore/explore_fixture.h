@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small world to explore: a yard between walls, in voxels of 0.4 m.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run that keeps the older one (`--keep`), killed at every system call that it makes.
 #include <gtest/gtest.h>
 #include <sys/ptrace.h>

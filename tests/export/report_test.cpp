@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/export/report.h"
 
 #include <gtest/gtest.h>
@@ -127,7 +128,8 @@ TEST(Report, RefusesWhatCannotBeDrawnNamingIt) {
   EXPECT_TRUE(contains(error_of(with(scene)), "a point is not finite"));
   EXPECT_TRUE(contains(error_of(with(Table{"t", {{"a", ""}, {"b", ""}}, {{{1.0}}}})),
                        "a row has 1 cells for 2 columns"));
-  EXPECT_TRUE(contains(error_of(with(Image{"GIF89a", "a picture"})), "the image is no PNG file"));
+  EXPECT_TRUE(
+      contains(error_of(with(Image{"GIF89a", "a picture"})), "the image is not a PNG file"));
 }
 
 TEST(Report, WritesImagesAsBase64) {

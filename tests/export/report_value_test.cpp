@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/export/report_value.h"
 
 #include <gtest/gtest.h>
@@ -120,7 +121,7 @@ TEST(ReportValue, NamesWhatIsWrongAndWhere) {
   EXPECT_TRUE(has_text(error_of_block(R"({"type": "image", "caption": "c", "png_base64": "@@@@"})"),
                        "png_base64: expected the bytes of a PNG file in padded base64"));
   EXPECT_TRUE(has_text(error_of_block(R"({"type": "image", "caption": "c", "png_base64": "AAAA"})"),
-                       "the image is no PNG file"));
+                       "the image is not a PNG file"));
 }
 
 TEST(ReportValue, RefusesSeriesThatCannotBeDrawn) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Run folders: what belongs to a run, and what is kept.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A made-up flight with known numbers: a climbing wave around a tower, exact derivatives.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What run.sh and steps.sh share: whether a machine can be made here, and of what. Sourced.
 
 readonly debian=bookworm  # Debian 12

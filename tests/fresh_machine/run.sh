@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # A machine that never saw the project: makes a bare Debian 12, types both commands of the README
 # there, as root and as a user with sudo, installs what was built and writes the plugin of
 # plugins/README.md against it. README.md beside this file says more.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # The steps, in a name space of mounts and processes that run.sh made: $machine is the new machine's
 # folder, $root the checkout, $log where everything goes. Whatever is mounted here nobody else sees.
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replays the small inputs that fuzzing starts from and what it once found.
 #include <gtest/gtest.h>
 

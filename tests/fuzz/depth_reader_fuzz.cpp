@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Folders of depth images: whatever the bytes of a picture, a pose or a camera, a frame of finite
 // or missing depths under a rotation, or an InputError. The first byte says which file they are.
 #include <cmath>

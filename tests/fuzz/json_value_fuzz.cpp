@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON documents: whatever the bytes, a value that is written and read back as itself, or an
 // InputError.
 #include <cstddef>

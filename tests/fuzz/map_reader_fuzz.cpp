@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Occupancy files: whatever the bytes, a map or an InputError.
 #include <cstddef>
 #include <cstdint>

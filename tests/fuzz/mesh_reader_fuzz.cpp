@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh files: whatever the bytes, a sound mesh or an InputError. The first byte chooses the format.
 #include <cstddef>
 #include <cstdint>

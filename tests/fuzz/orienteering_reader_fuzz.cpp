@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orienteering instances: whatever the bytes, a tour problem with a budget and distances of at
 // least 0, or an InputError.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Overrides, as `--set` takes them: whatever the bytes, they are laid on a configuration, or they
 // are an InputError and the configuration is as before.
 #include <cstddef>

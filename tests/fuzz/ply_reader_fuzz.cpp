@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PLY meshes from memory, many more than through files: whatever the bytes, a mesh or an
 // InputError.
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth images: whatever the bytes, as many pixels as the picture is large, or an InputError.
 #include <cstddef>
 #include <cstdint>

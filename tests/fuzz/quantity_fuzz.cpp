@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quantities such as `36 km/h`: whatever the bytes, a number or none. The first byte chooses the
 // unit that is wanted.
 #include <cstddef>

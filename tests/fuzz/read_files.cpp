@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fuzzer without libFuzzer: reads the files that are named, one after the other. An ordinary
 // build makes these programs (CMakeLists.txt) to see that each list of sources links.
 #include <cstddef>

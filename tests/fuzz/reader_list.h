@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fuzzers of this folder, from a list that the build writes (tests.cmake).
 #pragma once
 

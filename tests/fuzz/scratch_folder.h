@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A folder for readers that want files, in memory where the system has such a place.
 #pragma once
 

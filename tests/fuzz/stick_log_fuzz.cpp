@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Logs of a pilot's stick: whatever the bytes, deflections from -1 to 1 at rising times, or an
 // InputError.
 #include <cstddef>

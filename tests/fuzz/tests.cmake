@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The corpus, replayed by an ordinary test: every NAME_fuzz.cpp of this folder with the inputs in the
 # folder NAME. With clang (preset fuzz) CMakeLists.txt beside this file makes the fuzzers themselves;
 # here it sees that they would link.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Configurations in YAML: whatever the bytes, a value or an InputError.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes whose coordinates are no metres near the origin, and meshes that only look so.
 #include "framework/geometry/mesh_doubts.h"
 

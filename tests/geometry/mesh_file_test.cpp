@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -178,11 +179,11 @@ TEST_F(MeshFiles, HostileFilesAreRefusedByName) {
   EXPECT_NE(refusal("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "");
   EXPECT_NE(refusal("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), "");
   EXPECT_NE(refusal("points.ply", ply("4", "0")), "");
-  EXPECT_NE(refusal("words.ply", "this is no mesh"), "");
-  EXPECT_NE(refusal("words.stl", "this is no mesh"), "");
-  EXPECT_NE(refusal("words.dae", "this is no mesh"), "");
-  EXPECT_NE(refusal("words.gltf", "this is no mesh"), "");
-  EXPECT_NE(refusal("words.glb", "this is no mesh"), "");
+  EXPECT_NE(refusal("words.ply", "this is not a mesh"), "");
+  EXPECT_NE(refusal("words.stl", "this is not a mesh"), "");
+  EXPECT_NE(refusal("words.dae", "this is not a mesh"), "");
+  EXPECT_NE(refusal("words.gltf", "this is not a mesh"), "");
+  EXPECT_NE(refusal("words.glb", "this is not a mesh"), "");
   EXPECT_NE(refusal("wall.step", "x").find("expected .obj"), std::string::npos);
 
   EXPECT_NE(refusal("claim.ply", ply("1000000000")).find("claims 1000000000 vertex"),

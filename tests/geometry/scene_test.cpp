@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays with known answers, and all of them against a plain search through the shapes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes and depth images of tests/data, read as a user's would be.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much surface is known and seen.
 #include "framework/map/known_surface.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How wide the gaps between rays are, by place.
 #include "framework/map/ray_gaps.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/map/scan.h"
 
 #include "framework/map/ray_walk.h"

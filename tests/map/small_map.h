@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // A map to test what needs only a map's reads.
 #pragma once
 
-#include "framework/map/plain_map.h"
 #include "framework/core/error.h"
+#include "framework/map/plain_map.h"
 
 namespace lapwing {
 

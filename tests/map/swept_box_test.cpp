@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which voxels a moving box meets, against a test of another kind: a segment and a box are apart
 // just when one of nine axes parts them (Gottschalk, Lin, Manocha 1996).
 #include "framework/map/swept_box.h"
@@ -46,8 +47,7 @@ TEST(SweptBox, MeetsWhatNoAxisParts) {
           for (int x = -12; x < 12; x += 1 << level) {
             const int lowest[3] = {kCenterKey + x, kCenterKey + y, kCenterKey + z};
             const double cube_half = kVoxel * (1 << level) / 2;
-            const Vector3d middle =
-                kVoxel * Vector3d(x, y, z) + Vector3d::Constant(cube_half);
+            const Vector3d middle = kVoxel * Vector3d(x, y, z) + Vector3d::Constant(cube_half);
             const bool meets = box.meets(lowest, level);
             // What touches within the tolerance may be called either way.
             if (overlap(from, to, half, middle, cube_half, 4e-6 * kVoxel)) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Openings to what nobody saw: their areas, places and widths; and what is none.
 #include "framework/map/unknown_edge.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Openings by balls: what is narrower than they are goes, what is wider stays.
 #include "framework/map/voxel_balls.h"
 

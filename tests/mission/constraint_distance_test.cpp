@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A script's constraint on distances: the verifier's reading of the plan against the framework's
 // own tape, and against the certificate.
 #include "framework/core/random.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors in data files name file, line and the nearest key.
 #include "tests/mission/mission_fixture.h"
 
@@ -23,7 +24,7 @@ TEST_F(DataErrors, AFileFailsOnTheLineOfItsValue) {
          "a.yaml:1: gates[7].radius: is missing");
   expect(plan(open + "file:fail('gates[2].raduis', 'missing')"),
          "missing; did you mean 'raduis' by 'radius' on line 4?");
-  expect(plan(open + "file:fail('', 'is no course')"), "a.yaml:1: is no course");
+  expect(plan(open + "file:fail('', 'is not a course')"), "a.yaml:1: is not a course");
 }
 
 TEST_F(DataErrors, ATableIsCheckedAsOptionsAre) {

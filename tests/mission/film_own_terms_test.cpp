@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a film's own terms, speeds and bystanders come to: options, plan, certificate and notes.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The strategies of films without a solver: outcomes are made up, and the requests that follow
 // from them are looked at.
 #include "tests/mission/mission_fixture.h"

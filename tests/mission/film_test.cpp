@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films with a camera: what scripts may say, and what is refused.
 #include "tests/mission/mission_fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Judging a mission finds what planning would refuse before it begins, and plans nothing.
 #include "tests/mission/mission_fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads, configures and plans missions given as text.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/mission/mission_fixture.h"
 
 namespace lapwing {
@@ -44,7 +45,7 @@ TEST_F(MissionTest, OptionsKnowWhereTheyComeFrom) {
 TEST_F(MissionTest, WrongOptionsAreNamed) {
   expect(film("wieghts = {},"), "shot.lua:8: wieghts: unknown key; did you mean 'weights'?");
   expect(film("weights = { snap = 1 },"), "weights.snap: unknown key");
-  expect(film("duration = '20 m',"), "duration: '20 m' is no quantity in s");
+  expect(film("duration = '20 m',"), "duration: '20 m' is not a quantity in s");
   expect(film("duration = -1,"), "duration: expected above 0 and at most 100000 s, got -1");
   expect(film("duration = 0 / 0,"), "shot.lua:2: duration: expected a finite number, got NaN");
   expect(film("order = 5,"), "order: expected between 1 and 4");
@@ -59,7 +60,8 @@ TEST_F(MissionTest, WrongOptionsAreNamed) {
   expect(film("name = 3,"), "mission.name: expected a text");
   expect(film(""), "--set wieghts.snap=2: wieghts: unknown key", {"wieghts.snap=2"});
   expect(film(""), "did you mean 'weights'?", {"wieghts.snap=2"});
-  expect(film(""), "--set duration=soon: duration: 'soon' is no quantity in s", {"duration=soon"});
+  expect(film(""), "--set duration=soon: duration: 'soon' is not a quantity in s",
+         {"duration=soon"});
   expect(film(""), "keyframes[9]", {"keyframes[9].time=2"});
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sections of a report that scripts state, and calls that several kinds share.
 #include <gmock/gmock.h>
 
@@ -108,7 +109,7 @@ TEST_F(ReportSections, ModulesAreAskedFor) {
   expect(telling(known("mission.film")), "told true nil");
   expect(telling(known("mission.flim")), "told false mission.film");
   expect(telling(known("nothing.like_it")), "told false nil");
-  expect(telling(known("../film")), "is no module name");
+  expect(telling(known("../film")), "is not a module name");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // pairs, next, tostring, string.format and table.sort behave as Lua's own wherever Lua says what
 // they do.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/mission/sandbox.h"
 
 #include <gtest/gtest.h>
@@ -120,10 +121,10 @@ TEST_F(SandboxTest, ErrorsNameFileAndLine) {
   EXPECT_EQ(run("\nassert(false, 'wanted more')"), "error: shot.lua:2: wanted more");
   expect("return {\n1, 2\n", "shot.lua:3: '}' expected");
   expect("\n\nerror({code = 3})",
-         "shot.lua:3: the script raised an error that is no text but a table");
+         "shot.lua:3: the script raised an error that is not a text but a table");
   expect("\nerror(setmetatable({}, {__tostring = function() while true do end end}))",
-         "shot.lua:2: the script raised an error that is no text");
-  expect("error()", "shot.lua:1: the script raised an error that is no text but a nil");
+         "shot.lua:2: the script raised an error that is not a text");
+  expect("error()", "shot.lua:1: the script raised an error that is not a text but a nil");
 }
 
 TEST_F(SandboxTest, LongFileNamesStayWhole) {
@@ -288,7 +289,7 @@ TEST_F(SandboxTest, RequireReadsOnlyModuleFolders) {
   EXPECT_EQ(run("return require 'near'"), "near");
   for (const char* name : {"../outside", "..outside", ".near", "near.", "/etc/passwd", "up/outside",
                            "", "a b", "mission/good"}) {
-    expect(std::string("return require '") + name + "'", "is no module name");
+    expect(std::string("return require '") + name + "'", "is not a module name");
   }
   expect("return require 'link'", "leads out of");
   expect("return require 'up.outside'", "leads out of");

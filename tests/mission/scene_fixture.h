@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes made by the shipped scripts, and how much of one a simple flight around it would see.
 #pragma once
 

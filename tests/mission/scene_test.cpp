@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/mission/scene_fixture.h"
 
 #include "framework/core/files.h"

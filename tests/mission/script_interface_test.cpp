@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nothing is given to scripts that is not described.
 #include "framework/mission/script_interface.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors of options name the line where the option is written in the script.
 #include "framework/mission/script_lines.h"
 

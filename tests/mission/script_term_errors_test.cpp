@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a script may get wrong in a term of its own: file, line, and what to write instead.
 #include "framework/core/log.h"
 #include "tests/mission/term_fixture.h"
@@ -74,7 +75,7 @@ TEST_F(TermTest, WrongNamesAndResultsAreNamed) {
   refuses(cost("  return s.yaw, nil"), "got nothing");
   refuses(cost("  return s"), "got a stage");
   refuses(cost("  return 0 / 0"), "returns no finite number whatever the stage is");
-  refuses(cost("  return lapwing.log(-1 - s.yaw ^ 2)"), "is no finite number at any of ");
+  refuses(cost("  return lapwing.log(-1 - s.yaw ^ 2)"), "is not a finite number at any of ");
   refuses(
       cost("  return math.sin(s.yaw)"),
       "shot.lua:3: cost 'mine': bad argument #1 to 'sin' (number expected, got value of a stage "
@@ -114,7 +115,7 @@ TEST_F(TermTest, ATermThatHasValuesOnlyWhereTheFlightIsIsTaken) {
   mission->configure({}, {});
   EXPECT_EQ(mission->plan().report.status, SolveStatus::optimal);
   expect(flight("0, 0, 20", "8, 0, 25", "lapwing.sqrt(s.position.z - 200)"),
-         "shot.lua:4: cost 'mine': a value of result 1 is no finite number at 0 s");
+         "shot.lua:4: cost 'mine': a value of result 1 is not a finite number at 0 s");
 }
 
 // A value or a slope that is none in a solve is the script's fault, not a plugin's.
@@ -128,7 +129,7 @@ TEST_F(TermTest, NumbersThatAreNoneInASolveAreNamed) {
   for (const char* kinked : {"lapwing.sqrt(s.position.y)", "s.position.y ^ 1.5"}) {
     const std::string root = error(flight("0, 0, 2", "8, 0, 12", kinked));
     EXPECT_NE(
-        root.find("shot.lua:4: cost 'mine': the derivative of result 1 is no finite number at "),
+        root.find("shot.lua:4: cost 'mine': the derivative of result 1 is not a finite number at "),
         root.npos)
         << root;
     EXPECT_NE(root.find("write lapwing.sqrt(lapwing.max(x, 0) + 1e-6) for lapwing.sqrt(x)"),

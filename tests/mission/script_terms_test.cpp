@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost terms and constraints written in Lua: the shipped ones written so agree with themselves.
 #include "framework/core/random.h"
 #include "tests/guide.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Problems stated by a script with terms of its own, compared with each other and with differences.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped films with a camera, end to end: certified, and the subject in the image.
 #include "tests/missions/flown_film.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An exploration and a scan in one visit.
 #include "tests/missions/scan_hut.h"
 
@@ -15,8 +16,7 @@ return scan.of_scene {
   tour = { budget = 60, iterations = 20 }, closed_loop = "reported",
   surface = { spacing = 0.8, cell = 1, trim = 2 },
   candidates = { most = 30, step = 2.5, distance_apart = 2 },
-  motions = { alpha = 0.3, coarse = 40 },)" + more +
-                                                      "\n}\n");
+  motions = { alpha = 0.3, coarse = 40 },)" + more + "\n}\n");
   }
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Explorations of a small yard, run from the shell.
 #pragma once
 

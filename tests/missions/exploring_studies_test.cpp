@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Studies of explorations: evaluations and samples, their folders, what they refuse.
 #include <gmock/gmock.h>
 

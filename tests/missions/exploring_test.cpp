@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Explorations end to end.
 #include <set>
 #include <sstream>
@@ -67,12 +68,12 @@ TEST_F(Exploring, DamagedModelsAndEmptyScenesAreNamed) {
   };
   std::string damaged = shipped;
   damaged[damaged.size() / 2] ^= 0x10;
-  EXPECT_NE(with_model(damaged).find("broken.model' is no model"), std::string::npos)
+  EXPECT_NE(with_model(damaged).find("broken.model' is not a model"), std::string::npos)
       << with_model(damaged);
   damaged = shipped;  // another header
   damaged.replace(damaged.find("\"mean\":140"), 10, "\"mean\":240");
   EXPECT_NE(with_model(damaged).find("checksum"), std::string::npos) << with_model(damaged);
-  EXPECT_NE(with_model(shipped.substr(0, 5000)).find("broken.model' is no model"),
+  EXPECT_NE(with_model(shipped.substr(0, 5000)).find("broken.model' is not a model"),
             std::string::npos);
   fs::remove(model);
   EXPECT_NE(refusal(few("--set 'utility={type: learned, model: " + model.string() + "}'"))

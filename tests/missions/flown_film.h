@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flies shipped films through the program and judges what it wrote.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films whose subject is hidden by what the planner does not look round.
 #include "tests/missions/flown_film.h"
 

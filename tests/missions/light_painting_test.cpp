@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light paintings end to end: drawn within their tolerance, photographed, refused with a reason.
 #include "tests/missions/flown_film.h"
 
@@ -54,8 +55,8 @@ TEST_F(LightPainting, TooSmoothIsAMatterOfWeights) {
       fly("../light_painting/hello.lua", "--set weights.smoothness=1 --set tolerance=1");
   EXPECT_EQ(smooth.status, 0);
   EXPECT_GT(mean_error(smooth), 0.03);
-  const Flown hurried = fly("../light_painting/hello.lua",
-                            "--set weights.smoothness=1 --set slowest=1", "hurried");
+  const Flown hurried =
+      fly("../light_painting/hello.lua", "--set weights.smoothness=1 --set slowest=1", "hurried");
   EXPECT_EQ(hurried.status, 1);
   EXPECT_NE(hurried.result.at("notes").as_list().at(0).as_text().find("tolerance"),
             std::string::npos);

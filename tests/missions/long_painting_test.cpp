@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light paintings that take minutes.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mapping missions end to end, and the commands on map files.
 #include "framework/map/map_file.h"
 #include "tests/missions/flown_film.h"

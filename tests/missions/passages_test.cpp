@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films past meshes and through maps, and passage after passage.
 #include "framework/geometry/mesh_builder.h"
 #include "framework/geometry/mesh_file.h"

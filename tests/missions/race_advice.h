@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Races that the controller cannot follow.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Races through the program, and courses to fly.
 #pragma once
 

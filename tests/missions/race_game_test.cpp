@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Races flown by hand: the logs that are shipped, flown round the course that they were made for.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -73,8 +74,10 @@ TEST_F(RaceGame, TimidCutterAndLeaverEndAsTheyShould) {
   // The course turns left: who cuts its corners is left of it.
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   const ReferenceMotion course(plan.trajectory, vehicle);
-  const Pilot cutting{.name = "", .log = read_stick_log(kRacing + "/pilots/cutter.csv"),
-                      .strength = kStrength, .reach = 12};
+  const Pilot cutting{.name = "",
+                      .log = read_stick_log(kRacing + "/pilots/cutter.csv"),
+                      .strength = kStrength,
+                      .reach = 12};
   double left = 0;
   for (const RaceSample& sample : fly_race(plan.trajectory, vehicle, cutting).samples) {
     const Eigen::Vector3d along = course.at(sample.progress).velocity;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Races end to end: certified, in time, refused with a reason.
 #include "tests/missions/race_fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a scan says of its coverage, held against the true surface and against what was not seen.
 #include "tests/missions/scan_house.h"
 

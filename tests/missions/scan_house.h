@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A house whose mesh is a file, scanned with the defaults of flights and region.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hut that is made here, flown over and scanned.
 #pragma once
 

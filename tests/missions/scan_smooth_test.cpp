@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Smooth legs of a tour: by every solver, past corners, and in a whole scan.
 #include "framework/trajectory/polyline.h"
 #include "tests/missions/scan_hut.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scans end to end: a hut that is made here, flown over, planned on what that showed, and judged.
 #include "tests/missions/scan_hut.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves that a scene recommends for explorations: applied, named, and told apart on resuming.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of the kinds that users bring, made for these tests (tests/data), through the program: what
 // other tests do with real ones where LAPWING_DATA names them.
 #include "tests/missions/race_fixture.h"

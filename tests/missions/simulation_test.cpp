@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lapwing simulate on shipped films: followed in still air, robust in wind, honest when lost.
 #include "framework/core/units.h"
 #include "tests/missions/flown_film.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What studies print of names: nothing that a terminal would obey.
 #include "tests/app/program_fixture.h"
 #include "tests/missions/exploring_fixture.h"

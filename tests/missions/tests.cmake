@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The shipped missions end to end, through the program; every designer's shot under label `long`.
 get_property(plugins GLOBAL PROPERTY LAPWING_PLUGINS)
 foreach(name missions missions_long)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films whose path is kept and whose times are found.
 #include "tests/missions/flown_film.h"
 
@@ -62,9 +63,9 @@ class FreeFilms : public Filming {
               const std::string& more = "", const std::string& flags = "", int worst = 1) {
     write_file_atomically(folder_ / "film.lua", R"(return require "mission.film".shot {
       name = "timed", vehicle = "vehicles/solo", timing = "free",
-      keyframes = { { position = {0, 0, 3} }, { position = {14, 2, 5})" + second +
-                                                    R"( }, { position = {20, 14, 4})" + third +
-                                                    " } }, " + more + "}");
+      keyframes = { { position = {0, 0, 3} }, { position = {14, 2, 5})" +
+                                                    second + R"( }, { position = {20, 14, 4})" +
+                                                    third + " } }, " + more + "}");
     return fly((folder_ / "film.lua").string(), flags, "out", worst);
   }
   // The times of the keyframes of a film that is certified.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films, light paintings and scans with other vehicle models than the point mass.
 #include "framework/core/units.h"
 #include "tests/missions/scan_hut.h"

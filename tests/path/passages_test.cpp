@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Passages: which ways deform into one another, how another one is found, and corridors about them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What must hold of every plugin of this build, fixtures included.
 #include <cstdio>
 #include <filesystem>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Plugins for the tests of room plugin, kept out of the folder where plugins are looked for.
 set(fixtures ${CMAKE_CURRENT_LIST_DIR}/fixtures)
 set(fixture_output ${CMAKE_BINARY_DIR}/tests/plugin_fixtures)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cost term or constraint bound to a camera drone with a gimbal, asked instance by instance, its
 // derivatives compared with differences.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // States of the learned utility's network, for its tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Tests of plugins create them through the registry.
 get_property(all_plugins GLOBAL PROPERTY LAPWING_PLUGINS)
 add_dependencies(test_cost_terms ${all_plugins})

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blocks read by name: places, sizes, mistakes, and the numbers that come of them.
 #include <gtest/gtest.h>
 

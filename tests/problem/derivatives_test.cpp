@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gradients, Jacobians and Hessians of whole problems against differences.
 #include "framework/plugin/registry.h"
 #include "tests/problem/differences.h"

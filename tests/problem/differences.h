@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares every derivative of a trajectory problem with central differences through `retract`.
 #pragma once
 

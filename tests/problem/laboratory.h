@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Models and terms made for tests: nonlinear, with windows, orientations and all the rest.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Legs with steps of their own, and flights that close onto their beginning.
 #include <numbers>
 
@@ -108,7 +109,7 @@ TEST(Legs, APeriodicFlightMayTurn) {
   EXPECT_EQ(problem.row_name(problem.rows() - 8), "closure.position.x");
   EXPECT_EQ(problem.row_name(problem.rows() - 5), "closure.yaw");
   const Eigen::VectorXd rows = problem.row_values(problem.initial_guess());
-  EXPECT_NEAR(rows.tail(8).head(4).norm(), 0, 1e-12) << "a whole turn is no difference";
+  EXPECT_NEAR(rows.tail(8).head(4).norm(), 0, 1e-12) << "a whole turn is not a difference";
 }
 
 // x(t) = t^q has q! as its q-th derivative, whatever the steps are.

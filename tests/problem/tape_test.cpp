@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Expressions and the tapes made of them.
 #include <cmath>
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names, bounds, violations, guesses and refusals of trajectory problems.
 #include "framework/problem/trajectory_problem.h"
 

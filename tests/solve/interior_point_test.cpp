@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The quadratic program solver on problems with known answers.
 #include "framework/solve/interior_point.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A study on a small made-up scene: a block on the ground, views on rings around it.
 #include "framework/study/scan_study.h"
 

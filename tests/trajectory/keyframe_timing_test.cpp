@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times of keyframes against every choice there is, and against closed forms.
 #include <gtest/gtest.h>
 

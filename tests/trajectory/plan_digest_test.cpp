@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A digest tells of every change, and of nothing else.
 #include "framework/trajectory/plan_digest.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lengths, distances, rounding and the fastest timing, with known answers.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The controller and the flight under control.
 #include <gtest/gtest.h>
 

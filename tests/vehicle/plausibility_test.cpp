@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures in other units than the file's are found where they are written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pure pursuit: speeds, corners, views, and the whole quadrotor behind it.
 #include <gtest/gtest.h>
 

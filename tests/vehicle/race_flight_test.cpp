@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stick logs, and races flown by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a flight by hand is worth, on courses whose gates and distances are known.
 #include "framework/vehicle/race_score.h"
 

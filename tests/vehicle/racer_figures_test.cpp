@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped racer has the figures that its file says were published; where LAPWING_DATA holds the
 // publication's own file, another test compares with that.
 #include <gtest/gtest.h>

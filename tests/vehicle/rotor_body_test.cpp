@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rigid body: known motions, conservation, order of the integrator; and its rotors.
 #include <gtest/gtest.h>
 

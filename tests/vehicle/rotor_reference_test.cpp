@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans of rotors as the controller follows them.
 #include <gtest/gtest.h>
 

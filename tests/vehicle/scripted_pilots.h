@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pilots that are programs: their sticks answer to the flight. The logs that examples/racing ships
 // are theirs.
 #pragma once

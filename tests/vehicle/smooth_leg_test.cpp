@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long smooth legs take: against what can be worked out by hand.
 #include <gtest/gtest.h>
 
@@ -36,8 +37,8 @@ TEST(SmoothLeg, ATurnKeepsRateAndTorque) {
     const double h = seconds / 1000;
     for (double t = h; t < seconds - h / 2; t += h) {
       rate = std::max(rate, (heading(t + h) - heading(t - h)) / (2 * h));
-      acceleration = std::max(acceleration, std::abs(heading(t + h) - 2 * heading(t) +
-                                                     heading(t - h)) / (h * h));
+      acceleration = std::max(acceleration,
+                              std::abs(heading(t + h) - 2 * heading(t) + heading(t - h)) / (h * h));
     }
     const double torque = vehicle.inertia.z() * acceleration;
     EXPECT_LE(rate, 0.901 * vehicle.yaw_rate_max) << angle;
@@ -49,8 +50,12 @@ TEST(SmoothLeg, ATurnKeepsRateAndTorque) {
 
 TEST(SmoothLeg, TheCameraHasTimeToTilt) {
   Vehicle vehicle = reference_vehicle();
-  vehicle.gimbal = GimbalLimits{.yaw_min = 0, .yaw_max = 0, .pitch_min = -1.6, .pitch_max = 0.1,
-                          .yaw_rate_max = 0, .pitch_rate_max = 0.25};
+  vehicle.gimbal = GimbalLimits{.yaw_min = 0,
+                                .yaw_max = 0,
+                                .pitch_min = -1.6,
+                                .pitch_max = 0.1,
+                                .yaw_rate_max = 0,
+                                .pitch_rate_max = 0.25};
   const Points nowhere = {{0, 0, 5}, {0, 0, 5}};
   EXPECT_NEAR(smooth_leg_seconds(nowhere, 0, -1, vehicle, kLeg), 1 / (0.9 * 0.25), 1e-9);
   EXPECT_EQ(smooth_leg_seconds(nowhere, 0, 0, vehicle, kLeg), 0);

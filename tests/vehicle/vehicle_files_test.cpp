@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The vehicles that come with the project, read as a user's would be.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A vehicle file as a Value, the way YAML reading gives it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constraints that a script states, as the verifier reads them from a plan.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scans: images taken where the plan says, and what they see, against a walk in small steps.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

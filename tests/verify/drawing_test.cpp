@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Drawings: the light against the strokes, and the strokes against the light.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Framing with known answers: a camera that hovers or turns evenly, and what it sees of a subject.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gates and rotors: a vehicle that glides along x at 2 m/s, its rotors just carrying it.
 #include <gtest/gtest.h>
 

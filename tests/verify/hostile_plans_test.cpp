@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans that nobody should fly: the verifier refuses them in words and never crashes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -182,7 +183,7 @@ TEST(HostilePlans, RotorsWithoutAnAttitude) {
                 give_rotors(p);
                 p.trajectory.samples[2].columns.set("orientation", Eigen::Vector4d(0, 0, 0, 0));
               }),
-              HasSubstr("sample 3 has an orientation that is no unit quaternion"));
+              HasSubstr("sample 3 has an orientation that is not a unit quaternion"));
   EXPECT_THAT(refusal_after([](Plan& p) {
                 give_rotors(p);
                 p.trajectory.samples[1].columns.set("rotor_thrusts",

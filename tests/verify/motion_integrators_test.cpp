@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The verifier's integrators on inputs whose motion has a closed solution.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each check is flipped, and it alone, by one small change of a good plan.
 #include <gtest/gtest.h>
 

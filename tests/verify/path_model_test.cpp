@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans of the motion model `path`, and meshes to keep away from.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plan whose vehicle nobody could build fails its document, in words.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a certificate says of provenance, and how limits of either sense read.
 #include "framework/verify/provenance.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans that are known to be good, made from the equations of motion by hand.
 //
 // PlanBuilder strings intervals of held or linear acceleration together and integrates them in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps to keep away from and zones to stay in, and plans that cheat about them.
 #include <gtest/gtest.h>
 #include <unistd.h>

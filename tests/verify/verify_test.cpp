@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Known answers: plans whose worst values can be written down.
 #include <gtest/gtest.h>
 

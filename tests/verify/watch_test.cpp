@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a verdict tells of itself on the way, how it is ended, and files that lie elsewhere.
 #include "framework/verify/watch.h"
 

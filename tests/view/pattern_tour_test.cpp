@@ -1,5 +1,6 @@
-#include "framework/core/error.h"
+// SPDX-License-Identifier: Apache-2.0
 #include "framework/view/pattern_tour.h"
+#include "framework/core/error.h"
 
 #include <cmath>
 #include <numbers>

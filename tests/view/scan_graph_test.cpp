@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The graph that tours are planned on, against what its parts say one by one.
 #include "framework/view/scan_graph.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bounds and guarantees against enumeration.
 #include "framework/view/tour_bound.h"
 

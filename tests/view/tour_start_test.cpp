@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which views motions join, and from where most of them are reached.
 #include "framework/view/tour_start.h"
 

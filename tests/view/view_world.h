@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A room of free voxels with a wall, to look at and to fly in.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fixed-wing aircraft in still air that turns without sideslip (Beard, McLain, "Small Unmanned
 // Aircraft", 2012, chapter 9). With U the horizontal speed, chi the course and the heading, b the
 // acceleration across the course, which a bank of atan(b / g) gives in level flight:

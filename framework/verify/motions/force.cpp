@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A point mass under a force, with a heading under a torque (thesis 3.1); thesis 3.5.3 for the
 // gimbal:
 //

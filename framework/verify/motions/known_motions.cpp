@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The motions that the verifier integrates, by name.
 #include "framework/core/error.h"
 #include "framework/verify/motions/motion_integrator.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One motion as the verifier integrates it, by code of its own. Internal to this room.
 //
 // A source of this folder holds one motion; known_motions.cpp lists them by name.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Straight lines at even speed from sample to sample, yaw and gimbal likewise.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A rigid body with four rotors (thesis 3.11 to 3.13), with the vehicle's linear drag: position,
 // velocity, unit quaternion and body rates. Thrusts are held or linear. Its yaw is where the nose
 // points, on the turn of the interval's first point; its yaw rate is the body rate about z.

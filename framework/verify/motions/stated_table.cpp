@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion that the plan states as a table of derivatives: Runge-Kutta 4 over position, velocity,
 // yaw and the columns that are states.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Position and yaw as a drone's own flight control follows them: nothing is known of its thrust.
 //
 //   r' = v,   v' = a,   a' = jerk,   psi' = yaw rate

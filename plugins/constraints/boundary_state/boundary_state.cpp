@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a flight begins and ends: at rest, moving, or freely.
 //
 //   rest:    v = 0, yaw_rate = 0, force = (0, 0, m g), yaw_torque = 0, acceleration = 0: neither

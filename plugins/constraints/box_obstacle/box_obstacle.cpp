@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the path outside every box of the environment, grown by the margin, along the whole path
 // and not at the stages alone (problem/path_clearance.h).
 //

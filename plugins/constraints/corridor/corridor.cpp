@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the path of each span of time inside a convex region: a box, cut by half spaces where
 // given.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the path inside every flight zone of the environment, the margin away from its faces, along
 // the whole path and not at the stages alone (problem/path_clearance.h).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A gate to be flown through at the end of a leg (thesis 3.7.2).
 //
 //   n . (p - c) = 0,   m_k . (p - c) <= d_k - margin,   n . v >= speed     at the leg's last stage

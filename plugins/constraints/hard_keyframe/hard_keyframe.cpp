@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keyframes that must be met: a block at given times, within a tolerance.
 //
 //   | d_k . (block(t_j) - value_j) | <= rho tolerance,   d_k: axes and diagonals of the cube

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits of force and yaw torque (thesis 3.8.3 with reading 3.2): rotors keep within theirs for any
 // allowed force together with any allowed yaw torque.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the path outside every zone of the environment, grown by the margin, along the whole path
 // and not at the stages alone (problem/path_clearance.h). A zone is a prism over a polygon of any
 // shape, between a floor and a ceiling, of which each may be missing.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the path outside every sphere of the environment, grown by the margin (thesis 3.6; reading
 // 3.6), along the whole path and not at the stages alone (problem/path_clearance.h).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits of the flight: speed across, climb, descent, yaw rate, acceleration, and a box to stay in.
 //
 //   d_k . v_xy  <= cos(pi/n) speed_across           d_k: n directions around a circle, so that the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps a distance from the middle of one subject, or of every one, wherever it moves, along the
 // whole path and not at the stages alone (problem/path_clearance.h).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera looks at its target (thesis 3.5.3, (3.7), (3.8); reading 3.4).
 //
 //   E^c = sum_i h alpha_i^2,   alpha: the angle between the camera's direction and the target's

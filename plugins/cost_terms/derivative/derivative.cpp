@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Smoothness (thesis 3.6): the finite difference of any blocks over q + 1 neighbouring stages.
 //
 //   E^d = sum_i h || D^q [x_i ... x_{i+q}] / h^q ||^2

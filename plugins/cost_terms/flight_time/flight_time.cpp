@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long the flight takes: the sum of all steps, in s.
 //
 //   E^T = sum_i h_i        the integral of 1^2: residual 1, weighted by the step

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A subject's place and size in the image: centred, on a third, as large as this.
 //
 //   E^f = sum_i h (beta_i^2 + w log^2(D_i / D)),   beta: the angle between where the subject is

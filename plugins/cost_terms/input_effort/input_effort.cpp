@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Effort: how far the inputs are from hovering (thesis 3.5.2, "wasted effort").
 //
 //   E^u = sum_i h ( || (F_i - m g e_z) / (m g) ||^2 + (M_i / M_max)^2 )

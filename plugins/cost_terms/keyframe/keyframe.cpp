@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keyframes to be met softly (thesis 3.5.2, (3.4)): a block at given times.
 //
 //   E^k = sum_j weight_j || block(t_j) - value_j ||^2

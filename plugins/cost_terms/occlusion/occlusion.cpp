@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nothing stands between the camera and its target.
 //
 //   E^o = sum_i h sum_k (haze of obstacle k on the line of sight)^2

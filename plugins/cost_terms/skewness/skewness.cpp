@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Upright lines stay upright: no views from far above or below (thesis 3.5.3, (3.9); reading 3.5).
 //
 //   E^s = sum_i h s_i^2,   s = (p_d + h/2) . p_d / ((p_d - h/2) . p_d) - 1

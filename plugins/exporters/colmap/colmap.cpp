@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The images of a scan as COLMAP's text model: a camera, poses, and no points yet.
 //
 //   lapwing export out/church/plan.json --format colmap -o church_model

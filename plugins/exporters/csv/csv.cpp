@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plan's samples as comma-separated values, one row a sample.
 //
 //   lapwing export out/hello/plan.json --format csv -o hello.csv

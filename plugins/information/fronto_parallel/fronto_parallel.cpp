@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Close, square views tell most (thesis 4.7; reading 4.3).
 //
 //   vi   = 1/xi  vi_i  vi_r

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every view of a voxel tells the same of it, however far and oblique: plain coverage.
 //
 //   information: {type: uniform, views: 1}

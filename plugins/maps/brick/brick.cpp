@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A map of dense bricks in a sparse grid: equal to OctoMap's, and fast. See README.md.
 #include <algorithm>
 #include <bit>

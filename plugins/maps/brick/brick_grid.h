@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sparse grid of the brick map: 4^3 voxels are a chunk, 4^3 chunks a brick, 4^3 bricks a block,
 // and blocks stand in a hash table. On every level one word of 64 bits says which of the 64 parts
 // are known, and which are free throughout. What is alike throughout holds one value.

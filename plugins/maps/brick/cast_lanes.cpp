@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How: a caster keeps two groups of four rays. While one waits for memory, the other computes. Each
 // turn, a group
 //   1. looks at the cell of each ray: the largest free box ahead of it (bits of block, brick and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays through the bricks, four at a time.
 #pragma once
 

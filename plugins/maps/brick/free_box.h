@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether boxes of voxels are free throughout, word by word.
 #pragma once
 

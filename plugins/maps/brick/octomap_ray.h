@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How OctoMap starts a ray through its keys, in its own precision: points and directions in single,
 // distances in double. Compile without fused multiply-add.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays next to each other from one place, as those of a tile of a view: they go through the same
 // free space, and how far all of them are free is found once.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/maps/brick/ray_lanes.h"
 
 namespace lapwing::brick_map {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays of one scan, four at a time, marking the voxels that they pass.
 #pragma once
 

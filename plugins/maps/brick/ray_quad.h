@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Four rays through the bricks at once, and the free boxes that they leave in one step.
 //
 // Cells are mirrored along the axes on which a ray descends, so that every ray ascends; aligned

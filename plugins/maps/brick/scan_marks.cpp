@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How one scan becomes 64-bit words of measured and hit voxels:
 //   1. find_box: the box of voxels that the rays can touch, aligned to bricks of 16 voxels. It gets
 //      one byte per voxel. If it is too large for memory, a hash table of bricks is used instead

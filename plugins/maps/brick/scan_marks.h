@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which voxels one scan measured: each at most once, points before rays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/maps/brick/sparse_marks.h"
 
 #include <algorithm>

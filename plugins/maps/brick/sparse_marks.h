@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The marks of a scan whose box is too large for a byte a voxel: slower, and as large as what the
 // rays touch.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/maps/brick/voxel_update.h"
 
 #if defined(__SSE2__)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one scan does to the 64 voxels of a chunk.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reference: OctoMap's own tree, updated by its own code.
 #include <octomap/OcTree.h>
 

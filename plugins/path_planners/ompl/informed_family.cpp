@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two planners that look only where a path could still become shorter.
 #include <ompl/geometric/planners/informedtrees/BITstar.h>
 #include <ompl/geometric/planners/rrt/InformedRRTstar.h>

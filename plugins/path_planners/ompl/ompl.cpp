@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OMPL's sampling planners as a family: one library, five names (thesis 2.1; reading 2.1).
 #include "framework/plugin/plugin.h"
 #include "plugins/path_planners/ompl/search.h"
@@ -12,15 +13,13 @@ ParameterTable table_of(unsigned takes, std::int64_t iterations) {
   table.integer("iterations", iterations, "largest number; planners that improve paths use all",
                 between(1, 100'000'000));
   if (takes & kRange) {
-    table.number("range", 0, "m", "longest segment; 0: a fifth of the bounds",
-                 between(0, 1e5));
+    table.number("range", 0, "m", "longest segment; 0: a fifth of the bounds", between(0, 1e5));
   }
   if (takes & kGoalBias) {
     table.number("goal_bias", 0.05, "", "share of samples at the goal", between(0, 1));
   }
   if (takes & kRewiring) {
-    table.number("rewire_factor", 1.1, "", "factor on the rewiring radius",
-                 between(1, 10));
+    table.number("rewire_factor", 1.1, "", "factor on the rewiring radius", between(1, 10));
   }
   if (takes & kBatches) {
     table.integer("samples_per_batch", 100, "samples per batch", between(1, 10'000));

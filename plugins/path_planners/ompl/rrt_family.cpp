@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The three planners that grow trees and may rewire them.
 #include <ompl/geometric/planners/rrt/RRT.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/path_planners/ompl/search.h"
 
 #include <ompl/base/MotionValidator.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A search by one of OMPL's planners, behind a border without OMPL's headers.
 #pragma once
 

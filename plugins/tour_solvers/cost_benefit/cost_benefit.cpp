@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The better of greedy and cost-benefit (thesis 4.4.3; reading 4.8).
 //
 // Cost-benefit takes the view with the most gain per second that it adds to the tour. Alone it may

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The next best view, again and again (thesis 2.4, 4.4.3).
 //
 // Of all views that can still be put into the tour within the budget, the one with the largest gain

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ours: a tour is ruined and repaired, again and again, and kept where that made it better.
 //
 // Each iteration takes some views out (a stretch, a neighbourhood, or any), shortens the order by

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/tour_solvers/local_search/ruin.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Taking a part of a tour out, so that something better may come in.
 #pragma once
 

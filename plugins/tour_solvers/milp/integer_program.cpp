@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The only source that knows CBC.
 #include "plugins/tour_solvers/milp/integer_program.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mixed-integer linear program, and its search by CBC.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The published rival: rewards of views taken to be independent, then the best tour for their sum,
 // as a mixed-integer linear program for CBC (thesis 4.5.2, 4.9.1; Roberts et al., ICCV 2017).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/tour_solvers/milp/tour_program.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An orienteering problem on the motion graph as a mixed-integer linear program.
 //
 // Per arc (a motion one way, or the shortest way between chosen views past others) whether the tour

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The recursive greedy algorithm of the thesis (algorithm 2): see recursive_growth.h.
 //
 // Further rounds divide the budget elsewhere than in the middle, at random; the best round counts.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ipopt, an interior-point method with a filter line search (Waechter and Biegler 2006), on the
 // trajectory problem as it stands: every stage's numbers are variables, dynamics and constraints
 // are rows with exact sparse Jacobians, and the Hessian of the Lagrangian is exact by default.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/trajectory_solvers/ipopt/journal.h"
 
 #include "framework/core/log.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What Ipopt prints, as lines of our log.
 #pragma once
 

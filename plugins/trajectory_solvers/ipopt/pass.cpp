@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/trajectory_solvers/ipopt/pass.h"
 
 #define HAVE_CSTDDEF  // Ipopt 3.11's headers ask for the C++ headers by name

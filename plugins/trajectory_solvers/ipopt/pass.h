@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One run of Ipopt on a program. Its types stay inside `pass.cpp`.
 #pragma once
 

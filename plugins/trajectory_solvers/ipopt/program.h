@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The trajectory problem as a nonlinear program for Ipopt. Free of Ipopt's types: `ipopt.cpp`
 // passes them on.
 //

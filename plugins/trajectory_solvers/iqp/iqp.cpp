@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Iterative quadratic programming (thesis 3.6).
 //
 // Each iteration solves the quadratic model of the problem around the current trajectory,

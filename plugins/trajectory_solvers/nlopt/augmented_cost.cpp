@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/trajectory_solvers/nlopt/augmented_cost.h"
 
 #include <algorithm>

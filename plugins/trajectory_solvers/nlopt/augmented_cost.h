@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The augmented Lagrangian of Powell, Hestenes and Rockafellar over everything that the flight does
 // not meet by itself: rows that are not dynamics, and bounds.
 //

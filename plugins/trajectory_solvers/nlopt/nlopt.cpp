@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Algorithms of the NLopt library on the flown problem: its variables are the inputs and free
 // blocks, the states follow by simulation and derivatives by one adjoint sweep. Limits other than
 // plain bounds of variables go into an augmented Lagrangian, so that NLopt sees a smooth function

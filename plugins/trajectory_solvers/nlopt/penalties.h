@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // First penalties of an augmented cost.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/trajectory_solvers/nlopt/reduced_problem.h"
 
 #include <algorithm>

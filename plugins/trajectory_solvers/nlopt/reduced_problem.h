@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The trajectory problem in the numbers that are left when it is flown: those that are neither
 // fixed nor follow from earlier ones.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A change of variables that makes the reduced problem round: v = S w with S' H S = I, where H is
 // its Gauss-Newton Hessian, so that a gradient step in w is a Newton step in v.
 //

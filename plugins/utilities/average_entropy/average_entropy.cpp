@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mean entropy of the voxels on the way to surfaces that are already known.
 //
 //   utility: {type: average_entropy, pixel_step: 2}

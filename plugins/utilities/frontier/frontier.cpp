@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the unknown voxels that a view would see first: the border of what is known.
 //
 //   utility: {type: frontier, pixel_step: 2}

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The network while it is trained: a batch forward, and the gradient of its loss (5.4).
 #pragma once
 

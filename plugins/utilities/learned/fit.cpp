@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/utilities/learned/fit.h"
 
 #include <algorithm>
@@ -244,7 +245,7 @@ void Training::require_same(const Value& checkpoints) const {
 
 void Training::resume() {
   Model saved = read_model(request_.checkpoint);
-  if (!saved.adam) throw InputError("'" + request_.checkpoint.string() + "' is no checkpoint");
+  if (!saved.adam) throw InputError("'" + request_.checkpoint.string() + "' is not a checkpoint");
   if (!(saved.shape == shape_))
     throw InputError("the checkpoint has another architecture than asked for");
   const std::string difference = mapping_difference(model_.mapping, saved.mapping);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Training: samples, epochs, early stopping, checkpoints (thesis 5.5.1; reading 5.5).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/utilities/learned/kernels.h"
 
 #include <cstring>
@@ -149,14 +150,22 @@ LAPWING_INLINE void back_through_any(const Normalisation& n, std::size_t points,
 #if defined(__x86_64__)
 #define LAPWING_AVX2 __attribute__((target("avx2,fma")))
 #define LAPWING_AVX512 __attribute__((target("avx2,fma,avx512f,avx512vl,prefer-vector-width=512")))
-LAPWING_AVX2 void multiply_avx2(const Product& p) { multiply_any<false>(p); }
-LAPWING_AVX2 void accumulate_avx2(const OuterProduct& p) { accumulate_any<false>(p); }
+LAPWING_AVX2 void multiply_avx2(const Product& p) {
+  multiply_any<false>(p);
+}
+LAPWING_AVX2 void accumulate_avx2(const OuterProduct& p) {
+  accumulate_any<false>(p);
+}
 LAPWING_AVX2 void back_through_avx2(const Normalisation& n, std::size_t points, const float* y,
                                     float* g, double* sums) {
   back_through_any(n, points, y, g, sums);
 }
-LAPWING_AVX512 void multiply_avx512(const Product& p) { multiply_any<true>(p); }
-LAPWING_AVX512 void accumulate_avx512(const OuterProduct& p) { accumulate_any<true>(p); }
+LAPWING_AVX512 void multiply_avx512(const Product& p) {
+  multiply_any<true>(p);
+}
+LAPWING_AVX512 void accumulate_avx512(const OuterProduct& p) {
+  accumulate_any<true>(p);
+}
 bool has_avx2() {
   static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   return has;

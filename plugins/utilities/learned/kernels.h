@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arithmetic of the network: small dense products in single precision, and nothing else.
 //
 // Numbers of channels of results are multiples of 8 (kLanes). Where the processor has AVX2 or

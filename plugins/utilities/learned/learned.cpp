@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a network that was trained on an oracle's scores says of a view.
 //
 //   utility: learned

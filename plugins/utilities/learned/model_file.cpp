@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plugins/utilities/learned/model_file.h"
 
 #include <cmath>
@@ -59,7 +60,7 @@ void write_model(const Model& model, const std::filesystem::path& path) {
 Model read_model(const std::filesystem::path& path) {
   const std::string bytes = read_file(path, kMostBytes);
   const auto refuse = [&](const std::string& why) {
-    return InputError("'" + path.string() + "' is no model of a learned utility: " + why);
+    return InputError("'" + path.string() + "' is not a model of a learned utility: " + why);
   };
   const std::string_view all(bytes);
   if (!all.starts_with(kMagic)) throw refuse("another first line");
@@ -108,7 +109,7 @@ Model read_model(const std::filesystem::path& path) {
   model.state.statistics = take(layout.statistics);
   for (const std::vector<float>* values : {&model.state.parameters, &model.state.statistics})
     for (const float value : *values)
-      if (!std::isfinite(value)) throw refuse("its network holds what is no finite number");
+      if (!std::isfinite(value)) throw refuse("its network holds what is not a finite number");
   if (checkpoint) {
     model.adam.emplace(0);
     model.adam->first = take(layout.parameters);

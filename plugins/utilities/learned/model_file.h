@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A trained model as a file: architecture, weights, normalisation, mapping and provenance.
 //
 // A line "lapwing model 2", a line with the checksum of all that follows, a line of JSON, then

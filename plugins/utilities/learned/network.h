@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The convolutional network of thesis 5.4.3 (figure 5.8): blocks of units, each a 3 x 3 x 3
 // convolution, batch normalisation and rectification, then maxima over 2 x 2 x 2; two hidden layers
 // and a linear output (reading 5.5).

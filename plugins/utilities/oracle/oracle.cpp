@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a view would really add: asks the true surface, which only a simulation has.
 //
 //   utility: oracle

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the unmeasured voxels that images saw a surface before, near ones more: what a view from
 // another side would see of the far sides of what is known.
 //

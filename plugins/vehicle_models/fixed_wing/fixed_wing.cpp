@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fixed-wing aircraft in still air, in coordinated turns (Beard, McLain, "Small Unmanned
 // Aircraft", 2012, chapter 9): the heading is the course, and a bank turns it. With U the speed
 // across, e the direction of (v_x, v_y), n = z x e, and b the acceleration across the course:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera's gimbal (thesis 3.5.3): two angles, turned by their rates.
 //
 //   psi_g' = u_psi,  phi_g' = u_phi,   held over a step;  limits of both from the vehicle

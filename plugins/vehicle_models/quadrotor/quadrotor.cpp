@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The thesis's approximate quadrotor: a point mass with yaw (3.1 to 3.3), exact zero-order hold.
 //
 //   m r'' = F + m g        I_psi psi'' = M_psi

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Apart from the step itself: each takes g++ as long as a source may take.
 #include "plugins/vehicle_models/quadrotor_full/quadrotor_step.h"
 

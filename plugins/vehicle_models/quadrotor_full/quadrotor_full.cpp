@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole quadrotor (thesis 3.8.1, (3.11) to (3.13)), thrusts of the rotors linear in time.
 //
 //   r' = v,  m v' = u_1 z_B + m g - d v,  q' = q (0, w) / 2,  I w' = u_234 - w x I w,  F' = rate

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One step of the whole quadrotor, by Runge-Kutta 4, and what multipliers of it say of its
 // arguments; for plain numbers and for duals.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drone that its own flight control moves: position and yaw are commanded, and limits of speed,
 // acceleration and jerk say what it follows. Nothing is known of its thrust.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens reports in headless Chromium and asks the page what it drew.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped explorations as they are.
 #include "tests/missions/flown_film.h"
 

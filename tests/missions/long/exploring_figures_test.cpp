@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the readme of the learned utility says of it, on fewer and shorter episodes.
 #include <chrono>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every shipped film with every solver that it should work with.
 #include "tests/missions/flown_film.h"
 
@@ -33,9 +34,9 @@ TEST_F(Filming, NloptAgreesWithinFivePercent) {
 TEST_F(Filming, NineteenOfTwentyForestsAreCrossed) {
   int certified = 0;
   for (int seed = 1; seed <= 20; ++seed)
-    certified += fly("through_the_forest.lua",
-                     "--set solver.iterations=20 --seed " + std::to_string(seed))
-                     .status == 0;
+    certified +=
+        fly("through_the_forest.lua", "--set solver.iterations=20 --seed " + std::to_string(seed))
+            .status == 0;
   EXPECT_GE(certified, 19);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps, scans and explorations of the guides, run as they stand but for the small configuration of
 // their kind. tests/app/snippets_test.cpp runs every other snippet.
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every letter and digit of a published font, flown and photographed.
 #include "tests/missions/flown_film.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The thrust that a race names where the controller cannot follow is one that it can.
 #include "tests/missions/race_advice.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // More thrust may not make a race slower.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The figures of racing, each with its time of computing: alone on a machine.
 #include "tests/missions/race_fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The default first flight, and what less effort leaves as it is.
 #include "tests/missions/scan_house.h"
 

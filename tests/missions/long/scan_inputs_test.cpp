@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What scans begin with: files of an earlier flight, shipped configurations.
 #include "framework/map/map_file.h"
 #include "tests/missions/scan_hut.h"

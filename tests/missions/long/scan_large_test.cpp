@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scans of regions that are far larger than a battery's flight.
 #include "tests/missions/scan_hut.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What of a mesh the default region of a scan holds, and what is said of the rest.
 #include "tests/missions/scan_hut.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped scans at their full size, and meshes of others.
 #include <sys/resource.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every designer's shot with hard keyframes: certified, at the smallest stretch that is.
 #include "tests/missions/flown_film.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // boundary_state and hard_keyframe: bounds by hand, and flights that keep them.
 #include "framework/core/random.h"
 #include "framework/solve/trajectory_solver.h"

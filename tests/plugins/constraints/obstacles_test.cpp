@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Obstacles, zones and subjects: known distances, derivatives, and the path between stages.
 #include <functional>
 

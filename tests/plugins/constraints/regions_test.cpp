@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes and maps to keep away from, zones and corridors to stay in.
 #include "framework/core/random.h"
 #include "framework/geometry/mesh_builder.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // check_plugin_folder FOLDER KIND NAME: whether a registry of that folder offers the plugin, and
 // the plugin passes what its kind must pass.
 #include <cstdio>

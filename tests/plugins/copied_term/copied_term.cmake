@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Copies the derivative term into a new folder under another name, configures and builds it with the
 # plugins' own list, which finds it by itself, and checks what the registry then offers.
 set(root ${LAPWING_BUILD_DIR}/tests/copied_term)

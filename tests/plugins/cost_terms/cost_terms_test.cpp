@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Known values of the shipped cost terms.
 #include "tests/plugins/bound_term.h"
 

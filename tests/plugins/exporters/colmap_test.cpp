@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What COLMAP's files say, read back and held against the camera model.
 #include <gtest/gtest.h>
 

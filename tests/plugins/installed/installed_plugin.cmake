@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs Lapwing into a folder of its own, builds the example plugin against that, checks it with the
 # installed program, installs it too, and flies with it.
 set(root ${LAPWING_BUILD_DIR}/tests/installed_plugin)

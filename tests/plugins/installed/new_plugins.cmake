@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A new plugin of every kind, as `lapwing new plugin` writes it: builds, and passes its check.
 set(root ${LAPWING_BUILD_DIR}/tests/new_plugins)
 file(REMOVE_RECURSE ${root})

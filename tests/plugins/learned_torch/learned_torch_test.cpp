@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The network of the learned utility against libtorch (preset `learn`): what it answers, its loss,
 // and every derivative.
 #include <torch/torch.h>
@@ -24,10 +25,10 @@ class TorchNetwork {
  public:
   TorchNetwork(const NetworkLayout& layout, const NetworkState& state)
       : layout_(layout),
-        parameters(tensor_of(state.parameters, 0,
-                             {static_cast<std::int64_t>(state.parameters.size())})),
-        statistics_(tensor_of(state.statistics, 0,
-                              {static_cast<std::int64_t>(state.statistics.size())})) {}
+        parameters(
+            tensor_of(state.parameters, 0, {static_cast<std::int64_t>(state.parameters.size())})),
+        statistics_(
+            tensor_of(state.statistics, 0, {static_cast<std::int64_t>(state.statistics.size())})) {}
 
   // Inputs [sample, map, z, y, x]; `training`: normalised by the batch itself.
   torch::Tensor answers(torch::Tensor now, bool training) const {
@@ -170,8 +171,8 @@ TEST(LearnedAgainstTorch, LossAndEveryDerivative) {
 
   TorchNetwork theirs(layout, state);
   theirs.parameters.set_requires_grad(true);
-  const torch::Tensor loss = theirs.loss(inputs_of(layout, grids),
-                                         tensor_of(targets, 0, {batch}), lambda);
+  const torch::Tensor loss =
+      theirs.loss(inputs_of(layout, grids), tensor_of(targets, 0, {batch}), lambda);
   loss.backward();
   const torch::Tensor expected = theirs.parameters.grad();
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/plugins/maps/depth_frames.h"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth images to build maps from: real ones, where they are, and of a street.
 #pragma once
 

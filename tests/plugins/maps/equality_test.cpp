@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // brick equals octomap to the bit.
 #include "framework/core/random.h"
 #include "framework/geometry/depth_camera.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of real maps in both backends, and OctoMap's own reader and writer beside ours.
 #include <octomap/OcTree.h>
 

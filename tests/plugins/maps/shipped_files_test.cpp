@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The map and the depth images of tests/data in both backends, and in OctoMap itself.
 #include <octomap/OcTree.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Between two ends of a gallery that bends twice (tests/data), by a vehicle of 0.4 m about its
 // middle; judged by the verifier alone.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The integer program against enumeration, on fixed rewards and on published instances.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Local search on published orienteering instances; every route is checked again by code that
 // shares nothing with the reader.
 #include "framework/view/orienteering_file.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A route on an instance of the orienteering problem, judged from the text of its file: TSPLIB 95
 // section 2, read again by code that shares nothing with the reader.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small orienteering instances of tests/data with their optima, found by going through all sets of
 // nodes.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Made-up scan problems: views over a terrain of blocks, voxels with normals (thesis 4.4.2, 4.4.4).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tour solvers of the build tree.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tour solvers against each other on made-up scans, and on input that is none.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small films for tests of trajectory solvers, with the shipped camera drone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ipopt on orientations: steps in the tangent space of a rotation.
 #include "tests/plugins/trajectory_solvers/solver_expectations.h"
 #include "tests/problem/laboratory.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ipopt on films.
 #include "framework/core/log.h"
 #include "tests/plugins/trajectory_solvers/solver_expectations.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // iqp on films: optimal and certified, honest about what cannot be, and stoppable.
 #include "tests/plugins/trajectory_solvers/film_problem.h"
 

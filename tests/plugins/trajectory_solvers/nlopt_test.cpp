@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // nlopt on films: as good as iqp within what is claimed, tight, and honest.
 #include "tests/plugins/trajectory_solvers/solver_expectations.h"
 #include "tests/problem/laboratory.h"

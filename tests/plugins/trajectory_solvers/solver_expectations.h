@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a general solver must do on films, whatever its method: the tests of each solver call these.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Training, and models as files.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The network's arithmetic against slow and plain arithmetic in double precision, and every
 // derivative against differences of it.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hand-made utilities on small maps whose answers can be counted.
 #include <gtest/gtest.h>
 
@@ -107,11 +108,11 @@ TEST(ProximityCount, AddsWhatIsLeftOfTheDistanceBehindSeenSurfaces) {
     utility->score(wall.known, {&view, 1}, {&value, 1});
     return value;
   };
-  EXPECT_EQ(told(0.5, 0), 0);                                  // the wall is in the way
-  EXPECT_NEAR(told(9.5, EIGEN_PI), 16 * (2 + 1), 1e-5);        // from behind: both
-  EXPECT_NEAR(told(5.5, EIGEN_PI), 16 * 2, 1e-5);              // from between: one
-  EXPECT_EQ(told(9.5, 0), 0);                                  // the other way round
-  const Eigen::Vector3f nearer(6.0f, 0.5f, 0.5f);              // the smallest distance counts
+  EXPECT_EQ(told(0.5, 0), 0);                            // the wall is in the way
+  EXPECT_NEAR(told(9.5, EIGEN_PI), 16 * (2 + 1), 1e-5);  // from behind: both
+  EXPECT_NEAR(told(5.5, EIGEN_PI), 16 * 2, 1e-5);        // from between: one
+  EXPECT_EQ(told(9.5, 0), 0);                            // the other way round
+  const Eigen::Vector3f nearer(6.0f, 0.5f, 0.5f);        // the smallest distance counts
   hidden.saw({&nearer, 1}, {9.5, 0.5, 0.5});
   EXPECT_NEAR(told(9.5, EIGEN_PI), 16 * (2.5 + 1), 1e-5);
   wall.add(6, -2);  // measured: free
