@@ -49,7 +49,9 @@ const std::vector<CommandExamples>& command_examples() {
        {"lapwing simulate out/shot/plan.json --wind 5,1 --mass-error 10 -o flight.html"},
        "0 done; 1 the vehicle is lost or further from the plan than a certificate allows; 2 bad "
        "input; 3 internal error"},
-      {"lapwing export", {"lapwing export out/shot/plan.json --format csv -o shot.csv"}, kOfFiles},
+      {"lapwing export",
+       {"lapwing export out/shot/plan.json --format csv -o shot.csv"},
+       "0 done; 1 not certified, and nothing written; 2 bad input; 3 internal error"},
       {"lapwing race",
        {"lapwing race out/race/plan.json --pilot ann.csv:name=Ann,strength=0.5 -o race.html"},
        kOfFiles},

@@ -241,7 +241,7 @@ Value config_schema(const ScriptInterface& interface, const Registry& registry,
       for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
       const std::string nearest = nearest_name(kind, known);
       throw InputError("there is no kind of configuration '" + kind + "'" +
-                       (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") +
+                       (nearest.empty() ? "." : "; did you mean '" + nearest + "'?") +
                        " There are: " + all);
     }
     for (auto& [name, schemas] : forms) properties.set(name, any_of(std::move(schemas)));

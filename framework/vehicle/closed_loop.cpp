@@ -42,8 +42,9 @@ class Wind {
 
 void check(const FlightConditions& c, const Vehicle& vehicle) {
   const auto refuse = [](const std::string& text) { throw InputError({}, text); };
-  if (!(c.wind_mean >= 0 && c.wind_gust >= 0) || !std::isfinite(c.wind_mean + c.wind_gust))
-    refuse("wind: mean and gust must be at least 0 m/s");
+  constexpr double kFastestWind = 150;  // m/s, beyond what was ever measured near the ground
+  if (!(c.wind_mean >= 0 && c.wind_gust >= 0 && c.wind_mean + c.wind_gust <= kFastestWind))
+    refuse("wind: mean and gust must be at least 0 m/s, and at most 150 m/s together");
   if (!std::isfinite(c.wind_yaw)) refuse("wind: its direction must be a number");
   if (!(c.mass_error > -0.9 && c.mass_error <= 10))
     refuse("mass error: must lie between -90 and 1000 percent");
