@@ -316,10 +316,10 @@ void refuse_other_kinds(const fs::path& file) {
 Value plan_document(const std::string& text, const fs::path& file) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == text.npos) refuse_file(file, "empty", kWantedPlan);
-  if (text[begin] != '{') refuse_file(file, "no plan", kWantedPlan);
+  if (text[begin] != '{') refuse_file(file, "not a plan", kWantedPlan);
   Value document = from_json(text, file.string());
   if (!document.find("format") && !document.find("samples"))
-    refuse_file(file, "no plan: JSON without `format` and `samples`", kWantedPlan);
+    refuse_file(file, "not a plan: JSON without `format` and `samples`", kWantedPlan);
   return document;
 }
 

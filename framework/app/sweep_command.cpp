@@ -147,8 +147,9 @@ std::vector<std::string> words_of(const SweepRun& run, const std::vector<VariedK
 // What a run would be told is wrong with the option is wrong with what varies it.
 std::string blaming_vary(std::string message, const std::vector<VariedKey>& keys) {
   for (const VariedKey& key : keys) {
-    const std::string blamed = "--set: " + key.name;
-    if (message.rfind(blamed, 0) == 0) return "--vary" + message.substr(5);
+    if (!message.starts_with("--set " + key.name + "=")) continue;
+    const std::size_t said = message.find(": " + key.name);
+    if (said != message.npos) return "--vary" + message.substr(said);
   }
   return message;
 }

@@ -86,7 +86,7 @@ fs::path DataFiles::find_entry(const std::string& name, const std::string& insid
   const fs::path as_named = fs::canonical(wanted, error);
   if (!error && std::find(allowed_.begin(), allowed_.end(), as_named) != allowed_.end()) {
     if (folder_wanted == fs::is_directory(as_named, error)) return as_named;
-    throw InputError("'" + name + "' is no " + (folder_wanted ? "folder" : "regular file"));
+    throw InputError("'" + name + "' is not a " + (folder_wanted ? "folder" : "regular file"));
   }
   for (const fs::path& part : wanted) {
     if (part == "..") {
@@ -107,7 +107,7 @@ fs::path DataFiles::find_entry(const std::string& name, const std::string& insid
       if (lies_in(file, root)) {
         if (folder_wanted ? fs::is_directory(file, error) : fs::is_regular_file(file, error))
           return file;
-        throw InputError("'" + name + "' is no " + (folder_wanted ? "folder" : "regular file"));
+        throw InputError("'" + name + "' is not a " + (folder_wanted ? "folder" : "regular file"));
       }
       if (wanted.is_relative()) {
         throw InputError("'" + name + "' leads out of " + folder.string());

@@ -29,7 +29,7 @@ std::string inputs_text(const StageLayout& layout, const FunctionShape& shape,
 std::string BoundFunction::fault_of(const StageLayout& layout, int instance, int row,
                                     const char* what, const double* inputs) const {
   return written_at_ + ": " + what + " of result " + std::to_string(row + 1) + " is " +
-         "no finite number at " + plain_number(nominal_[instance]) + " s, where " +
+         "not a finite number at " + plain_number(nominal_[instance]) + " s, where " +
          inputs_text(layout, shape_, inputs) +
          ": keep roots, powers, logarithms and quotients off 0; write lapwing.sqrt(lapwing.max(x, "
          "0) + 1e-6) for lapwing.sqrt(x), and lapwing.max(x, 0) + 1e-6 likewise in x ^ p, "

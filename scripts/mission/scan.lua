@@ -17,7 +17,6 @@ local space = require "mission.scan_space"
 local DECLARATIONS = require "mission.scan_options"
 
 local M = {}
-
 local OWN_OF_TOUR = { solver = true, budget = true, budget_metres = true, images = true,
                       begin = true, guard = true }
 local BUDGET = 300         -- s, where none is given

@@ -82,7 +82,8 @@ class Completing : public CommandLine {
   // What every shell offers behind `words` for the beginning `typed`.
   static std::vector<std::array<const char*, 3>> cases() {
     return {{"lapwing run --config", "scan/s", "scan/small\n"},
-            {"lapwing verify --vehicle", "vehicles/", "vehicles/racer\nvehicles/solo\n"},
+            {"lapwing verify --vehicle", "vehicles/",
+             "vehicles/crosswind\nvehicles/phantom\nvehicles/racer\nvehicles/solo\n"},
             {"lapwing plugins show", "cost_term/input", "cost_term/input_effort\n"},
             {"lapwing export --format", "cs", "csv\n"},
             {"lapwing evaluate explore --world", "sub", "suburb\n"},
@@ -167,7 +168,7 @@ TEST_F(Completing, SettingsAreThoseOfTheMission) {
 TEST_F(Completing, BashPutsItsPiecesTogether) {
   write("shot.lua", film(""));
   EXPECT_EQ(in_bash_line("lapwing run --config=scan/s"), "scan/small\n");
-  EXPECT_EQ(in_bash_line("lapwing verify --vehicle=v"), "vehicles/racer\nvehicles/solo\n");
+  EXPECT_EQ(in_bash_line("lapwing verify --vehicle=vehicles/r"), "vehicles/racer\n");
   EXPECT_EQ(in_bash_line("lapwing run shot.lua --set timing=g"), "given\n");
   EXPECT_EQ(in_bash_line("lapwing run shot.lua --set timing="),
             "free\ngiven\npath_first\ntime_first\n");

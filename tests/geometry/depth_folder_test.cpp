@@ -88,7 +88,7 @@ TEST_F(DepthFolders, PosesMustBeRotations) {
       {"0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 1\n", "no rotation"},
       {"1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n", "last row"},
       {"1 0 0 0\n0 1 0 0\n0 0 1 0\n", "got 12 numbers"},
-      {"1 0 0 nan\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "no finite number"},
+      {"1 0 0 nan\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "not a finite number"},
       {"1 0 0 x\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "'x'"},
       {"", "got 0 numbers"},
   };

@@ -122,7 +122,7 @@ TEST(MapFile, HostileFilesAreRefusedWithTheReason) {
   };
   const std::string two = std::string("\x02\x40", 2);
   says("", "header");
-  says("PNG\n", "no OctoMap file");
+  says("PNG\n", "not an OctoMap file");
   says(header("binary file", "size 3\nres 0.1\n") + two, "no line 'id'");
   says(header("binary file", "id OcTree\nres 0.1\n") + two, "no line 'size'");
   says(header("binary file", "id OcTree\nsize 3\n") + two, "no line 'res'");
@@ -139,7 +139,7 @@ TEST(MapFile, HostileFilesAreRefusedWithTheReason) {
   says(header("binary file", "id OcTree\nsize 3\nres 0.1\n") + two + "more", "goes on for 4 bytes");
   says(header("binary file", "id OcTree\nsize 1\nres 0.1\n") + std::string(2, '\0'),
        "without children");
-  says(header("file", kLines) + node(NAN, 1) + node(0, 0), "no finite number");
+  says(header("file", kLines) + node(NAN, 1) + node(0, 0), "not a finite number");
   std::string deep = header("file", "id OcTree\nsize 18\nres 0.1\n");
   for (int k = 0; k < 18; ++k) deep += node(0, k < 17);
   says(deep, "16th level");

@@ -51,9 +51,9 @@ TEST_F(DataFilesTest, RefusesWhatLeadsOut) {
   EXPECT_NE(error((root_ / "secret.json").string()).find("not found in"), std::string::npos);
   EXPECT_NE(error("/etc/passwd").find("not found in"), std::string::npos);
   EXPECT_NE(error("/dev/zero").find("not found in"), std::string::npos);
-  EXPECT_NE(error("shots").find("no regular file"), std::string::npos);
-  EXPECT_NE(error("").find("no file name"), std::string::npos);
-  EXPECT_NE(error(std::string("a\0b", 3)).find("no file name"), std::string::npos);
+  EXPECT_NE(error("shots").find("not a regular file"), std::string::npos);
+  EXPECT_NE(error("").find("not a file name"), std::string::npos);
+  EXPECT_NE(error(std::string("a\0b", 3)).find("not a file name"), std::string::npos);
 }
 
 TEST_F(DataFilesTest, SaysWhereItLooked) {

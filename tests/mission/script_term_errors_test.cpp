@@ -121,7 +121,7 @@ TEST_F(TermTest, ATermThatHasValuesOnlyWhereTheFlightIsIsTaken) {
 // A value or a slope that is none in a solve is the script's fault, not a plugin's.
 TEST_F(TermTest, NumbersThatAreNoneInASolveAreNamed) {
   const std::string log = error(flight("0, 0, 2", "8, 0, 12", "lapwing.log(s.position.z - 5)"));
-  EXPECT_EQ(log.rfind("shot.lua:4: cost 'mine': a value of result 1 is no "
+  EXPECT_EQ(log.rfind("shot.lua:4: cost 'mine': a value of result 1 is not a "
                       "finite number at 0 s, where position = {0, 0, 2}: keep roots",
                       0),
             0u)

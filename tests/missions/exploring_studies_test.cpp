@@ -304,7 +304,7 @@ end)");
   EXPECT_EQ(evaluate("--resume"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("the file of two, three.lua 1 is another one"));
   EXPECT_EQ(evaluate("--moves step=0"), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("--moves: "));
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("--moves step=0: step: "));
   fs::remove_all(out);
   EXPECT_EQ(evaluate("--moves clear=1e12"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("more than 2^24 voxels"));
