@@ -250,6 +250,8 @@ class ConfiguredFilm {
     if (!plan_.task.framing.empty())
       compare_number("the share of framing", plan_.task.framing_share,
                      stated_number(asked_, "framing"), "", Than::below, found_);
+    if (stated_text(asked_, "line_of_sight") == "required" && !plan_.task.line_of_sight_required)
+      fault("the line of sight is reported only in the plan and required in its configuration");
   }
 
   void cuts() {

@@ -145,9 +145,11 @@ void compare_race(const Plan& plan, ConfigurationComparison& found) {
   else
     compare_gates(plan, found);
   const auto floor = stated_number(asked, "floor");
-  const std::vector<Zone>& zones = plan.environment.zones;
-  if (floor && std::none_of(zones.begin(), zones.end(),
-                            [&](const Zone& z) { return same_number(z.ceiling, *floor); }))
+  const std::vector<Obstacle>& zones = plan.environment.obstacles;
+  if (floor && std::none_of(zones.begin(), zones.end(), [&](const Obstacle& zone) {
+        const Value* ceiling = zone.parameters.find("ceiling");
+        return zone.type == "prism" && ceiling && same_number(ceiling->as_number(), *floor);
+      }))
     found.faults.push_back("the floor of its configuration, " + plain_number(*floor) +
                            " m, is not in the plan");
   compare_budget(plan, stated_number(asked, "time"), found);

@@ -27,16 +27,24 @@ bool has_all(const Value& configuration, const std::vector<const char*>& options
                      [&](const char* option) { return configuration.find(option) != nullptr; });
 }
 
-bool same_zone(const Value& stated, const Zone& zone) {
+// The number that an obstacle records, or what stands for none.
+double recorded(const Obstacle& obstacle, const char* key, double absent) {
+  const Value* found = obstacle.parameters.find(key);
+  return found && found->is_number() ? found->as_number() : absent;
+}
+
+bool same_zone(const Value& stated, const Obstacle& zone) {
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  if (zone.type != "prism") return false;
   const auto corners = stated_numbers(stated, "corners");
-  if (!corners || corners->size() != 2 * zone.corners.size()) return false;
-  for (std::size_t i = 0; i < zone.corners.size(); ++i)
-    if (!same_number((*corners)[2 * i], zone.corners[i].x()) ||
-        !same_number((*corners)[2 * i + 1], zone.corners[i].y()))
-      return false;
-  const Zone open;
-  return same_number(stated_number(stated, "floor").value_or(open.floor), zone.floor) &&
-         same_number(stated_number(stated, "ceiling").value_or(open.ceiling), zone.ceiling);
+  const auto recorded_corners = recorded_numbers(zone.parameters, "corners");
+  if (!corners || corners->size() != recorded_corners.size()) return false;
+  for (std::size_t i = 0; i < corners->size(); ++i)
+    if (!same_number((*corners)[i], recorded_corners[i])) return false;
+  return same_number(stated_number(stated, "floor").value_or(-kOpen),
+                     recorded(zone, "floor", -kOpen)) &&
+         same_number(stated_number(stated, "ceiling").value_or(kOpen),
+                     recorded(zone, "ceiling", kOpen));
 }
 
 template <class List, class Is>
@@ -44,34 +52,40 @@ bool any(const List& list, const Is& is) {
   return std::any_of(list.begin(), list.end(), is);
 }
 
-// A mesh or a map bears its name, or its file's.
-template <class List>
-bool has_file(const Value& obstacle, const List& list) {
-  const std::string own = stated_text(obstacle, "name");
-  const std::string name = own.empty() ? stated_text(obstacle, "file") : own;
-  return any(list, [&](const auto& one) { return one.name == name; });
+// Whether what a record states is what the configuration states, as far as it states it.
+bool same_record(const Value& stated, const Obstacle& obstacle) {
+  const auto same = [&](const std::string& key, const Value& value) {
+    if (value.is_number()) {
+      const auto number = stated_number(stated, key.c_str());
+      return !number || same_number(*number, value.as_number());
+    }
+    if (!value.is_list()) return true;
+    const auto numbers = stated_numbers(stated, key.c_str());
+    const auto here = recorded_numbers(obstacle.parameters, key);
+    if (!numbers) return true;
+    if (numbers->size() != here.size()) return false;
+    for (std::size_t i = 0; i < here.size(); ++i)
+      if (!same_number((*numbers)[i], here[i])) return false;
+    return true;
+  };
+  for (const auto& [key, value] : obstacle.parameters.as_map())
+    if (!same(key, value)) return false;
+  return true;
 }
 
-bool has_obstacle(const Value& obstacle, const Environment& e) {
-  const std::string type = stated_text(obstacle, "type");
-  if (type == "sphere") {
-    const auto center = stated_numbers(obstacle, "center");
-    const auto radius = stated_number(obstacle, "radius");
-    return !center || !radius || any(e.spheres, [&](const Sphere& s) {
-      return same_vector(*center, s.center) && same_number(*radius, s.radius);
-    });
-  }
-  if (type == "box") {
-    const auto lower = stated_numbers(obstacle, "lower"), upper = stated_numbers(obstacle, "upper");
-    return !lower || !upper || any(e.boxes, [&](const Box& b) {
-      return same_vector(*lower, b.lower) && same_vector(*upper, b.upper);
-    });
-  }
-  if (type == "no_fly_zone")
-    return any(e.zones, [&](const Zone& zone) { return same_zone(obstacle, zone); });
-  if (type == "mesh") return has_file(obstacle, e.meshes);
-  if (type == "map") return has_file(obstacle, e.maps);
-  return true;
+// A file bears the obstacle's name, or its own.
+bool has_obstacle(const Value& stated, const Environment& e) {
+  std::string type = stated_text(stated, "type");
+  const bool zone = type == "no_fly_zone";
+  if (zone) type = "prism";
+  const std::string side = stated_text(stated, "side");
+  const std::string own = stated_text(stated, "name"), file = stated_text(stated, "file");
+  return std::any_of(e.obstacles.begin(), e.obstacles.end(), [&](const Obstacle& obstacle) {
+    if (obstacle.type != type) return false;
+    if ((obstacle.side == Side::keep_inside) != (side == "keep_inside")) return false;
+    if (!file.empty()) return obstacle.name == (own.empty() ? file : own);
+    return type == "prism" ? same_zone(stated, obstacle) : same_record(stated, obstacle);
+  });
 }
 
 void compare_obstacles(const Plan& plan, ConfigurationComparison& found) {
@@ -86,24 +100,28 @@ void compare_obstacles(const Plan& plan, ConfigurationComparison& found) {
                              stated_text(obstacle, "type") + " '" + stated_text(obstacle, "name") +
                              "') is not in the plan as stated there");
   }
-  const auto count = [&](const char* what, std::size_t here, std::size_t asked) {
+  const auto count = [&](const char* what, const char* type, std::size_t asked) {
+    const auto here = static_cast<std::size_t>(
+        std::count_if(e.obstacles.begin(), e.obstacles.end(),
+                      [&](const Obstacle& obstacle) { return obstacle.type == type; }));
     if (here < asked)
       found.faults.push_back(otherwise(std::string("the number of ") + what, std::to_string(here),
                                        std::to_string(asked)));
   };
-  count("meshes", e.meshes.size(), meshes);
-  count("maps", e.maps.size(), maps);
+  count("meshes", "mesh", meshes);
+  count("maps", "map", maps);
   if (meshes + maps > 0)
     found.not_compared.push_back(
         "what the files of meshes and maps hold: they are compared by name and number");
 }
 
 void compare_zones(const Plan& plan, ConfigurationComparison& found) {
-  const std::vector<Zone>& zones = plan.environment.flight_zones;
+  std::vector<Obstacle> zones = plan.environment.obstacles;
+  std::erase_if(zones, [](const Obstacle& o) { return o.side != Side::keep_inside; });
   std::size_t index = 0;
   for (const Value& zone : stated_tables(plan.configuration, "flight_zones")) {
     ++index;
-    if (!any(zones, [&](const Zone& z) { return same_zone(zone, z); }))
+    if (!any(zones, [&](const Obstacle& z) { return same_zone(zone, z); }))
       found.faults.push_back("flight_zones[" + std::to_string(index) +
                              "] of its configuration is not in the plan as stated there");
   }
@@ -118,7 +136,7 @@ void compare_zones(const Plan& plan, ConfigurationComparison& found) {
   box.set("corners", Value(corners));
   box.set("floor", l[2]);
   box.set("ceiling", h[2]);
-  if (!any(zones, [&](const Zone& z) { return same_zone(box, z); }))
+  if (!any(zones, [&](const Obstacle& z) { return same_zone(box, z); }))
     found.faults.push_back("the volume of its configuration is not in the plan as stated there");
 }
 

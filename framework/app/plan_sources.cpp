@@ -13,6 +13,7 @@
 #include "framework/core/number_text.h"
 #include "framework/mission/environment_source.h"
 #include "framework/mission/vehicle_source.h"
+#include "framework/verify/judged_shape.h"
 
 namespace lapwing {
 namespace {
@@ -51,26 +52,26 @@ void add_differences(const Value& plan, const Value& source, const std::string& 
                   source_name);
 }
 
-// A plan names files below its own folder. Those of a judge have names that no file there has.
-template <class Obstacle>
-std::vector<Obstacle> files_from(const Parameters& given, const char* list, const fs::path& file,
-                                 std::map<std::string, fs::path>& elsewhere) {
-  std::vector<Obstacle> obstacles;
+// Obstacles of files beside `file`. A plan names files below its own folder. Those of a judge have
+// names that no file there has.
+void add_files(const Parameters& given, const char* list, const char* type, const fs::path& file,
+               std::map<std::string, fs::path>& elsewhere, std::vector<Obstacle>& obstacles) {
   for (const Parameters& entry : given.tables(list)) {
     const fs::path there = fs::absolute(file).parent_path() / entry.text("file");
     Obstacle obstacle;
     obstacle.name = entry.text("name");
-    obstacle.file =
+    const std::string name =
         "of the judge/" + std::to_string(elsewhere.size() + 1) + "/" + there.filename().string();
-    elsewhere[obstacle.file] = there;
+    elsewhere[name] = there;
+    obstacle.type = type;
+    obstacle.parameters.set("file", name);
     try {
-      obstacle.sha256 = sha256(read_file(there, kLargestFile));
+      obstacle.parameters.set("sha256", sha256(read_file(there, kLargestFile)));
     } catch (const InputError& error) {
       throw InputError(entry.origin("file"), error.what());
     }
     obstacles.push_back(std::move(obstacle));
   }
-  return obstacles;
 }
 
 bool is_in(const fs::path& configs, const std::string& name) {
@@ -141,15 +142,38 @@ Plan with_environment(Plan plan, const fs::path& file, std::map<std::string, fs:
       .tables("maps", named, "occupied or unknown: to keep away from")
       .optional_number("margin", "m", "kept from every surface; absent: as the plan has it",
                        at_least(0));
-  const Parameters given = check(table, read_yaml(file));
-  Environment environment = shapes_of(given);
-  environment.meshes = files_from<MeshObstacle>(given, "meshes", file, elsewhere);
-  environment.maps = files_from<MapObstacle>(given, "maps", file, elsewhere);
+  Value whole = read_yaml(file), rest = Value::map(), stated = Value::list();
+  rest.with_origin(whole.origin());
+  if (whole.is_map())
+    for (const auto& [key, value] : whole.as_map()) {
+      if (key != "obstacles")
+        rest.set(key, value);
+      else
+        stated = value;
+    }
+  const Parameters given = check(table, whole.is_map() ? rest : whole);
+  Environment environment;
+  environment.obstacles = shapes_of(given);
+  add_files(given, "meshes", "mesh", file, elsewhere, environment.obstacles);
+  add_files(given, "maps", "map", file, elsewhere, environment.obstacles);
+  for (std::size_t i = 0; i < stated.as_list().size(); ++i) {
+    const std::string what = "obstacles[" + std::to_string(i + 1) + "]";
+    environment.obstacles.push_back(obstacle_from(stated.as_list()[i], what));
+    Obstacle& obstacle = environment.obstacles.back();
+    if (!judged_by_itself(obstacle.type) || obstacle.parameters.find("file"))
+      throw InputError(
+          stated.as_list()[i].origin(),
+          what + ": '" + obstacle.type +
+              "' is not a shape that the verifier has a distance of by itself: sphere, "
+              "box, prism, capsule, cone, half_space; meshes and maps have lists");
+    const std::string problem = problem_of(obstacle);
+    if (!problem.empty()) throw InputError(stated.as_list()[i].origin(), what + problem);
+  }
   environment.margin = given.has("margin") ? given.number("margin") : plan.environment.margin;
   environment.subjects = std::move(plan.environment.subjects);
-  for (MapObstacle& map : plan.environment.maps)
-    if (plan.task.scan && map.name == plan.task.scan->map)
-      environment.maps.push_back(std::move(map));
+  for (Obstacle& obstacle : plan.environment.obstacles)
+    if (plan.task.scan && obstacle.type == "map" && obstacle.name == plan.task.scan->map)
+      environment.obstacles.push_back(std::move(obstacle));
   plan.environment = std::move(environment);
   return plan;
 }

@@ -32,9 +32,11 @@ VehicleSource read_vehicle_file(const std::filesystem::path& file,
                                 const std::filesystem::path& configs);
 
 // The plan with the obstacles of a YAML file in place of its own: spheres, boxes, zones,
-// flight_zones as an environment has them, meshes and maps {name, file} (files beside it), and
-// `margin`, if stated. Subjects, and the map that a scan's views see in, stay. Where the files are
-// comes to `elsewhere`, by the names that the plan then has for them. InputError with all errors.
+// flight_zones as an environment has them, meshes and maps {name, file} (files beside it),
+// obstacles {type, name, side, opaque, track, parameters} of the types that the verifier has
+// distances of, and `margin`, if stated. Subjects, and the map that a scan's views see in, stay.
+// Where the files are comes to `elsewhere`, by the names that the plan then has for them.
+// InputError with all errors.
 Plan with_environment(Plan plan, const std::filesystem::path& file,
                       std::map<std::string, std::filesystem::path>& elsewhere);
 

@@ -33,19 +33,32 @@ std::string vehicle_digest(const Value& vehicle) {
 }
 
 struct Counted {
-  const char* key;
-  const char* one;
-  const char* many;
+  std::string key, one, many;
   std::size_t count;
 };
 
+// By type, in the order of their first ones; what the flight stays inside of last.
 std::vector<Counted> obstacles_in(const Environment& e) {
-  return {{"spheres", "sphere", "spheres", e.spheres.size()},
-          {"boxes", "box", "boxes", e.boxes.size()},
-          {"zones", "no-fly zone", "no-fly zones", e.zones.size()},
-          {"meshes", "mesh", "meshes", e.meshes.size()},
-          {"maps", "map", "maps", e.maps.size()},
-          {"flight_zones", "flight zone", "flight zones", e.flight_zones.size()}};
+  std::vector<Counted> counts;
+  for (const Side side : {Side::keep_out, Side::keep_inside})
+    for (const Obstacle& obstacle : e.obstacles) {
+      if (obstacle.side != side) continue;
+      const std::string inside = side == Side::keep_inside ? "_kept_inside" : "";
+      const std::string key = obstacle.type + inside;
+      auto found = std::find_if(counts.begin(), counts.end(),
+                                [&](const Counted& c) { return c.key == key; });
+      if (found == counts.end()) {
+        const std::string words = obstacle.type == "prism"
+                                      ? inside.empty() ? "no-fly zone" : "flight zone"
+                                  : inside.empty() ? obstacle.type
+                                                   : "inside of a " + obstacle.type;
+        const bool hisses = words.ends_with("x") || words.ends_with("sh") || words.ends_with("s");
+        counts.push_back({key, words, words + (hisses ? "es" : "s"), 0});
+        found = counts.end() - 1;
+      }
+      ++found->count;
+    }
+  return counts;
 }
 
 std::vector<Counted> task_in(const Plan& plan) {

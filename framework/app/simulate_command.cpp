@@ -11,6 +11,7 @@
 #include "framework/core/visible_text.h"
 #include "framework/export/light_painting.h"
 #include "framework/export/simulation_report.h"
+#include "framework/mission/environment_source.h"
 #include "framework/vehicle/closed_loop.h"
 #include "framework/verify/tolerances.h"
 #include "framework/verify/verify.h"
@@ -125,15 +126,17 @@ void require_a_sound_plan(const Plan& plan, const std::filesystem::path& folder)
 ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditions& conditions,
                          const std::filesystem::path& target, const Invocation& invocation) {
   if (!target.empty()) require_output(target, {file});
-  const Plan plan = read_plan_file(file);
+  Plan plan = read_plan_file(file);
   require_a_sound_plan(plan, file.parent_path());
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   const std::filesystem::path folder = file.parent_path();
   Simulation flown{conditions, fly(plan.trajectory, vehicle, conditions), {}};
   const FlownPath& path = flown.path;
   flown.distances = distances_of(plan, path, folder);
-  if (!target.empty())
+  if (!target.empty()) {
+    open_recorded_shapes(plan.environment, invocation.registry(), folder);
     write_file_atomically(target, render_html(simulation_report(plan, vehicle, flown, folder)));
+  }
   if (invocation.json) {
     Value object = Value::map();
     object.set("plan", file.string());

@@ -7,6 +7,7 @@
 #include "framework/conformance/differences.h"
 #include "framework/conformance/function_checks.h"
 #include "framework/export/exporter.h"
+#include "framework/shape/shape.h"
 
 namespace lapwing {
 namespace {
@@ -99,6 +100,12 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
   if (kind == ViewUtility::kKind)
     return {{"creation"}, {"finite"}, {"repeatable"}, {"threads"},
             {"alone"},    {"truth"},  {"monotone"},   {"submodular"}};
+  if (kind == Shape::kKind)
+    return {{"creation"},
+            {"values", "gradient", "curvature"},
+            {"never too large", "sign", "depth", "surface", "bounds", "convex"},
+            {"rays"},
+            {"record"}};
   if (kind == Exporter::kKind) return {{"creation"}, {"extension"}, {"repeatable", "contents"}};
   return {};
 }
@@ -147,6 +154,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
     return check_registered<TourSolver>(registry, entry, options, check_tour_solver);
   if (entry.kind == ViewUtility::kKind)
     return check_registered<ViewUtility>(registry, entry, options, check_utility);
+  if (entry.kind == Shape::kKind)
+    return check_shape_plugin(subject_of<Shape>(registry, entry), options, &registry);
   if (entry.kind == Exporter::kKind)
     return check_registered<Exporter>(registry, entry, options, check_exporter);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};

@@ -28,6 +28,7 @@
 namespace lapwing {
 
 class Exporter;  // export/exporter.h
+class Shape;     // shape/shape.h
 
 enum class Outcome { passed, failed, skipped, warned };  // warned: likely a slip, no mistake
 
@@ -90,6 +91,10 @@ std::vector<CheckResult> check_information(const Specimen<ViewInformation>& subj
 std::vector<CheckResult> check_utility(const Specimen<ViewUtility>& subject,
                                        const CheckOptions& options = {});
 
+// `registry`: of the maps that shapes of files are tried with; null: those are skipped.
+std::vector<CheckResult> check_shape_plugin(const Specimen<Shape>& subject,
+                                            const CheckOptions& options = {},
+                                            const Registry* registry = nullptr);
 std::vector<CheckResult> check_exporter(const Specimen<Exporter>& subject,
                                         const CheckOptions& options = {});
 

@@ -3,29 +3,88 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "framework/core/units.h"
+#include "framework/shape/differentiable_shape.h"
+#include "framework/shape/surfaces.h"
 
 namespace lapwing {
 namespace {
 
-// The distance to a ball, in place of what a file would hold.
-class BallDistance final : public DistanceField {
+// What plugins are checked with needs no plugin: a ball and a block.
+class StandardBall final : public DifferentiableShape<StandardBall> {
  public:
-  BallDistance(const Eigen::Vector3d& center, double radius) : center_(center), radius_(radius) {}
-  double distance(const Eigen::Vector3d& p_W, Eigen::Vector3d* gradient) const override {
-    const double away = (p_W - center_).norm();
-    if (gradient)
-      *gradient = away > 0 ? Eigen::Vector3d((p_W - center_) / away)
-                           : Eigen::Vector3d(Eigen::Vector3d::Zero());
-    return away - radius_;
+  StandardBall(const Eigen::Vector3d& center, double radius) : center_(center), radius_(radius) {}
+  template <class T>
+  T core(const T* p) const {
+    using std::sqrt;
+    T squared = T(0.0);
+    for (int i = 0; i < 3; ++i) squared += (p[i] - center_(i)) * (p[i] - center_(i));
+    constexpr double kCentre = 1e-8;  // m^2
+    if (value_of(squared) < kCentre) return p[2] - value_of(p[2]) + 1e-4;
+    return sqrt(squared);
   }
-  double reach() const override { return 1e3; }
+  double rounding() const override { return radius_; }
+  std::optional<SimpleForm> simple_form() const override {
+    return SimpleForm{center_, Eigen::Vector3d::Constant(radius_), true};
+  }
+  Eigen::AlignedBox3d bounds() const override {
+    const Eigen::Vector3d around = Eigen::Vector3d::Constant(radius_);
+    return {center_ - around, center_ + around};
+  }
+  TriangleMesh triangles(double tolerance, const Eigen::AlignedBox3d&) const override {
+    const int chords = chords_of(radius_, tolerance / 2);
+    std::vector<Eigen::Vector2d> profile{{0, -radius_}};
+    for (int k = 1; k < chords; ++k)
+      profile.emplace_back(radius_ * std::sin(std::numbers::pi * k / chords),
+                           -radius_ * std::cos(std::numbers::pi * k / chords));
+    profile.emplace_back(0, radius_);
+    return turned_surface(profile, chords, center_);
+  }
+  Value record() const override { return Value::map(); }
 
  private:
   Eigen::Vector3d center_;
   double radius_;
 };
+
+class StandardBlock final : public DifferentiableShape<StandardBlock> {
+ public:
+  StandardBlock(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper, bool convex = true)
+      : box_(lower, upper), convex_(convex) {}
+  template <class T>
+  T core(const T* p) const {
+    using std::max, std::sqrt;
+    T deepest = T(-1e9), squared = T(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const T beyond = max(p[i] - box_.max()(i), box_.min()(i) - p[i]);
+      deepest = max(deepest, beyond);
+      if (value_of(beyond) > 0) squared += beyond * beyond;
+    }
+    return value_of(deepest) <= 0 ? deepest : sqrt(squared);
+  }
+  bool convex() const override { return convex_; }
+  Eigen::AlignedBox3d bounds() const override { return box_; }
+  TriangleMesh triangles(double, const Eigen::AlignedBox3d&) const override {
+    return box_surface(box_);
+  }
+  Value record() const override { return Value::map(); }
+
+ private:
+  Eigen::AlignedBox3d box_;
+  bool convex_;
+};
+
+Obstacle obstacle_of(const char* name, std::shared_ptr<const Shape> shape,
+                     Side side = Side::keep_out) {
+  Obstacle obstacle;
+  obstacle.name = name;
+  obstacle.type = "standard";
+  obstacle.side = side;
+  obstacle.shape = std::move(shape);
+  return obstacle;
+}
 
 struct Plausible {
   double middle = 0, spread = 1;
@@ -80,16 +139,26 @@ Vehicle standard_vehicle() {
 
 Environment standard_environment() {
   Environment environment;
-  environment.spheres = {{"", {0, 0, 0}, 4}, {"dome", {-9, 6, 2}, 7}};
-  environment.boxes = {{"", {-3, -3, -2}, {3, 5, 2}}, {"tower", {6, -12, 0}, {12, -4, 15}}};
-  environment.zones = {{"", {{0, 0}, {12, 1}, {13, 9}, {6, 4}, {2, 11}}},
-                       {"field", {{-15, -15}, {-15, -2}, {-4, -9}}, -5, 8}};
-  environment.flight_zones = {
-      {"", {{-30, -30}, {30, -30}, {30, 30}, {-30, 30}}, -30, 30},
-      {"yard", {{-25, -25}, {25, -25}, {25, 25}, {4, 25}, {4, 2}, {-25, 2}}, -9}};
-  environment.meshes = {
-      {"wall", "", "", std::make_shared<BallDistance>(Eigen::Vector3d(2, -7, 3), 2)}};
-  environment.maps = {{"", "", "", std::make_shared<BallDistance>(Eigen::Vector3d(-6, 9, -2), 5)}};
+  using Eigen::Vector3d;
+  const auto ball = [](double x, double y, double z, double radius) {
+    return std::make_shared<StandardBall>(Vector3d(x, y, z), radius);
+  };
+  const auto block = [](const Vector3d& lower, const Vector3d& upper, bool convex = true) {
+    return std::make_shared<StandardBlock>(lower, upper, convex);
+  };
+  environment.obstacles = {
+      obstacle_of("", ball(0, 0, 0, 4)),
+      obstacle_of("dome", ball(-9, 6, 2, 7)),
+      obstacle_of("", block({-3, -3, -2}, {3, 5, 2})),
+      obstacle_of("tower", block({6, -12, 0}, {12, -4, 15})),
+      obstacle_of("kite", ball(2, -7, 3, 2)),
+      obstacle_of("", block({-30, -30, -30}, {30, 30, 30}), Side::keep_inside),
+      obstacle_of("yard", block({-25, -25, -9}, {25, 25, 40}, false), Side::keep_inside)};
+  Obstacle& kite = environment.obstacles[4];
+  kite.times = {0.15, 0.55, 1.25};
+  kite.moves = {{0, 0, 0}, {0.4, 0, 0.2}, {0.4, 1, 0.2}};
+  kite.tolerance = 0.01;
+  environment.obstacles[2].opaque = false;
   environment.subjects = {
       {"walker", {0.15, 0.55, 1.25}, {{1, 2, 1}, {2, 2, 1}, {2, 4, 3}}, 1.8, 0.6},
       {"point", {0.0}, {{-4, 5, 0}}}};

@@ -41,6 +41,24 @@ double ground_of(const Plan& plan) {
   return ground;
 }
 
+// A shape where it has moved to.
+class MovedBody final : public RayBody {
+ public:
+  MovedBody(std::shared_ptr<const Shape> shape, const Eigen::Vector3d& moved)
+      : shape_(std::move(shape)), moved_(moved) {}
+  std::optional<SurfaceHit> hit(const Eigen::Vector3d& origin,
+                                const Eigen::Vector3d& direction) const override {
+    return shape_->hit(origin - moved_, direction);
+  }
+  Eigen::AlignedBox3d bounds() const override {
+    return {shape_->bounds().min() + moved_, shape_->bounds().max() + moved_};
+  }
+
+ private:
+  std::shared_ptr<const Shape> shape_;
+  Eigen::Vector3d moved_;
+};
+
 std::vector<Body> bodies_at(const Plan& plan, double time) {
   std::vector<Body> bodies;
   const auto add = [&bodies](const Body& body) {
@@ -54,17 +72,18 @@ std::vector<Body> bodies_at(const Plan& plan, double time) {
     middles.push_back(subject.position(time));
   }
   std::size_t count = 0;
-  const auto obstacle = [&](const Shape& shape, const auto& contains) {
+  for (const Obstacle& obstacle : environment.obstacles) {
+    if (obstacle.side == Side::keep_inside || !obstacle.shape) continue;
     const Color& color = kObstacles[count++ % std::size(kObstacles)];
-    add({shape, color, std::any_of(middles.begin(), middles.end(), contains)});
-  };
-  for (const Sphere& sphere : environment.spheres) {
-    obstacle(BallShape{sphere.center, sphere.radius},
-             [&](const Eigen::Vector3d& p) { return signed_distance(sphere, p) < 0; });
-  }
-  for (const Box& box : environment.boxes) {
-    obstacle(BlockShape{box.lower, box.upper},
-             [&](const Eigen::Vector3d& p) { return signed_distance(box, p) < 0; });
+    const Eigen::Vector3d moved = obstacle.moved(time);
+    const Shape& shape = *obstacle.shape;
+    const bool holds_one =
+        shape.solid() && std::any_of(middles.begin(), middles.end(), [&](const auto& p) {
+          return shape.distance(p - moved, nullptr) < 0;
+        });
+    TracedShape traced{obstacle.shape};
+    if (!obstacle.still()) traced.body = std::make_shared<MovedBody>(obstacle.shape, moved);
+    add({traced, color, holds_one || !obstacle.opaque});
   }
   return bodies;
 }

@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-#include "framework/trajectory/environment.h"
+#include "framework/geometry/triangle_mesh.h"
 
 namespace lapwing {
 
@@ -108,6 +108,34 @@ struct LabelledPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, world, finite
 };
 
+// Bodies that are drawn; m, world.
+struct Sphere {
+  std::string name;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 0;
+};
+
+// Parallel to the axes.
+struct Box {
+  std::string name;
+  Eigen::Vector3d lower = Eigen::Vector3d::Zero();
+  Eigen::Vector3d upper = Eigen::Vector3d::Zero();
+};
+
+// What lies above a polygon on the ground; without an end it goes on as far as the drawing.
+struct Zone {
+  std::string name;
+  std::vector<Eigen::Vector2d> corners;
+  double floor = -std::numeric_limits<double>::infinity();
+  double ceiling = std::numeric_limits<double>::infinity();
+};
+
+// Any other, by its surface.
+struct Solid {
+  std::string name;
+  TriangleMesh surface;
+};
+
 // Lines and bodies in the world frame (x east, y north, z up).
 struct Drawing {
   std::vector<Polyline> lines;
@@ -115,6 +143,7 @@ struct Drawing {
   std::vector<Sphere> spheres;
   std::vector<Box> boxes;
   std::vector<Zone> zones;
+  std::vector<Solid> solids;
   Axis along;  // what Polyline::along counts; a chart over the same axis shares its cursor
   Axis value;  // what Polyline::values hold
 };

@@ -173,10 +173,17 @@ Json drawing(const Drawing& d, Writer& writer) {
                      {"lower", vector(b.lower, "a corner of a box", writer)},
                      {"upper", vector(b.upper, "a corner of a box", writer)}});
   }
-  Json zones = Json::array();
+  Json zones = Json::array(), solids = Json::array();
   for (const Zone& z : d.zones) zones.push_back(zone(z, writer));
-  return {{"lines", lines}, {"points", points},       {"spheres", spheres},    {"boxes", boxes},
-          {"zones", zones}, {"along", axis(d.along)}, {"value", axis(d.value)}};
+  for (const Solid& s : d.solids) {
+    Json corners = Json::array(), faces = Json::array();
+    for (const Eigen::Vector3d& p : s.surface.vertices)
+      corners.push_back(vector(p, "a corner of a solid", writer));
+    for (const auto& face : s.surface.triangles) faces.push_back(face);
+    solids.push_back({{"label", s.name}, {"corners", corners}, {"faces", faces}});
+  }
+  return {{"lines", lines}, {"points", points}, {"spheres", spheres},     {"boxes", boxes},
+          {"zones", zones}, {"solids", solids}, {"along", axis(d.along)}, {"value", axis(d.value)}};
 }
 
 void write(const Chart& c, const Section& section, Writer& writer) {

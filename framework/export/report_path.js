@@ -23,6 +23,7 @@ function drawingBounds(drawing) {
     include(s.center.map((v) => v + s.radius));
   }
   for (const b of drawing.boxes) { include(b.lower); include(b.upper); }
+  for (const s of drawing.solids) s.corners.forEach(include);
   for (const z of drawing.zones) {
     // Where a zone has no bound, whatever else is drawn says how much of it shows.
     const heights = [z.floor, z.ceiling].filter((v) => v !== null);
@@ -82,6 +83,7 @@ function makePath(figure, spec) {
       `${view.names[1]} [m]`);
     drawZones(area);
     drawBodies();
+    drawSolids();
     drawLines();
     drawPoints();
     cursor = svgChild(svg, "circle", { class: "dot", r: 5, visibility: "hidden",
@@ -119,6 +121,15 @@ function makePath(figure, spec) {
       const node = svgChild(svg, "rect", { class: "body", x: sx(x0), y: sy(y1),
         width: Math.max(0, sx(x1) - sx(x0)), height: Math.max(0, sy(y0) - sy(y1)) });
       svgChild(node, "title", {}, b.label);
+    }
+  }
+
+  function drawSolids() {
+    for (const s of drawing.solids) {
+      const corners = s.corners.map(flat).map(([x, y]) => `${sx(x).toFixed(1)},${sy(y).toFixed(1)}`);
+      const node = svgChild(svg, "path", { class: "body",
+        d: s.faces.map((face) => `M${face.map((i) => corners[i]).join("L")}Z`).join("") });
+      svgChild(node, "title", {}, s.label);
     }
   }
 

@@ -156,6 +156,7 @@ function makeScene(figure, spec) {
     }
     for (const b of drawing.boxes) items.push(...boxFaces(b));
     for (const z of drawing.zones) items.push(...zoneFaces(z));
+    for (const s of drawing.solids) items.push(...solidFaces(s));
     return items.sort((a, b) => b.depth - a.depth);
   }
 
@@ -170,6 +171,16 @@ function makeScene(figure, spec) {
           pen.fill();
         } };
       });
+  }
+
+  function solidFaces(solid) {
+    const corners = solid.corners.map(project);
+    return solid.faces.map((face) => face.map((i) => corners[i]))
+      .map((c) => ({ depth: c.reduce((sum, p) => sum + p.depth, 0) / 3, draw() {
+        stroke([...c, c[0]], theme.muted, 0.5);
+        pen.fillStyle = theme.shade;
+        pen.fill();
+      } }));
   }
 
   // Walls and, where it has one, its floor and its ceiling; without a bound it ends with the scene.

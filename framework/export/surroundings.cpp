@@ -61,27 +61,100 @@ void add_edges(const TriangleMesh& mesh, const std::string& name, Drawing& drawi
     drawing.lines.push_back(std::move(line));
 }
 
+Zone drawn_zone(const Obstacle& obstacle, const Eigen::Vector3d& moved) {
+  Zone zone;
+  zone.name = obstacle.name;
+  const auto corners = recorded_numbers(obstacle.parameters, "corners");
+  for (std::size_t i = 0; i + 1 < corners.size(); i += 2)
+    zone.corners.emplace_back(corners[i] + moved.x(), corners[i + 1] + moved.y());
+  const auto height = [&](const char* key, double& end) {
+    if (const Value* found = obstacle.parameters.find(key)) end = found->as_number() + moved.z();
+  };
+  height("floor", zone.floor);
+  height("ceiling", zone.ceiling);
+  return zone;
+}
+
+// The part of endless surfaces that is shown.
+Eigen::AlignedBox3d shown(const Plan& plan) {
+  constexpr double kRoom = 10;  // m
+  Eigen::AlignedBox3d box;
+  for (const Sample& s : plan.trajectory.samples) box.extend(s.position);
+  if (box.isEmpty()) box.extend(Eigen::Vector3d(Eigen::Vector3d::Zero()));
+  const Eigen::Vector3d room = Eigen::Vector3d::Constant(kRoom);
+  return {box.min() - room, box.max() + room};
+}
+
+TriangleMesh moved_mesh(TriangleMesh mesh, const Eigen::Vector3d& moved) {
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex += moved;
+  return mesh;
+}
+
+// The surface of an obstacle as it is drawn; empty where nobody has it.
+TriangleMesh drawn_surface(const Obstacle& obstacle, const Plan& plan,
+                           const std::filesystem::path& folder) {
+  constexpr double kShare = 0.02;  // of its size, that chords may leave a round surface by
+  if (obstacle.shape) {
+    Eigen::AlignedBox3d within = shown(plan);
+    const Eigen::AlignedBox3d bounds = obstacle.shape->bounds();
+    if (!within.intersects(bounds)) {
+      within.extend(Eigen::Vector3d(within.center().cwiseMax(bounds.min()).cwiseMin(bounds.max())));
+    }
+    const double size = bounds.intersection(within).sizes().minCoeff();
+    return obstacle.shape->triangles(std::max(kShare * size, 1e-3), within);
+  }
+  if (obstacle.triangles) return *obstacle.triangles;
+  const Value* file = obstacle.parameters.find("file");
+  if (obstacle.type != "mesh" || folder.empty() || !file) return {};
+  try {
+    return read_mesh(folder / file->as_text()).mesh;
+  } catch (const InputError&) {
+    return {};  // the certificate says what is wrong with it
+  }
+}
+
+void add_obstacle(const Obstacle& obstacle, const Plan& plan, const std::filesystem::path& folder,
+                  Drawing& drawing) {
+  const Eigen::Vector3d moved = obstacle.moved(0);
+  if (obstacle.type == "prism") {
+    drawing.zones.push_back(drawn_zone(obstacle, moved));
+    return;
+  }
+  if (obstacle.shape) {
+    if (const auto form = obstacle.shape->simple_form()) {
+      const Eigen::Vector3d center = form->center + moved;
+      if (form->round)
+        drawing.spheres.push_back({obstacle.name, center, form->half.x()});
+      else
+        drawing.boxes.push_back({obstacle.name, center - form->half, center + form->half});
+      return;
+    }
+  }
+  TriangleMesh surface = moved_mesh(drawn_surface(obstacle, plan, folder), moved);
+  if (surface.triangles.empty()) return;
+  const bool solid = obstacle.shape ? obstacle.shape->solid() : obstacle.type != "mesh";
+  if (solid)
+    drawing.solids.push_back({obstacle.name, std::move(surface)});
+  else
+    add_edges(surface, obstacle.name.empty() ? obstacle.type : obstacle.name, drawing);
+}
+
 }  // namespace
 
 void add_surroundings(const Plan& plan, const std::filesystem::path& folder, Drawing& drawing) {
-  const Environment& environment = plan.environment;
-  drawing.spheres = environment.spheres;
-  drawing.boxes = environment.boxes;
-  drawing.zones = environment.zones;
   double low = 0, high = 0;
   for (const Sample& s : plan.trajectory.samples) {
     low = std::min(low, s.position.z());
     high = std::max(high, s.position.z());
   }
-  for (const Zone& zone : environment.flight_zones) add_outline(zone, low, high, drawing);
-  for (const MeshObstacle& mesh : environment.meshes) {
-    if (folder.empty()) continue;
-    try {
-      add_edges(read_mesh(folder / mesh.file).mesh, mesh.name.empty() ? "mesh" : mesh.name,
-                drawing);
-    } catch (const InputError&) {
-      // The certificate says what is wrong with it.
-    }
+  for (const Obstacle& obstacle : plan.environment.obstacles) {
+    if (obstacle.side == Side::keep_out)
+      add_obstacle(obstacle, plan, folder, drawing);
+    else if (obstacle.type == "prism")
+      add_outline(drawn_zone(obstacle, obstacle.moved(0)), low, high, drawing);
+    else
+      add_edges(moved_mesh(drawn_surface(obstacle, plan, folder), obstacle.moved(0)),
+                obstacle.name.empty() ? "flight zone" : obstacle.name, drawing);
   }
 }
 

@@ -9,9 +9,11 @@
 
 namespace lapwing {
 
-// Flight zones as their outlines, at floor and ceiling or, where one is missing, at the lowest and
-// the highest of the path. Meshes as their sharp edges, from the files in `folder`; a mesh that
-// cannot be read, or with more than 3000 such edges, is left out, and a map always is.
+// What flights stay inside of as outlines, at floor and ceiling or, where one is missing, at the
+// lowest and the highest of the path. What has no inside as its sharp edges, unless there are more
+// than 3000; a mesh whose shape was not opened from its file in `folder`. Other obstacles by what
+// their shapes say of themselves; those whose shape was not opened by the triangles that the plan
+// records, if any. Obstacles that move are drawn where they begin.
 void add_surroundings(const Plan& plan, const std::filesystem::path& folder, Drawing& drawing);
 
 }  // namespace lapwing

@@ -134,8 +134,8 @@ std::vector<bool> outlines(const std::vector<Sample>& samples, int width, int he
   return found;
 }
 
-std::vector<Shape> shapes_of(const std::vector<Body>& bodies, bool see_through) {
-  std::vector<Shape> shapes;
+std::vector<BodyShape> shapes_of(const std::vector<Body>& bodies, bool see_through) {
+  std::vector<BodyShape> shapes;
   for (const Body& body : bodies) {
     if (body.see_through == see_through) shapes.push_back(body.shape);
   }

@@ -23,7 +23,7 @@ struct Picture {
 };
 
 struct Body {
-  Shape shape;
+  BodyShape shape;
   Color color;               // of ground: the mean of its squares, which are 1 m and 10 m wide
   bool see_through = false;  // tints what is behind it and casts no shadow
 };

@@ -24,7 +24,7 @@ float rounded_up(double value) {
   return static_cast<float>(value * (1 + 1e-6) + 1e-4);
 }
 
-void offer(const Shape& shape, int number, Query& query) {
+void offer(const BodyShape& shape, int number, Query& query) {
   const auto found = hit(shape, query.ray);
   if (!found || found->distance >= query.farthest) return;
   if (query.best && (found->distance > query.best->distance ||
@@ -50,12 +50,12 @@ RTCRay ray_of(const Query& query) {
 
 }  // namespace
 
-bool drawable(const Shape& shape) {
+bool drawable(const BodyShape& shape) {
   return *problem_of(shape) == '\0';
 }
 
 struct Scene::Tracer {
-  explicit Tracer(std::vector<Shape> list) : shapes(std::move(list)) {
+  explicit Tracer(std::vector<BodyShape> list) : shapes(std::move(list)) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       const std::string problem = problem_of(shapes[i]);
       if (!problem.empty()) {
@@ -114,21 +114,22 @@ struct Scene::Tracer {
     }
   }
 
-  const Shape& shape(unsigned primitive) const {
+  const BodyShape& shape(unsigned primitive) const {
     return shapes[static_cast<std::size_t>(bounded[primitive])];
   }
 
-  std::vector<Shape> shapes;
+  std::vector<BodyShape> shapes;
   std::vector<int> bounded, grounds;  // places in `shapes`
   RTCScene scene = nullptr;
 };
 
-Scene::Scene(std::vector<Shape> shapes) : tracer_(std::make_unique<Tracer>(std::move(shapes))) {}
+Scene::Scene(std::vector<BodyShape> shapes)
+    : tracer_(std::make_unique<Tracer>(std::move(shapes))) {}
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
-const std::vector<Shape>& Scene::shapes() const {
+const std::vector<BodyShape>& Scene::shapes() const {
   return tracer_->shapes;
 }
 

@@ -14,6 +14,8 @@
 
 #include <Eigen/Core>
 
+#include "framework/geometry/surface_hit.h"
+
 namespace lapwing {
 
 struct BallShape {
@@ -46,10 +48,16 @@ struct GroundShape {
   double height = 0;  // z
 };
 
-using Shape = std::variant<BallShape, BlockShape, BoardShape, UprightCylinderShape, GroundShape>;
+// What answers rays itself; what of it lies beyond 1e5 m is not drawn.
+struct TracedShape {
+  std::shared_ptr<const RayBody> body;
+};
+
+using BodyShape =
+    std::variant<BallShape, BlockShape, BoardShape, UprightCylinderShape, GroundShape, TracedShape>;
 
 // Whether a scene takes the shape: it has an extent, and finite numbers up to 1e5.
-bool drawable(const Shape& shape);
+bool drawable(const BodyShape& shape);
 
 struct RayHit {
   double distance = 0;                                // m along the ray
@@ -61,7 +69,7 @@ class Scene {
  public:
   // Throws InputError naming the shape that has no extent or a number that is not finite or beyond
   // 1e5, and Error when Embree cannot be used. Shapes may overlap.
-  explicit Scene(std::vector<Shape> shapes);
+  explicit Scene(std::vector<BodyShape> shapes);
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
@@ -76,7 +84,7 @@ class Scene {
   bool blocked(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                double farthest = std::numeric_limits<double>::infinity()) const;
 
-  const std::vector<Shape>& shapes() const;
+  const std::vector<BodyShape>& shapes() const;
 
  private:
   struct Tracer;

@@ -7,11 +7,11 @@ namespace lapwing {
 namespace {
 
 using Eigen::Vector3d;
-using Found = std::optional<ShapeHit>;
+using Found = std::optional<SurfaceHit>;
 
 Found facing(double distance, const Vector3d& normal, const Ray& ray) {
   if (!(distance > kNearestHit)) return std::nullopt;
-  return ShapeHit{distance, normal.dot(ray.direction) > 0 ? Vector3d(-normal) : normal};
+  return SurfaceHit{distance, normal.dot(ray.direction) > 0 ? Vector3d(-normal) : normal};
 }
 
 Found hit(const BallShape& ball, const Ray& ray) {
@@ -95,6 +95,10 @@ Found hit(const GroundShape& ground, const Ray& ray) {
   return facing(distance, Vector3d::UnitZ(), ray);
 }
 
+Found hit(const TracedShape& traced, const Ray& ray) {
+  return traced.body->hit(ray.origin, ray.direction);
+}
+
 BlockShape bounds(const BallShape& ball) {
   const Vector3d reach = Vector3d::Constant(ball.radius);
   return {ball.center - reach, ball.center + reach};
@@ -113,6 +117,14 @@ BlockShape bounds(const UprightCylinderShape& cylinder) {
 BlockShape bounds(const GroundShape& ground) {
   return {{-kLargestCoordinate, -kLargestCoordinate, ground.height},
           {kLargestCoordinate, kLargestCoordinate, ground.height}};
+}
+
+BlockShape bounds(const TracedShape& traced) {
+  const Vector3d far = Vector3d::Constant(kLargestCoordinate);
+  const Eigen::AlignedBox3d box =
+      traced.body ? traced.body->bounds().intersection({-far, far}) : Eigen::AlignedBox3d();
+  if (box.isEmpty()) return {Vector3d::Zero(), Vector3d::Zero()};
+  return {box.min(), box.max()};
 }
 
 const char* extent_problem(const BallShape& ball) {
@@ -139,17 +151,24 @@ const char* extent_problem(const GroundShape&) {
   return "";
 }
 
+const char* extent_problem(const TracedShape& traced) {
+  const BlockShape box = bounds(traced);
+  return traced.body && (box.lower.array() < box.upper.array()).any()
+             ? ""
+             : "a traced shape needs a body that is nearer than 1e5 m";
+}
+
 }  // namespace
 
-std::optional<ShapeHit> hit(const Shape& shape, const Ray& ray) {
+std::optional<SurfaceHit> hit(const BodyShape& shape, const Ray& ray) {
   return std::visit([&](const auto& s) { return hit(s, ray); }, shape);
 }
 
-BlockShape bounds_of(const Shape& shape) {
+BlockShape bounds_of(const BodyShape& shape) {
   return std::visit([](const auto& s) { return bounds(s); }, shape);
 }
 
-const char* problem_of(const Shape& shape) {
+const char* problem_of(const BodyShape& shape) {
   const BlockShape box = bounds_of(shape);
   // Written so that a NaN is a problem too.
   if (!((box.lower.array() >= -kLargestCoordinate).all() &&

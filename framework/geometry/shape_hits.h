@@ -11,17 +11,13 @@ struct Ray {
 };
 
 // Where a ray meets a shape first beyond `kNearestHit`; the normal faces the ray.
-struct ShapeHit {
-  double distance;
-  Eigen::Vector3d normal;
-};
-std::optional<ShapeHit> hit(const Shape& shape, const Ray& ray);
+std::optional<SurfaceHit> hit(const BodyShape& shape, const Ray& ray);
 
 // The box that holds a bounded shape.
-BlockShape bounds_of(const Shape& shape);
+BlockShape bounds_of(const BodyShape& shape);
 
 // What is wrong with a shape, in words; empty when it is sound.
-const char* problem_of(const Shape& shape);
+const char* problem_of(const BodyShape& shape);
 
 inline constexpr double kNearestHit = 1e-9;        // m
 inline constexpr double kLargestCoordinate = 1e5;  // m

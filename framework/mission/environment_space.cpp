@@ -11,8 +11,13 @@ using Eigen::Vector3d;
 
 class EnvironmentSpace final : public FreeSpace {
  public:
-  EnvironmentSpace(const Environment& environment, double more)
-      : environment_(environment), margin_(environment.margin + more) {}
+  EnvironmentSpace(const Environment& environment, std::vector<KeptBall> balls, double more)
+      : environment_(environment), balls_(std::move(balls)), margin_(environment.margin + more) {
+    std::erase_if(environment_.obstacles,
+                  [](const Obstacle& obstacle) { return !obstacle.still(); });
+    for (const Obstacle& obstacle : environment_.obstacles)
+      margin_ = std::max(margin_, environment.margin + more + obstacle.tolerance);
+  }
 
   bool point_free(const Vector3d& p) const override { return distance(p) >= margin_; }
   bool segment_free(const Vector3d& from, const Vector3d& to) const override {
@@ -29,9 +34,10 @@ class EnvironmentSpace final : public FreeSpace {
 
  private:
   double distance(const Vector3d& p) const {
-    double least = nearest_obstacle(environment_, p).distance;
-    for (const Zone& zone : environment_.flight_zones)
-      least = std::min(least, -signed_distance(zone, p));
+    double least = std::min(nearest_obstacle(environment_, p).distance,
+                            least_inside(environment_, p).distance);
+    for (const KeptBall& ball : balls_)
+      least = std::min(least, (p - ball.center).norm() - (ball.distance - environment_.margin));
     return least;
   }
 
@@ -64,13 +70,15 @@ class EnvironmentSpace final : public FreeSpace {
   }
 
   Environment environment_;
+  std::vector<KeptBall> balls_;
   double margin_;
 };
 
 }  // namespace
 
-std::unique_ptr<FreeSpace> free_space_of(const Environment& environment, double more) {
-  return std::make_unique<EnvironmentSpace>(environment, more);
+std::unique_ptr<FreeSpace> free_space_of(const Environment& environment,
+                                         std::vector<KeptBall> balls, double more) {
+  return std::make_unique<EnvironmentSpace>(environment, std::move(balls), more);
 }
 
 }  // namespace lapwing

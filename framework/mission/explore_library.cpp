@@ -263,11 +263,12 @@ int plan_exploration(lua_State* state) {
   document.budget = e.settings.budget;
   document.configuration = run.configuration;
   document.solver = to_value(made.report, made.solver);
-  MapObstacle obstacle;
+  Obstacle obstacle;
   obstacle.name = "explored map";
-  obstacle.file = "map.ot";
-  obstacle.sha256 = run.obstacles.keep(obstacle.file, map_file_bytes(".ot", *e.map));
-  document.environment.maps.push_back(std::move(obstacle));
+  obstacle.type = "map";
+  obstacle.parameters.set("file", "map.ot");
+  obstacle.parameters.set("sha256", run.obstacles.keep("map.ot", map_file_bytes(".ot", *e.map)));
+  document.environment.obstacles.push_back(std::move(obstacle));
   document.environment.margin = given.number("margin");
   new_object(state, kPlanType, std::move(made));
   return 1;

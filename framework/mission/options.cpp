@@ -308,6 +308,10 @@ Value OptionDeclarations::checked_plugins(const Option& option, const Value* giv
       table = std::move(parameters);
     } else if (option.functions.is_list()) {
       for (const Value& one : option.functions.as_list()) table.push_back(one);
+    } else {
+      errors.add(entry.origin(), what,
+                 "expected `type`, the name of a plugin (" + option.plugin_kind + ")");
+      continue;
     }
     all.push_back(lapwing::check(ParameterTable::from_value(table), entry, what, errors).value());
   }

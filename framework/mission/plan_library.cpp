@@ -284,7 +284,9 @@ ParameterTable task_table() {
       .number("drawing_tolerance", Task{}.drawing_tolerance, "m",
               "mean distance between light and strokes", above(0))
       .numbers("drawing_view", {0, 1, 0}, "", "the way that spectators look")
-      .number("framing_share", Task{}.framing_share, "", "of that time", {0, 1, true});
+      .number("framing_share", Task{}.framing_share, "", "of that time", {0, 1, true})
+      .boolean("line_of_sight_required", true,
+               "for that share of the time; else hidden subjects are reported only");
   return table;
 }
 
@@ -322,6 +324,7 @@ Task task_of(const Parameters& given) {
     task.framing.push_back(
         {entry.text("subject"), {entry.number("start"), entry.number("finish")}});
   task.framing_share = given.number("framing_share");
+  task.line_of_sight_required = given.boolean("line_of_sight_required");
   for (const Parameters& entry : given.tables("strokes"))
     task.strokes.push_back(points_of(entry, "points"));
   task.drawing_tolerance = given.number("drawing_tolerance");

@@ -252,33 +252,33 @@ Eigen::Vector3d place_argument(lua_State* state, const char* what) {
   return {p[0].as_number(), p[1].as_number(), p[2].as_number()};
 }
 
-// problem:nearest_obstacle{x, y, z}: distance (negative inside, infinite without any) and name
-int nearest(lua_State* state) {
-  const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
-  const NearestObstacle nearest =
-      nearest_obstacle(object.problem->environment(), place_argument(state, "nearest_obstacle"));
+// The time that a place is asked of; absent: when the flight begins.
+double time_argument(lua_State* state) {
+  return lua_isnoneornil(state, 3) ? 0.0 : luaL_checknumber(state, 3);
+}
+
+int push_nearest(lua_State* state, const NearestObstacle& nearest) {
   lua_pushnumber(state, nearest.distance);
-  lua_pushlstring(state, nearest.name.data(), nearest.name.size());
+  push_text(state, nearest.name);
   return 2;
 }
 
-// problem:flight_zone_distance{x, y, z}: to the nearest edge of a flight zone, negative outside of
-// one, infinite without any; and its name or number
+// problem:nearest_obstacle({x, y, z}, time): distance (negative inside, infinite without any) and
+// name
+int nearest(lua_State* state) {
+  const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
+  return push_nearest(
+      state, nearest_obstacle(object.problem->environment(),
+                              place_argument(state, "nearest_obstacle"), time_argument(state)));
+}
+
+// problem:flight_zone_distance({x, y, z}, time): to the nearest face of what the flight stays
+// inside of, negative outside, infinite without any; and its name
 int flight_zone_distance(lua_State* state) {
   const ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
-  const Eigen::Vector3d p = place_argument(state, "flight_zone_distance");
-  const auto& zones = object.problem->environment().flight_zones;
-  double least = std::numeric_limits<double>::infinity();
-  std::string name;
-  for (std::size_t i = 0; i < zones.size(); ++i) {
-    const double inside = -signed_distance(zones[i], p);
-    if (!(inside < least)) continue;
-    least = inside;
-    name = zones[i].name.empty() ? std::to_string(i + 1) : zones[i].name;
-  }
-  lua_pushnumber(state, least);
-  push_text(state, name);
-  return 2;
+  return push_nearest(
+      state, least_inside(object.problem->environment(),
+                          place_argument(state, "flight_zone_distance"), time_argument(state)));
 }
 
 }  // namespace
@@ -323,6 +323,11 @@ ParameterTable leg_table() {
 
 namespace {
 
+constexpr BoundField kProblemObjects[] = {
+    {"vehicle", "lapwing.vehicle", "that flies"},
+    {"obstacles?", "lapwing.shape[]",
+     "shapes by plugin, with name, side, opaque and track beside their parameters"}};
+
 ParameterTable problem_table() {
   ParameterTable table;
   table.optional_number("duration", "s", "of the flight; needed without legs", above(0))
@@ -341,7 +346,9 @@ ParameterTable problem_table() {
 // as many stages as keep the step at or below `step`, evenly over the duration; or with
 // legs = {{duration = 2, intervals = 20}, ...} a step for each leg.
 int problem_of_run(lua_State* state) {
-  const Parameters given = table_argument(state, 2, problem_table(), "problem", kVehicleObject);
+  const Parameters given = table_argument(state, 2, problem_table(), "problem", kProblemObjects);
+  lua_getfield(state, 2, "obstacles");
+  const Value obstacles = value_from_lua(state, -1, given.origin(), "problem.obstacles");
   lua_getfield(state, 2, "vehicle");
   const Vehicle& vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
   constexpr double kRounding = 1e-9;  // of an interval
@@ -366,7 +373,7 @@ int problem_of_run(lua_State* state) {
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
     object.problem = std::make_shared<TrajectoryProblem>(
-        vehicle, horizon, environment_of(given.table("environment"), run_of(state)));
+        vehicle, horizon, environment_of(given.table("environment"), obstacles, run_of(state)));
   }
   new_object(state, kProblemType, std::move(object));
   return 1;
@@ -389,7 +396,7 @@ std::span<const Binding> problem_methods_of_run() {
        "a vehicle, by the name of its file in configs/ or as a table like such a file"},
       {"problem", &guarded<problem_of_run>, "(stated: @): lapwing.problem",
        "a problem to be stated, over a duration or in legs with steps of their own", &problem_table,
-       kVehicleObject}};
+       kProblemObjects}};
   return methods;
 }
 
@@ -416,9 +423,10 @@ void open_problem_library(lua_State* state) {
        "the same for one block: target, gimbal_pitch", &guessed_block_table, kGuessedValues},
       {"guess_solution", &guarded<guess_solution>, "(solution: lapwing.solution)",
        "begin, leg by leg, from the solution of a problem with the same legs"},
-      {"nearest_obstacle", &guarded<nearest>, "(place: number[]): number, string",
+      {"nearest_obstacle", &guarded<nearest>, "(place: number[], time?: number): number, string",
        "distance of the nearest obstacle in m, negative inside, and its name"},
-      {"flight_zone_distance", &guarded<flight_zone_distance>, "(place: number[]): number, string",
+      {"flight_zone_distance", &guarded<flight_zone_distance>,
+       "(place: number[], time?: number): number, string",
        "distance from the nearest face of a flight zone, negative outside, and its name"},
       {"plan_way", &guarded<plan_way>, "(wanted: @): number[][]?, string?, string?",
        "a free way that keeps the margin, the distance to bystanders that stand still, and `more` "

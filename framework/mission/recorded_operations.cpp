@@ -92,9 +92,7 @@ RecordedOperations TermRecording::operations() const {
       step.name = graph.sources().subjects[call.data / 3].name;
       step.component = call.data % 3;
     } else if (call.op == TapeOp::distance) {
-      const FieldSource& source = graph.source_of_field(call.data);
-      step.name = source.kind;
-      step.component = source.index;
+      step.component = graph.obstacle_of_field(call.data);
       step.number = std::min(kFarthest, graph.sources().fields[call.data]->reach());
     }
     recorded.operations.push_back(std::move(step));

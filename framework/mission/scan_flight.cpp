@@ -255,16 +255,17 @@ int scan_plan_of_run(lua_State* state) {
     plan.task.scan->seen_share = given.number("seen_share");
     const Prior& prior = *work.prior;
     plan.environment.margin = given.number("margin");
-    MapObstacle map;
-    map.name = kMapName;
-    map.file = "map.ot";
-    map.sha256 = run.obstacles.keep(map.file, map_file_bytes(".ot", *prior.mapping.map));
-    plan.environment.maps.push_back(std::move(map));
-    MeshObstacle mesh;
-    mesh.name = "prior";
-    mesh.file = "prior.ply";
-    mesh.sha256 = run.obstacles.keep(mesh.file, ply_bytes(prior.mesh->mesh()));
-    plan.environment.meshes.push_back(std::move(mesh));
+    const auto keep = [&](const char* name, const char* type, const char* file,
+                          const std::string& bytes) {
+      Obstacle obstacle;
+      obstacle.name = name;
+      obstacle.type = type;
+      obstacle.parameters.set("file", file);
+      obstacle.parameters.set("sha256", run.obstacles.keep(file, bytes));
+      plan.environment.obstacles.push_back(std::move(obstacle));
+    };
+    keep("prior", "mesh", "prior.ply", ply_bytes(prior.mesh->mesh()));
+    keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *prior.mapping.map));
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
     const auto record = record_of_scan(tour, run.settings.threads);

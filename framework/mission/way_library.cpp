@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/mission/way_library.h"
 
+#include <cmath>
+
 #include <lua.hpp>
 
 #include "framework/mission/environment_space.h"
@@ -15,41 +17,46 @@ namespace {
 using Way = std::vector<Eigen::Vector3d>;
 
 // Around both places and everything in the way, not below the lower one.
-Eigen::AlignedBox3d planning_bounds(const Environment& environment, const Eigen::Vector3d& from,
+Eigen::AlignedBox3d planning_bounds(const Environment& environment,
+                                    const std::vector<KeptBall>& balls, const Eigen::Vector3d& from,
                                     const Eigen::Vector3d& to) {
   constexpr double kRoom = 10;  // m
   Eigen::AlignedBox3d box(from);
   box.extend(to);
   const double floor = box.min().z();
-  for (const Sphere& sphere : environment.spheres) {
-    box.extend(sphere.center + Eigen::Vector3d::Constant(sphere.radius));
-    box.extend(sphere.center - Eigen::Vector3d::Constant(sphere.radius));
+  // Of what has no end, the ends that it has.
+  for (const Obstacle& obstacle : environment.obstacles) {
+    if (obstacle.side == Side::keep_inside || !obstacle.still() || !obstacle.shape) continue;
+    if (obstacle.shape->surrounds()) continue;
+    const Eigen::AlignedBox3d bounds = obstacle.shape->bounds();
+    for (Eigen::Vector3d end : {bounds.min(), bounds.max()}) {
+      for (int i = 0; i < 3; ++i)
+        if (!std::isfinite(end(i))) end(i) = i < 2 ? from(i) : floor;
+      box.extend(end);
+    }
   }
-  for (const Box& other : environment.boxes) {
-    box.extend(other.lower);
-    box.extend(other.upper);
+  for (const KeptBall& ball : balls) {
+    const Eigen::Vector3d around = Eigen::Vector3d::Constant(ball.distance - environment.margin);
+    box.extend(Eigen::Vector3d(ball.center + around));
+    box.extend(Eigen::Vector3d(ball.center - around));
   }
-  for (const Zone& zone : environment.zones)
-    for (const Eigen::Vector2d& corner : zone.corners)
-      box.extend(Eigen::Vector3d(corner.x(), corner.y(), floor));
-  for (const MeshObstacle& mesh : environment.meshes) box.extend(mesh.bounds);
   Eigen::Vector3d lower = box.min() - Eigen::Vector3d::Constant(kRoom);
   lower.z() = floor - environment.margin;
   return {lower, box.max() + Eigen::Vector3d::Constant(kRoom)};
 }
 
-// With bystanders that stand still as spheres of the distance that is kept from them, beside the
-// margin that every obstacle has. One who stands so near to an end of the way that no way there
-// keeps the distance is left to the solver.
-Environment with_bystanders(Environment environment, const Eigen::Vector3d& from,
-                            const Eigen::Vector3d& to) {
+// Bystanders that stand still, with the distance that is kept from them. One who stands so near to
+// an end of the way that no way there keeps the distance is left to the solver.
+std::vector<KeptBall> bystanders_of(const Environment& environment, const Eigen::Vector3d& from,
+                                    const Eigen::Vector3d& to) {
+  std::vector<KeptBall> balls;
   for (const Subject& subject : environment.subjects) {
     if (subject.filmed || subject.positions.size() != 1) continue;
     const Eigen::Vector3d& middle = subject.positions[0];
     if (std::min((from - middle).norm(), (to - middle).norm()) < subject.distance) continue;
-    environment.spheres.push_back({subject.name, middle, subject.distance - environment.margin});
+    balls.push_back({middle, subject.distance});
   }
-  return environment;
+  return balls;
 }
 
 Way way_of(const Value& given, const Origin& origin, const std::string& what) {
@@ -106,11 +113,11 @@ int plan_way(lua_State* state) {
   PathProblem problem;
   problem.start = Eigen::Vector3d(given.numbers("from").data());
   problem.goal = Eigen::Vector3d(given.numbers("to").data());
-  const Environment environment =
-      with_bystanders(object.problem->environment(), problem.start, problem.goal);
-  const auto space = free_space_of(environment, given.number("more"));
+  const Environment& environment = object.problem->environment();
+  const auto balls = bystanders_of(environment, problem.start, problem.goal);
+  const auto space = free_space_of(environment, balls, given.number("more"));
   problem.space = space.get();
-  problem.bounds = planning_bounds(environment, problem.start, problem.goal);
+  problem.bounds = planning_bounds(environment, balls, problem.start, problem.goal);
   if (run.judging) {  // what is asked of the problem after it can be judged without a way
     push_value(state, Value(Value::List{list_of(problem.start), list_of(problem.goal)}));
     return 1;
@@ -145,13 +152,14 @@ int grow_corridor_of_problem(lua_State* state) {
   lua_getfield(state, 2, "way");
   const Way way =
       way_of(value_from_lua(state, -1, origin, "grow_corridor.way"), origin, "grow_corridor.way");
-  const Environment environment =
-      with_bystanders(object.problem->environment(), way.front(), way.back());
+  const Environment& environment = object.problem->environment();
+  const auto balls = bystanders_of(environment, way.front(), way.back());
   std::vector<CorridorBox> boxes;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    const auto space = free_space_of(environment, 0);
-    boxes = grow_corridor(*space, planning_bounds(environment, way.front(), way.back()), way);
+    const auto space = free_space_of(environment, balls, 0);
+    boxes =
+        grow_corridor(*space, planning_bounds(environment, balls, way.front(), way.back()), way);
   }
   Value list = Value::list();
   for (const CorridorBox& box : boxes) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Second derivatives of the difference of two orientations, by dual numbers.
+#include "framework/core/dual.h"
 #include "framework/core/error.h"
 #include "framework/problem/block.h"
-#include "framework/problem/dual.h"
 
 namespace lapwing {
 namespace {

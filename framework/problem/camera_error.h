@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "framework/problem/dual.h"
+#include "framework/core/dual.h"
 
 namespace lapwing {
 

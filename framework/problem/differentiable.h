@@ -27,10 +27,10 @@
 #include <array>
 #include <vector>
 
+#include "framework/core/dual.h"
 #include "framework/problem/blocks_read.h"
 #include "framework/problem/constraint.h"
 #include "framework/problem/cost_term.h"
-#include "framework/problem/dual.h"
 #include "framework/problem/vehicle_model.h"
 
 namespace lapwing {

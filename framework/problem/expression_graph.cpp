@@ -82,11 +82,11 @@ int ExpressionGraph::add_subject(const Subject& subject) {
   return static_cast<int>(sources_.subjects.size()) - 1;
 }
 
-int ExpressionGraph::add_field(std::shared_ptr<const DistanceField> field, FieldSource source) {
+int ExpressionGraph::add_field(std::shared_ptr<const DistanceField> field, int obstacle) {
   for (std::size_t k = 0; k < sources_.fields.size(); ++k)
     if (sources_.fields[k] == field) return static_cast<int>(k);
   sources_.fields.push_back(std::move(field));
-  field_sources_.push_back(std::move(source));
+  obstacles_of_fields_.push_back(obstacle);
   return static_cast<int>(sources_.fields.size()) - 1;
 }
 

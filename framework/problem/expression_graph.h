@@ -21,12 +21,6 @@ struct ExpressionNode {
   int operands[3] = {-1, -1, -1};
 };
 
-// Whose distance a field is: "mesh", "map" or "no_fly_zone", and its place in the environment.
-struct FieldSource {
-  std::string kind;
-  int index = 0;
-};
-
 class ExpressionGraph {
  public:
   int constant(double value);
@@ -42,9 +36,10 @@ class ExpressionGraph {
 
   // Indices for TapeOp::track and TapeOp::distance.
   int add_subject(const Subject& subject);
-  int add_field(std::shared_ptr<const DistanceField> field, FieldSource source);
+  // `obstacle`: whose distance the field is, its place in the environment.
+  int add_field(std::shared_ptr<const DistanceField> field, int obstacle);
   const TapeSources& sources() const { return sources_; }
-  const FieldSource& source_of_field(int index) const { return field_sources_[index]; }
+  int obstacle_of_field(int index) const { return obstacles_of_fields_[index]; }
 
   // Whether every output is a straight function of the inputs, with slopes that no parameter
   // changes. `known` says which inputs no solver moves, such as the time of a fixed horizon.
@@ -58,7 +53,7 @@ class ExpressionGraph {
   std::vector<ExpressionNode> nodes_;
   std::map<Key, int> known_;
   TapeSources sources_;
-  std::vector<FieldSource> field_sources_;
+  std::vector<int> obstacles_of_fields_;
 };
 
 }  // namespace lapwing

@@ -11,7 +11,7 @@
 
 #include <Eigen/Core>
 
-#include "framework/problem/dual.h"
+#include "framework/core/dual.h"
 #include "framework/vehicle/vehicle.h"
 
 namespace lapwing {

@@ -29,7 +29,7 @@ constexpr double kWarmFloor = 1e-3;      // least slack and multiplier of a warm
 constexpr double kWarmCentre = 1e-2;     // least product of the two
 
 // One side of all bounds: slack t and multiplier z where the bound is finite.
-struct Side {
+struct BoundSide {
   std::vector<int> index;  // into w = (x, s)
   VectorXd bound, t, z, dt, dz, residual, complement;
 
@@ -56,7 +56,7 @@ struct InteriorPoint::Impl {
   QuadraticProgram p;  // scaled
   std::vector<RowKind> rows;
   std::vector<char> fixed;  // per variable
-  Side lower, upper;
+  BoundSide lower, upper;
   VectorXd w, y;                      // point
   VectorXd dw, dy;                    // direction
   VectorXd dual, slack_dual, primal;  // residuals: of x, of s, of rows
@@ -133,7 +133,7 @@ void InteriorPoint::Impl::start_cold() {
   upper.z.setOnes();
   for (int i = 0; i < n(); ++i)
     if (fixed[i]) w(i) = p.x_lower(i);
-  for (const Side* side : {&lower, &upper})
+  for (const BoundSide* side : {&lower, &upper})
     for (std::size_t k = 0; k < side->index.size(); ++k)
       if (const double b = side->bound(k);
           side == &lower ? w(side->index[k]) < b : w(side->index[k]) > b)
@@ -152,7 +152,7 @@ void InteriorPoint::Impl::place_slacks(double floor) {
     lower.t(k) = std::max(w(lower.index[k]) - lower.bound(k), floor);
   for (Eigen::Index k = 0; k < upper.t.size(); ++k)
     upper.t(k) = std::max(upper.bound(k) - w(upper.index[k]), floor);
-  for (Side* side : {&lower, &upper}) side->z = side->z.cwiseMax(floor);
+  for (BoundSide* side : {&lower, &upper}) side->z = side->z.cwiseMax(floor);
 }
 
 void InteriorPoint::Impl::start_warm(const QuadraticProgram& problem,
@@ -166,7 +166,7 @@ void InteriorPoint::Impl::start_warm(const QuadraticProgram& problem,
   const VectorXd bounds = warm.bound_multipliers.size() == problem.variables()
                               ? scaling.scaled_bound_multipliers(warm.bound_multipliers)
                               : VectorXd(VectorXd::Zero(n()));
-  for (Side* side : {&lower, &upper})
+  for (BoundSide* side : {&lower, &upper})
     for (Eigen::Index k = 0; k < side->z.size(); ++k) {
       const int i = side->index[k];
       const double multiplier = i < n() ? bounds(i) : y(i - n());
@@ -175,7 +175,7 @@ void InteriorPoint::Impl::start_warm(const QuadraticProgram& problem,
   place_slacks(kWarmFloor);
   // Centred: of slack and multiplier the smaller gives way until their product is kWarmCentre, or a
   // bound that changes sides would hold up every step.
-  for (Side* side : {&lower, &upper})
+  for (BoundSide* side : {&lower, &upper})
     for (Eigen::Index k = 0; k < side->z.size(); ++k) {
       double &t = side->t(k), &z = side->z(k);
       if (t * z >= kWarmCentre) continue;
@@ -218,7 +218,7 @@ double InteriorPoint::Impl::complementarity() const {
 
 bool InteriorPoint::Impl::factorise() {
   diagonal.setZero(n() + m());
-  for (const Side* side : {&lower, &upper})
+  for (const BoundSide* side : {&lower, &upper})
     for (Eigen::Index k = 0; k < side->t.size(); ++k)
       diagonal(side->index[k]) += side->z(k) / side->t(k);
   return kkt.factorise(diagonal);
@@ -231,7 +231,7 @@ void InteriorPoint::Impl::direction(double target, bool corrected) {
   right.head(n()) = dual;
   VectorXd slack = slack_dual;
   const auto add = [&](int i, double v) { (i < n() ? right(i) : slack(i - n())) += v; };
-  for (Side* side : {&lower, &upper}) {
+  for (BoundSide* side : {&lower, &upper}) {
     side->complement = -side->t.cwiseProduct(side->z).array() + target;
     if (corrected) side->complement -= side->dt.cwiseProduct(side->dz);
   }
@@ -263,7 +263,7 @@ void InteriorPoint::Impl::direction(double target, bool corrected) {
 
 double InteriorPoint::Impl::step_length() const {
   double step = 1.0;
-  for (const Side* side : {&lower, &upper})
+  for (const BoundSide* side : {&lower, &upper})
     step =
         std::min({step, step_to_boundary(side->t, side->dt), step_to_boundary(side->z, side->dz)});
   return step;
@@ -272,7 +272,7 @@ double InteriorPoint::Impl::step_length() const {
 void InteriorPoint::Impl::move(double step) {
   w += step * dw;
   y += step * dy;
-  for (Side* side : {&lower, &upper}) {
+  for (BoundSide* side : {&lower, &upper}) {
     side->t += step * side->dt;
     side->z += step * side->dz;
   }
@@ -285,7 +285,7 @@ QuadraticResult InteriorPoint::Impl::unscaled(const QuadraticProgram& problem,
   for (int i = 0; i < n(); ++i)
     if (fixed[i]) result.x(i) = problem.x_lower(i);
   VectorXd z = VectorXd::Zero(n());
-  for (const Side* side : {&lower, &upper})
+  for (const BoundSide* side : {&lower, &upper})
     for (Eigen::Index k = 0; k < side->z.size(); ++k)
       if (side->index[k] < n()) z(side->index[k]) += side == &lower ? side->z(k) : -side->z(k);
   result.row_multipliers = scaling.unscaled_row_multipliers(y);
@@ -342,7 +342,7 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     direction(0.0, false);
     const double affine = step_length();
     double after = 0;
-    for (const Side* side : {&lower, &upper})
+    for (const BoundSide* side : {&lower, &upper})
       after += (side->t + affine * side->dt).dot(side->z + affine * side->dz);
     const auto count = static_cast<double>(lower.t.size() + upper.t.size());
     if (count > 0) {

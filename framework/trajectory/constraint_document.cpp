@@ -65,8 +65,7 @@ Value to_value(const ConstraintStep& step) {
     value.set("subject", step.name);
     value.set("component", step.component);
   } else if (step.op == ConstraintOp::distance) {
-    value.set("obstacle", step.name);
-    value.set("index", step.component);
+    value.set("obstacle", step.component);
   }
   return value;
 }
@@ -79,7 +78,7 @@ int whole(double number, Fields& fields, std::string_view field) {
   return result;
 }
 
-ConstraintStep step_from(Fields& fields) {
+ConstraintStep step_from(Fields& fields, int format) {
   ConstraintStep step;
   step.op = static_cast<ConstraintOp>(fields.choice("op", operation_names()));
   const OperationForm& form = form_of(step.op);
@@ -98,8 +97,8 @@ ConstraintStep step_from(Fields& fields) {
     step.name = fields.text("subject");
     step.component = fields.integer("component", 0, 2);
   } else if (step.op == ConstraintOp::distance) {
-    step.name = fields.text("obstacle");
-    step.component = fields.integer("index", 0, kMost);
+    if (format == 1) step.name = fields.text("obstacle");
+    step.component = fields.integer(format == 1 ? "index" : "obstacle", 0, kMost);
   }
   return step;
 }
@@ -130,7 +129,7 @@ Value to_value(const StatedConstraint& constraint) {
   return value;
 }
 
-StatedConstraint constraint_from(Fields& fields) {
+StatedConstraint constraint_from(Fields& fields, int format) {
   StatedConstraint constraint;
   constraint.name = fields.text("name");
   constraint.required = fields.boolean("required");
@@ -139,7 +138,7 @@ StatedConstraint constraint_from(Fields& fields) {
     if (constraint.unjudged.empty()) fields.add_error("unjudged", "expected a reason");
     return constraint;
   }
-  constraint.operations = operations_from(fields.tables("operations"));
+  constraint.operations = operations_from(fields.tables("operations"), format);
   for (Fields& entry : fields.tables("results")) {
     ConstraintResult result;
     result.operation = entry.integer("of", 0, StatedConstraint::kMostOperations);
@@ -170,10 +169,10 @@ Value operations_to_value(const std::vector<ConstraintStep>& operations) {
   return list;
 }
 
-std::vector<ConstraintStep> operations_from(std::vector<Fields> entries) {
+std::vector<ConstraintStep> operations_from(std::vector<Fields> entries, int format) {
   std::vector<ConstraintStep> operations;
   for (Fields& entry : entries) {
-    operations.push_back(step_from(entry));
+    operations.push_back(step_from(entry, format));
     entry.finish();
   }
   return operations;
@@ -185,10 +184,10 @@ Value constraints_to_value(const std::vector<StatedConstraint>& constraints) {
   return list;
 }
 
-std::vector<StatedConstraint> constraints_from(std::vector<Fields> entries) {
+std::vector<StatedConstraint> constraints_from(std::vector<Fields> entries, int format) {
   std::vector<StatedConstraint> constraints;
   for (Fields& entry : entries) {
-    constraints.push_back(constraint_from(entry));
+    constraints.push_back(constraint_from(entry, format));
     entry.finish();
   }
   return constraints;

@@ -11,50 +11,47 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "framework/geometry/distance_field.h"
+#include "framework/core/value.h"
+#include "framework/geometry/triangle_mesh.h"
+#include "framework/shape/shape.h"
 
 namespace lapwing {
 
-struct Sphere {
+// Where a flight may be: outside of a shape, or inside of it.
+enum class Side { keep_out, keep_inside };
+
+// A shape that the flight keeps out of, or inside of.
+struct Obstacle {
   std::string name;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double radius = 0;
+  std::string type;                 // the plugin that it is of: "sphere"
+  Value parameters = Value::map();  // as Shape::record gives them
+  Side side = Side::keep_out;
+  bool opaque = true;  // whether it hides subjects; what flights stay inside of never does
+
+  // How it moves: what is added to its place, straight and even in between, at rest before and
+  // after. No times: it stands still.
+  std::vector<double> times = {};           // s, strictly increasing
+  std::vector<Eigen::Vector3d> moves = {};  // m, one per time
+
+  // Its surface, of a type that the verifier has no distance of: the true surface lies within
+  // `tolerance` metres of these triangles. Null otherwise.
+  std::shared_ptr<const TriangleMesh> triangles = nullptr;
+  double tolerance = 0;  // m
+
+  // What plans are made with. A document has none, and it is null.
+  std::shared_ptr<const Shape> shape = nullptr;
+
+  bool still() const { return times.empty(); }
+  Eigen::Vector3d moved(double time) const;
+  // The largest speed of its moves, m/s.
+  double speed() const;
+  // Of messages: "sphere 'tree'", "zone 'field'", "flight zone 'park'"; or, without a name, with
+  // its number in the list.
+  std::string label(std::size_t number) const;
 };
 
-// Axis-aligned.
-struct Box {
-  std::string name;
-  Eigen::Vector3d lower = Eigen::Vector3d::Zero();
-  Eigen::Vector3d upper = Eigen::Vector3d::Zero();
-};
-
-// All points above a polygon on the ground between two heights: closed to flight, or the only ones
-// open to it.
-struct Zone {
-  std::string name;
-  std::vector<Eigen::Vector2d> corners;  // at least 3, in either turn; edges do not cross
-  double floor = -std::numeric_limits<double>::infinity();
-  double ceiling = std::numeric_limits<double>::infinity();
-};
-
-// A mesh in a file beside the plan (PLY and the like, in metres with z up). It has no inside: the
-// flight keeps away from its triangles.
-struct MeshObstacle {
-  std::string name;
-  std::string file;    // relative to the plan's folder, and below it
-  std::string sha256;  // of the file, 64 hexadecimal digits
-  // To what the file holds. Planners read it; a document has none, and it is null.
-  std::shared_ptr<const DistanceField> distance = nullptr;
-  Eigen::AlignedBox3d bounds = {};  // m, of the triangles; empty where nobody has read them
-};
-
-// A map in a file beside the plan (.ot): what is occupied or unknown is closed to flight.
-struct MapObstacle {
-  std::string name;
-  std::string file;                                         // as of a mesh
-  std::string sha256;                                       // likewise
-  std::shared_ptr<const DistanceField> distance = nullptr;  // likewise
-};
+// The numbers of `parameters` under `key`; empty where there are none.
+std::vector<double> recorded_numbers(const Value& parameters, std::string_view key);
 
 // What is filmed, or only kept away from: an upright cylinder around a middle that may move.
 // Straight and even motion between the times of its track, at rest before and after.
@@ -71,32 +68,26 @@ struct Subject {
 };
 
 struct Environment {
-  std::vector<Sphere> spheres;
-  std::vector<Box> boxes;
-  std::vector<Zone> zones;         // closed to flight
-  std::vector<Zone> flight_zones;  // the flight stays inside every one of them
-  std::vector<MeshObstacle> meshes;
-  std::vector<MapObstacle> maps;
+  std::vector<Obstacle> obstacles;
   std::vector<Subject> subjects;  // filmed, or bystanders
   double margin = 0;              // m kept from every surface, vehicle radius included
 };
 
-// Whether corners bound one area: at least three, no edge of no length, none that turns back on the
-// one before it or meets one that is not its neighbour.
-bool is_simple_polygon(const std::vector<Eigen::Vector2d>& corners);
+// The one of that type and name; null where there is none.
+const Obstacle* find_obstacle(const Environment& environment, std::string_view type,
+                              std::string_view name);
 
-// Signed distances from a surface, negative inside; to a zone's prism with its floor and ceiling.
-double signed_distance(const Sphere& sphere, const Eigen::Vector3d& p);
-double signed_distance(const Box& box, const Eigen::Vector3d& p);
-double signed_distance(const Zone& zone, const Eigen::Vector3d& p);
-
-// The nearest of all spheres, boxes and closed zones, and of the meshes and maps whose distance is
-// given: its distance (infinite where there is none) and its name, or its kind and number where it
-// has none ("sphere 2"). Distances of meshes and maps are told apart up to their reach only.
+// The nearest of all obstacles to keep out of whose shape is there, at a time: its distance
+// (infinite where there is none, negative inside) and its name, or its type and number where it has
+// none ("sphere 2"). Distances are told apart up to the reach of a shape only.
 struct NearestObstacle {
   double distance = std::numeric_limits<double>::infinity();
   std::string name;
 };
-NearestObstacle nearest_obstacle(const Environment& environment, const Eigen::Vector3d& p);
+NearestObstacle nearest_obstacle(const Environment& environment, const Eigen::Vector3d& p,
+                                 double time = 0);
+// The same of what the flight is to stay inside of: how far inside it is, negative outside.
+NearestObstacle least_inside(const Environment& environment, const Eigen::Vector3d& p,
+                             double time = 0);
 
 }  // namespace lapwing

@@ -1,52 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environment in plan.json.
+#include <array>
+#include <cmath>
+
+#include "framework/trajectory/plan_digest.h"
 #include "framework/trajectory/plan_sections.h"
 
 namespace lapwing {
 namespace {
 
-Value to_value(const Sphere& sphere) {
-  Value value = Value::map();
-  value.set("name", sphere.name);
-  value.set("center", list_of(sphere.center));
-  value.set("radius", sphere.radius);
+const std::vector<std::string> kSides{"keep_out", "keep_inside"};
+
+Value rows_of(const std::vector<Eigen::Vector3d>& places) {
+  Value rows = Value::list();
+  for (const Eigen::Vector3d& place : places) rows.push_back(list_of(place));
+  return rows;
+}
+
+Value numbers_of(const std::vector<double>& numbers) {
+  return Value(Value::List(numbers.begin(), numbers.end()));
+}
+
+Value to_value(const TriangleMesh& mesh, double tolerance) {
+  Value value = Value::map(), triangles = Value::list();
+  for (const auto& t : mesh.triangles) triangles.push_back(Value(Value::List{t[0], t[1], t[2]}));
+  value.set("tolerance", tolerance);
+  value.set("vertices", rows_of(mesh.vertices));
+  value.set("triangles", std::move(triangles));
   return value;
 }
 
-Value to_value(const Box& box) {
+Value to_value(const Obstacle& obstacle) {
   Value value = Value::map();
-  value.set("name", box.name);
-  value.set("lower", list_of(box.lower));
-  value.set("upper", list_of(box.upper));
-  return value;
-}
-
-Value to_value(const Zone& zone) {
-  Value corners = Value::list(), value = Value::map();
-  for (const Eigen::Vector2d& corner : zone.corners) {
-    corners.push_back(Value(Value::List{corner.x(), corner.y()}));
+  value.set("name", obstacle.name);
+  value.set("type", obstacle.type);
+  value.set("parameters", obstacle.parameters);
+  if (obstacle.side == Side::keep_inside) value.set("side", kSides[1]);
+  if (!obstacle.opaque) value.set("opaque", false);
+  if (!obstacle.times.empty()) {
+    Value& track = value.set("track", Value::map());
+    track.set("times", numbers_of(obstacle.times));
+    track.set("moves", rows_of(obstacle.moves));
   }
-  value.set("name", zone.name);
-  value.set("corners", std::move(corners));
-  // Only these two infinities mean "no bound"; any other is for the writer to refuse.
-  if (zone.floor != -std::numeric_limits<double>::infinity()) value.set("floor", zone.floor);
-  if (zone.ceiling != std::numeric_limits<double>::infinity()) value.set("ceiling", zone.ceiling);
+  if (obstacle.triangles) value.set("triangles", to_value(*obstacle.triangles, obstacle.tolerance));
+  value.set(kRecordChecksum, canonical_sha256(value));
   return value;
-}
-
-template <class Source>
-Value file_to_value(const Source& source) {
-  Value value = Value::map();
-  value.set("name", source.name);
-  value.set("file", source.file);
-  value.set("sha256", source.sha256);
-  return value;
-}
-Value to_value(const MeshObstacle& mesh) {
-  return file_to_value(mesh);
-}
-Value to_value(const MapObstacle& map) {
-  return file_to_value(map);
 }
 
 Value to_value(const Subject& subject) {
@@ -69,15 +67,95 @@ Value entries_of(const std::vector<Entry>& entries) {
   return list;
 }
 
-Zone zone_from(Fields& fields) {
-  Zone zone;
-  zone.name = fields.text("name");
-  for (const auto& corner : fields.rows("corners", 2)) {
-    zone.corners.emplace_back(corner[0], corner[1]);
+std::vector<Eigen::Vector3d> places_from(Fields& fields, std::string_view name) {
+  std::vector<Eigen::Vector3d> places;
+  for (const auto& row : fields.rows(name, 3)) places.emplace_back(row[0], row[1], row[2]);
+  return places;
+}
+
+std::shared_ptr<const TriangleMesh> triangles_from(Fields fields, double& tolerance) {
+  constexpr double kMost = 1e8;
+  auto mesh = std::make_shared<TriangleMesh>();
+  tolerance = fields.number("tolerance");
+  mesh->vertices = places_from(fields, "vertices");
+  for (const auto& row : fields.rows("triangles", 3)) {
+    std::array<std::int32_t, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(row[k] >= 0 && row[k] < kMost) || row[k] != std::floor(row[k]))
+        fields.add_error("triangles", "expected places of vertices, from 0");
+      else
+        corners[k] = static_cast<std::int32_t>(row[k]);
+    }
+    mesh->triangles.push_back(corners);
   }
-  zone.floor = fields.optional_number("floor").value_or(zone.floor);
-  zone.ceiling = fields.optional_number("ceiling").value_or(zone.ceiling);
+  fields.finish();
+  return mesh;
+}
+
+Obstacle obstacle_from(Fields& fields) {
+  Obstacle obstacle;
+  obstacle.name = fields.text("name");
+  obstacle.type = fields.text("type");
+  fields.table("parameters");  // opaque here, but it must be there and be a map
+  obstacle.parameters = fields.opaque("parameters");
+  if (fields.has("side")) obstacle.side = static_cast<Side>(fields.choice("side", kSides));
+  if (fields.has("opaque")) obstacle.opaque = fields.boolean("opaque");
+  if (fields.has("track")) {
+    Fields track = fields.table("track");
+    obstacle.times = track.numbers("times");
+    obstacle.moves = places_from(track, "moves");
+    track.finish();
+  }
+  if (fields.has("triangles"))
+    obstacle.triangles = triangles_from(fields.table("triangles"), obstacle.tolerance);
+  fields.text(kRecordChecksum);  // of what was written; see plan_digest.h
+  return obstacle;
+}
+
+// Format 1 had a list for each kind of obstacle.
+Obstacle plain(std::string name, const char* type) {
+  Obstacle obstacle;
+  obstacle.name = std::move(name);
+  obstacle.type = type;
+  return obstacle;
+}
+
+Obstacle sphere_from(Fields& fields) {
+  Obstacle sphere = plain(fields.text("name"), "sphere");
+  sphere.parameters.set("center", list_of(fields.vector3("center")));
+  sphere.parameters.set("radius", fields.number("radius"));
+  return sphere;
+}
+
+Obstacle box_from(Fields& fields) {
+  Obstacle box = plain(fields.text("name"), "box");
+  box.parameters.set("lower", list_of(fields.vector3("lower")));
+  box.parameters.set("upper", list_of(fields.vector3("upper")));
+  return box;
+}
+
+Obstacle zone_from(Fields& fields) {
+  Obstacle zone = plain(fields.text("name"), "prism");
+  Value corners = Value::list();
+  for (const auto& corner : fields.rows("corners", 2))
+    for (const double number : corner) corners.push_back(number);
+  zone.parameters.set("corners", std::move(corners));
+  for (const char* end : {"floor", "ceiling"})
+    if (const auto height = fields.optional_number(end)) zone.parameters.set(end, *height);
   return zone;
+}
+
+Obstacle flight_zone_from(Fields& fields) {
+  Obstacle zone = zone_from(fields);
+  zone.side = Side::keep_inside;
+  return zone;
+}
+
+Obstacle file_from(Fields& fields, const char* type) {
+  Obstacle obstacle = plain(fields.text("name"), type);
+  obstacle.parameters.set("file", fields.text("file"));
+  obstacle.parameters.set("sha256", fields.text("sha256"));
+  return obstacle;
 }
 
 Subject subject_from(Fields& fields) {
@@ -109,34 +187,28 @@ auto read_all(std::vector<Fields> entries, Read read) {
 Value environment_to_value(const Environment& environment) {
   Value value = Value::map();
   value.set("margin", environment.margin);
-  value.set("spheres", entries_of(environment.spheres));
-  value.set("boxes", entries_of(environment.boxes));
-  if (!environment.zones.empty()) value.set("zones", entries_of(environment.zones));
-  if (!environment.flight_zones.empty())
-    value.set("flight_zones", entries_of(environment.flight_zones));
-  if (!environment.meshes.empty()) value.set("meshes", entries_of(environment.meshes));
-  if (!environment.maps.empty()) value.set("maps", entries_of(environment.maps));
+  value.set("obstacles", entries_of(environment.obstacles));
   if (!environment.subjects.empty()) value.set("subjects", entries_of(environment.subjects));
   return value;
 }
 
-Environment environment_from(Fields fields) {
+Environment environment_from(Fields fields, int format) {
   Environment environment;
   environment.margin = fields.number("margin");
-  environment.spheres = read_all(fields.tables("spheres"), [](Fields& f) {
-    return Sphere{f.text("name"), f.vector3("center"), f.number("radius")};
-  });
-  environment.boxes = read_all(fields.tables("boxes"), [](Fields& f) {
-    return Box{f.text("name"), f.vector3("lower"), f.vector3("upper")};
-  });
-  environment.zones = read_all(fields.optional_tables("zones"), zone_from);
-  environment.flight_zones = read_all(fields.optional_tables("flight_zones"), zone_from);
-  environment.meshes = read_all(fields.optional_tables("meshes"), [](Fields& f) {
-    return MeshObstacle{f.text("name"), f.text("file"), f.text("sha256")};
-  });
-  environment.maps = read_all(fields.optional_tables("maps"), [](Fields& f) {
-    return MapObstacle{f.text("name"), f.text("file"), f.text("sha256")};
-  });
+  const auto add = [&](std::vector<Fields> entries, auto read) {
+    for (Obstacle& obstacle : read_all(std::move(entries), read))
+      environment.obstacles.push_back(std::move(obstacle));
+  };
+  if (format == 1) {
+    add(fields.tables("spheres"), sphere_from);
+    add(fields.tables("boxes"), box_from);
+    add(fields.optional_tables("zones"), zone_from);
+    add(fields.optional_tables("flight_zones"), flight_zone_from);
+    add(fields.optional_tables("meshes"), [](Fields& f) { return file_from(f, "mesh"); });
+    add(fields.optional_tables("maps"), [](Fields& f) { return file_from(f, "map"); });
+  } else {
+    add(fields.tables("obstacles"), obstacle_from);
+  }
   environment.subjects = read_all(fields.optional_tables("subjects"), subject_from);
   fields.finish();
   return environment;

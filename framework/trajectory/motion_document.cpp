@@ -25,7 +25,7 @@ Value table_to_value(const MotionTable& table) {
 
 MotionTable table_from(Fields fields) {
   MotionTable table;
-  table.operations = operations_from(fields.tables("operations"));
+  table.operations = operations_from(fields.tables("operations"), Plan::kFormat);
   for (Fields& entry : fields.tables("rates")) {
     MotionRate rate;
     rate.name = entry.text("name");

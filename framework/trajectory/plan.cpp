@@ -42,11 +42,39 @@ std::optional<GeodeticPoint> frame_from(Fields fields) {
   return origin;
 }
 
-void read_format(Fields& fields) {
+// The format of the document: 1 or the present one.
+int format_of(Fields& fields) {
   const std::int64_t format = fields.integer("format");
-  if (fields.has("format") && format != Plan::kFormat) {
-    fields.add_error("format", "this version reads format " + std::to_string(Plan::kFormat));
+  if (fields.has("format") && format != 1 && format != Plan::kFormat) {
+    fields.add_error("format", "this version reads formats 1 and " + std::to_string(Plan::kFormat));
   }
+  return format == 1 ? 1 : Plan::kFormat;
+}
+
+// What format 1 said elsewhere: to which of the obstacles of one kind a distance is, and in the
+// options of a film whether subjects must not be hidden.
+void convert(Plan& plan, Fields& fields) {
+  const auto& obstacles = plan.environment.obstacles;
+  for (StatedConstraint& constraint : plan.constraints)
+    for (ConstraintStep& step : constraint.operations) {
+      if (step.op != ConstraintOp::distance) continue;
+      const std::string type = step.name == "no_fly_zone" ? "prism" : step.name;
+      int number = step.component;
+      std::size_t place = 0;
+      for (; place < obstacles.size(); ++place)
+        if (obstacles[place].type == type && obstacles[place].side == Side::keep_out &&
+            number-- == 0)
+          break;
+      if (place == obstacles.size())
+        fields.add_error("constraints", "a distance is to " + step.name + " " +
+                                            std::to_string(step.component) +
+                                            ", which the environment lacks");
+      step.name.clear();
+      step.component = static_cast<int>(place);
+    }
+  const Value* sight = plan.configuration.find("line_of_sight");
+  if (sight && sight->is_text() && sight->as_text() == "reported")
+    plan.task.line_of_sight_required = false;
 }
 
 }  // namespace
@@ -79,7 +107,7 @@ Plan plan_from_value(const Value& value) {
   Diagnostics errors;
   Fields fields(value, "", errors);
   Plan plan;
-  read_format(fields);
+  const int format = format_of(fields);
   plan.mission = fields.text("mission");
   plan.kind = fields.text("kind");
   plan.geodetic_origin = frame_from(fields.table("frame"));
@@ -92,15 +120,16 @@ Plan plan_from_value(const Value& value) {
   if (fields.has("samples") && plan.trajectory.samples.empty()) {
     fields.add_error("samples", "expected at least one sample");
   }
-  plan.environment = environment_from(fields.table("environment"));
+  plan.environment = environment_from(fields.table("environment"), format);
   plan.cuts = spans_from(fields.optional_tables("cuts"));
   plan.lights = spans_from(fields.optional_tables("lights"));
   plan.budget = fields.optional_number("budget");
   plan.task = task_from(fields.table("task"));
-  plan.constraints = constraints_from(fields.optional_tables("constraints"));
+  plan.constraints = constraints_from(fields.optional_tables("constraints"), format);
   plan.configuration = fields.opaque("configuration");
   plan.solver = fields.opaque("solver");
   plan.certificate = fields.opaque("certificate");
+  if (format == 1) convert(plan, fields);
   fields.opaque("digest");  // of what was written; see plan_digest.h
   fields.finish();
   errors.throw_if_any();

@@ -40,19 +40,21 @@ struct FramingTask {
 struct Task {
   std::vector<KeyframeTask> keyframes;
   std::vector<FramingTask> framing;
-  double framing_share = 0.95;       // of the time asked for, cuts excepted, that the middle of the
-                                     // subject is inside the image
-  std::vector<GateTask> gates;       // flown through in this order, laps written out
-  bool closed_loop_required = true;  // else what the controller makes of it is reported
-  std::vector<Points> strokes;       // to draw with light, world
-  double drawing_tolerance = 0.05;   // m, of the mean distance between light and strokes
+  double framing_share = 0.95;  // of the time asked for, cuts excepted, that the middle of the
+                                // subject is inside the image
+  bool line_of_sight_required = true;  // else the share of it in which obstacles hide no subject
+                                       // is reported
+  std::vector<GateTask> gates;         // flown through in this order, laps written out
+  bool closed_loop_required = true;    // else what the controller makes of it is reported
+  std::vector<Points> strokes;         // to draw with light, world
+  double drawing_tolerance = 0.05;     // m, of the mean distance between light and strokes
   Eigen::Vector3d drawing_view =
       Eigen::Vector3d::UnitY();  // the way that its spectators look, world
   std::optional<ScanTask> scan;  // to photograph a region
 };
 
 struct Plan {
-  static constexpr int kFormat = 1;
+  static constexpr int kFormat = 2;              // format 1 is read and converted
   std::string mission;                           // name as the script gave it
   std::string kind;                              // film, race, ...
   std::optional<GeodeticPoint> geodetic_origin;  // of the world frame

@@ -57,6 +57,23 @@ std::map<std::string, std::string> sections_of(const Value& document) {
   return sections;
 }
 
+// The records of obstacles that are not what their checksums are of.
+void add_changed_records(const Value& document, std::vector<std::string>& changed) {
+  const Value* environment = document.find("environment");
+  const Value* obstacles = environment ? environment->find("obstacles") : nullptr;
+  if (!obstacles || !obstacles->is_list()) return;
+  for (std::size_t i = 0; i < obstacles->as_list().size(); ++i) {
+    const Value& record = obstacles->as_list()[i];
+    const Value* stated = record.find(kRecordChecksum);
+    if (!stated) continue;
+    Value rest = Value::map();
+    for (const auto& [key, value] : record.as_map())
+      if (key != kRecordChecksum) rest.set(key, value);
+    if (*stated != Value(canonical_sha256(rest)))
+      changed.push_back("environment.obstacles[" + std::to_string(i) + "]");
+  }
+}
+
 Value canonical_document(const Value& document) {
   Value rest = Value::map();
   for (const auto& [key, value] : document.as_map())
@@ -101,6 +118,7 @@ DigestFindings check_digest(const Value& document) {
     }
     for (const auto& [name, hash] : now) found.changed.push_back(name + " (added)");
   }
+  add_changed_records(document, found.changed);
   if (found.changed.empty()) found.changed.push_back(kDigest);
   return found;
 }

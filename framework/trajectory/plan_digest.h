@@ -17,13 +17,18 @@ namespace lapwing {
 // a number is not finite.
 Value digest_of(const Value& document);
 
+// The key of an obstacle's record that holds the SHA-256 of the canonical form of all its others,
+// so that a record that was changed can be named.
+inline constexpr const char* kRecordChecksum = "sha256";
+
 // SHA-256 of one value's canonical form, 64 hexadecimal digits.
 std::string canonical_sha256(const Value& value);
 
 struct DigestFindings {
-  bool stated = false;               // the document has a digest
-  std::string sha256;                // of what the document holds now
-  std::vector<std::string> changed;  // sections, "task.keyframes"; empty where it holds
+  bool stated = false;  // the document has a digest
+  std::string sha256;   // of what the document holds now
+  // Sections, "task.keyframes", and records, "environment.obstacles[0]"; empty where it holds.
+  std::vector<std::string> changed;
 };
 DigestFindings check_digest(const Value& document);
 

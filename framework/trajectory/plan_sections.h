@@ -14,16 +14,16 @@ inline Value list_of(const Eigen::Vector3d& v) {
   return list_of({v.x(), v.y(), v.z()});
 }
 
-// Infinite bounds of a zone have no key; nor have lists of zones and subjects that are empty.
+// A list of subjects that is empty has no key. `format`: of the document, 1 or Plan::kFormat.
 Value environment_to_value(const Environment& environment);
-Environment environment_from(Fields fields);
+Environment environment_from(Fields fields, int format);
 
 Value spans_to_value(const std::vector<TimeSpan>& cuts);
 std::vector<TimeSpan> spans_from(std::vector<Fields> entries);
 
-// Operations on earlier ones, in their order.
+// Operations on earlier ones, in their order. `format`: of the document.
 Value operations_to_value(const std::vector<ConstraintStep>& operations);
-std::vector<ConstraintStep> operations_from(std::vector<Fields> entries);
+std::vector<ConstraintStep> operations_from(std::vector<Fields> entries, int format);
 
 // The motion: one that has a name alone, or its columns, what follows it, and its table.
 Value motion_to_value(const Trajectory& trajectory);
@@ -34,7 +34,8 @@ Sample sample_from(const Trajectory& trajectory, Fields fields);
 
 // Those of the script, in its order.
 Value constraints_to_value(const std::vector<StatedConstraint>& constraints);
-std::vector<StatedConstraint> constraints_from(std::vector<Fields> entries);
+// In format 1 a distance is to an obstacle of a kind, whose name the step keeps.
+std::vector<StatedConstraint> constraints_from(std::vector<Fields> entries, int format);
 
 // A task that asks for no framing has neither of its keys.
 Value task_to_value(const Task& task);

@@ -50,8 +50,8 @@ struct ConstraintStep {
   double number = 0;  // a constant, the exponent of a power, the width of a rounded kink,
                       // the reach of a distance: what is farther is as far as that, m
   // Of an input: the block, its component, and how many samples later than the constraint's own
-  // one. Of a subject: its name and a component of its position. Of a distance: "mesh", "map" or
-  // "no_fly_zone", and the place in the environment's list.
+  // one. Of a subject: its name and a component of its position. Of a distance: no name, and the
+  // place in the environment's list of obstacles.
   std::string name = {};
   int component = 0, later = 0;
 };

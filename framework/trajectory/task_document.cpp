@@ -128,6 +128,7 @@ Value task_to_value(const Task& task) {
   }
   value.set("framing", std::move(framing));
   value.set("framing_share", task.framing_share);
+  if (!task.line_of_sight_required) value.set("line_of_sight_required", false);
   return value;
 }
 
@@ -162,6 +163,8 @@ Task task_from(Fields fields) {
       entry.finish();
     }
     task.framing_share = fields.number("framing_share");
+    if (fields.has("line_of_sight_required"))
+      task.line_of_sight_required = fields.boolean("line_of_sight_required");
   }
   fields.finish();
   return task;

@@ -9,12 +9,11 @@
 #include <optional>
 #include <string>
 
-#include "framework/geometry/mesh_scene.h"
 #include "framework/trajectory/plan.h"
 #include "framework/vehicle/closed_loop.h"
 #include "framework/vehicle/vehicle.h"
-#include "framework/verify/blocked_voxels.h"
 #include "framework/verify/certificate.h"
+#include "framework/verify/judged_shape.h"
 #include "framework/verify/motion.h"
 #include "framework/verify/tolerances.h"
 #include "framework/verify/verify.h"
@@ -120,22 +119,23 @@ class Worst {
   bool at_least_, seen_ = false;
 };
 
+// The obstacles of an environment, in its order.
+using JudgedShapes = std::vector<std::unique_ptr<JudgedShape>>;
+
 // Everything that a check may read.
 struct Flight {
   const Plan& plan;
   const Vehicle& vehicle;
   Motion& motion;
-  std::span<const MeshScene> meshes;    // of the environment, in its order
-  std::span<const BlockedVoxels> maps;  // likewise
-  Watch& watch;                         // `motion` tells it how far a walk along it has come
+  const JudgedShapes& shapes;
+  Watch& watch;  // `motion` tells it how far a walk along it has come
 };
 
 // The families. Each appends its checks; `document` also yields the vehicle that it read.
 struct Document {
   Check check;
   Vehicle vehicle;
-  std::vector<MeshScene> meshes;    // of the environment, in its order
-  std::vector<BlockedVoxels> maps;  // likewise, where the flight comes
+  JudgedShapes shapes;
 };
 Document check_document(const Plan& plan, const VerifyRequest& request, Watch& watch);
 void check_dynamics(const Flight& flight, Certificate& certificate);

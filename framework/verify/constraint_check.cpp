@@ -55,8 +55,7 @@ class ConstraintJudge {
   ConstraintJudge(const Flight& flight, const StatedConstraint& constraint)
       : flight_(flight),
         constraint_(constraint),
-        evaluation_(constraint, flight.plan.trajectory,
-                    {flight.plan.environment, flight.meshes, flight.maps}),
+        evaluation_(constraint, flight.plan.trajectory, {flight.plan.environment, flight.shapes}),
         samples_(flight.plan.trajectory.samples.size()),
         rows_(constraint.results.size()),
         found_(rows_, 0.0) {

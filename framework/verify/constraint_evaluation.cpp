@@ -117,13 +117,9 @@ std::string fault_of(const ConstraintStep& step, std::size_t at, const Plan& pla
   }
   if (step.op == ConstraintOp::distance) {
     if (!(step.number > 0)) return "has a reach that is not above 0";
-    const Environment& environment = plan.environment;
-    const std::size_t count = step.name == "mesh"          ? environment.meshes.size()
-                              : step.name == "map"         ? environment.maps.size()
-                              : step.name == "no_fly_zone" ? environment.zones.size()
-                                                           : 0;
-    if (step.component < 0 || static_cast<std::size_t>(step.component) >= count)
-      return "measures to " + step.name + " " + std::to_string(step.component) +
+    if (step.component < 0 ||
+        static_cast<std::size_t>(step.component) >= plan.environment.obstacles.size())
+      return "measures to obstacle " + std::to_string(step.component) +
              ", which the environment lacks";
   }
   return "";
@@ -211,7 +207,7 @@ double ConstraintEvaluation::value_of(std::size_t operation,
     case ConstraintOp::subject:
       return subjects_[operation]->position(operand(0))(step.component);
     case ConstraintOp::distance:
-      return distance_of(step, {operand(0), operand(1), operand(2)});
+      return distance_of(step, {operand(0), operand(1), operand(2)}, points[0].motion.time);
     default:
       return operation_value(step, values_);
   }
@@ -224,16 +220,13 @@ double ConstraintEvaluation::input_value(std::size_t operation,
   return point.motion.columns[static_cast<std::size_t>(columns_[operation])];
 }
 
-double ConstraintEvaluation::distance_of(const ConstraintStep& step,
-                                         const Eigen::Vector3d& p_W) const {
+double ConstraintEvaluation::distance_of(const ConstraintStep& step, const Eigen::Vector3d& p_W,
+                                         double time) const {
   if (!p_W.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   const auto index = static_cast<std::size_t>(step.component);
   const double reach = step.number;
-  if (step.name == "no_fly_zone")
-    return std::min(reach, signed_distance(surroundings_.environment.zones[index], p_W));
-  if (step.name == "map") return surroundings_.maps[index].distance(p_W, reach);
-  const auto nearest = surroundings_.meshes[index].nearest(p_W, reach);
-  return nearest ? nearest->distance : reach;
+  const Obstacle& obstacle = surroundings_.environment.obstacles[index];
+  return std::min(reach, surroundings_.shapes[index]->distance(p_W - obstacle.moved(time), reach));
 }
 
 }  // namespace lapwing

@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/geometry/mesh_scene.h"
 #include "framework/trajectory/plan.h"
-#include "framework/verify/blocked_voxels.h"
+#include "framework/verify/judged_shape.h"
 #include "framework/verify/motion.h"
 
 namespace lapwing {
@@ -26,8 +25,7 @@ struct ConstraintPoint {
 // What a distance is measured to.
 struct ConstraintSurroundings {
   const Environment& environment;
-  std::span<const MeshScene> meshes;
-  std::span<const BlockedVoxels> maps;
+  const std::vector<std::unique_ptr<JudgedShape>>& shapes;  // of its obstacles
 };
 
 // Why the constraint cannot be evaluated for this plan: operations that do not exist or read what
@@ -50,7 +48,7 @@ class ConstraintEvaluation {
  private:
   double value_of(std::size_t operation, std::span<const ConstraintPoint> points) const;
   double input_value(std::size_t operation, const ConstraintPoint& point) const;
-  double distance_of(const ConstraintStep& step, const Eigen::Vector3d& p_W) const;
+  double distance_of(const ConstraintStep& step, const Eigen::Vector3d& p_W, double time) const;
 
   const StatedConstraint& constraint_;
   ConstraintSurroundings surroundings_;

@@ -199,9 +199,10 @@ void look(const PlannedView& view, const ScanTask& scan, const SeeThrough& space
 }
 
 const BlockedVoxels& map_of_scan(const Flight& flight) {
-  const auto& maps = flight.plan.environment.maps;
-  for (std::size_t i = 0; i < maps.size(); ++i)
-    if (maps[i].name == flight.plan.task.scan->map) return flight.maps[i];
+  const auto& obstacles = flight.plan.environment.obstacles;
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    if (obstacles[i].type == "map" && obstacles[i].name == flight.plan.task.scan->map)
+      return *flight.shapes[i]->voxels();
   throw Error("a scan without its map was let through");
 }
 
@@ -252,9 +253,7 @@ void list_scan_problems(const Plan& plan, std::vector<std::string>& problems) {
   if (static_cast<double>(camera.width) * camera.height * static_cast<double>(scan.views.size()) >
       tolerances::kMostRays)
     add("has more than 10^9 pixels in all");
-  const auto& maps = plan.environment.maps;
-  if (std::none_of(maps.begin(), maps.end(),
-                   [&](const MapObstacle& map) { return map.name == scan.map; }))
+  if (!find_obstacle(plan.environment, "map", scan.map))
     add("sees in a map '" + scan.map + "' that the environment does not name");
   const double finish = plan.trajectory.samples.empty() ? 0 : plan.trajectory.samples.back().time;
   for (std::size_t i = 0; i < scan.views.size(); ++i) {

@@ -2,9 +2,6 @@
 // Whether the plan holds together at all: everything that the other checks take for granted.
 #include <cstdio>
 
-#include "framework/core/checksum.h"
-#include "framework/core/files.h"
-#include "framework/geometry/mesh_file.h"
 #include "framework/verify/checks.h"
 #include "framework/verify/motions/motion_integrator.h"
 
@@ -30,8 +27,7 @@ class Reader {
       list_problems(plan_, plan_.trajectory.samples.back().time, problems_);
     }
     if (problems_.empty()) steps(document.vehicle);
-    if (problems_.empty()) read_meshes(document.meshes);
-    if (problems_.empty()) read_maps(document.vehicle, document.maps);
+    if (problems_.empty()) read_obstacles(document.vehicle, document.shapes);
     const auto count = static_cast<double>(problems_.size());
     document.check = judged(make_check("document"), count, 0, 0, at_);
     document.check.detail = listed();
@@ -64,33 +60,12 @@ class Reader {
     }
   }
 
-  std::filesystem::path place_of(const std::string& file) const {
-    const auto found = request_.elsewhere.find(file);
-    return found == request_.elsewhere.end() ? request_.folder / file : found->second;
-  }
-
-  // Of the files of the environment, one more has been read.
-  void count_file() {
-    const auto& e = plan_.environment;
-    watch_.done(static_cast<double>(++files_) /
-                static_cast<double>(e.meshes.size() + e.maps.size()));
-  }
-
-  // The plan says what its files held when it was made.
-  void read_meshes(std::vector<MeshScene>& meshes) {
-    for (const MeshObstacle& mesh : plan_.environment.meshes) {
-      const std::filesystem::path file = place_of(mesh.file);
-      try {
-        if (sha256(read_file(file, std::size_t{1} << 30)) != mesh.sha256) {
-          add("mesh '" + mesh.name + "': '" + mesh.file + "' has changed since the plan was made");
-          continue;
-        }
-        meshes.emplace_back(read_mesh(file).mesh, mesh.name);
-      } catch (const std::exception& error) {
-        add("mesh '" + mesh.name + "': " + error.what());
-      }
-      count_file();
-    }
+  // Where the file of an obstacle is, if it has one.
+  std::filesystem::path place_of(const Obstacle& obstacle) const {
+    const Value* file = obstacle.parameters.find("file");
+    if (!file || !file->is_text()) return {};
+    const auto found = request_.elsewhere.find(file->as_text());
+    return found == request_.elsewhere.end() ? request_.folder / file->as_text() : found->second;
   }
 
   // What a motion with an orientation needs of it.
@@ -107,7 +82,7 @@ class Reader {
 
   // Where the flight comes, as far as clearance is told apart, and what it films; of the map in
   // which a scan's views see also the region, and the places of the views.
-  Eigen::AlignedBox3d surroundings(const Vehicle& vehicle, const std::string& map) const {
+  Eigen::AlignedBox3d surroundings(const Vehicle& vehicle, const Obstacle& map) const {
     Motion motion(plan_.trajectory, vehicle);
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i <= motion.intervals(); ++i) box.extend(motion.stated(i).position);
@@ -119,9 +94,14 @@ class Reader {
           for (const Eigen::Vector3d& place : subject.positions) box.extend(place);
     const Eigen::Vector3d room = Eigen::Vector3d::Constant(
         std::max(plan_.environment.margin + tolerances::kMapReach, map_reach()));
-    box = Eigen::AlignedBox3d(box.min() - room, box.max() + room);
+    Eigen::AlignedBox3d around(box.min() - room, box.max() + room);
+    for (const Eigen::Vector3d& move : map.moves) {  // the map's own places, wherever it is
+      around.extend(box.min() - room - move);
+      around.extend(box.max() + room - move);
+    }
+    box = around;
     const auto& scan = plan_.task.scan;
-    if (!scan || scan->map != map) return box;
+    if (!scan || scan->map != map.name) return box;
     for (const PlannedView& view : scan->views) box.extend(view.position);
     return box.merged(scan->region);
   }
@@ -129,27 +109,28 @@ class Reader {
   // How far constraints of the script tell distances to maps apart, m.
   double map_reach() const {
     double reach = 0;
+    const auto& obstacles = plan_.environment.obstacles;
     for (const StatedConstraint& constraint : plan_.constraints)
       for (const ConstraintStep& step : constraint.operations)
-        if (step.op == ConstraintOp::distance && step.name == "map")
+        if (step.op == ConstraintOp::distance &&
+            obstacles[static_cast<std::size_t>(step.component)].type == "map")
           reach = std::max(reach, step.number);
     return reach;
   }
 
-  void read_maps(const Vehicle& vehicle, std::vector<BlockedVoxels>& maps) {
-    for (const MapObstacle& map : plan_.environment.maps) {
-      const std::filesystem::path file = place_of(map.file);
+  // The files are to hold what they held when the plan was made.
+  void read_obstacles(const Vehicle& vehicle, JudgedShapes& shapes) {
+    const auto& obstacles = plan_.environment.obstacles;
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
       try {
-        const std::string bytes = read_file(file, std::size_t{1} << 30);
-        if (sha256(bytes) != map.sha256) {
-          add("map '" + map.name + "': '" + map.file + "' has changed since the plan was made");
-          continue;
-        }
-        maps.emplace_back(parse_map(bytes, map.file), surroundings(vehicle, map.name));
+        shapes.push_back(judged_shape(obstacles[i], place_of(obstacles[i]),
+                                      obstacles[i].type == "map"
+                                          ? surroundings(vehicle, obstacles[i])
+                                          : Eigen::AlignedBox3d()));
       } catch (const std::exception& error) {
-        add("map '" + map.name + "': " + error.what());
+        add(obstacles[i].label(i + 1) + ": " + error.what());
       }
-      count_file();
+      watch_.done(static_cast<double>(i + 1) / static_cast<double>(obstacles.size()));
     }
   }
 
@@ -236,7 +217,6 @@ class Reader {
   const Plan& plan_;
   const VerifyRequest& request_;
   Watch& watch_;
-  std::size_t files_ = 0;  // that were read
   std::vector<std::string> problems_;
   double at_ = 0;
 };

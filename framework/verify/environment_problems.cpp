@@ -7,26 +7,6 @@
 namespace lapwing {
 namespace {
 
-std::string problem_of(const Zone& zone) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (zone.corners.size() < 3) return " must have at least three corners";
-  if (zone.corners.size() > tolerances::kMostCorners) {
-    return " must have at most " + std::to_string(tolerances::kMostCorners) + " corners";
-  }
-  for (const Eigen::Vector2d& corner : zone.corners) {
-    if (!sound(corner.x()) || !sound(corner.y())) {
-      return " has a corner that is not finite or beyond 1e7";
-    }
-  }
-  if (!is_simple_polygon(zone.corners))
-    return " has edges that cross or touch, or corners that coincide";
-  if (!(sound(zone.floor) || zone.floor == -kNone) ||
-      !(sound(zone.ceiling) || zone.ceiling == kNone) || !(zone.floor < zone.ceiling)) {
-    return " must have its floor below its ceiling";
-  }
-  return "";
-}
-
 std::string problem_of(const Subject& subject) {
   if (subject.times.empty()) return " must have at least one time";
   if (subject.times.size() != subject.positions.size()) {
@@ -57,31 +37,11 @@ void list_problems(const Environment& environment, std::vector<std::string>& pro
   if (!(environment.margin >= 0) || !sound(environment.margin)) {
     problems.push_back("the margin must be at least 0");
   }
-  for (const Sphere& sphere : environment.spheres) {
-    if (!sound(sphere.center) || !(sphere.radius > 0) || !sound(sphere.radius)) {
-      problems.push_back("sphere '" + sphere.name + "' must have a centre and a radius above 0");
-    }
+  for (std::size_t i = 0; i < environment.obstacles.size(); ++i) {
+    const Obstacle& obstacle = environment.obstacles[i];
+    const std::string problem = problem_of(obstacle);
+    if (!problem.empty()) problems.push_back(obstacle.label(i + 1) + problem);
   }
-  for (const Box& box : environment.boxes) {
-    if (!sound(box.lower) || !sound(box.upper) || !(box.lower.array() < box.upper.array()).all()) {
-      problems.push_back("box '" + box.name + "' must have its lower corner below its upper one");
-    }
-  }
-  for (const Zone& zone : environment.zones) {
-    const std::string problem = problem_of(zone);
-    if (!problem.empty()) problems.push_back("zone '" + zone.name + "'" + problem);
-  }
-  for (const Zone& zone : environment.flight_zones) {
-    const std::string problem = problem_of(zone);
-    if (!problem.empty()) problems.push_back("flight zone '" + zone.name + "'" + problem);
-  }
-  const auto judge_file = [&](const std::string& what, const std::filesystem::path& file) {
-    const bool up = std::find(file.begin(), file.end(), "..") != file.end();
-    if (file.empty() || file.is_absolute() || up)
-      problems.push_back(what + "' must name a file below the plan's folder");
-  };
-  for (const MeshObstacle& mesh : environment.meshes) judge_file("mesh '" + mesh.name, mesh.file);
-  for (const MapObstacle& map : environment.maps) judge_file("map '" + map.name, map.file);
   std::set<std::string> names;
   for (const Subject& subject : environment.subjects) {
     if (subject.name.empty()) problems.push_back("a subject has no name");

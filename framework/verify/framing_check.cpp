@@ -28,106 +28,16 @@ Moment moment_at(const Moment& a, const Moment& b, double time) {
           a.pitch + s * (b.pitch - a.pitch)};
 }
 
-// Whether the straight way from a to b meets the inside of an obstacle.
-bool blocks(const Sphere& sphere, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Vector3d d = b - a;
-  const double length2 = d.squaredNorm();
-  const double s = length2 > 0 ? std::clamp((sphere.center - a).dot(d) / length2, 0.0, 1.0) : 0;
-  return (a + s * d - sphere.center).norm() < sphere.radius;
-}
-
-bool blocks(const Box& box, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  double enter = 0, leave = 1;
-  for (int i = 0; i < 3; ++i) {
-    const double d = b[i] - a[i];
-    if (d == 0) {
-      if (a[i] <= box.lower[i] || a[i] >= box.upper[i]) return false;
-      continue;
-    }
-    const double s = (box.lower[i] - a[i]) / d, t = (box.upper[i] - a[i]) / d;
-    enter = std::max(enter, std::min(s, t));
-    leave = std::min(leave, std::max(s, t));
-  }
-  return enter < leave;
-}
-
-// Whether a point lies inside a zone and not on its surface: within its polygon, by the even-odd
-// rule, and within its heights.
-bool holds(const Zone& zone, const Eigen::Vector3d& p) {
-  if (!(zone.floor < p.z() && p.z() < zone.ceiling)) return false;
-  bool inside = false;
-  for (std::size_t i = 0, j = zone.corners.size() - 1; i < zone.corners.size(); j = i++) {
-    const Eigen::Vector2d &a = zone.corners[j], &b = zone.corners[i];
-    const double side = (b - a).x() * (p.y() - a.y()) - (b - a).y() * (p.x() - a.x());
-    if (side == 0 && (p.head<2>() - a).dot(p.head<2>() - b) <= 0) return false;  // on the edge
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    if ((side > 0) == (b.y() > a.y())) inside = !inside;
-  }
-  return inside;
-}
-
-// The way is cut where it crosses the floor, the ceiling or the line through an edge; the middle of
-// each part says whether it lies inside.
-bool blocks(const Zone& zone, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Vector3d way = b - a;
-  std::vector<double> cuts{0, 1};
-  const auto cut = [&](double share) {
-    if (share > 0 && share < 1) cuts.push_back(share);
-  };
-  for (const double height : {zone.floor, zone.ceiling})
-    if (way.z() != 0) cut((height - a.z()) / way.z());
-  for (std::size_t i = 0, j = zone.corners.size() - 1; i < zone.corners.size(); j = i++) {
-    const Eigen::Vector2d edge = zone.corners[i] - zone.corners[j];
-    const Eigen::Vector2d to_edge = zone.corners[j] - a.head<2>();
-    const double turn = way.x() * edge.y() - way.y() * edge.x();
-    if (turn != 0) cut((to_edge.x() * edge.y() - to_edge.y() * edge.x()) / turn);
-  }
-  std::sort(cuts.begin(), cuts.end());
-  for (std::size_t k = 1; k < cuts.size(); ++k)
-    if (holds(zone, a + 0.5 * (cuts[k - 1] + cuts[k]) * way)) return true;
-  return false;
-}
-
-bool contains(const Sphere& sphere, const Eigen::Vector3d& p) {
-  return blocks(sphere, p, p);
-}
-bool contains(const Box& box, const Eigen::Vector3d& p) {
-  return blocks(box, p, p);
-}
-bool contains(const Zone& zone, const Eigen::Vector3d& p) {
-  return holds(zone, p);
-}
-
-// An obstacle that contains the subject is part of it.
-template <class Obstacle>
-bool any_blocks(const std::vector<Obstacle>& obstacles, const Eigen::Vector3d& camera,
-                const Eigen::Vector3d& middle) {
-  return std::any_of(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) {
-    return !contains(obstacle, middle) && blocks(obstacle, camera, middle);
-  });
-}
-
-constexpr double kTouching = 1e-9;  // m, from a voxel, is on it
-
-// Whether anything stands between the camera and the middle of a subject. Meshes and maps have no
-// inside: what of them is nearer to the middle than the subject's own size is taken for a part of
-// it.
+// Whether anything stands between the camera and the middle of a subject.
 bool hidden(const Flight& flight, const Eigen::Vector3d& camera, const Eigen::Vector3d& middle,
-            const Subject& subject) {
-  const Environment& environment = flight.plan.environment;
-  if (any_blocks(environment.spheres, camera, middle) ||
-      any_blocks(environment.boxes, camera, middle) ||
-      any_blocks(environment.zones, camera, middle))
-    return true;
+            const Subject& subject, double time) {
+  const auto& obstacles = flight.plan.environment.obstacles;
   const double own = std::max(subject.height, subject.width) / 2;
-  const double length = (middle - camera).norm() - own;
-  if (!(length > 0)) return false;
-  const Eigen::Vector3d direction = (middle - camera).normalized();
-  for (const MeshScene& mesh : flight.meshes)
-    if (mesh.blocked({camera, direction, length})) return true;
-  for (const BlockedVoxels& map : flight.maps)
-    if (map.nearest(camera, camera + length * direction, kTouching).distance < kTouching)
-      return true;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!obstacles[i].opaque || obstacles[i].side == Side::keep_inside) continue;
+    const Eigen::Vector3d moved = obstacles[i].moved(time);
+    if (flight.shapes[i]->hides(camera - moved, middle - moved, own)) return true;
+  }
   return false;
 }
 
@@ -140,7 +50,7 @@ bool seen(Sight sight, const CameraView& view, const Subject& subject, double ti
           const Flight& flight) {
   const Eigen::Vector3d middle = subject.position(time);
   if (sight == Sight::middle) return view.sees(middle);
-  if (sight == Sight::free) return !hidden(flight, view.position, middle, subject);
+  if (sight == Sight::free) return !hidden(flight, view.position, middle, subject, time);
   const auto box = view.box_of(middle, subject.height, subject.width);
   return box && box->left >= -0.5 && box->top >= -0.5 && box->right < view.pinhole.width - 0.5 &&
          box->bottom < view.pinhole.height - 0.5;
@@ -247,12 +157,6 @@ class Framing {
   std::array<Lasting, kSights.size()> lasting_;
 };
 
-// A film is to show its subjects, unless its own options say that this is told and not asked for.
-bool sight_required(const Plan& plan) {
-  const Value* stated = plan.configuration.find("line_of_sight");
-  return !stated || !stated->is_text() || stated->as_text() != "reported";
-}
-
 void skip(const char* reason, Certificate& certificate) {
   for (const char* name : kFramingNames) certificate.checks.push_back(skipped_check(name, reason));
 }
@@ -279,7 +183,7 @@ void check_framing(const Flight& flight, Certificate& certificate) {
     const Lasting& lasting = framing.lasting(k);
     const double share = lasting.seconds / framing.asked_seconds();
     Check asked = make_check(kFramingNames[k]);
-    if (kSights[k] == Sight::free) asked.required = sight_required(flight.plan);
+    if (kSights[k] == Sight::free) asked.required = task.line_of_sight_required;
     Check check = judged(std::move(asked), share, task.framing_share,
                          tolerance_of(task.framing_share), lasting.lost_at, true);
     if (lasting.lost) {

@@ -10,6 +10,7 @@ inline constexpr double kLimitShare = 1e-4;
 inline constexpr double kLimitFloor = 1e-6;
 inline constexpr double kGimbalAngle = 1e-4;  // rad; angles have limits of zero by nature
 inline constexpr double kClearance = 1e-3;    // m
+inline constexpr double kMeshReach = 50;      // m beyond the margin; farther meshes are far
 inline constexpr double kMapReach = 2;        // m beyond the margin that distances of maps reach
 
 // Between a sample and the motion integrated from the sample before it, per interval.

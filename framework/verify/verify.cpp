@@ -18,18 +18,16 @@ constexpr double kSmall = 1e-3;
 
 double read_weight(const Plan& plan, const VerifyRequest& request) {
   double bytes = 0;
-  const auto count = [&](const auto& obstacles) {
-    for (const auto& obstacle : obstacles) {
-      const auto found = request.elsewhere.find(obstacle.file);
-      std::error_code unreadable;
-      const auto size = std::filesystem::file_size(
-          found == request.elsewhere.end() ? request.folder / obstacle.file : found->second,
-          unreadable);
-      if (!unreadable) bytes += static_cast<double>(size);
-    }
-  };
-  count(plan.environment.meshes);
-  count(plan.environment.maps);
+  for (const Obstacle& obstacle : plan.environment.obstacles) {
+    const Value* file = obstacle.parameters.find("file");
+    if (!file || !file->is_text()) continue;
+    const auto found = request.elsewhere.find(file->as_text());
+    std::error_code unreadable;
+    const auto size = std::filesystem::file_size(
+        found == request.elsewhere.end() ? request.folder / file->as_text() : found->second,
+        unreadable);
+    if (!unreadable) bytes += static_cast<double>(size);
+  }
   return kSmall + kReadByte * bytes;
 }
 
@@ -50,7 +48,10 @@ std::vector<VerifierPart> parts_of(const Plan& plan, double steps, double read) 
   for (const Family& family : kFamilies)
     parts.push_back({family.name, kSmall + family.walks * kStep * steps});
   const auto weight = [&](std::size_t family) -> double& { return parts[1 + family].weight; };
-  if (!plan.environment.meshes.empty() || !plan.environment.maps.empty()) {
+  const bool files = std::any_of(
+      plan.environment.obstacles.begin(), plan.environment.obstacles.end(),
+      [](const Obstacle& obstacle) { return obstacle.parameters.find("file") != nullptr; });
+  if (files) {
     weight(kClearance) += kNearStep * steps;
     if (!plan.task.framing.empty()) weight(kTask) += kNearStep * steps;
   }
@@ -91,7 +92,7 @@ Certificate verify(const Plan& plan, const VerifyRequest& request) {
   const auto intervals = static_cast<double>(std::max<std::size_t>(motion.intervals(), 1));
   motion.watch_by(
       [&](std::size_t interval) { watch.done(static_cast<double>(interval) / intervals); });
-  const Flight flight{plan, document.vehicle, motion, document.meshes, document.maps, watch};
+  const Flight flight{plan, document.vehicle, motion, document.shapes, watch};
   const auto next = [&](auto check) {
     watch.begin();
     check(flight, certificate);

@@ -7,12 +7,9 @@ local M = {}
 local MOST_OBSTACLES = 300
 local ROOM = 15  -- m about the keyframes, in which a map is looked at
 
-local FORMS = { sphere = { center = true, radius = true }, box = { lower = true, upper = true },
-                no_fly_zone = { corners = true, floor = false, ceiling = false },
-                mesh = { file = true }, map = { file = true } }
-
--- Where flights may be: the zones, and the tracking volume as one more.
-local function flight_zones(run, options)
+-- Where flights may be: the zones, and the tracking volume as one more, as obstacles to stay inside
+-- of.
+local function add_flight_zones(run, options, obstacles)
   local zones = table.move(options.flight_zones, 1, #options.flight_zones, 1, {})
   local volume = options.volume
   if volume and (volume.lower or volume.upper) then
@@ -24,7 +21,11 @@ local function flight_zones(run, options)
     zones[#zones + 1] = { name = "volume", floor = low[3], ceiling = high[3],
       corners = { low[1], low[2], high[1], low[2], high[1], high[2], low[1], high[2] } }
   end
-  return zones
+  for _, zone in ipairs(zones) do
+    obstacles[#obstacles + 1] = { type = "prism", side = "keep_inside", name = zone.name,
+                                  corners = zone.corners, floor = zone.floor,
+                                  ceiling = zone.ceiling }
+  end
 end
 
 -- The box about the keyframes in which distances of maps are wanted.
@@ -37,39 +38,33 @@ local function surroundings(keyframes)
       upper[i] = math.max(upper[i], k.position[i] + ROOM)
     end
   end
-  return lower, upper
+  return { lower = lower, upper = upper }
 end
 
--- The environment of a problem from the options `obstacles`, `flight_zones` and `volume`.
+-- What surrounds a problem, from the options `obstacles`, `flight_zones` and `volume`: obstacles as
+-- run:problem takes them, and the rest of its environment.
 function M.of(run, options, keyframes)
-  local obstacles = options.obstacles
-  if #obstacles > MOST_OBSTACLES then
+  if #options.obstacles > MOST_OBSTACLES then
     run:fail("obstacles", string.format("%d are more than the %d that a film can keep clear of",
-                                        #obstacles, MOST_OBSTACLES))
+                                        #options.obstacles, MOST_OBSTACLES))
   end
-  local environment = { spheres = {}, boxes = {}, zones = {}, meshes = {}, maps = {},
-                        flight_zones = flight_zones(run, options), margin = options.margin }
-  local lists = { sphere = environment.spheres, box = environment.boxes,
-                  no_fly_zone = environment.zones, mesh = environment.meshes,
-                  map = environment.maps }
-  for i, given in ipairs(obstacles) do
-    local made = { name = given.name ~= "" and given.name or given.file or "" }
-    if given.type == "map" then made.lower, made.upper = surroundings(keyframes) end
-    for form, keys in pairs(FORMS) do
-      for key, needed in pairs(keys) do
-        local what = string.format("obstacles[%d].%s", i, key)
-        if form ~= given.type and given[key] ~= nil and FORMS[given.type][key] == nil then
-          run:fail(what, "a " .. given.type .. " has none")
-        elseif form == given.type and needed and given[key] == nil then
-          run:fail(string.format("obstacles[%d]", i), "a " .. form .. " needs " .. key)
-        elseif form == given.type then
-          made[key] = given[key]
-        end
-      end
-    end
-    table.insert(lists[given.type], made)
+  local obstacles = {}
+  for i, given in ipairs(options.obstacles) do
+    local made = {}
+    for key, value in pairs(given) do made[key] = value end
+    if made.name == "" then made.name = given.file end
+    obstacles[i] = made
   end
-  return environment
+  add_flight_zones(run, options, obstacles)
+  return { obstacles = obstacles, margin = options.margin, region = surroundings(keyframes) }
+end
+
+-- The arguments of run:problem that say what surrounds it.
+function M.stated(environment, arguments)
+  arguments.obstacles = environment.obstacles
+  arguments.environment = { margin = environment.margin, region = environment.region,
+                            subjects = environment.subjects }
+  return arguments
 end
 
 -- The environment that a request states, subjects and bystanders included; and the bystanders.
@@ -96,16 +91,27 @@ function M.state(run, request, camera)
   return environment, bystanders
 end
 
--- Constraints that keep a problem clear of its environment; or within a corridor.
+-- Whether obstacles stand between the camera and what it films, as far as it can see round them.
+function M.hides(environment)
+  for _, obstacle in ipairs(environment.obstacles) do
+    if obstacle.opaque ~= false and obstacle.side ~= "keep_inside" then return true end
+  end
+  return false
+end
+
+local function moves(environment)
+  for _, obstacle in ipairs(environment.obstacles) do
+    if obstacle.track and #obstacle.track > 0 then return true end
+  end
+  return false
+end
+
+-- Constraints that keep a problem clear of its environment; or within a corridor, whose boxes are
+-- free of all that stands still.
 function M.add(p, environment, camera, corridor)
-  if corridor then
-    p:add_constraint { type = "corridor", regions = corridor }
-  else
-    for form, plugin in pairs { spheres = "sphere_obstacle", boxes = "box_obstacle",
-                                zones = "no_fly_zone", flight_zones = "flight_zone" } do
-      if #environment[form] > 0 then p:add_constraint { type = plugin } end
-    end
-    if #environment.meshes + #environment.maps > 0 then p:add_constraint { type = "clearance" } end
+  if corridor then p:add_constraint { type = "corridor", regions = corridor } end
+  if #environment.obstacles > 0 and (not corridor or moves(environment)) then
+    p:add_constraint { type = "obstacle" }
   end
   for _, subject in ipairs(camera and camera.list or {}) do
     if subject.distance then

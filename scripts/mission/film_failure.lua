@@ -26,24 +26,10 @@ function M.out_of_sight(outcome)
   return first_failed(outcome) == "framing" or hidden(outcome)
 end
 
--- Which obstacles the planner does not look round: its cost knows spheres and boxes alone.
-local function not_looked_round(options)
-  local names = {}
-  for _, obstacle in ipairs(options.obstacles) do
-    if obstacle.type ~= "sphere" and obstacle.type ~= "box" then
-      local name = obstacle.name ~= "" and obstacle.name or obstacle.file or "without a name"
-      names[#names + 1] = obstacle.type .. " '" .. name .. "'"
-    end
-  end
-  if #names == 0 then return "" end
-  return "; the planner does not look round " .. table.concat(names, ", ")
-    .. ", which the certificate judges"
-end
-
 -- Which limit a film breaks, where and when: what the gimbal cannot see, or else what the film
 -- would ask for if nothing held it. `legs`: the ways to begin with.
 function M.broken_limit(run, failing, legs)
-  if hidden(failing) then return attempts.complaint(failing) .. not_looked_round(run.options) end
+  if hidden(failing) then return attempts.complaint(failing) end
   if M.out_of_sight(failing) then
     return subjects.hidden(failing.camera, failing.request.vehicle) or attempts.complaint(failing)
   end

@@ -168,19 +168,18 @@ input.cut = {
     summary = "end; absent: as soon as the camera can film what follows" },
 }
 
+-- Beside the parameters of its shape.
 input.obstacle = {
-  { name = "type", type = "choice", required = true, 
-    choices = { "sphere", "box", "no_fly_zone", "mesh", "map" }, summary = "its form" },
   { name = "name", type = "text", default = "", summary = "for messages" },
-  { name = "center", type = "numbers", size = 3, unit = "m", summary = "of a sphere" },
-  { name = "radius", type = "number", unit = "m", above = 0, summary = "of a sphere" },
-  { name = "lower", type = "numbers", size = 3, unit = "m", summary = "of a box" },
-  { name = "upper", type = "numbers", size = 3, unit = "m", summary = "of a box" },
-  { name = "corners", type = "numbers", unit = "m", also = "number[][]",
-    summary = "of a zone: x and y in turn, or {{x, y}, ...}" },
-  { name = "floor", type = "number", unit = "m", summary = "of a zone; absent: the ground" },
-  { name = "ceiling", type = "number", unit = "m", summary = "of a zone; absent: all above" },
-  { name = "file", type = "text", summary = "of a mesh or a map" },
+  { name = "side", type = "choice", default = "keep_out", choices = { "keep_out", "keep_inside" },
+    summary = "where the flight stays" },
+  { name = "opaque", type = "boolean", default = true,
+    summary = "whether it hides subjects; airspace does not" },
+  { name = "track", type = "tables", summary = "how it moves; absent: it stands still",
+    table = {
+      { name = "time", type = "number", unit = "s", required = true, summary = "of the film" },
+      { name = "move", type = "numbers", size = 3, unit = "m", required = true, minimum = -1e6,
+        maximum = 1e6, summary = "added to its place, straight in between" } } },
 }
 
 input.flight_zone = {

@@ -63,7 +63,8 @@ local function check_keyframes(run, p, request, camera, bystanders)
   local options = run.options
   local reach = options.hard or problem.MISS
   for i, k in ipairs(request.keyframes) do
-    local distance, name = p:nearest_obstacle(k.position)
+    local time = k.time * request.stretch
+    local distance, name = p:nearest_obstacle(k.position, time)
     local function check_people(what, people)
       for _, person in ipairs(people) do
         local at = tracks.at(person.track, k.time * request.stretch)
@@ -77,7 +78,7 @@ local function check_keyframes(run, p, request, camera, bystanders)
     end
     check_people("subject", camera and camera.list or {})
     check_people("bystander", bystanders)
-    local outside, zone = p:flight_zone_distance(k.position)
+    local outside, zone = p:flight_zone_distance(k.position, time)
     if outside + reach < options.margin then
       run:fail("keyframes[" .. i .. "].position", string.format(
         "%s flight zone '%s': %.3g m %s its edge, and %g m are to be kept",
@@ -134,7 +135,7 @@ local function add_camera(p, weights, camera, environment, path)
                    spans = within, except = camera.cuts }
     end
   end
-  if weights.occlusion > 0 and #environment.spheres + #environment.boxes > 0 then
+  if weights.occlusion > 0 and surroundings.hides(environment) then
     p:add_cost { type = "occlusion", weight = weights.occlusion, except = camera.cuts }
   end
   local values = { gimbal_pitch = {}, target = camera.guess.targets }
@@ -181,8 +182,8 @@ function problem.state(run, request)
   local environment, bystanders = surroundings.state(run, request, camera)
   local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
                                   duration / FEWEST_INTERVALS)
-  local p = run:problem { vehicle = vehicle, duration = duration, step = step,
-                          environment = environment }
+  local p = run:problem(surroundings.stated(environment, { vehicle = vehicle, duration = duration,
+                                                           step = step }))
   check_keyframes(run, p, request, camera, bystanders)
   local way = ways.planned(p, keyframes, environment, o.planner, request.legs, request.corridor)
   local limited, path, track = scope ~= "unlimited", way.path, request.track
@@ -223,6 +224,7 @@ function problem.state(run, request)
       task.framing[i] = { subject = span.subject.name, start = span.start, finish = span.finish }
     end
     task.framing_share = #task.framing > 0 and o.framing or nil
+    task.line_of_sight_required = o.line_of_sight == "required"
   end
   if scope == "film" or scope == "unconstrained" then
     own.add(p, o, request.terms, scope == "film")

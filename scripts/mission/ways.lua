@@ -26,10 +26,7 @@ local function between(way, from, to)
 end
 
 local function obstructed(environment)
-  local count = 0
-  for _, form in ipairs { "spheres", "boxes", "zones", "meshes", "maps", "flight_zones" } do
-    count = count + #environment[form]
-  end
+  local count = #environment.obstacles
   for _, subject in ipairs(environment.subjects or {}) do  -- bystanders that stand still
     if subject.filmed == false and #subject.track == 1 then count = count + 1 end
   end

@@ -100,7 +100,7 @@ local function problem_of(run, request, memory)
   local o, vehicle = run.options, request.vehicle
   local legs, keyframes = legs_and_keyframes(request.keyframes, memory.guess)
   local environment = surroundings.state(run, request)
-  local p = run:problem { vehicle = vehicle, legs = legs, environment = environment }
+  local p = run:problem(surroundings.stated(environment, { vehicle = vehicle, legs = legs }))
   local way = ways.planned(p, keyframes, environment, o.planner, request.legs, false)
   p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }
   point_mass.add(p, vehicle,

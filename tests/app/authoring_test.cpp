@@ -342,7 +342,7 @@ TEST_F(Authoring, ALibraryThatDoesNotOpenSaysWhy) {
 }
 
 TEST_F(Authoring, ShippedPluginsPass) {
-  for (const char* name : {"cost_term/input_effort", "constraint/flight_zone", "map/brick"}) {
+  for (const char* name : {"cost_term/input_effort", "constraint/obstacle", "map/brick"}) {
     const Finished finished = run({"plugins", "check", name});
     EXPECT_EQ(finished.status, 0) << finished.out << finished.err;
   }

@@ -99,9 +99,14 @@ TEST_F(ConfiguredTask, OfAFilmIsHeldToItsConfiguration) {
       {"the distance from bystander 'bob' is 1 m",
        [](Value& d) { entry(d, "environment", "subjects", 1).set("distance", 1.0); }},
       {"obstacles[1] of its configuration",
-       [](Value& d) { in(d, "environment", "spheres") = Value::list(); }},
+       [](Value& d) { in(d, "environment", "obstacles") = Value::list(); }},
       {"the volume of its configuration",
-       [](Value& d) { entry(d, "environment", "flight_zones").set("ceiling", 99.0); }},
+       [](Value& d) {
+         for (Value& o : in(d, "environment", "obstacles").as_list())
+           if (o.find("side")) o.find("parameters")->set("ceiling", 99.0);
+       }},
+      {"the line of sight is reported only in the plan",
+       [](Value& d) { d.find("task")->set("line_of_sight_required", false); }},
       {"the margin is 0.1 m", [](Value& d) { d.find("environment")->set("margin", 0.1); }},
       {"the tolerance of keyframe 1 is 3 m in the plan and 0.5 m in its configuration",
        [](Value& d) { entry(d, "task", "keyframes").set("tolerance", 3.0); }},

@@ -60,7 +60,7 @@ TEST_F(ProvenanceTest, RunAndVerifySayTheSame) {
   EXPECT_THAT(detail_of(now), HasSubstr("1 sphere, margin 0.5 m"));
   EXPECT_THAT(detail_of(now), HasSubstr("film: 2 keyframes"));
   EXPECT_EQ(now.at("provenance").at("vehicle").at("name").as_text(), "vehicles/solo");
-  EXPECT_EQ(now.at("provenance").at("environment").at("spheres").as_integer(), 1);
+  EXPECT_EQ(now.at("provenance").at("environment").at("sphere").as_integer(), 1);
   EXPECT_EQ(now.at("provenance").at("tolerances").at("keyframe").as_number(), 0.5);
   const Finished shown = run({"verify", plan_.string()});
   for (const char* line :
@@ -88,10 +88,13 @@ TEST_F(ProvenanceTest, EveryEditIsToldAndNamed) {
       {"vehicle.limits", [&](Value& d) { limits(d).set("speed_across", 20.0); }, true},
       {"vehicle.flight_time", [](Value& d) { d.find("vehicle")->set("flight_time", 9e3); }, true},
       {"environment.margin", [](Value& d) { d.find("environment")->set("margin", 0.1); }, true},
-      {"environment.spheres",
-       [](Value& d) { d.find("environment")->set("spheres", Value::list()); }, true},
-      {"environment.spheres",
-       [](Value& d) { d.find("environment")->find("spheres")->as_list()[0].set("radius", 0.5); },
+      {"environment.obstacles",
+       [](Value& d) { d.find("environment")->set("obstacles", Value::list()); }, true},
+      {"environment.obstacles",
+       [](Value& d) {
+         Value& first = d.find("environment")->find("obstacles")->as_list()[0];
+         first.find("parameters")->set("radius", 0.5);
+       },
        true},
       {"task.keyframes",
        [](Value& d) { d.find("task")->find("keyframes")->as_list()[0].set("tolerance", 0.7); },

@@ -22,7 +22,8 @@ const std::map<std::string, Names>& rooms() {
   static const Names kAllButApp{"geometry",    "trajectory", "vehicle", "map",
                                 "path",        "problem",    "solve",   "view",
                                 "explore",     "verify",     "export",  "config",
-                                "conformance", "plugin",     "mission", "surface"};
+                                "conformance", "plugin",     "mission", "surface",
+                                "shape"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -35,16 +36,17 @@ const std::map<std::string, Names>& rooms() {
       {"core", {}},
       {"geometry", {}},
       {"surface", {"geometry"}},
-      {"trajectory", {"geometry"}},
+      {"shape", {"geometry", "map"}},
+      {"trajectory", {"geometry", "shape"}},
       {"vehicle", {"geometry", "trajectory"}},
       {"map", {"geometry"}},
       {"path", {"geometry", "map"}},
-      {"problem", {"geometry", "trajectory", "vehicle"}},
-      {"solve", {"geometry", "trajectory", "vehicle", "problem"}},
+      {"problem", {"geometry", "shape", "trajectory", "vehicle"}},
+      {"solve", {"geometry", "shape", "trajectory", "vehicle", "problem"}},
       {"view", {"geometry", "map", "path"}},
       {"explore", {"geometry", "map", "view", "path"}},
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
-      {"export", {"geometry", "trajectory", "vehicle", "verify", "map"}},  // limits, pictures
+      {"export", {"geometry", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
       {"config", {}},
       {"plugin", {}},
       {"conformance", without(kAllButApp, "mission")},
@@ -69,6 +71,7 @@ const std::map<std::string, Kind>& kinds() {
       {"trajectory_solvers", {"trajectory_solver", "solve"}},
       {"path_planners", {"path_planner", "path"}},
       {"maps", {"map", "map"}},
+      {"shapes", {"shape", "shape"}},
       {"information", {"information", "view"}},
       {"tour_solvers", {"tour_solver", "view"}},
       {"utilities", {"utility", "explore"}},

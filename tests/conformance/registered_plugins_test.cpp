@@ -19,8 +19,9 @@ const Registry& plugins() {
 std::vector<PluginEntry> checked_entries() {
   std::vector<PluginEntry> result;
   for (const PluginEntry& entry : plugins().entries())
-    for (const char* kind : {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map",
-                             "path_planner", "tour_solver", "information", "utility", "exporter"})
+    for (const char* kind :
+         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner",
+          "tour_solver", "information", "utility", "exporter", "shape"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }
@@ -60,11 +61,16 @@ TEST(EveryPlugin, IsThere) {
                                    {"cost_term", "skewness"},
                                    {"cost_term", "framing"},
                                    {"cost_term", "occlusion"},
-                                   {"constraint", "sphere_obstacle"},
-                                   {"constraint", "box_obstacle"},
-                                   {"constraint", "no_fly_zone"},
-                                   {"constraint", "flight_zone"},
-                                   {"constraint", "clearance"},
+                                   {"constraint", "obstacle"},
+                                   {"shape", "sphere"},
+                                   {"shape", "box"},
+                                   {"shape", "prism"},
+                                   {"shape", "no_fly_zone"},
+                                   {"shape", "capsule"},
+                                   {"shape", "cone"},
+                                   {"shape", "half_space"},
+                                   {"shape", "mesh"},
+                                   {"shape", "map"},
                                    {"constraint", "corridor"},
                                    {"constraint", "subject_distance"},
                                    {"vehicle_model", "gimbal"},

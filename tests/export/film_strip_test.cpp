@@ -84,10 +84,51 @@ TEST(FilmStrip, SamePlanSameBytes) {
   EXPECT_EQ(html.find("boat <&>"), std::string::npos);
 }
 
+// Whatever stands before the camera is in the picture, moving or still; what hides nothing tints
+// it.
+TEST(FilmStrip, ShowsEveryShape) {
+  Plan plan = film();
+  plan.environment.obstacles.clear();
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  const auto picture = [&] { return film_strip(plan, vehicle, {4}).frames[0].png; };
+  const std::string empty = picture();
+  const Sample& s = plan.trajectory.samples[40];
+  const Eigen::Vector3d ahead =
+      s.position + 0.3 * (plan.environment.subjects[0].position(4) - s.position);
+  const auto shown = [&](Obstacle obstacle) {
+    plan.environment.obstacles = {std::move(obstacle)};
+    plan.environment = with_shapes(plan.environment);
+    return picture();
+  };
+  const Obstacle pole = obstacle_at("pole", "capsule",
+                                    {{"from", place_value(ahead - Eigen::Vector3d(0, 0, 2))},
+                                     {"to", place_value(ahead + Eigen::Vector3d(0, 0, 2))},
+                                     {"radius", 0.2}});
+  EXPECT_NE(shown(pole), empty);
+  EXPECT_NE(shown(obstacle_at("tent", "cone",
+                              {{"base", place_value(ahead - Eigen::Vector3d(0, 0, 1))},
+                               {"radius", 0.5},
+                               {"height", 2.0}})),
+            empty);
+  EXPECT_NE(shown(zone_at("house", {{ahead.x() - 1, ahead.y() - 1},
+                                    {ahead.x() + 1, ahead.y() - 1},
+                                    {ahead.x(), ahead.y() + 1}})),
+            empty);
+  Obstacle moving = pole;
+  moving.times = {4, 8};
+  moving.moves = {{0, 0, 1e4}, {0, 0, 0}};
+  EXPECT_EQ(shown(moving), empty) << "it is elsewhere at that time";
+  Obstacle glass = pole;
+  glass.opaque = false;
+  EXPECT_NE(shown(glass), empty);
+  EXPECT_NE(shown(glass), shown(pole));
+}
+
 TEST(FilmStrip, HostilePlansStillHaveAReport) {
   Plan plan = film();
-  plan.environment.spheres.push_back({"far", {1e7, 0, 0}, 3});
-  plan.environment.boxes.push_back({"flat", {0, 0, 0}, {1, 1, 0}});
+  plan.environment.obstacles.push_back(sphere_at("far", {9e5, 0, 0}, 3));
+  plan.environment = with_shapes(plan.environment);
+  plan.environment.obstacles.push_back(obstacle_at("unknown", "tripod", {}));
   plan.environment.subjects.push_back({"nowhere", {0}, {{0, 0, 1e7}}});
   Vehicle vehicle = vehicle_from_value(plan.vehicle);
   vehicle.camera = {"slit", 1, 10000, 500, 500, 0, 5000};

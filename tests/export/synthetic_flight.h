@@ -7,6 +7,7 @@
 #include "framework/core/units.h"
 #include "framework/trajectory/plan.h"
 #include "framework/verify/certificate.h"
+#include "tests/obstacles.h"
 #include "tests/vehicle/vehicle_fixture.h"
 
 namespace lapwing {
@@ -102,8 +103,11 @@ inline void add_film(Plan& plan) {
     boat.positions.emplace_back(12 * std::cos(angle), 12 * std::sin(angle), 1.5);
   }
   plan.environment.subjects = {{"tower", {0}, {{0.5, -1.5, 6}}, 12, 5}, boat};
-  plan.environment.zones = {{.name = "harbour", .corners = {{-18, 6}, {-8, 6}, {-12, 16}}},
-                            {"cable", {{10, -14}, {20, -14}, {20, -12}, {10, -12}}, 4, 7}};
+  auto& obstacles = plan.environment.obstacles;
+  obstacles.push_back(zone_at("harbour", {{-18, 6}, {-8, 6}, {-12, 16}}));
+  obstacles.push_back(zone_at("cable", {{10, -14}, {20, -14}, {20, -12}, {10, -12}}, 4, 7));
+  for (std::size_t k = obstacles.size() - 2; k < obstacles.size(); ++k) obstacles[k].opaque = false;
+  plan.environment = with_shapes(plan.environment);
   plan.cuts = {{0.45 * end, 0.55 * end}};
   plan.task.framing = {{"tower", {0, 0.5 * end}}, {"boat <&>", {0.5 * end, end}}};
   // The camera turns to what it films, so that it can be seen.
@@ -140,8 +144,9 @@ inline Plan synthetic_flight(double duration, int samples, double spacing, bool 
     if (t > 0) keyframe.yaw = s.yaw;
     plan.task.keyframes.push_back(keyframe);
   }
-  plan.environment.spheres = {{"tree", {14, 8, 3}, 3}};
-  plan.environment.boxes = {{"tower", {-2, -4, 0}, {3, 1, 12}}};
+  plan.environment.obstacles = {sphere_at("tree", {14, 8, 3}, 3),
+                                box_at("tower", {-2, -4, 0}, {3, 1, 12})};
+  plan.environment = with_shapes(plan.environment);
   plan.solver = synthetic_solver();
   plan.certificate = synthetic_certificate(feasible).to_value();
   plan.configuration.set("duration", duration);

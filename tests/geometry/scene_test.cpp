@@ -103,7 +103,7 @@ TEST(Scene, EqualsASearchThroughAllShapesFarFromTheOriginToo) {
     const auto place = [&] {
       return Vector3d(far + number(-20, 20), number(-20, 20), number(-20, 20));
     };
-    std::vector<Shape> shapes;
+    std::vector<BodyShape> shapes;
     for (int i = 0; i < 40; ++i) {
       const Vector3d p = place();
       shapes.push_back(BallShape{p, number(0.1, 2)});
@@ -140,7 +140,7 @@ TEST(Scene, EqualsASearchThroughAllShapesFarFromTheOriginToo) {
 
 TEST(Scene, RefusesShapesThatAreNone) {
   const double nan = std::nan("");
-  for (const Shape& shape : std::vector<Shape>{
+  for (const BodyShape& shape : std::vector<BodyShape>{
            BallShape{{0, 0, 0}, 0}, BallShape{{0, 0, nan}, 1}, BallShape{{0, 0, 0}, nan},
            BallShape{{2e5, 0, 0}, 1}, BlockShape{{0, 0, 0}, {1, 0, 1}},
            BlockShape{{0, 0, 0}, {1, INFINITY, 1}}, BoardShape{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}},

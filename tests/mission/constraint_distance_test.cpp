@@ -7,6 +7,7 @@
 #include "framework/problem/tape.h"
 #include "framework/verify/constraint_evaluation.h"
 #include "tests/mission/mission_fixture.h"
+#include "tests/obstacles.h"
 
 namespace lapwing {
 namespace {
@@ -57,22 +58,24 @@ double by_tape(const Environment& environment, const std::string& name, const Ei
 TEST_F(ConstraintDistance, TheVerifierReadsWhatTheTapeReads) {
   const MissionResult result = flown("lower = 0");
   const Environment& environment = result.plan.environment;
-  ASSERT_EQ(environment.meshes.size(), 1u);
-  ASSERT_EQ(environment.maps.size(), 1u);
-  std::vector<MeshScene> meshes;
-  meshes.emplace_back(read_mesh(result.obstacle_folder / environment.meshes[0].file).mesh, "tower");
-  const MapFile map = read_map_file(result.obstacle_folder / environment.maps[0].file);
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-8, -8, -8), Eigen::Vector3d(16, 16, 16));
-  std::vector<BlockedVoxels> maps;
-  maps.emplace_back(map, box);
-  const double voxel = map.resolution;
+  std::vector<std::unique_ptr<JudgedShape>> shapes;
+  double voxel = 0;
+  for (const Obstacle& obstacle : environment.obstacles) {
+    const Value* file = obstacle.parameters.find("file");
+    shapes.push_back(judged_shape(
+        obstacle, file ? result.obstacle_folder / file->as_text() : std::filesystem::path(), box));
+    if (shapes.back()->voxels()) voxel = shapes.back()->voxels()->grid().resolution();
+  }
+  ASSERT_EQ(shapes.size(), std::size(kNames));
+  ASSERT_GT(voxel, 0);
   for (const std::string name : kNames) {
     const StatedConstraint* stated = nullptr;
     for (const StatedConstraint& one : result.plan.constraints)
       if (one.name == "from " + name) stated = &one;
     ASSERT_TRUE(stated && stated->unjudged.empty()) << name;
     ASSERT_EQ(problem_of(*stated, result.plan), "") << name;
-    ConstraintEvaluation evaluation(*stated, Trajectory{}, {environment, meshes, maps});
+    ConstraintEvaluation evaluation(*stated, Trajectory{}, {environment, shapes});
     Random random(11);
     double nearest = 1e9, farthest = -1e9;
     for (int trial = 0; trial < 2000; ++trial) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Films with a camera: what scripts may say, and what is refused.
 #include "tests/mission/mission_fixture.h"
+#include "tests/obstacles.h"
 
 namespace lapwing {
 namespace {
@@ -162,7 +163,7 @@ TEST_F(FilmTest, ASubjectInsideANoFlyZoneIsFilmedFromOutside) {
       "{ time = 0, position = {-10, -2, 4} }, { time = 12, position = {10, -2, 4} } } }");
   EXPECT_TRUE(verify(film).feasible());
   for (const Sample& s : film.trajectory.samples)
-    EXPECT_GE(signed_distance(film.environment.zones[0], s.position), 0.5) << s.time;
+    EXPECT_GE(signed_distance(film.environment.obstacles[0], s.position), 0.5) << s.time;
 }
 
 TEST_F(FilmTest, WrongSubjectsAreNamed) {
@@ -207,12 +208,21 @@ TEST_F(FilmTest, WrongObstaclesAreNamed) {
   const auto obstacle = [&](const std::string& text) {
     return shot("obstacles = { {" + text + "} },");
   };
-  expect(obstacle("type = 'sphere', center = {0, 0, 1}"), "obstacles[1]: a sphere needs radius");
+  expect(obstacle("type = 'sphere', center = {0, 0, 1}"), "obstacles[1].radius: missing");
   expect(obstacle("type = 'box', lower = {0, 0, 0}, upper = {1, 1, 1}, radius = 1"),
-         "obstacles[1].radius: a box has none");
+         "obstacles[1].radius: unknown key");
   expect(obstacle("type = 'box', lower = {0, 0, 0}, upper = {1, 0, 1}"),
          "lower must be below upper");
-  expect(obstacle("type = 'cone'"), "obstacles[1].type");
+  expect(obstacle("type = 'cylnder'"), "unknown shape 'cylnder'");
+  expect(obstacle("type = 'spere'"), "did you mean 'sphere'?");
+  expect(obstacle("center = {0, 0, 1}"), "obstacles[1]: expected `type`");
+  expect(obstacle("type = 'half_space', point = {0, 0, 0}, normal = {0, 0, 0}"),
+         "normal: expected a vector that is not zero");
+  expect(obstacle("type = 'sphere', center = {0, 0, 1}, radius = 1, side = 'beside'"),
+         "obstacles[1].side");
+  expect(obstacle("type = 'sphere', center = {0, 0, 9}, radius = 1, track = { { time = 1, "
+                  "move = {0, 0, 0} }, { time = 1, move = {1, 0, 0} } }"),
+         "track: times must rise");
   expect(obstacle("type = 'no_fly_zone', corners = {{0, 0}, {1, 0}}"), "at least three pairs");
   expect(obstacle("type = 'no_fly_zone', corners = {{0, 0}, {4, 4}, {4, 0}, {0, 4}}"),
          "its edges cross or touch");

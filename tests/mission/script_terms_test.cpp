@@ -179,7 +179,7 @@ TEST_F(TermTest, ConstraintsAgree) {
       return lapwing.sqrt((kept + bulge) ^ 2 + half ^ 2)
     end
   )";
-  expect_same(R"(p:add_constraint { type = "sphere_obstacle", name = "t" })", reach + R"(
+  expect_same(R"(p:add_constraint { type = "obstacle", name = "t" })", reach + R"(
     p:add_constraint { name = "t", lower = 0, value = function(s)
       return lapwing.norm(s.position - { 4, 0.2, 3 }) - asked(s, 1.5 + 0.25, 0)
     end })");

@@ -36,8 +36,8 @@ TEST_F(ExploringThenScanning, TheTourIsPlannedOnWhatWasExplored) {
   for (const char* section : {"Growth of the map", "Candidates at the last step"})
     EXPECT_THAT(report, HasSubstr(section));
   const Plan read = read_plan(folder_ / "out/plan.json");
-  EXPECT_EQ(read.environment.maps.at(0).file, "map.ot");
-  EXPECT_EQ(read.environment.meshes.at(0).file, "prior.ply");
+  EXPECT_EQ(read.environment.obstacles.at(1).parameters.at("file").as_text(), "map.ot");
+  EXPECT_EQ(read.environment.obstacles.at(0).parameters.at("file").as_text(), "prior.ply");
   for (const Check& check : verify(read, folder_ / "out").failures())
     ADD_FAILURE() << to_line(check);
 }

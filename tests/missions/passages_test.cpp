@@ -47,8 +47,8 @@ TEST_F(PassageFilms, TheNearerWindowIsTooNarrowAtSpeed) {
   const Flown flown = film(kWallFilm);
   EXPECT_EQ(flown.status, 0) << to_json(flown.result);
   const Plan plan = read_plan(flown.folder / "plan.json");
-  ASSERT_EQ(plan.environment.meshes.size(), 1u);
-  EXPECT_EQ(plan.environment.meshes[0].file, "obstacle_1.ply");
+  ASSERT_EQ(plan.environment.obstacles.size(), 1u);
+  EXPECT_EQ(plan.environment.obstacles[0].parameters.at("file").as_text(), "obstacle_1.ply");
   for (const Check& check : verify(plan, flown.folder).failures()) ADD_FAILURE() << to_line(check);
   // Through the other one.
   double north = 0;
@@ -126,8 +126,8 @@ TEST_F(PassageFilms, ThroughAMap) {
     obstacles = { { type = "map", file = "hall.ot" } } })");
   EXPECT_EQ(flown.status, 0) << to_json(flown.result);
   const Plan plan = read_plan(flown.folder / "plan.json");
-  ASSERT_EQ(plan.environment.maps.size(), 1u);
-  EXPECT_EQ(plan.environment.maps[0].file, "obstacle_1.ot");
+  ASSERT_EQ(plan.environment.obstacles.size(), 1u);
+  EXPECT_EQ(plan.environment.obstacles[0].parameters.at("file").as_text(), "obstacle_1.ot");
   const Certificate certificate = verify(plan, flown.folder);
   for (const Check& check : certificate.failures()) ADD_FAILURE() << to_line(check);
   EXPECT_GE(certificate.find("clearance")->worst.value(), 0.499);
@@ -143,7 +143,9 @@ TEST_F(PassageFilms, FlightZonesAreKept) {
     volume = { lower = {-14, -10, 1}, upper = {14, 13, 9} } })");
   EXPECT_EQ(flown.status, 0) << to_json(flown.result);
   const Plan plan = read_plan(flown.folder / "plan.json");
-  EXPECT_EQ(plan.environment.flight_zones.size(), 2u);
+  EXPECT_EQ(std::count_if(plan.environment.obstacles.begin(), plan.environment.obstacles.end(),
+                          [](const Obstacle& o) { return o.side == Side::keep_inside; }),
+            2);
   const Certificate certificate = verify(plan, flown.folder);
   EXPECT_GE(certificate.find("flight_zone")->worst.value(), 0.499);
   double north = 0;

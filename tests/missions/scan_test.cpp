@@ -31,8 +31,8 @@ TEST_F(Scanning, AHutIsScannedAndCertified) {
   // Legs, one by one, take what the whole flight takes, turns on the spot included.
   EXPECT_NEAR(read.trajectory.duration(), tour.at("seconds").as_number(), 1);
   EXPECT_EQ(plan().find("sees the region's floor"), std::string::npos);
-  EXPECT_EQ(read.environment.maps.at(0).file, "map.ot");
-  EXPECT_EQ(read.environment.meshes.at(0).file, "prior.ply");
+  EXPECT_EQ(read.environment.obstacles.at(1).parameters.at("file").as_text(), "map.ot");
+  EXPECT_EQ(read.environment.obstacles.at(0).parameters.at("file").as_text(), "prior.ply");
   const std::string report = read_file(folder_ / "out/report.html");
   for (const char* section : {"What the first flight knew", "Candidates", "One view",
                               "Information over the budget", "Coverage"})

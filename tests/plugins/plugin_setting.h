@@ -6,6 +6,7 @@
 #include "framework/plugin/registry.h"
 #include "framework/problem/trajectory_problem.h"
 #include "tests/camera_drone.h"
+#include "tests/obstacles.h"
 
 namespace lapwing {
 

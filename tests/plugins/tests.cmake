@@ -4,6 +4,9 @@ get_property(all_plugins GLOBAL PROPERTY LAPWING_PLUGINS)
 add_dependencies(test_cost_terms ${all_plugins})
 add_dependencies(test_constraints ${all_plugins})
 add_dependencies(test_vehicle_models ${all_plugins})
+foreach(room shapes verify export problem trajectory)
+  add_dependencies(test_${room} ${all_plugins})
+endforeach()
 
 # A cost term copied into a new folder is picked up with one CMake line and no kernel edit.
 add_executable(check_plugin_folder ${CMAKE_CURRENT_LIST_DIR}/copied_term/check_plugin_folder.cpp)

@@ -6,6 +6,7 @@
 #include "framework/core/random.h"
 #include "framework/problem/environment_distance.h"
 #include "framework/problem/tape.h"
+#include "tests/obstacles.h"
 
 namespace lapwing {
 namespace {
@@ -239,9 +240,10 @@ TEST(Tape, StraightFunctionsAreKnownToBe) {
 
 TEST(Tape, TheNearestObstacleIsAsFarAsTheEnvironmentSays) {
   Environment environment;
-  environment.spheres.push_back({"ball", {3, 0, 1}, 1});
-  environment.boxes.push_back({"house", {-4, -2, 0}, {-1, 2, 3}});
-  environment.zones.push_back({"field", {{0, 4}, {3, 4}, {3, 7}, {0, 8}}, 0, 5});
+  environment.obstacles = {sphere_at("ball", {3, 0, 1}, 1),
+                           box_at("house", {-4, -2, 0}, {-1, 2, 3}),
+                           zone_at("field", {{0, 4}, {3, 4}, {3, 7}, {0, 8}}, 0, 5)};
+  environment = with_shapes(environment);
   Recorded made(3);
   const int point[] = {made.x[0], made.x[1], made.x[2]};
   const auto distance = [&](const std::string& name, double width) {
@@ -255,7 +257,7 @@ TEST(Tape, TheNearestObstacleIsAsFarAsTheEnvironmentSays) {
     Eigen::Vector3d p(random.uniform(-6, 6), random.uniform(-4, 9), random.uniform(-1, 6));
     const Eigen::VectorXd values = values_of(tape, p, {});
     EXPECT_NEAR(values(0), nearest_obstacle(environment, p).distance, 1e-12) << p.transpose();
-    EXPECT_NEAR(values(1), signed_distance(environment.boxes[0], p), 1e-3) << p.transpose();
+    EXPECT_NEAR(values(1), signed_distance(environment.obstacles[1], p), 1e-3) << p.transpose();
     inside += values(0) < 0;
     const RowMajor jacobian = jacobian_of(tape, p, {});
     EXPECT_NEAR(jacobian.row(0).norm(), 1, 1e-9) << p.transpose();

@@ -7,6 +7,8 @@
 
 #include "framework/core/json.h"
 #include "framework/trajectory/plan.h"
+#include "framework/trajectory/plan_digest.h"
+#include "tests/obstacles.h"
 
 namespace lapwing {
 namespace {
@@ -41,8 +43,8 @@ Plan small_plan(const MotionRecord& motion = force_motion()) {
     plan.trajectory.samples.push_back(s);
   }
   plan.environment.margin = 0.4;
-  plan.environment.spheres.push_back({"tree", {1, 2, 3}, 4});
-  plan.environment.boxes.push_back({"house", {1, 2, 3}, {4, 5, 6}});
+  plan.environment.obstacles = {sphere_at("tree", {1, 2, 3}, 4),
+                                box_at("house", {1, 2, 3}, {4, 5, 6})};
   plan.budget = 120;
   plan.task.keyframes.push_back({.time = 0.1, .position = {0, 1, 2}, .yaw = 0.5});
   plan.task.keyframes.push_back({.time = 0.2, .position = {0, 2, 2}});
@@ -80,8 +82,12 @@ TEST(Plan, RoundTripIsByteStableForEveryModel) {
 // small_plan() as a film: zones, subjects, cuts and framing.
 Plan film_plan() {
   Plan plan = small_plan();
-  plan.environment.zones = {{.name = "square", .corners = {{0, 0}, {1.0 / 3, 0}, {0, 2}}},
-                            {"tower", {{5, 5}, {6, 5}, {6, 6}, {5, 6}}, -1, 40}};
+  auto& obstacles = plan.environment.obstacles;
+  obstacles = {zone_at("square", {{0, 0}, {1.0 / 3, 0}, {0, 2}}),
+               flight_zone_at("tower", {{5, 5}, {6, 5}, {6, 6}, {5, 6}}, -1, 40)};
+  obstacles[0].opaque = false;
+  obstacles[0].times = {0.5, 2};
+  obstacles[0].moves = {{0, 0, 0}, {1.0 / 3, 0, 1}};
   plan.environment.subjects = {{"walker", {0, 0.1, 2}, {{0, 0, 1}, {1, 0, 1}, {1, 3, 1}}, 1.8, 0.5},
                                {"castle", {0}, {{9, 9, 2}}}};
   plan.cuts = {{0.05, 0.1}, {0.15, 0.2}};
@@ -94,12 +100,16 @@ TEST(Plan, FilmsSurvive) {
   const Plan plan = reread(film_plan());
   EXPECT_EQ(plan_text(plan), plan_text(film_plan()));
   const Environment& environment = plan.environment;
-  ASSERT_EQ(environment.zones.size(), 2u);
-  EXPECT_EQ(environment.zones[0].corners[1], Eigen::Vector2d(1.0 / 3, 0));
-  EXPECT_EQ(environment.zones[0].floor, -INFINITY);
-  EXPECT_EQ(environment.zones[0].ceiling, INFINITY);
-  EXPECT_EQ(environment.zones[1].floor, -1);
-  EXPECT_EQ(environment.zones[1].ceiling, 40);
+  ASSERT_EQ(environment.obstacles.size(), 2u);
+  const Obstacle &square = environment.obstacles[0], &tower = environment.obstacles[1];
+  EXPECT_EQ(recorded_numbers(square.parameters, "corners")[2], 1.0 / 3);
+  EXPECT_FALSE(square.opaque);
+  EXPECT_EQ(square.side, Side::keep_out);
+  EXPECT_EQ(square.moved(0), Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(square.moved(9), Eigen::Vector3d(1.0 / 3, 0, 1));
+  EXPECT_NEAR(square.speed(), std::hypot(1.0 / 3, 1) / 1.5, 1e-12);
+  EXPECT_EQ(tower.side, Side::keep_inside);
+  EXPECT_EQ(tower.parameters.at("floor").as_number(), -1);
   ASSERT_EQ(environment.subjects.size(), 2u);
   EXPECT_EQ(environment.subjects[0].times[1], 0.1);
   EXPECT_EQ(environment.subjects[0].positions[2], Eigen::Vector3d(1, 3, 1));
@@ -117,21 +127,21 @@ TEST(Plan, WithoutFilmThereAreNoKeysOfIt) {
   EXPECT_EQ(value.find("cuts"), nullptr);
   EXPECT_EQ(value.at("task").find("framing"), nullptr);
   EXPECT_EQ(value.at("task").find("framing_share"), nullptr);
-  EXPECT_EQ(value.at("environment").find("zones"), nullptr);
   EXPECT_EQ(value.at("environment").find("subjects"), nullptr);
-  EXPECT_EQ(to_value(film_plan()).at("environment").at("zones").as_list()[0].find("floor"),
-            nullptr);
+  const Value& obstacle = value.at("environment").at("obstacles").as_list()[0];
+  for (const char* key : {"side", "opaque", "track", "triangles"})
+    EXPECT_EQ(obstacle.find(key), nullptr) << key;
 }
 
 TEST(Plan, EveryErrorOfAFilmIsListed) {
   Value value = to_value(film_plan());
-  auto& zones = value.find("environment")->find("zones")->as_list();
+  auto& obstacles = value.find("environment")->find("obstacles")->as_list();
   auto& subjects = value.find("environment")->find("subjects")->as_list();
   auto& framing = value.find("task")->find("framing")->as_list();
-  zones[0].find("corners")->as_list()[2] = Value(Value::List{1.0, 2.0, 3.0});
-  zones[0].set("roof", 3.0);
-  zones[1].set("floor", -INFINITY);
-  zones[1].set("ceiling", "sky");
+  obstacles[0].set("roof", 3.0);
+  obstacles[0].find("track")->find("moves")->as_list()[1] = Value(3);
+  obstacles[1].set("parameters", 3);
+  obstacles[1].set("side", "beside");
   subjects[0].find("times")->as_list()[1] = "noon";
   subjects[0].find("positions")->as_list()[1] = Value(3);
   erase(subjects[1], "height");
@@ -141,10 +151,12 @@ TEST(Plan, EveryErrorOfAFilmIsListed) {
   erase(framing[0], "subject");
   framing[1].set("start", false);
   const std::string message = error_of(value);
-  EXPECT_THAT(message, HasSubstr("environment.zones[1].corners: expected a list of lists of 2"));
-  EXPECT_THAT(message, HasSubstr("environment.zones[1].roof: unknown"));
-  EXPECT_THAT(message, HasSubstr("environment.zones[2].floor: expected a finite number"));
-  EXPECT_THAT(message, HasSubstr("environment.zones[2].ceiling: expected a number, got a text"));
+  EXPECT_THAT(message, HasSubstr("environment.obstacles[1].roof: unknown"));
+  EXPECT_THAT(message,
+              HasSubstr("environment.obstacles[1].track.moves: expected a list of lists of 3"));
+  EXPECT_THAT(message, HasSubstr("environment.obstacles[2].parameters: expected a map"));
+  EXPECT_THAT(message,
+              HasSubstr("environment.obstacles[2].side: expected one of: keep_out, keep_inside"));
   EXPECT_THAT(message,
               HasSubstr("environment.subjects[1].times: expected a list of finite numbers"));
   EXPECT_THAT(message,
@@ -174,7 +186,7 @@ TEST(Plan, ValuesSurvive) {
   EXPECT_EQ(plan.trajectory.samples[1].position, Eigen::Vector3d(1.0 / 3, 1, 2));
   EXPECT_EQ(plan.trajectory.samples[1].velocity.z(), 1e-17);
   EXPECT_EQ(plan.trajectory.samples[2].gimbal_pitch, -0.7);
-  EXPECT_EQ(plan.environment.boxes[0].upper.z(), 6);
+  EXPECT_EQ(recorded_numbers(plan.environment.obstacles[1].parameters, "upper")[2], 6);
   EXPECT_EQ(plan.task.keyframes[0].yaw, 0.5);
   EXPECT_FALSE(plan.task.keyframes[1].yaw);
   EXPECT_EQ(plan.configuration.at("weights").as_integer(), 3);
@@ -218,7 +230,7 @@ TEST(Plan, EveryErrorIsListed) {
   samples[1].set("position", Value(Value::List{1.0, std::nan(""), 2.0}));
   samples[2].set("yaw_torq", 0.0);
   value.find("task")->find("keyframes")->as_list()[1].set("tolerance", INFINITY);
-  value.find("environment")->find("spheres")->as_list()[0].set("radius", Value::map());
+  value.find("environment")->find("obstacles")->as_list()[0].set("type", Value::map());
   value.find("motion")->set("inputs", "wobbly");
   value.find("frame")->find("geodetic_origin")->set("latitude_deg", 95.0);
   const std::string message = error_of(value);
@@ -228,7 +240,7 @@ TEST(Plan, EveryErrorIsListed) {
   EXPECT_THAT(message, HasSubstr("samples[2].position: expected a list of 3 finite numbers"));
   EXPECT_THAT(message, HasSubstr("samples[3].yaw_torq: unknown; did you mean 'yaw_torque'?"));
   EXPECT_THAT(message, HasSubstr("task.keyframes[2].tolerance: expected a finite number"));
-  EXPECT_THAT(message, HasSubstr("environment.spheres[1].radius: expected a number, got a map"));
+  EXPECT_THAT(message, HasSubstr("environment.obstacles[1].type: expected a text, got a map"));
   EXPECT_THAT(message, HasSubstr("motion.inputs: expected one of: held, linear"));
   EXPECT_THAT(message, HasSubstr("latitude must lie between"));
 }
@@ -249,10 +261,97 @@ TEST(Plan, MissingTablesAreReportedOnce) {
 
 TEST(Plan, RefusesOtherFormatsAndNoSamples) {
   Value value = to_value(small_plan());
-  value.set("format", 2);
+  value.set("format", 3);
   value.set("samples", Value::list());
-  EXPECT_THAT(error_of(value), HasSubstr("this version reads format 1"));
+  EXPECT_THAT(error_of(value), HasSubstr("this version reads formats 1 and 2"));
   EXPECT_THAT(error_of(value), HasSubstr("at least one sample"));
+}
+
+// Before shapes were plugins, a plan had a list for each kind, and distances named the kind.
+TEST(Plan, ReadsTheFirstFormat) {
+  Value value = to_value(small_plan());
+  value.set("format", 1);
+  const Value environment = from_json(R"({ "margin": 0.4,
+    "spheres": [ { "name": "tree", "center": [1, 2, 3], "radius": 4 } ],
+    "boxes": [ { "name": "house", "lower": [1, 2, 3], "upper": [4, 5, 6] } ],
+    "zones": [ { "name": "yard", "corners": [[0, 0], [1, 0], [0, 2]], "ceiling": 9 } ],
+    "flight_zones": [ { "name": "park", "corners": [[0, 0], [9, 0], [0, 9]], "floor": -1 } ],
+    "meshes": [ { "name": "wall", "file": "wall.ply", "sha256": "00" } ],
+    "maps": [ { "name": "hall", "file": "hall.ot", "sha256": "11" } ] })",
+                                      "environment");
+  value.set("environment", environment);
+  value.find("task")->set("framing", Value::list());
+  value.find("task")->set("framing_share", 0.9);
+  value.find("configuration")->set("line_of_sight", "reported");
+  value.set("constraints", from_json(R"([ { "name": "c", "required": true, "operations": [
+      { "op": "constant", "number": 1 },
+      { "op": "distance", "of": [0, 0, 0], "reach": 5, "obstacle": "map", "index": 0 },
+      { "op": "distance", "of": [0, 0, 0], "reach": 5, "obstacle": "no_fly_zone", "index": 0 } ],
+    "results": [ { "of": 1, "lower": 0 }, { "of": 2, "lower": 0 } ] } ])",
+                                     "constraints"));
+  const Plan plan = plan_from_value(value);
+  const auto& obstacles = plan.environment.obstacles;
+  ASSERT_EQ(obstacles.size(), 6u);
+  const auto expect = [&](std::size_t k, const Obstacle& other) {
+    EXPECT_EQ(obstacles[k].name, other.name);
+    EXPECT_EQ(obstacles[k].type, other.type);
+    EXPECT_EQ(obstacles[k].side, other.side);
+    EXPECT_TRUE(obstacles[k].opaque);
+    for (const auto& [key, number] : other.parameters.as_map())
+      if (number.is_text())
+        EXPECT_EQ(obstacles[k].parameters.at(key), number);
+      else if (number.is_list())
+        EXPECT_EQ(recorded_numbers(obstacles[k].parameters, key),
+                  recorded_numbers(other.parameters, key));
+      else
+        EXPECT_EQ(obstacles[k].parameters.at(key).as_number(), number.as_number());
+  };
+  expect(0, sphere_at("tree", {1, 2, 3}, 4));
+  expect(1, box_at("house", {1, 2, 3}, {4, 5, 6}));
+  expect(2, zone_at("yard", {{0, 0}, {1, 0}, {0, 2}}, -INFINITY, 9));
+  expect(3, flight_zone_at("park", {{0, 0}, {9, 0}, {0, 9}}, -1));
+  expect(4, file_at("wall", "mesh", "wall.ply", "00"));
+  expect(5, file_at("hall", "map", "hall.ot", "11"));
+  EXPECT_FALSE(plan.task.line_of_sight_required);
+  EXPECT_EQ(plan.constraints[0].operations[1].component, 5);
+  EXPECT_EQ(plan.constraints[0].operations[2].component, 2);
+  value.find("environment")->set("spheres", Value(3));
+  EXPECT_THAT(error_of(value), HasSubstr("environment.spheres: expected a list"));
+}
+
+// A shape that the verifier does not know goes with its triangles; a record that was changed is
+// told from the others by its own checksum.
+TEST(Plan, RecordsOfShapesHaveTrianglesAndChecksums) {
+  Plan plan = small_plan();
+  Obstacle pole = obstacle_at("pole", "tripod", {{"size", 3.5}});
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.0 / 3}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  pole.triangles = std::make_shared<TriangleMesh>(mesh);
+  pole.tolerance = 0.005;
+  plan.environment.obstacles.push_back(pole);
+  const Plan back = reread(plan);
+  const Obstacle& read = back.environment.obstacles[2];
+  ASSERT_NE(read.triangles, nullptr);
+  EXPECT_EQ(read.triangles->vertices, mesh.vertices);
+  EXPECT_EQ(read.triangles->triangles, mesh.triangles);
+  EXPECT_EQ(read.tolerance, 0.005);
+  EXPECT_EQ(plan_text(back), plan_text(plan));
+
+  Value document = from_json(plan_text(plan), "plan.json");
+  EXPECT_TRUE(check_digest(document).changed.empty());
+  Value& second = document.find("environment")->find("obstacles")->as_list()[1];
+  second.find("parameters")->set("upper", place_value({4, 5, 7}));
+  EXPECT_EQ(check_digest(document).changed,
+            (std::vector<std::string>{"environment.obstacles", "environment.obstacles[1]"}));
+
+  Value value = to_value(plan);
+  value.find("environment")
+      ->find("obstacles")
+      ->as_list()[2]
+      .find("triangles")
+      ->set("triangles", Value(Value::List{numbers_value({0, 1, 2.5})}));
+  EXPECT_THAT(error_of(value), HasSubstr("obstacles[3].triangles.triangles: expected places"));
 }
 
 TEST(Plan, NotANumberCannotBeWritten) {
@@ -264,7 +363,7 @@ TEST(Plan, NotANumberCannotBeWritten) {
   EXPECT_FALSE(std::filesystem::exists(path));
   for (const double bad : {std::nan(""), double(INFINITY)}) {
     plan = film_plan();
-    plan.environment.zones[0].floor = bad;
+    plan.environment.obstacles[0].parameters.set("floor", bad);
     EXPECT_THROW(plan_text(plan), Error);
     plan = film_plan();
     plan.cuts[0].finish = bad;

@@ -58,6 +58,7 @@ TEST(StatedConstraints, EveryOperationGivesWhatTheTapeGives) {
       {ConstraintOp::select, TapeOp::select}};
   ASSERT_EQ(std::size(same) + 4, static_cast<std::size_t>(kConstraintOps));
   const Plan plan = reference_plan();
+  const std::vector<std::unique_ptr<JudgedShape>> none;
   Random random(7);
   for (const auto& [stated, recorded] : same) {
     ASSERT_EQ(operand_count(stated), operand_count(recorded)) << name_of(stated);
@@ -76,7 +77,7 @@ TEST(StatedConstraints, EveryOperationGivesWhatTheTapeGives) {
                                                  of(stated, 0, 1, 2, number)},
                                   .results = {{.operation = 3, .upper = 0.0}}};
       ASSERT_EQ(problem_of(constraint, plan), "") << name_of(stated);
-      ConstraintEvaluation evaluation(constraint, plan.trajectory, {plan.environment, {}, {}});
+      ConstraintEvaluation evaluation(constraint, plan.trajectory, {plan.environment, none});
       double result = 0;
       const ConstraintPoint point;
       evaluation.evaluate({&point, 1}, {&result, 1});
@@ -93,6 +94,7 @@ TEST(StatedConstraints, EveryOperationGivesWhatTheTapeGives) {
 TEST(StatedConstraints, ASubjectIsWhereTheTapeHasIt) {
   const Plan plan = reference_plan();
   const Subject& walker = plan.environment.subjects[0];
+  const std::vector<std::unique_ptr<JudgedShape>> none;
   for (double time = -1; time < 10; time += 0.13)
     for (int component = 0; component < 3; ++component) {
       const StatedConstraint constraint{.name = "one",
@@ -102,7 +104,7 @@ TEST(StatedConstraints, ASubjectIsWhereTheTapeHasIt) {
                                                         .name = "walker",
                                                         .component = component}},
                                         .results = {{.operation = 1, .upper = 0.0}}};
-      ConstraintEvaluation evaluation(constraint, plan.trajectory, {plan.environment, {}, {}});
+      ConstraintEvaluation evaluation(constraint, plan.trajectory, {plan.environment, none});
       double result = 0;
       const ConstraintPoint point;
       evaluation.evaluate({&point, 1}, {&result, 1});
@@ -286,11 +288,8 @@ TEST(StatedConstraints, ADocumentHoldsThemAndOlderOnesHaveNone) {
       {.op = ConstraintOp::subject, .operands = {0}, .name = "walker", .component = 2});
   all.operations.push_back(of(ConstraintOp::maximum, 0, 1, -1, 0.25));
   all.operations.push_back(of(ConstraintOp::power, 2, -1, -1, 1.5));
-  all.operations.push_back({.op = ConstraintOp::distance,
-                            .operands = {0, 1, 2},
-                            .number = 7,
-                            .name = "no_fly_zone",
-                            .component = 1});
+  all.operations.push_back(
+      {.op = ConstraintOp::distance, .operands = {0, 1, 2}, .number = 7, .component = 3});
   all.results.push_back({.operation = 4, .lower = 0.5});
   all.times = {1, 2};
   Plan plan = with(all);

@@ -56,7 +56,7 @@ class Coverage : public testing::Test {
     }
     static const auto kSeen = static_cast<std::int64_t>(seen(scan).size());
     scan.seen = kSeen;
-    plan.environment.maps = {{"known", "map.ot", sum_}};
+    plan.environment.obstacles = {file_at("known", "map", "map.ot", sum_)};
     plan.environment.margin = 0.5;
     plan.task.scan = scan;
     return plan;

@@ -148,32 +148,30 @@ TEST(Framing, WholeSubjectIsReportedButNotRequired) {
 TEST(Framing, ObstaclesInTheLineOfSightFailTheFilm) {
   Plan plan = hover();
   EXPECT_EQ(share_of(plan, "line_of_sight"), 1);
-  plan.environment.spheres = {{"balloon", {5, 1.9, 0}, 1.5}};
-  plan.environment.boxes = {{"wall", {4, -9, -9}, {4.1, -1.5, 9}}};
+  plan.environment.obstacles = {sphere_at("balloon", {5, 1.9, 0}, 1.5),
+                                box_at("wall", {4, -9, -9}, {4.1, -1.5, 9})};
   EXPECT_EQ(share_of(plan, "line_of_sight"), 1);
-  plan.environment.spheres[0].radius = 2;
+  plan.environment.obstacles[0].parameters.set("radius", 2.0);
   EXPECT_EQ(share_of(plan, "line_of_sight"), 0);
-  plan.environment.spheres.clear();
-  plan.environment.boxes[0].upper.y() = 0.1;
+  plan.environment.obstacles = {box_at("wall", {4, -9, -9}, {4.1, 0.1, 9})};
   EXPECT_EQ(share_of(plan, "line_of_sight"), 0);
   EXPECT_FALSE(verify(plan).feasible());
   EXPECT_TRUE(check_of(plan, "line_of_sight").required);
   EXPECT_EQ(check_of(plan, "line_of_sight").detail, "subject 'point'");
-  plan.configuration = Value::map();
-  plan.configuration.set("line_of_sight", "reported");
+  plan.task.line_of_sight_required = false;
   EXPECT_TRUE(verify(plan).feasible());
   EXPECT_FALSE(check_of(plan, "line_of_sight").pass);
   EXPECT_FALSE(check_of(plan, "line_of_sight").required);
-  for (const Value& other : {Value("required"), Value("no"), Value(false), Value()}) {
-    plan.configuration.set("line_of_sight", other);
-    EXPECT_FALSE(verify(plan).feasible());
-  }
+  plan.task.line_of_sight_required = true;
+  plan.environment.obstacles[0].opaque = false;
+  EXPECT_TRUE(check_of(plan, "line_of_sight").pass) << "airspace hides nothing";
   // A wall that ends beside the way of a walker: seen from the time on when he passes its edge.
-  plan.environment.boxes[0].upper.y() = 0;
+  plan.environment.obstacles = {box_at("wall", {4, -9, -9}, {4.1, 0, 9})};
   plan.environment.subjects[0] = {"point", {0, 10}, {{10, -3, 0}, {10, 7, 0}}};
   EXPECT_NEAR(share_of(plan, "line_of_sight"), 0.7, 1e-6);
   // Obstacles that contain the subject are part of it, others behind it do not matter.
-  plan.environment.boxes = {{"house", {8, -4, -1}, {12, 8, 3}}, {"hill", {13, -9, -9}, {99, 9, 9}}};
+  plan.environment.obstacles = {box_at("house", {8, -4, -1}, {12, 8, 3}),
+                                box_at("hill", {13, -9, -9}, {99, 9, 9})};
   EXPECT_EQ(share_of(plan, "line_of_sight"), 1);
 }
 
@@ -181,7 +179,7 @@ TEST(Framing, ZonesHideWhatIsBehindThem) {
   Plan plan = hover();  // along y = 0, z = 0, from x = 0 to 10
   const auto share = [&](std::vector<Eigen::Vector2d> corners, double floor = -INFINITY,
                          double ceiling = INFINITY) {
-    plan.environment.zones = {{"block", std::move(corners), floor, ceiling}};
+    plan.environment.obstacles = {zone_at("block", corners, floor, ceiling)};
     return share_of(plan, "line_of_sight");
   };
   const std::vector<Eigen::Vector2d> across{{4, -2}, {5, -2}, {5, 2}, {4, 2}};
@@ -216,7 +214,8 @@ class Sight : public testing::Test {
   // Of the reference's flight beside the mesh, which lies in the file `wall.ply`.
   double share_past(const MeshBuilder& builder, Plan plan) const {
     write_ply(builder.mesh(), folder_ / "wall.ply");
-    plan.environment.meshes = {{"wall", "wall.ply", sha256(read_file(folder_ / "wall.ply"))}};
+    plan.environment.obstacles = {
+        file_at("wall", "mesh", "wall.ply", sha256(read_file(folder_ / "wall.ply")))};
     const Certificate certificate = verify(plan, folder_);
     const Check& check = *certificate.find("line_of_sight");
     EXPECT_EQ(check.skipped, "") << certificate.find("document")->detail;
@@ -281,7 +280,8 @@ TEST_F(Sight, MapsHideWhatIsBehindThem) {
     map->import(leaves);
     write_map_file(folder_ / "hall.ot", *map);
     Plan plan = hover();
-    plan.environment.maps = {{"hall", "hall.ot", sha256(read_file(folder_ / "hall.ot"))}};
+    plan.environment.obstacles = {
+        file_at("hall", "map", "hall.ot", sha256(read_file(folder_ / "hall.ot")))};
     const Certificate certificate = verify(plan, folder_);
     EXPECT_EQ(certificate.find("document")->detail, "");
     return *certificate.find("line_of_sight")->worst;

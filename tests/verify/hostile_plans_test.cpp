@@ -39,8 +39,9 @@ TEST(HostilePlans, NumbersThatAreNotFinite) {
     EXPECT_THAT(refusal_after([&](Plan& p) { p.task.keyframes[1].tolerance = bad; }),
                 HasSubstr("keyframe 2 needs tolerances"));
     EXPECT_THAT(refusal_after([&](Plan& p) { p.environment.margin = bad; }), HasSubstr("margin"));
-    EXPECT_THAT(refusal_after([&](Plan& p) { p.environment.spheres[0].radius = bad; }),
-                HasSubstr("sphere 'tree'"));
+    EXPECT_THAT(
+        refusal_after([&](Plan& p) { p.environment.obstacles[0].parameters.set("radius", bad); }),
+        HasSubstr("sphere 'tree'"));
     EXPECT_THAT(refusal_after([&](Plan& p) { p.budget = bad; }), HasSubstr("budget"));
   }
 }
@@ -73,17 +74,20 @@ TEST(HostilePlans, NoSampleAndOneSample) {
 
 TEST(HostilePlans, NegativeMarginAndEmptyObstacles) {
   EXPECT_THAT(refusal_after([](Plan& p) { p.environment.margin = -1; }), HasSubstr("margin"));
-  EXPECT_THAT(refusal_after([](Plan& p) { p.environment.spheres[0].radius = -1; }),
-              HasSubstr("sphere"));
+  EXPECT_THAT(
+      refusal_after([](Plan& p) { p.environment.obstacles[0].parameters.set("radius", -1.0); }),
+      HasSubstr("sphere"));
   EXPECT_THAT(refusal_after([](Plan& p) {
-                std::swap(p.environment.boxes[0].lower, p.environment.boxes[0].upper);
+                p.environment.obstacles[1] = box_at("house", {20, -4, 30}, {-20, -30, 0});
               }),
               HasSubstr("box 'house'"));
 }
 
 TEST(HostilePlans, ZonesThatAreNoPolygons) {
   const auto refusal_of = [](std::vector<Eigen::Vector2d> corners) {
-    return refusal_after([&](Plan& p) { p.environment.zones[0].corners = corners; });
+    return refusal_after([&](Plan& p) {
+      p.environment.obstacles[2].parameters.set("corners", corners_value(corners));
+    });
   };
   EXPECT_THAT(refusal_of({}), HasSubstr("zone 'yard' must have at least three corners"));
   EXPECT_THAT(refusal_of({{50, 0}, {51, 0}}), HasSubstr("at least three corners"));
@@ -102,8 +106,8 @@ TEST(HostilePlans, ZonesThatAreNoPolygons) {
   for (const auto& [floor, ceiling] : std::vector<std::pair<double, double>>{
            {3, 3}, {3, 2}, {INFINITY, INFINITY}, {-INFINITY, -INFINITY}, {std::nan(""), 3}}) {
     EXPECT_THAT(refusal_after([floor = floor, ceiling = ceiling](Plan& p) {
-                  p.environment.zones[1].floor = floor;
-                  p.environment.zones[1].ceiling = ceiling;
+                  p.environment.obstacles[3].parameters.set("floor", floor);
+                  p.environment.obstacles[3].parameters.set("ceiling", ceiling);
                 }),
                 HasSubstr("zone 'roofs' must have its floor below its ceiling"));
   }

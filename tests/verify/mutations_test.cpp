@@ -84,18 +84,22 @@ const std::vector<Mutation>& mutations() {
       {"gimbal_pitch", vehicle([](Vehicle& v) { v.gimbal->pitch_min = -0.5; })},
       {"gimbal_yaw_rate", vehicle([](Vehicle& v) { v.gimbal->yaw_rate_max = 0.036; })},
       {"gimbal_pitch_rate", vehicle([](Vehicle& v) { v.gimbal->pitch_rate_max = 0.04; })},
-      {"clearance", [](Plan& p) { p.environment.spheres[0].radius = 2.51; }},
-      {"clearance", [](Plan& p) { p.environment.boxes[0].upper.y() = -0.49; }},
+      {"clearance", [](Plan& p) { p.environment.obstacles[0].parameters.set("radius", 2.51); }},
+      {"clearance",
+       [](Plan& p) {
+         p.environment.obstacles[1] = box_at("house", {-20, -30, 0}, {20, -0.49, 30});
+       }},
       {"clearance", [](Plan& p) { p.environment.margin = 2.01; }},
       {"clearance",
        [](Plan& p) {
          // Beside the start, behind the camera.
-         p.environment.zones[0].corners = {{-30, 0.49}, {-7.9, 0.49}, {-7.9, 9}, {-30, 9}};
+         p.environment.obstacles[2] =
+             zone_at("yard", {{-30, 0.49}, {-7.9, 0.49}, {-7.9, 9}, {-30, 9}});
        }},
       {"clearance",
        [](Plan& p) {
-         p.environment.zones[1].corners = {{-30, -3}, {-7.9, -3}, {-7.9, 3}, {-30, 3}};
-         p.environment.zones[1].ceiling = 9.51;
+         p.environment.obstacles[3] =
+             zone_at("roofs", {{-30, -3}, {-7.9, -3}, {-7.9, 3}, {-30, 3}}, -5, 9.51);
        }},
       {"defect_gimbal", [](Plan& p) { sample(p, 40).gimbal_yaw += 0.005; }},
       {"defect_gimbal", [](Plan& p) { sample(p, 40).gimbal_yaw_rate += 0.05; }},
@@ -103,13 +107,14 @@ const std::vector<Mutation>& mutations() {
       {"framing",
        [](Plan& p) {
          p.task.framing[1].subject = "castle";
-         p.environment.zones.erase(p.environment.zones.begin());  // which is before the castle
+         p.environment.obstacles.erase(p.environment.obstacles.begin() +
+                                       2);  // which is before the castle
        }},
       {"line_of_sight",
        [](Plan& p) {
          const Sample& s = p.trajectory.samples[60];
          const Eigen::Vector3d& walker = p.environment.subjects[0].positions[12];
-         p.environment.spheres.push_back({"kite", 0.2 * s.position + 0.8 * walker, 0.8});
+         p.environment.obstacles.push_back(sphere_at("kite", 0.2 * s.position + 0.8 * walker, 0.8));
        }},
       {"framing", vehicle([](Vehicle& v) {
          v.camera.width = 2;
@@ -117,7 +122,7 @@ const std::vector<Mutation>& mutations() {
          v.camera.principal_x = v.camera.principal_y = 0.5;
        })},
       {"document", [](Plan& p) { p.cuts[0].start = p.cuts[0].finish; }},
-      {"document", [](Plan& p) { p.environment.zones[1].ceiling = -6; }},
+      {"document", [](Plan& p) { p.environment.obstacles[3].parameters.set("ceiling", -6.0); }},
       {"document", [](Plan& p) { p.environment.subjects[0].positions.pop_back(); }},
       {"document", [](Plan& p) { p.task.framing[0].subject = "runner"; }},
       {"flight_time", vehicle([](Vehicle& v) { v.flight_time = 7.9; })},

@@ -31,8 +31,8 @@ class PathModel : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  MeshObstacle wall() const {
-    return {"wall", "wall.ply", sha256(read_file(folder_ / "wall.ply"))};
+  Obstacle wall() const {
+    return file_at("wall", "mesh", "wall.ply", sha256(read_file(folder_ / "wall.ply")));
   }
   // At 1 m/s through the points.
   Plan plan(const std::vector<Vector3d>& points, double speed = 1) const {
@@ -47,7 +47,7 @@ class PathModel : public testing::Test {
       sample.position = points[i];
       plan.trajectory.samples.push_back(sample);
     }
-    plan.environment.meshes = {wall()};
+    plan.environment.obstacles = {wall()};
     plan.environment.margin = 0.5;
     return plan;
   }
@@ -111,16 +111,16 @@ TEST_F(PathModel, MeshesMustBeWhatThePlanSays) {
     return document.detail;
   };
   Plan p = plan({{-20, 9, 3}, {-10, 9, 3}});
-  p.environment.meshes[0].sha256[5] ^= 1;
+  p.environment.obstacles[0].parameters.set("sha256", std::string(64, '0'));
   EXPECT_NE(said(p).find("has changed"), std::string::npos);
-  p.environment.meshes[0].file = "gone.ply";
+  p.environment.obstacles[0].parameters.set("file", "gone.ply");
   EXPECT_NE(said(p).find("gone.ply"), std::string::npos);
   for (const char* file : {"../wall.ply", "/etc/passwd", ""}) {
-    p.environment.meshes[0].file = file;
+    p.environment.obstacles[0].parameters.set("file", file);
     EXPECT_NE(said(p).find("below the plan's folder"), std::string::npos) << file;
   }
   write_file_atomically(folder_ / "broken.ply", "ply\nno more");
-  p.environment.meshes[0] = {"broken", "broken.ply", sha256("ply\nno more")};
+  p.environment.obstacles[0] = file_at("broken", "mesh", "broken.ply", sha256("ply\nno more"));
   EXPECT_NE(said(p).find("broken.ply"), std::string::npos);
 }
 
@@ -129,13 +129,15 @@ TEST_F(PathModel, AFlightUnderForceKeepsAwayFromMeshesToo) {
   MeshBuilder builder;
   builder.box({-100, 40, 0}, {100, 41, 30});
   write_ply(builder.mesh(), folder_ / "far.ply");
-  reference.environment.meshes = {{"far", "far.ply", sha256(read_file(folder_ / "far.ply"))}};
+  reference.environment.obstacles.push_back(
+      file_at("far", "mesh", "far.ply", sha256(read_file(folder_ / "far.ply"))));
   EXPECT_TRUE(judged(reference).feasible());
   const Vector3d middle = reference.task.keyframes[1].position;
   MeshBuilder near;
   near.box(middle + Vector3d(-1, -3, -1), middle + Vector3d(1, -0.3, 1));
   write_ply(near.mesh(), folder_ / "far.ply");
-  reference.environment.meshes[0].sha256 = sha256(read_file(folder_ / "far.ply"));
+  reference.environment.obstacles.back().parameters.set("sha256",
+                                                        sha256(read_file(folder_ / "far.ply")));
   const Check clearance = check(judged(reference), "clearance");
   EXPECT_FALSE(clearance.pass);
   EXPECT_NEAR(clearance.worst.value(), 0.3, 1e-2);
@@ -145,9 +147,8 @@ TEST_F(PathModel, ThePlanCarriesItsMeshes) {
   const Plan p = plan({{-20, 9, 3}, {-10, 9, 3}});
   write_plan(p, folder_ / "plan.json");
   const Plan back = read_plan(folder_ / "plan.json");
-  ASSERT_EQ(back.environment.meshes.size(), 1u);
-  EXPECT_EQ(back.environment.meshes[0].file, "wall.ply");
-  EXPECT_EQ(back.environment.meshes[0].sha256, p.environment.meshes[0].sha256);
+  ASSERT_EQ(back.environment.obstacles.size(), 1u);
+  EXPECT_EQ(back.environment.obstacles[0].parameters, p.environment.obstacles[0].parameters);
   EXPECT_EQ(back.trajectory.motion.name, "path");
   EXPECT_TRUE(verify(back, folder_).feasible());
   EXPECT_EQ(plan_text(back), plan_text(p));

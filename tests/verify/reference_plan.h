@@ -13,7 +13,9 @@
 #include "framework/core/units.h"
 #include "framework/geometry/camera_axes.h"
 #include "framework/trajectory/plan.h"
+#include "framework/vehicle/vehicle.h"
 #include "tests/camera_drone.h"
+#include "tests/obstacles.h"
 
 namespace lapwing {
 
@@ -102,9 +104,10 @@ inline void add_film(Plan& plan) {
     walker.positions.push_back(s.position + 10 * axes.forward);
   }
   plan.environment.subjects = {walker, {"castle", {0}, {{0, 100, 5}}, 10, 8}};
-  plan.environment.zones = {
-      {.name = "yard", .corners = {{-30, 4}, {-20, 4}, {-20, 6}, {30, 6}, {30, 9}, {-30, 9}}},
-      {"roofs", {{-30, -3}, {30, -3}, {30, 3}, {-30, 3}}, -5, 3}};
+  plan.environment.obstacles.push_back(
+      zone_at("yard", {{-30, 4}, {-20, 4}, {-20, 6}, {30, 6}, {30, 9}, {-30, 9}}));
+  plan.environment.obstacles.push_back(
+      zone_at("roofs", {{-30, -3}, {30, -3}, {30, 3}, {-30, 3}}, -5, 3));
   plan.cuts = {{3.5, 4.25}};
   plan.task.framing = {{"walker", {0, 5}}, {"walker", {5, 8}}};
 }
@@ -135,8 +138,8 @@ inline Plan reference_plan(const ReferenceOptions& options = {}) {
       {.time = middle.time, .position = middle.position},
       {.time = duration, .position = samples.back().position, .yaw = samples.back().yaw}};
   plan.environment.margin = 0.5;
-  plan.environment.spheres = {{"tree", middle.position + Eigen::Vector3d(0, 3, 0), 1.0}};
-  plan.environment.boxes = {{"house", {-20, -30, 0}, {20, -4, 30}}};
+  plan.environment.obstacles = {sphere_at("tree", middle.position + Eigen::Vector3d(0, 3, 0), 1.0),
+                                box_at("house", {-20, -30, 0}, {20, -4, 30})};
   plan.budget = 60;
   add_film(plan);
   return plan;

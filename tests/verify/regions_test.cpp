@@ -64,7 +64,8 @@ class Regions : public testing::Test {
   }
   Plan in_hall(const std::vector<Vector3d>& points) const {
     Plan p = plan(points);
-    p.environment.maps = {{"hall", "hall.ot", sha256(read_file(folder_ / "hall.ot"))}};
+    p.environment.obstacles = {
+        file_at("hall", "map", "hall.ot", sha256(read_file(folder_ / "hall.ot")))};
     return p;
   }
   Check check(const Plan& plan, const char* name) const {
@@ -167,68 +168,76 @@ TEST_F(Regions, MapsMustBeWhatThePlanSays) {
     return document.detail;
   };
   Plan p = in_hall({{-8, -5, 2}, {8, -5, 2}});
-  p.environment.maps[0].sha256[3] ^= 1;
+  p.environment.obstacles[0].parameters.set("sha256", std::string(64, '0'));
   EXPECT_NE(said(p).find("has changed"), std::string::npos);
   for (const char* file : {"../hall.ot", "/etc/passwd", ""}) {
-    p.environment.maps[0].file = file;
+    p.environment.obstacles[0].parameters.set("file", file);
     EXPECT_NE(said(p).find("below the plan's folder"), std::string::npos) << file;
   }
-  p.environment.maps[0] = {"gone", "gone.ot", std::string(64, '0')};
+  p.environment.obstacles[0] = file_at("gone", "map", "gone.ot", std::string(64, '0'));
   EXPECT_NE(said(p).find("gone.ot"), std::string::npos);
-  p.environment.maps[0] = {"two", "hall.bt", sha256(read_file(folder_ / "hall.bt"))};
+  p.environment.obstacles[0] =
+      file_at("two", "map", "hall.bt", sha256(read_file(folder_ / "hall.bt")));
   EXPECT_NE(said(p).find("two states"), std::string::npos);
   write_file_atomically(folder_ / "broken.ot", "# Octomap OcTree file\nid OcTree\nsize 7\n");
-  p.environment.maps[0] = {"broken", "broken.ot", sha256(read_file(folder_ / "broken.ot"))};
+  p.environment.obstacles[0] =
+      file_at("broken", "map", "broken.ot", sha256(read_file(folder_ / "broken.ot")));
   EXPECT_NE(said(p).find("broken.ot"), std::string::npos);
 }
 
 TEST_F(Regions, FlightZonesAreStayedIn) {
   Plan p = plan({{-8, 0, 2}, {8, 0, 2}});
   EXPECT_NE(check(p, "flight_zone").skipped, "");
-  p.environment.flight_zones = {{"field", {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, 0, 10}};
+  p.environment.obstacles.push_back(
+      flight_zone_at("field", {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, 0, 10));
   EXPECT_TRUE(check(p, "flight_zone").pass);
   EXPECT_NEAR(check(p, "flight_zone").worst.value(), 1, 1e-3);
-  p.environment.flight_zones[0].ceiling = 2.4;
+  p.environment.obstacles.back().parameters.set("ceiling", 2.4);
   EXPECT_FALSE(check(p, "flight_zone").pass) << "the margin counts below the ceiling too";
   // A notch between two samples that both lie inside.
-  p.environment.flight_zones[0] = {"notched",
-                                   {{-9, -9}, {9, -9}, {9, 9}, {1, 9}, {0, -1}, {-1, 9}, {-9, 9}}};
+  p.environment.obstacles.back() =
+      flight_zone_at("notched", {{-9, -9}, {9, -9}, {9, 9}, {1, 9}, {0, -1}, {-1, 9}, {-9, 9}});
   const Check notched = check(p, "flight_zone");
   EXPECT_FALSE(notched.pass);
   EXPECT_LT(notched.worst.value(), 0.0);
   EXPECT_NEAR(notched.at, 8, 0.5);
   EXPECT_NE(notched.detail.find("flight zone 'notched'"), std::string::npos);
   // Every zone counts.
-  p.environment.flight_zones = {{"field", {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}},
-                                {"far", {{90, 90}, {99, 90}, {99, 99}}}};
+  p.environment.obstacles.back() = flight_zone_at("field", {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}});
+  p.environment.obstacles.push_back(flight_zone_at("far", {{90, 90}, {99, 90}, {99, 99}}));
   EXPECT_FALSE(check(p, "flight_zone").pass);
 }
 
 TEST_F(Regions, ZonesThatAreNoneAreRefused) {
   Plan p = plan({{-8, 0, 2}, {8, 0, 2}});
-  const auto said = [&](Zone zone) {
-    p.environment.flight_zones = {std::move(zone)};
+  p.environment.obstacles.emplace_back();
+  const auto said = [&](Obstacle zone) {
+    p.environment.obstacles.back() = std::move(zone);
     const Check document = check(p, "document");
     EXPECT_FALSE(document.pass);
     EXPECT_NE(document.detail.find("flight zone 'z'"), std::string::npos);
     return document.detail;
   };
-  EXPECT_NE(said({"z", {{0, 0}, {1, 0}}}).find("three corners"), std::string::npos);
-  EXPECT_NE(said({"z", {{0, 0}, {2, 2}, {2, 0}, {0, 2}}}).find("cross"), std::string::npos);
-  EXPECT_NE(said({"z", {{0, 0}, {2, 0}, {2, 2}}, 5, 4}).find("floor below"), std::string::npos);
-  EXPECT_NE(said({"z", {{0, 0}, {2, 0}, {NAN, 2}}}).find("not finite"), std::string::npos);
+  EXPECT_NE(said(flight_zone_at("z", {{0, 0}, {1, 0}})).find("three corners"), std::string::npos);
+  EXPECT_NE(said(flight_zone_at("z", {{0, 0}, {2, 2}, {2, 0}, {0, 2}})).find("cross"),
+            std::string::npos);
+  EXPECT_NE(said(flight_zone_at("z", {{0, 0}, {2, 0}, {2, 2}}, 5, 4)).find("floor below"),
+            std::string::npos);
+  EXPECT_NE(said(flight_zone_at("z", {{0, 0}, {2, 0}, {NAN, 2}})).find("not finite"),
+            std::string::npos);
 }
 
 TEST_F(Regions, ThePlanCarriesThem) {
   Plan p = in_hall({{-8, -5, 2}, {8, -5, 2}});
-  p.environment.flight_zones = {{"field", {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, 0}};
+  p.environment.obstacles.push_back(
+      flight_zone_at("field", {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, 0));
   write_plan(p, folder_ / "plan.json");
   const Plan back = read_plan(folder_ / "plan.json");
-  ASSERT_EQ(back.environment.maps.size(), 1u);
-  EXPECT_EQ(back.environment.maps[0].file, "hall.ot");
-  ASSERT_EQ(back.environment.flight_zones.size(), 1u);
-  EXPECT_EQ(back.environment.flight_zones[0].floor, 0);
-  EXPECT_EQ(back.environment.flight_zones[0].ceiling, std::numeric_limits<double>::infinity());
+  ASSERT_EQ(back.environment.obstacles.size(), 2u);
+  EXPECT_EQ(back.environment.obstacles[0].parameters.at("file").as_text(), "hall.ot");
+  EXPECT_EQ(back.environment.obstacles[1].side, Side::keep_inside);
+  EXPECT_EQ(back.environment.obstacles[1].parameters.at("floor").as_number(), 0);
+  EXPECT_EQ(back.environment.obstacles[1].parameters.find("ceiling"), nullptr);
   EXPECT_EQ(plan_text(back), plan_text(p));
   EXPECT_TRUE(verify(back, folder_).feasible());
 }

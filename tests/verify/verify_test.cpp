@@ -121,7 +121,7 @@ Plan dip() {
 
 TEST(Verify, ObstacleGrazedBetweenSamplesIsFound) {
   Plan plan = dip();
-  plan.environment.spheres = {{"pole", {5, -3, 0}, 0.5}};
+  plan.environment.obstacles = {sphere_at("pole", {5, -3, 0}, 0.5)};
   const Check check = check_of(verify(plan), "clearance");
   EXPECT_LE(*check.worst, 1.5);
   EXPECT_NEAR(*check.worst, 1.5, 3e-4);
@@ -163,7 +163,7 @@ TEST(Verify, DistanceFromSubjectsHasKnownValues) {
 TEST(Verify, ClearanceOfBoxesHasKnownValues) {
   Plan plan = dip();
   const auto clearance = [&](const Eigen::Vector3d& lower, const Eigen::Vector3d& upper) {
-    plan.environment.boxes = {{"", lower, upper}};
+    plan.environment.obstacles = {box_at("", lower, upper)};
     return *check_of(verify(plan), "clearance").worst;
   };
   EXPECT_NEAR(clearance({4, -3, -1}, {6, -2, 1}), 1, 3e-4);         // its upper face below the dip
@@ -176,29 +176,30 @@ TEST(Verify, ClearanceOfBoxesHasKnownValues) {
 
 TEST(Verify, ClearanceOfZonesHasKnownValues) {
   Plan plan = dip();  // along x = 0 to 10 at z = 0, down to y = -1 at x = 5
-  const auto clearance = [&](const Zone& zone) {
-    plan.environment.zones = {zone};
+  const auto clearance = [&](const Obstacle& zone) {
+    plan.environment.obstacles = {zone};
     return *check_of(verify(plan), "clearance").worst;
   };
   const std::vector<Eigen::Vector2d> square{{4, -3}, {6, -3}, {6, -2}, {4, -2}};
-  EXPECT_NEAR(clearance({.name = "", .corners = square}), 1, 6e-4);
-  EXPECT_NEAR(clearance({.name = "", .corners = {square.rbegin(), square.rend()}}), 1, 6e-4);
+  EXPECT_NEAR(clearance(zone_at("", square)), 1, 6e-4);
+  EXPECT_NEAR(clearance(zone_at("", {square.rbegin(), square.rend()})), 1, 6e-4);
   const std::vector<Eigen::Vector2d> around{{-1, -3}, {11, -3}, {11, 3}, {-1, 3}};
-  EXPECT_NEAR(clearance({"", around, 2, INFINITY}), 2, 6e-4);    // below its floor
-  EXPECT_NEAR(clearance({"", around, -INFINITY, -3}), 3, 6e-4);  // above its ceiling
-  EXPECT_NEAR(clearance({"", around, -0.25, 4}), -0.25, 6e-4);   // just above its floor
+  EXPECT_NEAR(clearance(zone_at("", around, 2, INFINITY)), 2, 6e-4);    // below its floor
+  EXPECT_NEAR(clearance(zone_at("", around, -INFINITY, -3)), 3, 6e-4);  // above its ceiling
+  EXPECT_NEAR(clearance(zone_at("", around, -0.25, 4)), -0.25, 6e-4);   // just above its floor
   // Deepest where the walls at x = -1 and y = -3 are equally far: 5 t + 1 = 3 + t^2 - 2 t.
   const double deepest = 5 * (7 - std::sqrt(41)) / 2 + 1;
-  EXPECT_NEAR(clearance({.name = "", .corners = around}), -deepest, 6e-4);
-  EXPECT_NEAR(clearance({"", square, 3, 4}), std::sqrt(10), 6e-4);  // an edge above, 1 m aside
+  EXPECT_NEAR(clearance(zone_at("", around)), -deepest, 6e-4);
+  EXPECT_NEAR(clearance(zone_at("", square, 3, 4)), std::sqrt(10),
+              6e-4);  // an edge above, 1 m aside
   // A fork: the dip passes between its prongs, 1.5 m above the bottom of the notch.
   const std::vector<Eigen::Vector2d> fork{{2, -4},   {8, -4},   {8, 2}, {7, 2},
                                           {7, -2.5}, {3, -2.5}, {3, 2}, {2, 2}};
-  EXPECT_LT(clearance({.name = "", .corners = fork}), 0);  // the prongs stand in the way
-  EXPECT_NEAR(clearance({"", fork, 1, 2}), 1, 6e-4);
+  EXPECT_LT(clearance(zone_at("", fork)), 0);  // the prongs stand in the way
+  EXPECT_NEAR(clearance(zone_at("", fork, 1, 2)), 1, 6e-4);
   const std::vector<Eigen::Vector2d> notch{{-3, -4},   {13, -4},   {13, 2}, {12, 2},
                                            {12, -2.5}, {-2, -2.5}, {-2, 2}, {-3, 2}};
-  EXPECT_NEAR(clearance({.name = "", .corners = notch}), 1.5, 6e-4);
+  EXPECT_NEAR(clearance(zone_at("", notch)), 1.5, 6e-4);
   EXPECT_EQ(check_of(verify(plan), "clearance").detail, "zone 1");
   EXPECT_NEAR(check_of(verify(plan), "clearance").at, 1, 0.05);
 }
@@ -207,19 +208,22 @@ TEST(Verify, ClearanceOfZonesIsNeverOverestimated) {
   // Stars of ten corners around the dip, against a fine walk along its known path.
   for (int shape = 0; shape < 40; ++shape) {
     Plan plan = dip();
-    Zone zone{.name = "star", .corners = {}, .floor = -1.0 - 0.1 * shape, .ceiling = 0.03 * shape};
+    std::vector<Eigen::Vector2d> corners;
     for (int i = 0; i < 10; ++i) {
       const double angle = 2 * std::numbers::pi * (i + 0.05 * shape) / 10;
       const double radius = i % 2 ? 0.7 : 1.4 + 0.2 * std::sin(7 * i + shape);
-      zone.corners.emplace_back(5 + 0.15 * (shape % 7) + radius * std::cos(angle),
-                                -3.5 + 0.1 * shape + radius * std::sin(angle));
+      corners.emplace_back(5 + 0.15 * (shape % 7) + radius * std::cos(angle),
+                           -3.5 + 0.1 * shape + radius * std::sin(angle));
     }
+    plan.environment.obstacles = {zone_at("star", corners, -1.0 - 0.1 * shape, 0.03 * shape)};
+    // By the plugin's code, which is not the verifier's.
+    const Environment around = with_shapes(plan.environment);
+    const Shape& zone = *around.obstacles[0].shape;
     double true_clearance = INFINITY;
     for (int i = 0; i <= 40000; ++i) {
       const double t = 2.0 * i / 40000;
-      true_clearance = std::min(true_clearance, signed_distance(zone, {5 * t, t * t - 2 * t, 0}));
+      true_clearance = std::min(true_clearance, zone.distance({5 * t, t * t - 2 * t, 0}, nullptr));
     }
-    plan.environment.zones = {zone};
     const double found = *check_of(verify(plan), "clearance").worst;
     EXPECT_LE(found, true_clearance + 1e-9) << shape;
     EXPECT_NEAR(found, true_clearance, 1e-3) << shape;
@@ -228,7 +232,7 @@ TEST(Verify, ClearanceOfZonesIsNeverOverestimated) {
 
 TEST(Verify, FastPassThroughAThinWallBetweenSamplesIsFound) {
   Plan plan = hidden_peak();  // 10.67 m between two samples
-  plan.environment.boxes = {{"wall", {5, -1, -1}, {5.001, 1, 1}}};
+  plan.environment.obstacles = {box_at("wall", {5, -1, -1}, {5.001, 1, 1})};
   EXPECT_LT(*check_of(verify(plan), "clearance").worst, 0);
 }
 

@@ -3,19 +3,26 @@
 //
 //   E^o = sum_i h sum_k (haze of obstacle k on the line of sight)^2
 //
-// Every sphere and box of the environment, grown by the margin, is filled with a haze that is thick
-// in the middle and thins out to nothing at its surface: (1 - |q|^2)^2 for a sphere, the product of
-// (1 - q_j^2)^2 for a box, q in units of the half sizes. Its integral along the line of sight, in
-// units of the smallest half size, is about 1 for a line through the middle and zero for one that
-// keeps the margin. Along a line the haze is a polynomial, so that Gauss's rule is exact, and the
+// Every opaque obstacle of the environment, grown by the margin m, is filled with a haze that thins
+// out to nothing at its surface. Its integral along the line of sight is about 1 for a line through
+// the middle and zero for one that keeps the margin.
+//
+// Balls and blocks (Shape::simple_form): (1 - |q|^2)^2 and the product of (1 - q_j^2)^2, q in units
+// of the half sizes. Along a line the haze is a polynomial, so that Gauss's rule is exact, and the
 // integral is twice differentiable. A little more haze below the middle than above shows a line
 // through the very middle the way out.
+//
+// Other shapes: x^3 with x = (m - d) / unit of the signed distance d, summed at points a fixed way
+// apart from the target on. The last ones fade out at the camera, so that the sum is smooth. Where
+// d > m + e there is no haze within e, so that most points are passed over.
 //
 //   p:add_cost { type = "occlusion", margin = 0.5, weight = 10 }
 #include "framework/plugin/plugin.h"
 #include "framework/problem/camera_error.h"
 #include "framework/problem/filmed_point.h"
+#include "framework/problem/obstacle_position.h"
 #include "framework/problem/time_spans.h"
+#include "framework/shape/lifted_distance.h"
 
 namespace lapwing {
 namespace {
@@ -23,10 +30,11 @@ namespace {
 template <class T>
 using Vector = Eigen::Matrix<T, 3, 1>;
 
-// Sphere or box around `center`.
-struct Obstacle {
-  Eigen::Vector3d center, half;  // m; of a sphere, the radius three times
-  bool round = false;
+// A ball or a block, or any other shape where there is no form.
+struct Hiding {
+  Obstacle obstacle;
+  std::optional<SimpleForm> form;
+  double unit = 0;  // m, of other shapes: depth at which the haze is 1
 };
 
 template <class T>
@@ -105,14 +113,21 @@ class Occlusion final : public DifferentiableCost<Occlusion> {
     FunctionShape shape{.blocks = setting.layout.indices({"position"}), .integral = true};
     point_.bind(setting, shape);
     obstacles_.clear();
-    const auto add = [&](const std::string& name, const char* kind, const Obstacle& obstacle) {
-      obstacles_.push_back(obstacle);
-      shape.row_names.push_back(name.empty() ? kind + std::to_string(obstacles_.size()) : name);
-    };
-    for (const Sphere& sphere : setting.environment.spheres)
-      add(sphere.name, "sphere ", {sphere.center, Eigen::Vector3d::Constant(sphere.radius), true});
-    for (const Box& box : setting.environment.boxes)
-      add(box.name, "box ", {0.5 * (box.lower + box.upper), 0.5 * (box.upper - box.lower)});
+    bool moving = false;
+    for (const Obstacle& obstacle : setting.environment.obstacles) {
+      if (!obstacle.opaque || obstacle.side == Side::keep_inside) continue;
+      if (!obstacle.shape)
+        throw InputError("obstacle '" + obstacle.name + "' has no shape that was opened");
+      obstacles_.push_back({obstacle, obstacle.shape->simple_form(), unit_of(*obstacle.shape)});
+      shape.row_names.push_back(obstacle.name.empty()
+                                    ? obstacle.type + " " + std::to_string(obstacles_.size())
+                                    : obstacle.name);
+      moving |= !obstacle.still();
+    }
+    if (moving) {
+      time_ = static_cast<int>(shape.blocks.size());
+      shape.blocks.push_back(setting.layout.index("time"));
+    }
     shape.rows = static_cast<int>(obstacles_.size());
     ask_within(shape, setting.horizon, {}, except_);
     return shape;
@@ -121,13 +136,72 @@ class Occlusion final : public DifferentiableCost<Occlusion> {
   template <class T>
   void residual(const Stage<T>& stage, Rows<T>& rows) const {
     const Vector<T> from = stage.template vector<3>(0), to = point_.at(stage);
-    for (std::size_t k = 0; k < obstacles_.size(); ++k)
-      rows[static_cast<int>(k)] = hidden(obstacles_[k], from, to);
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+      const Hiding& hiding = obstacles_[k];
+      Vector<T> moved(T(0.0), T(0.0), T(0.0));
+      if (!hiding.obstacle.still()) moved = obstacle_moved<T>(hiding.obstacle, stage.scalar(time_));
+      const Vector<T> camera = from - moved, target = to - moved;
+      rows[static_cast<int>(k)] =
+          hiding.form ? hidden(*hiding.form, camera, target) : hidden_by(hiding, camera, target);
+    }
   }
 
  private:
+  // The least half size of a solid, grown by the margin: there the haze is 1 at most.
+  double unit_of(const Shape& shape) const {
+    if (!shape.solid()) return margin_;
+    const double least = shape.bounds().sizes().minCoeff() / 2;
+    return margin_ + (std::isfinite(least) ? least : 0.0);
+  }
+
+  // x^3 from 0 on, and beyond 1 as its Taylor polynomial of second degree.
   template <class T>
-  T hidden(const Obstacle& obstacle, const Vector<T>& from, const Vector<T>& to) const {
+  static T haze_at(const T& x) {
+    if (value_of(x) <= 0) return T(0.0);
+    if (value_of(x) <= 1) return x * x * x;
+    const T more = x - 1.0;
+    return 1.0 + 3.0 * more + 3.0 * more * more;
+  }
+
+  // 0 at 0, 1 from 1 on, twice differentiable.
+  template <class T>
+  static T rising(const T& share) {
+    if (value_of(share) <= 0) return T(0.0);
+    if (value_of(share) >= 1) return T(1.0);
+    return share * share * share * (10.0 + share * (-15.0 + 6.0 * share));
+  }
+
+  template <class T>
+  T hidden_by(const Hiding& hiding, const Vector<T>& from, const Vector<T>& to) const {
+    using std::sqrt;
+    constexpr double kCoincident = 1e-12;  // m^2
+    const Shape& shape = *hiding.obstacle.shape;
+    const Vector<T> way = from - to;
+    const T squared = squared_norm(way);
+    if (value_of(squared) < kCoincident) return T(0.0);
+    const T at_target = lifted_distance(shape, to.data());
+    if (value_of(at_target) <= 0) return T(0.0);
+    const T clear = at_target * (1.0 / margin_);
+    const T seen = rising(T(clear * clear));
+    const T length = sqrt(squared);
+    const double spacing = margin_ / 2, whole = value_of(length);
+    T sum = T(0.0);
+    for (double at = spacing; at < whole;) {
+      Vector<T> p;
+      for (int i = 0; i < 3; ++i) p(i) = to(i) + way(i) * (at / length);
+      const Eigen::Vector3d place(value_of(p(0)), value_of(p(1)), value_of(p(2)));
+      const double away = shape.distance(place, nullptr);
+      if (away < margin_) {
+        const T depth = (margin_ - lifted_distance(shape, p.data())) * (1.0 / hiding.unit);
+        sum += haze_at(depth) * rising(T((length - at) * (1.0 / (2 * margin_))));
+      }
+      at += spacing * (away > margin_ ? std::floor((away - margin_) / spacing) + 1 : 1);
+    }
+    return near_fade(squared) * seen * sum * (spacing / hiding.unit);
+  }
+
+  template <class T>
+  T hidden(const SimpleForm& obstacle, const Vector<T>& from, const Vector<T>& to) const {
     using std::sqrt;
     constexpr double kCoincident = 1e-12;  // m^2
     // Gauss's rule of seven points on -1 to 1: exact up to degree 13, that of a box's haze.
@@ -166,7 +240,7 @@ class Occlusion final : public DifferentiableCost<Occlusion> {
 
   // What the target stands in or touches is not in its way: 0 there, 1 a margin outside.
   template <class T>
-  T clear_of(const Obstacle& obstacle, const Vector<T>& target) const {
+  T clear_of(const SimpleForm& obstacle, const Vector<T>& target) const {
     using std::abs, std::sqrt;
     T squared = T(0.0);
     if (obstacle.round) {
@@ -182,14 +256,14 @@ class Occlusion final : public DifferentiableCost<Occlusion> {
       }
     }
     const T share = squared * (1.0 / (margin_ * margin_));
-    if (value_of(share) >= 1) return T(1.0);
-    return share * share * share * (10.0 + share * (-15.0 + 6.0 * share));
+    return rising(share);
   }
 
   FilmedPoint point_;
   double margin_;
   std::vector<TimeSpan> except_;
-  std::vector<Obstacle> obstacles_;
+  std::vector<Hiding> obstacles_;
+  int time_ = 0;  // of its block in the shape
 };
 
 }  // namespace

@@ -8,9 +8,9 @@
 // step and differentiated once by dual numbers: an eighth of the work of differentiating twice.
 //
 //   p:add_model { type = "quadrotor_full" }
+#include "framework/core/dual.h"
 #include "framework/core/units.h"
 #include "framework/plugin/plugin.h"
-#include "framework/problem/dual.h"
 #include "framework/problem/vehicle_model.h"
 #include "framework/vehicle/rotor_body.h"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/core/dual.h"
 #include "framework/core/units.h"
-#include "framework/problem/dual.h"
 
 namespace lapwing {
 

@@ -18,19 +18,25 @@ double acceleration() {
 
 Environment surroundings() {
   Environment environment;
-  environment.spheres = {{"ball", {1, 2, 3}, 4}, {"", {0, -20, 0}, 1}};
-  environment.boxes = {{"house", {-2, -1, 0}, {2, 3, 5}}, {"", {30, 30, 0}, {31, 31, 9}}};
   // A "U" open to the north, 2 wide inside; a triangle in the other turn, without top or bottom;
   // one with a floor alone.
-  environment.zones = {
-      {"court", {{0, 0}, {6, 0}, {6, 5}, {4, 5}, {4, 2}, {2, 2}, {2, 5}, {0, 5}}, 1, 4},
-      {"field", {{20, 0}, {20, 10}, {30, 0}}},
-      {"", {{-9, -9}, {-5, -9}, {-5, -5}, {-9, -5}}, 10, kUnbounded}};
+  environment.obstacles = {
+      sphere_at("ball", {1, 2, 3}, 4),
+      sphere_at("", {0, -20, 0}, 1),
+      box_at("house", {-2, -1, 0}, {2, 3, 5}),
+      box_at("", {30, 30, 0}, {31, 31, 9}),
+      zone_at("court", {{0, 0}, {6, 0}, {6, 5}, {4, 5}, {4, 2}, {2, 2}, {2, 5}, {0, 5}}, 1, 4),
+      zone_at("field", {{20, 0}, {20, 10}, {30, 0}}),
+      zone_at("", {{-9, -9}, {-5, -9}, {-5, -5}, {-9, -5}}, 10)};
   environment.subjects = {
       {"walker", {0.25, 1.25, 2.25}, {{0, 0, 1}, {2, 0, 1}, {2, -1, 1}}, 1.8, 1},
       {"still", {0}, {{9, 9, 1}}}};
   environment.margin = 0.5;
-  return environment;
+  return with_shapes(environment);
+}
+
+Environment of_type(const char* type) {
+  return only(surroundings(), type);
 }
 
 // What the rows ask of a stage that must keep `distance`.
@@ -55,9 +61,9 @@ Eigen::VectorXd stage_at(double time, const Eigen::Vector3d& position,
 }
 
 TEST(Obstacles, RowsAreDistancesLessWhatThePathNeeds) {
-  const BoundRows spheres("sphere_obstacle", map_of({}), surroundings());
-  const BoundRows boxes("box_obstacle", map_of({}), surroundings());
-  const BoundRows zones("no_fly_zone", map_of({}), surroundings());
+  const BoundRows spheres("obstacle", map_of({}), of_type("sphere"));
+  const BoundRows boxes("obstacle", map_of({}), of_type("box"));
+  const BoundRows zones("obstacle", map_of({}), of_type("prism"));
   EXPECT_EQ(spheres.shape.row_names, (std::vector<std::string>{"ball", "2"}));
   EXPECT_EQ(boxes.shape.row_names, (std::vector<std::string>{"house", "2"}));
   EXPECT_EQ(zones.shape.row_names, (std::vector<std::string>{"court", "field", "3"}));
@@ -72,12 +78,13 @@ TEST(Obstacles, RowsAreDistancesLessWhatThePathNeeds) {
     const Eigen::VectorXd s = spheres.values(stage(p, v, h)), b = boxes.values(stage(p, v, h)),
                           z = zones.values(stage(p, v, h));
     for (int i = 0; i < 2; ++i) {
-      const double to_center = signed_distance(around.spheres[i], p) + around.spheres[i].radius;
-      EXPECT_NEAR(s(i), to_center - asked(around.spheres[i].radius + 0.5, v.norm(), h), 1e-12);
-      EXPECT_NEAR(b(i), signed_distance(around.boxes[i], p) - ask, 1e-12);
+      const double radius = i == 0 ? 4 : 1;
+      const double to_center = signed_distance(around.obstacles[i], p) + radius;
+      EXPECT_NEAR(s(i), to_center - asked(radius + 0.5, v.norm(), h), 1e-12);
+      EXPECT_NEAR(b(i), signed_distance(around.obstacles[2 + i], p) - ask, 1e-12);
     }
     for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(z(i), signed_distance(around.zones[i], p) - ask, 1e-12) << p.transpose();
+      EXPECT_NEAR(z(i), signed_distance(around.obstacles[4 + i], p) - ask, 1e-12) << p.transpose();
   }
   // By hand: at rest 6 m from the middle of a ball of 4 m.
   EXPECT_NEAR(
@@ -87,9 +94,9 @@ TEST(Obstacles, RowsAreDistancesLessWhatThePathNeeds) {
 }
 
 TEST(Obstacles, DerivativesHoldOutsideInsideAndAlongside) {
-  const BoundRows spheres("sphere_obstacle", map_of({}), surroundings());
-  const BoundRows boxes("box_obstacle", map_of({}), surroundings());
-  const BoundRows zones("no_fly_zone", map_of({}), surroundings());
+  const BoundRows spheres("obstacle", map_of({}), of_type("sphere"));
+  const BoundRows boxes("obstacle", map_of({}), of_type("box"));
+  const BoundRows zones("obstacle", map_of({}), of_type("prism"));
   const Eigen::Vector3d v(3, -1, 0.5), rest(0, 0, 0);
   for (const BoundRows* rows : {&spheres, &boxes, &zones}) {
     rows->expect_derivatives(stage({9, 7, 6}, v, 0.1), "outside");
@@ -106,9 +113,9 @@ TEST(Obstacles, DerivativesHoldOutsideInsideAndAlongside) {
 }
 
 TEST(Obstacles, TheWayOutShowsEverywhere) {
-  const BoundRows spheres("sphere_obstacle", map_of({}), surroundings());
-  const BoundRows boxes("box_obstacle", map_of({}), surroundings());
-  const BoundRows zones("no_fly_zone", map_of({}), surroundings());
+  const BoundRows spheres("obstacle", map_of({}), of_type("sphere"));
+  const BoundRows boxes("obstacle", map_of({}), of_type("box"));
+  const BoundRows zones("obstacle", map_of({}), of_type("prism"));
   const auto leads_out = [](const BoundRows& rows, int row, const Eigen::Vector3d& p) {
     const Eigen::VectorXd at = stage(p, {1, 0, 0}, 0.1);
     rows.expect_finite(at, "inside");
@@ -127,7 +134,10 @@ TEST(Obstacles, TheWayOutShowsEverywhere) {
   spheres.expect_finite(centre, "at the centre");
   EXPECT_EQ(spheres.jacobian(centre).row(0).head<3>(), Eigen::RowVector3d(0, 0, 1));
   // Corners and edges of the zones and the box themselves.
-  const std::vector<Eigen::Vector2d> corners = surroundings().zones[0].corners;
+  const auto numbers = recorded_numbers(surroundings().obstacles[4].parameters, "corners");
+  std::vector<Eigen::Vector2d> corners;
+  for (std::size_t i = 0; i < numbers.size(); i += 2)
+    corners.emplace_back(numbers[i], numbers[i + 1]);
   for (const Eigen::Vector2d& corner : corners)
     for (const double z : {0.0, 1.0, 2.0, 4.0, 9.0}) {
       zones.expect_finite(stage({corner.x(), corner.y(), z}, {0, 0, 0}, 0.1), "at a corner");
@@ -191,19 +201,19 @@ double closest_arc(const BoundRows& rows, int row, const Eigen::Vector3d& lower,
 
 TEST(Obstacles, ThePathBetweenStagesKeepsTheMargin) {
   const Environment around = surroundings();
-  const BoundRows spheres("sphere_obstacle", map_of({}), around);
-  const BoundRows boxes("box_obstacle", map_of({}), around);
-  const BoundRows zones("no_fly_zone", map_of({}), around);
+  const BoundRows spheres("obstacle", map_of({}), of_type("sphere"));
+  const BoundRows boxes("obstacle", map_of({}), of_type("box"));
+  const BoundRows zones("obstacle", map_of({}), of_type("prism"));
   // A small ball, which a fast chord may step over; the house; the court with its wings.
   const double ball = closest_arc(
       spheres, 1, {-4, -24, -4}, {4, -16, 4},
-      [&](const Eigen::Vector3d& p) { return signed_distance(around.spheres[1], p); }, 0.5);
+      [&](const Eigen::Vector3d& p) { return signed_distance(around.obstacles[1], p); }, 0.5);
   const double house = closest_arc(
       boxes, 0, {-5, -4, -3}, {5, 6, 8},
-      [&](const Eigen::Vector3d& p) { return signed_distance(around.boxes[0], p); }, 0.5);
+      [&](const Eigen::Vector3d& p) { return signed_distance(around.obstacles[2], p); }, 0.5);
   const double court = closest_arc(
       zones, 0, {-3, -3, -2}, {9, 8, 7},
-      [&](const Eigen::Vector3d& p) { return signed_distance(around.zones[0], p); }, 0.5);
+      [&](const Eigen::Vector3d& p) { return signed_distance(around.obstacles[4], p); }, 0.5);
   // And it asks for little more than it must.
   EXPECT_LT(ball, 0.1);
   EXPECT_LT(house, 0.1);
@@ -214,11 +224,11 @@ TEST(Obstacles, StagesAloneWouldNotKeepIt) {
   // Two stages 2 m apart, each 0.6 m from the surface of a ball of 1 m: the chord between them
   // passes at 0.25 m. Distances at stages allow it, the rows do not.
   const Environment around = surroundings();
-  const BoundRows spheres("sphere_obstacle", map_of({}), around);
+  const BoundRows spheres("obstacle", map_of({}), of_type("sphere"));
   const Eigen::Vector3d from(-1, -20, std::sqrt(1.6 * 1.6 - 1)), speed(10, 0, 0);
-  EXPECT_GT(signed_distance(around.spheres[1], from), 0.5);
+  EXPECT_GT(signed_distance(around.obstacles[1], from), 0.5);
   EXPECT_LT(spheres.values(stage(from, speed, 0.2))(1), 0);
-  EXPECT_LT(signed_distance(around.spheres[1], {0, -20, from.z()}), 0.5);
+  EXPECT_LT(signed_distance(around.obstacles[1], {0, -20, from.z()}), 0.5);
 }
 
 TEST(SubjectDistance, FollowsTheSubjectAndHoldsBetweenStages) {
@@ -275,8 +285,7 @@ TEST(SubjectDistance, MeansAllSubjectsWithoutAName) {
 
 TEST(Obstacles, AnEmptyEnvironmentAddsNoRow) {
   TrajectoryProblem with = flight(9, 0.1), without = flight(9, 0.1);
-  for (const char* name : {"sphere_obstacle", "box_obstacle", "no_fly_zone"})
-    with.add_constraint(name, plugins().create<Constraint>(name));
+  with.add_constraint("obstacle", plugins().create<Constraint>("obstacle"));
   with.add_constraint("subject_distance", plugins().create<Constraint>(
                                               "subject_distance", map_of({{"distance", 1.0}})));
   with.finish();
@@ -291,17 +300,48 @@ TEST(Obstacles, AnEmptyEnvironmentAddsNoRow) {
   EXPECT_EQ(with.violations(at).size(), without.violations(at).size());
 }
 
+// A ball that flies east from 1 s on, seen at rest and on its way.
+TEST(Obstacles, WhatMovesIsKeptClearOfWhereItIs) {
+  Environment around;
+  around.margin = 0.5;
+  around.obstacles = {sphere_at("kite", {0, 0, 5}, 1)};
+  around.obstacles[0].times = {1, 3};
+  around.obstacles[0].moves = {{0, 0, 0}, {4, 0, 0}};
+  const BoundRows rows("obstacle", map_of({}), with_shapes(around));
+  const Eigen::Vector3d v(1, -2, 0.5);
+  const auto at = [&](double time, const Eigen::Vector3d& p) {
+    Eigen::VectorXd x(8);
+    x << p, v, 0.1, time;
+    return x;
+  };
+  EXPECT_NEAR(rows.values(at(0.5, {0, 6, 5}))(0), 6 - asked(1.5, v.norm(), 0.1, 2.0), 1e-12);
+  EXPECT_NEAR(rows.values(at(2, {2, 6, 5}))(0), 6 - asked(1.5, v.norm(), 0.1, 2.0), 1e-12);
+  EXPECT_NEAR(rows.values(at(9, {4, 6, 5}))(0), 6 - asked(1.5, v.norm(), 0.1, 2.0), 1e-12);
+  rows.expect_derivatives(at(2, {1, 3, 6}), "on its way");
+}
+
+// What the verifier judges by triangles is kept clear of by their tolerance too.
+TEST(Obstacles, TheToleranceOfTrianglesIsKeptBesideTheMargin) {
+  Environment around = of_type("box");
+  const BoundRows plain("obstacle", map_of({}), around);
+  around.obstacles[0].tolerance = 0.25;
+  const BoundRows kept("obstacle", map_of({}), around);
+  const Eigen::VectorXd x = stage({5, 1, 2}, {0, 0, 0}, 0.1);
+  EXPECT_NEAR(plain.values(x)(0) - kept.values(x)(0), asked(0.75, 0, 0.1) - asked(0.5, 0, 0.1),
+              1e-12);
+}
+
 TEST(Obstacles, ViolationsNameTheObstacle) {
-  TrajectoryProblem problem(camera_drone(), {.stages = 9, .step = 0.1}, surroundings());
+  TrajectoryProblem problem(camera_drone(), {.stages = 9, .step = 0.1}, of_type("sphere"));
   problem.add_model("quadrotor", plugins().create<VehicleModel>("quadrotor"));
-  problem.add_constraint("sphere_obstacle", plugins().create<Constraint>("sphere_obstacle"));
+  problem.add_constraint("obstacle", plugins().create<Constraint>("obstacle"));
   problem.set_path_guess({0, 0.8}, {{-7, 2, 3}, {9, 2, 3}}, {0, 0});
   problem.finish();
   const auto violations = problem.violations(problem.initial_guess());
-  const auto named = [](const Violation& v) { return v.name == "sphere_obstacle"; };
+  const auto named = [](const Violation& v) { return v.name == "obstacle"; };
   const auto found = std::find_if(violations.begin(), violations.end(), named);
   ASSERT_NE(found, violations.end());
-  EXPECT_EQ(found->row, "sphere_obstacle.ball at 0.4 s");
+  EXPECT_EQ(found->row, "obstacle.ball at 0.4 s");
 }
 
 }  // namespace

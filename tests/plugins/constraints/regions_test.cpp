@@ -28,21 +28,48 @@ Eigen::VectorXd stage_of(const Vector3d& position, const Vector3d& velocity, dou
   return x;
 }
 
+// A mesh without a file.
+class MeshOfTests final : public Shape {
+ public:
+  explicit MeshOfTests(std::shared_ptr<const MeshScene> scene)
+      : scene_(std::move(scene)), field_(scene_, 6.0) {}
+  double core_distance(const Vector3d& p, Vector3d* gradient) const override {
+    return field_.distance(p, gradient);
+  }
+  double reach() const override { return 6; }
+  bool solid() const override { return false; }
+  Eigen::AlignedBox3d bounds() const override { return scene_->mesh().bounds(); }
+  TriangleMesh triangles(double, const Eigen::AlignedBox3d&) const override {
+    return scene_->mesh();
+  }
+  Value record() const override { return Value::map(); }
+
+ private:
+  std::shared_ptr<const MeshScene> scene_;
+  MeshDistance field_;
+};
+
+Obstacle mesh_at(const char* name, std::shared_ptr<const MeshScene> scene) {
+  Obstacle obstacle = file_at(name, "mesh", "", "");
+  obstacle.shape = std::make_shared<MeshOfTests>(std::move(scene));
+  return obstacle;
+}
+
 Environment beside_a_house() {
   MeshBuilder builder;
   builder.box({-2, -1, 0}, {2, 3, 5});
   Environment environment;
   environment.margin = 0.5;
   const auto scene = std::make_shared<const MeshScene>(builder.take());
-  environment.meshes = {{"house", "", "", std::make_shared<MeshDistance>(scene, 6.0)}};
+  environment.obstacles = {mesh_at("house", scene)};
   return environment;
 }
 
 TEST(Clearance, IsTheDistanceToTheMeshLessWhatThePathNeeds) {
   const Environment around = beside_a_house();
-  const BoundRows rows("clearance", map_of({}), around);
+  const BoundRows rows("obstacle", map_of({}), around);
   EXPECT_EQ(rows.shape.row_names, (std::vector<std::string>{"house"}));
-  const Box house{"", {-2, -1, 0}, {2, 3, 5}};
+  const Obstacle house = box_at("", {-2, -1, 0}, {2, 3, 5});
   Random random(3);
   for (int k = 0; k < 500; ++k) {
     const Vector3d p(random.uniform(-6, 6), random.uniform(-5, 7), random.uniform(-4, 9));
@@ -56,7 +83,7 @@ TEST(Clearance, IsTheDistanceToTheMeshLessWhatThePathNeeds) {
 
 TEST(Clearance, DerivativesAreThoseOfTheField) {
   const Environment around = beside_a_house();
-  const BoundRows rows("clearance", map_of({}), around);
+  const BoundRows rows("obstacle", map_of({}), around);
   const Vector3d v(3, -1, 0.5);
   rows.expect_derivatives(stage_of({4, 1, 2}, v, 0.1), "off a face", 0, 1e-4, 1e-4);
   rows.expect_derivatives(stage_of({4, 5, 2}, v, 0.1), "off an edge", 0, 1e-4, 1e-4);
@@ -72,38 +99,39 @@ TEST(Clearance, AWallWithoutThicknessCannotBeSteppedOver) {
   Environment around;
   around.margin = 0.2;
   const auto scene = std::make_shared<const MeshScene>(builder.take());
-  around.meshes = {{"wall", "", "", std::make_shared<MeshDistance>(scene, 6.0)}};
-  const BoundRows rows("clearance", map_of({}), around);
+  around.obstacles = {mesh_at("wall", scene)};
+  const BoundRows rows("obstacle", map_of({}), around);
   // From 1 m before it to 1 m behind it within one step of 0.2 s: each stage alone is clear.
   EXPECT_LT(rows.values(stage_of({-1, 0, 0}, {10, 0, 0}, 0.2))(0), 0);
   EXPECT_GT(rows.values(stage_of({-1, 0, 0}, {0, 0, 0}, 0.2))(0), 0);
 }
 
-TEST(Clearance, AFileThatNobodyReadIsAnError) {
+TEST(Clearance, AShapeThatNobodyOpenedIsAnError) {
   Environment around;
-  around.maps = {{"attic", "attic.ot", std::string(64, '0')}};
-  expect_message([&] { BoundRows("clearance", map_of({}), around); }, {"map 'attic'", "not read"});
+  around.obstacles = {file_at("attic", "map", "attic.ot", std::string(64, '0'))};
+  expect_message([&] { BoundRows("obstacle", map_of({}), around); }, {"'attic'", "not opened"});
 }
 
 Environment in_a_yard() {
   Environment environment;
   environment.margin = 0.5;
-  environment.flight_zones = {{"field", {{-20, -20}, {20, -20}, {20, 20}, {-20, 20}}, 0, 30},
-                              {"yard", {{-9, -9}, {9, -9}, {9, 9}, {2, 9}, {2, 0}, {-9, 0}}}};
-  return environment;
+  environment.obstacles = {
+      flight_zone_at("field", {{-20, -20}, {20, -20}, {20, 20}, {-20, 20}}, 0, 30),
+      flight_zone_at("yard", {{-9, -9}, {9, -9}, {9, 9}, {2, 9}, {2, 0}, {-9, 0}})};
+  return with_shapes(environment);
 }
 
 TEST(FlightZone, RowsAreTheWayToTheNearestEdge) {
   const Environment around = in_a_yard();
-  const BoundRows rows("flight_zone", map_of({}), around);
+  const BoundRows rows("obstacle", map_of({}), around);
   EXPECT_EQ(rows.shape.row_names, (std::vector<std::string>{"field", "yard"}));
   Random random(5);
   for (int k = 0; k < 500; ++k) {
     const Vector3d p(random.uniform(-25, 25), random.uniform(-25, 25), random.uniform(-4, 35));
     const Vector3d v(random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(-2, 2));
     const Eigen::VectorXd g = rows.values(stage_of(p, v, 0.1));
-    EXPECT_NEAR(g(0), -signed_distance(around.flight_zones[0], p) - 0.5 - bulge(0.1), 1e-12);
-    EXPECT_NEAR(g(1), -signed_distance(around.flight_zones[1], p) - asked_of(0.5, v.norm(), 0.1),
+    EXPECT_NEAR(g(0), -signed_distance(around.obstacles[0], p) - 0.5 - bulge(0.1), 1e-12);
+    EXPECT_NEAR(g(1), -signed_distance(around.obstacles[1], p) - asked_of(0.5, v.norm(), 0.1),
                 1e-12);
   }
   rows.expect_derivatives(stage_of({4, 3, 5}, {2, 1, 0}, 0.1), "inside");
@@ -113,7 +141,7 @@ TEST(FlightZone, RowsAreTheWayToTheNearestEdge) {
 
 TEST(FlightZone, ThePathBetweenStagesStaysInside) {
   const Environment around = in_a_yard();
-  const BoundRows rows("flight_zone", map_of({}), around);
+  const BoundRows rows("obstacle", map_of({}), around);
   Random random(7);
   int feasible = 0;
   for (int k = 0; k < 40000; ++k) {
@@ -128,7 +156,7 @@ TEST(FlightZone, ThePathBetweenStagesStaysInside) {
     if (rows.values(stage_of(at(h), v + h * a, h)).minCoeff() < 0) continue;
     ++feasible;
     for (int i = 0; i <= 20; ++i)
-      for (const Zone& zone : around.flight_zones)
+      for (const Obstacle& zone : around.obstacles)
         EXPECT_LE(signed_distance(zone, at(h * i / 20)), -0.5 + 1e-9);
   }
   EXPECT_GT(feasible, 3000);

@@ -14,9 +14,9 @@ Eigen::VectorXd line(const Eigen::Vector3d& position, const Eigen::Vector3d& tar
 
 Environment obstacles() {
   Environment environment;
-  environment.spheres = {{"ball", {0, 0, 0}, 1.5}};
-  environment.boxes = {{"wall", {-0.5, 20, -2}, {0.5, 30, 2}}};
-  return environment;
+  environment.obstacles = {sphere_at("ball", {0, 0, 0}, 1.5),
+                           box_at("wall", {-0.5, 20, -2}, {0.5, 30, 2})};
+  return with_shapes(environment);
 }
 
 const BoundCost& occlusion() {
@@ -28,8 +28,8 @@ double least_clearance(const Eigen::Vector3d& from, const Eigen::Vector3d& to, b
   double least = 1e9;
   for (int k = 0; k <= 400; ++k) {
     const Eigen::Vector3d p = from + (to - from) * (k / 400.0);
-    least = std::min(least, wall ? signed_distance(obstacles().boxes[0], p)
-                                 : signed_distance(obstacles().spheres[0], p));
+    least = std::min(least, wall ? signed_distance(obstacles().obstacles[1], p)
+                                 : signed_distance(obstacles().obstacles[0], p));
   }
   return least;
 }
@@ -67,8 +67,8 @@ TEST(Occlusion, IsZeroExactlyWhereTheLineKeepsTheMargin) {
     }
     for (const bool wall : {false, true})
       if (least_clearance(from, to, wall) < 0 &&
-          (wall ? signed_distance(obstacles().boxes[0], to)
-                : signed_distance(obstacles().spheres[0], to)) > 0.5) {
+          (wall ? signed_distance(obstacles().obstacles[1], to)
+                : signed_distance(obstacles().obstacles[0], to)) > 0.5) {
         EXPECT_GT(haze(wall), 0) << from.transpose() << " to " << to.transpose();
         ++hidden;
       }
@@ -105,6 +105,36 @@ TEST(Occlusion, DerivativesHoldAndLeadOut) {
   const Eigen::VectorXd middle = line({-5, 0, 0}, {6, 0, 0});
   const Eigen::VectorXd slope = term.jacobian(middle).row(0);
   EXPECT_LT(slope(2), -0.01) << "even from the very middle, upwards is out";
+}
+
+// Shapes that are neither ball nor block: a pole, a house without a roof, a cone.
+TEST(Occlusion, EveryShapeHides) {
+  Environment around;
+  around.obstacles = {
+      obstacle_at(
+          "pole", "capsule",
+          {{"from", place_value({0, 0, -3})}, {"to", place_value({0, 0, 3})}, {"radius", 0.5}}),
+      zone_at("house", {{-2, 10}, {2, 10}, {2, 14}, {0, 12}, {-2, 14}}, 0, 4),
+      obstacle_at("tent", "cone",
+                  {{"base", place_value({0, 25, 0})}, {"radius", 2.0}, {"height", 3.0}})};
+  around.obstacles.push_back(zone_at("airspace", {{-50, -50}, {50, -50}, {50, 50}, {-50, 50}}));
+  around.obstacles.back().opaque = false;
+  around = with_shapes(around);
+  const BoundCost term("occlusion", map_of({{"margin", 0.5}}), around);
+  ASSERT_EQ(term.shape.row_names, (std::vector<std::string>{"pole", "house", "tent"}));
+  const Eigen::VectorXd past_pole = term.values(line({-6, 0.1, 0}, {6, 0, 0.2}));
+  EXPECT_GT(past_pole(0), 0.3);
+  EXPECT_EQ(past_pole(1), 0);
+  EXPECT_EQ(term.values(line({-6, 1.1, 0}, {6, 1.1, 0}))(0), 0) << "keeps the margin";
+  EXPECT_GT(term.values(line({-6, 11, 2}, {6, 11, 2}))(1), 0.3);
+  EXPECT_GT(term.values(line({-6, 25, 1}, {6, 25, 1}))(2), 0.2);
+  EXPECT_EQ(term.values(line({-6, 0, 0}, {0.1, 0, 0}))(0), 0) << "the target stands in it";
+  term.expect_derivatives(line({-6, 0.3, 0.2}, {6, -0.2, 0.1}), "past the pole", 0, 1e-5, 1e-4);
+  term.expect_derivatives(line({-6, 10.6, 2.2}, {6.3, 11.2, 1.7}), "through the house", 0, 1e-5,
+                          1e-4);
+  term.expect_derivatives(line({-6, 24.6, 1.2}, {6.3, 25.2, 0.7}), "through the tent", 0, 1e-5,
+                          1e-4);
+  term.expect_finite(line({0, 0, 0}, {0, 0, 0}), "at the target");
 }
 
 TEST(Occlusion, HasNothingToSayWithoutObstacles) {

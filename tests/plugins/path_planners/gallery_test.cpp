@@ -12,6 +12,7 @@
 #include "framework/path/path_planner.h"
 #include "framework/plugin/registry.h"
 #include "framework/verify/verify.h"
+#include "tests/obstacles.h"
 #include "tests/verify/reference_plan.h"
 
 namespace lapwing {
@@ -32,7 +33,8 @@ Certificate judged(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>&
   plan.vehicle = to_value(reference_vehicle());
   plan.trajectory.motion = path_motion();
   plan.environment.margin = kGalleryReach;
-  plan.environment.meshes = {{"gallery", "gallery.ply", sha256(read_file(folder / "gallery.ply"))}};
+  plan.environment.obstacles = {
+      file_at("gallery", "mesh", "gallery.ply", sha256(read_file(folder / "gallery.ply")))};
   Sample sample;
   for (const Eigen::Vector3d& p : points) {
     if (!plan.trajectory.samples.empty()) sample.time += (p - sample.position).norm();

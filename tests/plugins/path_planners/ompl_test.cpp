@@ -12,6 +12,7 @@
 #include "framework/geometry/mesh_file.h"
 #include "framework/plugin/registry.h"
 #include "framework/verify/verify.h"
+#include "tests/obstacles.h"
 #include "tests/verify/reference_plan.h"
 
 namespace lapwing {
@@ -124,7 +125,8 @@ TEST(OmplPlanners, FindTheWayThroughAMine) {
   plan.vehicle = to_value(reference_vehicle());
   plan.trajectory.motion = path_motion();
   plan.environment.margin = kReach;
-  plan.environment.meshes = {{"mine", "mine.ply", sha256(read_file(folder / "mine.ply"))}};
+  plan.environment.obstacles = {
+      file_at("mine", "mesh", "mine.ply", sha256(read_file(folder / "mine.ply")))};
   const auto flown_through = [&](const std::vector<Vector3d>& points) {
     Sample sample;
     plan.trajectory.samples.clear();
