@@ -245,8 +245,11 @@ class Examination {
   // Whoever states meshes of their own is told where one seems to be in other units or elsewhere.
   // One that cannot be read fails the check `document`.
   void doubt_meshes() {
-    for (const MeshObstacle& mesh : judged_.environment.meshes) {
-      const fs::path& file = elsewhere_.at(mesh.file);
+    for (const Obstacle& obstacle : judged_.environment.obstacles) {
+      const Value* stated = obstacle.type == "mesh" ? obstacle.parameters.find("file") : nullptr;
+      const auto found = stated ? elsewhere_.find(stated->as_text()) : elsewhere_.end();
+      if (found == elsewhere_.end()) continue;
+      const fs::path& file = found->second;
       try {
         const std::string doubt = read_mesh(file).doubt;
         if (!doubt.empty()) remarks_.push_back(file.string() + ": " + doubt);

@@ -42,8 +42,12 @@ class WatchedVerdict : public testing::Test {
     builder.box({200, 200, 0}, {201, 201, 5});
     write_ply(builder.mesh(), folder_ / "there/block.ply");
     plan_ = reference_plan();
-    plan_.environment.meshes = {
-        {"block", "judge/block.ply", sha256(read_file(folder_ / "there/block.ply"))}};
+    Obstacle block;
+    block.name = "block";
+    block.type = "mesh";
+    block.parameters.set("file", "judge/block.ply");
+    block.parameters.set("sha256", sha256(read_file(folder_ / "there/block.ply")));
+    plan_.environment.obstacles = {block};
   }
   void TearDown() override { fs::remove_all(folder_); }
 
