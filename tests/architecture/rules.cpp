@@ -19,11 +19,10 @@ using Names = std::set<std::string>;
 
 // What a room may include besides itself and core.
 const std::map<std::string, Names>& rooms() {
-  static const Names kAllButApp{"geometry",    "trajectory", "vehicle", "map",
-                                "path",        "problem",    "solve",   "view",
-                                "explore",     "verify",     "export",  "config",
-                                "conformance", "plugin",     "mission", "surface",
-                                "shape"};
+  static const Names kAllButApp{"geometry", "trajectory", "vehicle",     "map",     "path",
+                                "problem",  "solve",      "view",        "explore", "verify",
+                                "export",   "config",     "conformance", "plugin",  "mission",
+                                "surface",  "shape"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
