@@ -10,6 +10,7 @@
 #include "framework/export/exporter.h"
 #include "framework/plugin/sidecar.h"
 #include "framework/problem/invariance.h"
+#include "framework/shape/shape.h"
 
 namespace lapwing {
 namespace {
@@ -29,6 +30,7 @@ void create_and_drop(const Registry& registry, const PluginEntry& entry, const V
   made(static_cast<const ViewInformation*>(nullptr));
   made(static_cast<const ViewUtility*>(nullptr));
   made(static_cast<const Exporter*>(nullptr));
+  made(static_cast<const Shape*>(nullptr));
 }
 
 bool is_snake_case(const std::string& name) {

@@ -12,6 +12,7 @@
 #include "framework/core/random.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/geometry/mesh_scene.h"
+#include "framework/geometry/winding.h"
 #include "framework/map/map.h"
 #include "framework/map/map_file.h"
 #include "framework/plugin/registry.h"
@@ -126,21 +127,7 @@ class SurfaceJudge {
   const TriangleMesh& mesh() const { return mesh_; }
   double distance(const Vector3d& p) const { return scene_.nearest(p, 1e4)->distance; }
 
-  bool inside(const Vector3d& p) const {
-    int votes = 0;
-    for (const Vector3d& way : {Vector3d(0.5123, 0.3117, 0.8003), Vector3d(-0.6141, 0.7012, 0.3623),
-                                Vector3d(0.1931, -0.8827, -0.4285)}) {
-      int crossings = 0;
-      Vector3d from = p;
-      for (MeshHit hit = scene_.cast({from, way.normalized()});
-           hit.triangle >= 0 && crossings < 1000; hit = scene_.cast({from, way.normalized()})) {
-        from += (hit.distance + 1e-9) * way.normalized();
-        ++crossings;
-      }
-      votes += crossings % 2;
-    }
-    return votes >= 2;
-  }
+  bool inside(const Vector3d& p) const { return winding_number(mesh_, p) > 0.5; }
 
   // Edges that no neighbour closes.
   std::size_t open() const {

@@ -9,6 +9,7 @@
 #include "framework/core/files.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/geometry/mesh_scene.h"
+#include "framework/geometry/winding.h"
 #include "framework/verify/tolerances.h"
 
 namespace lapwing {
@@ -61,7 +62,7 @@ class JudgedMap final : public JudgedShape {
   BlockedVoxels voxels_;
 };
 
-// What triangles bound. Inside and outside are told by how often a ray passes through them.
+// What triangles bound.
 class JudgedSolid final : public JudgedShape {
  public:
   JudgedSolid(const TriangleMesh& mesh, double tolerance, const std::string& name)
@@ -85,25 +86,9 @@ class JudgedSolid final : public JudgedShape {
   bool by_triangles() const override { return true; }
 
  private:
-  // The majority of three rays: one may pass through an edge.
   bool inside(const Vector3d& p) const {
-    if (!scene_.mesh().bounds().contains(p)) return false;
-    int votes = 0;
-    for (const Vector3d& way : {Vector3d(0.5123, 0.3117, 0.8003), Vector3d(-0.6141, 0.7012, 0.3623),
-                                Vector3d(0.1931, -0.8827, -0.4285)})
-      votes += crossings(p, way.normalized()) % 2;
-    return votes >= 2;
-  }
-
-  int crossings(const Vector3d& p, const Vector3d& way) const {
-    constexpr double kBeyond = 1e-9;  // m
-    int count = 0;
-    for (Vector3d from = p; count < 10'000; ++count) {
-      const MeshHit hit = scene_.cast({from, way});
-      if (hit.triangle < 0) break;
-      from += (hit.distance + kBeyond) * way;
-    }
-    return count;
+    const TriangleMesh& mesh = scene_.mesh();
+    return mesh.bounds().contains(p) && std::abs(winding_number(mesh, p)) > 0.5;
   }
 
   MeshScene scene_;

@@ -184,7 +184,8 @@ class Occlusion final : public DifferentiableCost<Occlusion> {
     const T clear = at_target * (1.0 / margin_);
     const T seen = rising(T(clear * clear));
     const T length = sqrt(squared);
-    const double spacing = margin_ / 2, whole = value_of(length);
+    // Where the haze is wide it needs no more points than it has to be told by.
+    const double spacing = std::max(margin_ / 2, hiding.unit / 8), whole = value_of(length);
     T sum = T(0.0);
     for (double at = spacing; at < whole;) {
       Vector<T> p;
@@ -193,7 +194,7 @@ class Occlusion final : public DifferentiableCost<Occlusion> {
       const double away = shape.distance(place, nullptr);
       if (away < margin_) {
         const T depth = (margin_ - lifted_distance(shape, p.data())) * (1.0 / hiding.unit);
-        sum += haze_at(depth) * rising(T((length - at) * (1.0 / (2 * margin_))));
+        sum += haze_at(depth) * rising(T((length - at) * (1.0 / (4 * spacing))));
       }
       at += spacing * (away > margin_ ? std::floor((away - margin_) / spacing) + 1 : 1);
     }

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 class BoxForm final : public DifferentiableShape<BoxForm> {
  public:
-  static constexpr PluginText kText{"box", "1.0.0", "a box parallel to the axes", ""};
+  static constexpr PluginText kText{"box", "1.0.0", "a box parallel to the axes", "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
         .required_numbers("lower", 3, "m", "lowest corner, world", between(-1e6, 1e6))

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 class ConeForm final : public DifferentiableShape<ConeForm> {
  public:
-  static constexpr PluginText kText{"cone", "1.0.0", "an upright cone", ""};
+  static constexpr PluginText kText{"cone", "1.0.0", "an upright cone", "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
         .required_numbers("base", 3, "m", "middle of its base, world", between(-1e6, 1e6))

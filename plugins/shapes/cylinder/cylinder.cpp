@@ -13,12 +13,12 @@ using Eigen::Vector3d;
 
 class CylinderForm final : public DifferentiableShape<CylinderForm> {
  public:
-  static constexpr PluginText kText{"cylinder", "1.0.0", "an upright cylinder", ""};
+  static constexpr PluginText kText{"cylinder", "1.0.0", "an upright cylinder", "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
         .required_numbers("base", 3, "m", "middle of its base, world", between(-1e6, 1e6))
-        .required_number("radius", "m", "", {0, 1e6, true})
-        .required_number("height", "m", "", {0, 1e6, true});
+        .required_number("radius", "m", "of its base", {0, 1e6, true})
+        .required_number("height", "m", "from base to top", {0, 1e6, true});
   }
   explicit CylinderForm(const Parameters& parameters)
       : base_(parameters.numbers("base").data()),

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 class HalfSpaceForm final : public DifferentiableShape<HalfSpaceForm> {
  public:
-  static constexpr PluginText kText{"half_space", "1.0.0", "all that lies behind a plane", ""};
+  static constexpr PluginText kText{"half_space", "1.0.0", "all that lies behind a plane", "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
         .required_numbers("point", 3, "m", "of the plane, world", between(-1e6, 1e6))

@@ -32,7 +32,7 @@ std::vector<Vector2d> corners_of(const Parameters& parameters) {
 class PrismForm final : public DifferentiableShape<PrismForm> {
  public:
   static constexpr PluginText kText{"prism", "1.0.0", "what lies above a polygon on the ground",
-                                    ""};
+                                    "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
         .required_numbers("corners", 0, "m", "x and y of each corner in turn, world",

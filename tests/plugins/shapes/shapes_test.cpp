@@ -92,7 +92,8 @@ TEST(Shapes, RaysEndWhereTheVerifierSeesTheSurface) {
     for (int k = 0; k < 500; ++k) {
       const Vector3d from(random.uniform(-15, 15), random.uniform(-15, 15),
                           random.uniform(-15, 15));
-      const Vector3d way = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+      const Vector3d towards(random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(-5, 7));
+      const Vector3d way = (towards - from).normalized();
       if (std::abs(signed_distance(obstacle, from)) < 0.01) continue;
       const auto hit = obstacle.shape->hit(from, way);
       (hit ? hits : misses) += 1;
