@@ -110,7 +110,11 @@ std::shared_ptr<const Shape> opened(const Obstacle& obstacle, std::size_t number
         *shape, "open", [&] { shape->open(setting); }, CallLength::lengthy);
     return shape;
   } catch (const InputError& error) {
-    throw InputError(obstacle.label(number) + ": " + error.what());
+    // Whoever asks knows the line; it is not said twice.
+    std::string said = error.what();
+    const std::string line = InputError(obstacle.parameters.origin(), "").what();
+    if (said.starts_with(line)) said.erase(0, line.size());
+    throw InputError(obstacle.label(number) + ": " + said);
   }
 }
 

@@ -308,7 +308,7 @@ Value OptionDeclarations::checked_plugins(const Option& option, const Value* giv
       table = std::move(parameters);
     } else if (option.functions.is_list()) {
       for (const Value& one : option.functions.as_list()) table.push_back(one);
-    } else {
+    } else if (option.also.empty()) {  // else the kind says what may be without a type
       errors.add(entry.origin(), what,
                  "expected `type`, the name of a plugin (" + option.plugin_kind + ")");
       continue;

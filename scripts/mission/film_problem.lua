@@ -104,9 +104,9 @@ local function gimbal_yaws(looks, path)
   return list
 end
 
--- The camera's part of thesis 3.5.3: a gimbal, a target that follows what is looked at, and the
+-- The camera's part of thesis 3.5.3, `environment` being what may hide the target: a gimbal, a target that follows what is looked at, and the
 -- angle between the two.
-local function add_camera(p, weights, camera, environment, path)
+local function add_camera(p, weights, camera, path, environment)
   p:add_model { type = "gimbal" }
   p:add_block { name = "target", size = 3, unit = "m" }
   p:add_cost { type = "target_keyframe", weight = weights.target, keyframes = camera.pulls }
@@ -135,7 +135,7 @@ local function add_camera(p, weights, camera, environment, path)
                    spans = within, except = camera.cuts }
     end
   end
-  if weights.occlusion > 0 and surroundings.hides(environment) then
+  if weights.occlusion > 0 and environment and surroundings.hides(environment) then
     p:add_cost { type = "occlusion", weight = weights.occlusion, except = camera.cuts }
   end
   local values = { gimbal_pitch = {}, target = camera.guess.targets }
@@ -218,7 +218,7 @@ function problem.state(run, request)
   end
   local task = { keyframes = keyframes.task }
   if camera then
-    add_camera(p, o.weights, camera, environment, path)
+    add_camera(p, o.weights, camera, path, request.looks_round and environment)
     task.framing = {}
     for i, span in ipairs(camera.spans) do
       task.framing[i] = { subject = span.subject.name, start = span.start, finish = span.finish }

@@ -26,6 +26,7 @@ local requests = record.type("request", {
   --   "unlimited"      as if the vehicle could do anything
   --   "unconstrained"  with the script's constraints judged and not held
   scope = "which part of the film is stated",
+  looks_round = "whether it costs that obstacles hide the target",
   memory = "what the strategy that made the request remembers; other code leaves it alone",
 })
 
@@ -44,7 +45,8 @@ local outcomes = record.type("outcome", {
 
 -- The first request of a film. `fields` lacks what most requests have alike.
 function M.first(fields)
-  local all = { stretch = 1, scope = "film", legs = {}, corridor = false, cruise = {} }
+  local all = { stretch = 1, scope = "film", legs = {}, corridor = false, cruise = {},
+                looks_round = true }
   for name, value in pairs(fields) do all[name] = value end
   return requests.new(all)
 end

@@ -89,16 +89,33 @@ local function stretched(run, failing, again, why, least, told)
   return finished(run, failing, { notes = notes, certified = certified, figures = told.figures })
 end
 
+-- An outcome, or the film without the cost of being hidden, where that kept the solver from its end
+-- (no way near sees the subject) and fewer checks fail without; and what is to be said.
+local function seen_or_not(run, outcome)
+  if outcome.solution.status ~= "iteration_limit" or outcome.verdict.feasible
+     or run.options.weights.occlusion <= 0 or run:cancelled() then return outcome end
+  local hidden = false
+  for _, check in ipairs(outcome.verdict.checks) do
+    hidden = hidden or check.name == "line_of_sight" and check.pass == false
+  end
+  if not hidden then return outcome end
+  local again = attempts.attempt(run, requests.with(outcome.request, { looks_round = false }))
+  if #again.verdict.failures >= #outcome.verdict.failures then return outcome end
+  return again, { "planned without the cost occlusion, with which the solver came to no end: "
+                  .. "obstacles hide the subject" }
+end
+
 -- The film at the times that its keyframes have.
 local function at_given_times(run, film)
   local o = run.options
   local request, too_fast, least = first_request(run, film)
-  local first = attempts.attempt(run, request)
+  local first, told_first = seen_or_not(run, attempts.attempt(run, request))
   local status = first.solution.status
   local broken = not too_fast and (status == "unsupported"
                                    or status == "numerical_error" and not ways.matter(first.legs))
   if first.verdict.feasible or broken or run:cancelled() then
-    return finished(run, first, { certified = first.verdict.feasible and request.stretch or nil })
+    return finished(run, first, { certified = first.verdict.feasible and request.stretch or nil,
+                                  notes = told_first })
   end
   -- `first` stands for the film that fails; `last` knows the ways that were planned since.
   local last, told = first, { notes = {} }

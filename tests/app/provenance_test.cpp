@@ -256,7 +256,9 @@ TEST_F(ProvenanceTest, AMovedFolderWithAMeshIsJudgedAsBefore) {
   plan_ = folder_ / "out" / "mesh" / "plan.json";
   const Value before = answer();
   EXPECT_TRUE(failures_in(before).empty()) << to_json(before);
-  EXPECT_EQ(document().at("environment").at("meshes").as_list().size(), 1u);
+  const Value& obstacles = document().at("environment").at("obstacles");
+  ASSERT_EQ(obstacles.as_list().size(), 1u);
+  EXPECT_EQ(obstacles.as_list()[0].at("type").as_text(), "mesh");
   fs::create_directories(folder_ / "elsewhere");
   fs::rename(folder_ / "out" / "mesh", folder_ / "elsewhere" / "kept");
   fs::remove(folder_ / "tower.obj");

@@ -244,6 +244,13 @@ TEST(Rules, APluginHasOneName) {
   EXPECT_EQ(changed(0, "lapwing::KeepLow", "lapwing::KeepHigh"), 1u);
   EXPECT_EQ(changed(1, "keep_low", "keep_high"), 1u);
   EXPECT_EQ(changed(1, "cost_term ", "constraint "), 1u);
+  EXPECT_EQ(changed(0, "lapwing::KeepLow", "lapwing::KeepLowForm"), 1u);
+  std::vector<SourceFile> behind = good;
+  for (const char* name : {"KeepLow final", "KeepLow)"}) {
+    std::string& text = behind[0].text;
+    text.insert(text.find(name) + 7, "CostTerm");
+  }
+  EXPECT_TRUE(check_tree(behind).empty()) << listed(check_tree(behind));
   std::vector<SourceFile> renamed = good;
   renamed[0].path = folder + "low.cpp";
   EXPECT_EQ(check_tree(renamed).size(), 4u);  // the file, its kText, its class, its macro

@@ -274,11 +274,11 @@ TEST_F(FilmTest, FilesOfObstaclesAreChecked) {
   const auto obstacle = [&](const std::string& text) {
     return shot("obstacles = { {" + text + "} },");
   };
-  expect(obstacle("type = 'mesh'"), "obstacles[1]: a mesh needs file");
+  expect(obstacle("type = 'mesh'"), "obstacles[1].file: missing; expected a text");
   expect(obstacle("type = 'mesh', file = 'gone.ply'"), "gone.ply");
   expect(obstacle("type = 'mesh', file = '../wall.ply'"), "../wall.ply");
   expect(obstacle("type = 'sphere', center = {0, 0, 1}, radius = 1, file = 'a.ply'"),
-         "obstacles[1].file: a sphere has none");
+         "obstacles[1].file: unknown key; known: type, name, side, opaque, track, center, radius");
   write_file_atomically(folder_ / "broken.ply", "ply\nno more");
   expect(obstacle("type = 'mesh', file = 'broken.ply'"), "broken.ply");
   write_file_atomically(folder_ / "broken.ot", "# Octomap OcTree file\nid OcTree\n");

@@ -267,9 +267,8 @@ TEST(StatedConstraints, CorruptOperationsAreRefusedByName) {
   broken.operations.push_back({.op = ConstraintOp::distance,
                                .operands = {0, 0, 0},
                                .number = 5,
-                               .name = "mesh",
-                               .component = 0});
-  refused(broken, "measures to mesh 0, which the environment lacks");
+                               .component = 99});
+  refused(broken, "measures to obstacle 99, which the environment lacks");
   broken = west(4);
   broken.spans = {{4, 2}};
   refused(broken, "ends before it begins");
