@@ -104,8 +104,8 @@ local function gimbal_yaws(looks, path)
   return list
 end
 
--- The camera's part of thesis 3.5.3, `environment` being what may hide the target: a gimbal, a target that follows what is looked at, and the
--- angle between the two.
+-- The camera's part of thesis 3.5.3: a gimbal, a target that follows what is looked at, and the
+-- angle between the two. `environment`: what may hide the target, or false.
 local function add_camera(p, weights, camera, path, environment)
   p:add_model { type = "gimbal" }
   p:add_block { name = "target", size = 3, unit = "m" }

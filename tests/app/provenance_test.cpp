@@ -256,7 +256,7 @@ TEST_F(ProvenanceTest, AMovedFolderWithAMeshIsJudgedAsBefore) {
   plan_ = folder_ / "out" / "mesh" / "plan.json";
   const Value before = answer();
   EXPECT_TRUE(failures_in(before).empty()) << to_json(before);
-  const Value& obstacles = document().at("environment").at("obstacles");
+  const Value obstacles = document().at("environment").at("obstacles");
   ASSERT_EQ(obstacles.as_list().size(), 1u);
   EXPECT_EQ(obstacles.as_list()[0].at("type").as_text(), "mesh");
   fs::create_directories(folder_ / "elsewhere");

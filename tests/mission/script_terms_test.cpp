@@ -179,10 +179,12 @@ TEST_F(TermTest, ConstraintsAgree) {
       return lapwing.sqrt((kept + bulge) ^ 2 + half ^ 2)
     end
   )";
+  more_ = kRockAlone;
   expect_same(R"(p:add_constraint { type = "obstacle", name = "t" })", reach + R"(
     p:add_constraint { name = "t", lower = 0, value = function(s)
       return lapwing.norm(s.position - { 4, 0.2, 3 }) - asked(s, 1.5 + 0.25, 0)
     end })");
+  more_ = "";
   expect_same(R"(p:add_constraint { type = "subject_distance", name = "t", subject = "walker",
                                     distance = 2 })",
               reach + R"(

@@ -264,10 +264,8 @@ TEST(StatedConstraints, CorruptOperationsAreRefusedByName) {
       {.op = ConstraintOp::subject, .operands = {0}, .name = "nobody", .component = 0});
   refused(broken, "the subject 'nobody'");
   broken = west(4);
-  broken.operations.push_back({.op = ConstraintOp::distance,
-                               .operands = {0, 0, 0},
-                               .number = 5,
-                               .component = 99});
+  broken.operations.push_back(
+      {.op = ConstraintOp::distance, .operands = {0, 0, 0}, .number = 5, .component = 99});
   refused(broken, "measures to obstacle 99, which the environment lacks");
   broken = west(4);
   broken.spans = {{4, 2}};
