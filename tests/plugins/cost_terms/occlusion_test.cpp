@@ -141,12 +141,13 @@ TEST(Occlusion, EveryShapeHides) {
   around = with_shapes(around);
   const BoundCost term("occlusion", map_of({{"margin", 0.5}}), around);
   ASSERT_EQ(term.shape.row_names, (std::vector<std::string>{"pole", "house", "tent"}));
-  // Units: the least half size and the margin. A hundredth is what the coarse sum may be off by.
+  // Units: the least half size and the margin. The term sums points that are margin / 2 apart or
+  // more, which is off by 2 % on the thin pole.
   const auto expect_density = [&](int k, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                   double unit) {
     const double density = density_along(around.obstacles[k], from, to, 0.5, unit);
     EXPECT_GT(density, 0.2);
-    EXPECT_NEAR(term.values(line(from, to))(k), density, 0.01 * density) << term.shape.row_names[k];
+    EXPECT_NEAR(term.values(line(from, to))(k), density, 0.03 * density) << term.shape.row_names[k];
   };
   expect_density(0, {-6, 0.1, 0}, {6, 0, 0.2}, 1.0);
   expect_density(1, {-6, 11, 2}, {6, 11, 2}, 2.5);
