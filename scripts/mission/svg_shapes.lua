@@ -35,20 +35,29 @@ local TRANSFORMS = {
   skewY = function(n) return { 1, math.tan(math.rad(n[1])), 0, 1, 0, 0 } end,
 }
 
+-- How many numbers each takes: either of two counts.
+local COUNTS = { matrix = { 6, 6 }, translate = { 1, 2 }, scale = { 1, 2 }, rotate = { 1, 3 },
+                 skewX = { 1, 1 }, skewY = { 1, 1 } }
+
 function M.transform(text)
   local matrix = M.IDENTITY
   local rest = text or ""
   while rest:find("(", 1, true) do
     local open, close = rest:find("(", 1, true), rest:find(")", 1, true)
     if not close then error("transform '" .. rest .. "' lacks its ')'", 0) end
-    local name = rest:sub(1, open - 1):match("%a+")
-    local make = TRANSFORMS[name] or error("unknown transform '" .. tostring(name) .. "'", 0)
-    local given = numbers_of(rest:sub(open + 1, close - 1))
-    if #given < (name == "matrix" and 6 or 1) then
-      error("transform " .. name .. " lacks numbers", 0)
+    local before = rest:sub(1, open - 1)
+    local name = before:match("^[%s,]*(%a+)%s*$")
+    local make = TRANSFORMS[name] or error("unknown transform '" .. before .. "'", 0)
+    local given, few, many = numbers_of(rest:sub(open + 1, close - 1)), table.unpack(COUNTS[name])
+    if #given ~= few and #given ~= many then
+      error(("transform %s: expected %s numbers, got %d"):format(
+        name, few == many and few or few .. " or " .. many, #given), 0)
     end
     matrix = M.times(matrix, make(given))
     rest = rest:sub(close + 1)
+  end
+  if rest:find("[^%s,]") then
+    error("transform '" .. rest .. "' has no numbers in parentheses", 0)
   end
   return matrix
 end

@@ -15,17 +15,18 @@ end
 -- name="value" pairs of a tag.
 local function attributes_of(text)
   local a, at = {}, 1
-  while true do
-    local equals = text:find("=", at, true)
-    if not equals then return a end
-    local quote_at = text:find("[\"']", equals)
-    if not quote_at then return a end
-    local close = text:find(text:sub(quote_at, quote_at), quote_at + 1, true)
+  while text:find("%S", at) do
+    local name, quote, first = text:match("^%s*([^%s=<>\"'/]+)%s*=%s*([\"'])()", at)
+    if not name then
+      error(("an attribute is no name=\"value\": '%s'"):format(
+        text:match("^%s*(.-)%s*$", at):sub(1, 40)), 0)
+    end
+    local close = text:find(quote, first, true)
     if not close then error("an attribute lacks its closing quote", 0) end
-    local name = text:sub(at, equals - 1):match("[%w:_%-]+") or ""
-    a[name] = text:sub(quote_at + 1, close - 1):gsub("&([%w#]+);", entity)
+    a[name] = text:sub(first, close - 1):gsub("&([%w#]+);", entity)
     at = close + 1
   end
+  return a
 end
 
 -- The '>' that ends the tag, outside of quotes.
