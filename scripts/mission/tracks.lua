@@ -54,7 +54,7 @@ function tracks.angles(from, to, before)
   local d = lapwing.vector(to) - from
   local across = lapwing.norm { d.x, d.y }
   local pitch = math.atan(d.z, math.max(across, 1e-9))
-  if across < STEEP * lapwing.norm { across, d.z } then return before or 0, pitch end
+  if across <= STEEP * lapwing.norm { across, d.z } then return before or 0, pitch end
   local yaw = math.atan(d.y, d.x)
   if before then yaw = yaw - 2 * math.pi * math.floor((yaw - before) / (2 * math.pi) + 0.5) end
   return yaw, pitch
