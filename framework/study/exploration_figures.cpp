@@ -12,6 +12,7 @@
 #include "framework/core/json.h"
 #include "framework/core/number_text.h"
 #include "framework/export/report.h"
+#include "framework/study/csv.h"
 #include "framework/study/stratified_sample.h"
 #include "framework/study/study_settings.h"
 
@@ -114,14 +115,6 @@ struct Row {
 
 using Episodes = std::vector<Flown>;
 
-// Of comma-separated values (RFC 4180).
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 struct Figures {
   const ExplorationFigures& asked;
   std::vector<Row> rows;
@@ -151,7 +144,7 @@ struct Figures {
     for (int t = 0; t < asked.steps; ++t) {
       StratifiedSample at;
       for (const Flown& episode : all) at.add(episode.curve[static_cast<std::size_t>(t)]);
-      curves += cell(world) + "," + cell(utility) + "," + std::to_string(t + 1) + "," +
+      curves += csv_text(world) + "," + csv_text(utility) + "," + std::to_string(t + 1) + "," +
                 plain_number(at.mean()) + "," +
                 (at.count() > 1 ? plain_number(at.deviation()) : "") + "\n";
       series.x.push_back(t + 1);
@@ -243,7 +236,7 @@ Value rows_value(const std::vector<Row>& rows) {
 std::string table_file(const Value& rows) {
   const auto text_of = [](const Value& value) -> std::string {
     if (value.is_null()) return "";
-    if (value.is_text()) return cell(value.as_text());
+    if (value.is_text()) return csv_text(value.as_text());
     return plain_number(value.as_number());
   };
   std::string table;
@@ -262,8 +255,9 @@ std::string table_file(const Value& rows) {
 std::string seconds_file(const std::vector<Row>& rows) {
   std::string table = "world,utility,episodes,seconds_per_step\n";  // table 5.3
   for (const Row& row : rows)
-    table += cell(row.world) + "," + cell(row.utility) + "," + std::to_string(row.seconds.count()) +
-             "," + (row.seconds.count() > 0 ? plain_number(row.seconds.mean()) : "") + "\n";
+    table += csv_text(row.world) + "," + csv_text(row.utility) + "," +
+             std::to_string(row.seconds.count()) + "," +
+             (row.seconds.count() > 0 ? plain_number(row.seconds.mean()) : "") + "\n";
   return table;
 }
 
