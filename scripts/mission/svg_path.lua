@@ -94,6 +94,9 @@ function M.strokes(data)
     elseif not command or command == "z" or command == "Z" then
       error("path data must begin with a command")
     end
+    if not last and command:upper() ~= "M" then
+      error("path data must begin with a move, M or m, not with '" .. command .. "'")
+    end
     local upper, relative = command:upper(), command:lower() == command
     local ox, oy = relative and x or 0, relative and y or 0
     local function pair() return r.number() + ox, r.number() + oy end
