@@ -81,7 +81,9 @@ function check.all(tests)
     if not good then wrong[#wrong + 1] = name .. ": " .. tostring(message) end
   end
   if count == 0 then error("there are no tests", 0) end
-  if #wrong > 0 then error(#wrong .. " of " .. count .. " fail\n" .. table.concat(wrong, "\n"), 0) end
+  if #wrong > 0 then
+    error(#wrong .. " of " .. count .. " fail\n" .. table.concat(wrong, "\n"), 0)
+  end
   return film.shot { name = "checked", keyframes = { { position = { 0, 0, 2 } } } }
 end
 

@@ -42,7 +42,8 @@ function T.untimed_ones_stand_evenly_between_timed_ones()
   check.near(filled({ a, b, c, d }, 12), { 0, 4, 8, 12 }, 1e-12)
   check.near(filled({ a, at(1, 0, 0, { time = 6 }), c, d }, 12), { 0, 6, 9, 12 }, 1e-12)
   check.near(filled({ a, b, at(2, 0, 0, { time = 5 }), d }, 12), { 0, 2.5, 5, 12 }, 1e-12)
-  check.near(filled({ at(0, 0, 0, { time = 2 }), b, at(2, 0, 0, { time = 8 }) }), { 2, 5, 8 }, 1e-12)
+  check.near(filled({ at(0, 0, 0, { time = 2 }), b, at(2, 0, 0, { time = 8 }) }), { 2, 5, 8 },
+             1e-12)
   -- Behind the last time, at the pace of the longest leg: here sqrt(8 / 5) s of every metre.
   local pace = math.sqrt(8 / 5)
   check.near(filled { a, at(1, 0, 0, { time = 5 }), c, d }, { 0, 5, 5 + pace, 5 + 2 * pace }, 1e-12)
@@ -63,8 +64,10 @@ function T.a_speed_times_legs()
   local legs = { at(0, 0, 0), at(30, 0, 40), at(30, 0, 90) }
   local free = { speed = 5, start = "free", finish = "free" }
   check.near(filled(legs, nil, free), { 0, 10, 20 }, 1e-12)
-  check.near(filled(legs, nil, { speed = 5, start = "rest", finish = "rest" }), { 0, 11, 22 }, 1e-12)
-  check.near(filled(legs, nil, { speed = 5, start = "rest", finish = "free" }), { 0, 11, 21 }, 1e-12)
+  check.near(filled(legs, nil, { speed = 5, start = "rest", finish = "rest" }), { 0, 11, 22 },
+             1e-12)
+  check.near(filled(legs, nil, { speed = 5, start = "rest", finish = "free" }), { 0, 11, 21 },
+             1e-12)
   -- One leg's own speed; the others as they like.
   legs[3].speed = 10
   check.near(filled(legs, nil, free), { 0, 10, 15 }, 1e-12)
@@ -110,7 +113,8 @@ function T.contradicted_speeds_are_named()
           { a, at(9, 0, 0, { speed = 1 }) })
   refused("speed: every keyframe has a time", { speed = 3 }, { a, at(9, 0, 0, { time = 3 }) })
   refused("speed: the duration says how long", { speed = 3 }, { a, b }, 20)
-  times.check_speed(check.run { speed = 3, speed_limit = 3, timing = "given" }, { keyframes = { a, b } })
+  times.check_speed(check.run { speed = 3, speed_limit = 3, timing = "given" },
+                    { keyframes = { a, b } })
   times.check_speed(check.run { timing = "free" }, { keyframes = { a, a } })
 end
 
@@ -131,7 +135,9 @@ function T.yaw_goes_the_short_way()
   local function turns(list)
     local keyframes, yaws = {}, {}
     for i, yaw in ipairs(list) do keyframes[i] = { yaw_deg = yaw or nil } end
-    for i, k in ipairs(times.with_yaw(keyframes)) do yaws[i] = k.yaw and math.deg(k.yaw) or false end
+    for i, k in ipairs(times.with_yaw(keyframes)) do
+      yaws[i] = k.yaw and math.deg(k.yaw) or false
+    end
     return yaws
   end
   check.near(turns { 170, -170, 170 }, { 170, 190, 170 }, 1e-9)
@@ -175,7 +181,8 @@ function T.a_battery_lasts_as_long_as_it_does()
   check.fails("duration: 601 s of flight are more than the 600 s that vehicle 'test' flies",
               times.check_battery, check.run(), VEHICLE, 601)
   times.check_battery(check.run { battery = 700 }, VEHICLE, 601)
-  check.fails("700 s that `battery` allows", times.check_battery, check.run { battery = 700 }, VEHICLE,
+  check.fails("700 s that `battery` allows", times.check_battery, check.run { battery = 700 },
+              VEHICLE,
               701)
 end
 

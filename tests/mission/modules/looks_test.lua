@@ -22,7 +22,8 @@ end
 local function shown(list)
   local parts = {}
   for i, look in ipairs(list) do
-    parts[i] = (look.subject and look.subject.name or table.concat(look.point, " ")) .. " " .. look.time
+    parts[i] = (look.subject and look.subject.name or table.concat(look.point, " ")) .. " "
+        .. look.time
   end
   return table.concat(parts, ", ")
 end
@@ -34,14 +35,17 @@ end
 
 function T.keyframes_look_as_the_one_before()
   check.equal(of { k(0, "a"), k(2), k(4, "b"), k(6) }, "a 0, a 2, b 4, b 6")
-  check.equal(of { k(0), k(2), k(4, "b") }, "b 0, b 2, b 4", "the first that looks, for those before")
-  check.equal(of { k(0), k(2, nil, { 1, 2, 3 }), k(4), k(6, "a") }, "1 2 3 0, 1 2 3 2, 1 2 3 4, a 6")
+  check.equal(of { k(0), k(2), k(4, "b") }, "b 0, b 2, b 4",
+              "the first that looks, for those before")
+  check.equal(of { k(0), k(2, nil, { 1, 2, 3 }), k(4), k(6, "a") },
+              "1 2 3 0, 1 2 3 2, 1 2 3 4, a 6")
   check.equal(of({ k(0), k(2) }, { A }), "a 0, a 2", "a subject alone needs no word")
   check.equal(of({ k(0), k(2) }, {}), "nothing")
 end
 
 function T.wrong_looks_are_named()
-  check.fails("keyframes[2].look_at: give a subject or a point", of, { k(0), k(1, "a", { 1, 2, 3 }) })
+  check.fails("keyframes[2].look_at: give a subject or a point", of,
+              { k(0), k(1, "a", { 1, 2, 3 }) })
   check.fails("keyframes[1].look_at: there is no subject named 'c'", of, { k(0, "c") })
   check.fails("subjects: with several, keyframes say which: look_at = \"a\"", of, { k(0) })
 end
@@ -72,7 +76,8 @@ end
 
 function T.in_a_cut_it_jumps()
   local cuts = { { start = 4, finish = 4.5 } }
-  check.near(schedule({ at(0, A), at(10, B) }, 12, cuts), { { "a", 0, 4 }, { "b", 4.5, 12 } }, 1e-12)
+  check.near(schedule({ at(0, A), at(10, B) }, 12, cuts), { { "a", 0, 4 }, { "b", 4.5, 12 } },
+             1e-12)
   -- A cut on another leg changes nothing, one that reaches past its leg ends with it.
   check.near(schedule({ at(0, A), at(3, A), at(13, B) }, 13, { { start = 1, finish = 2 } }),
              { { "a", 0, 6.5 }, { "b", 9.5, 13 } }, 1e-12)
@@ -94,6 +99,11 @@ function T.a_cut_lasts_as_long_as_the_turn()
   check.equal(cuts({ { start = 2, finish = 3 } }, 2), { { start = 4, finish = 6 } })
   -- From a, 45 degrees to the left, to b, 45 to the right: a quarter turn at 2 rad/s.
   check.near(cuts { { start = 2 } }, { { start = 2, finish = 2 + math.pi / 4 } }, 1e-9)
+  -- Straight up by 45 degrees at 0.5 rad/s, where the gimbal takes longer than the yaw.
+  local up = looks.cuts(check.run(), { { start = 2 } }, 1, 20, VEHICLE,
+                        { { time = 0, position = { 0, 0, 0 } } },
+                        { at(0, A), at(10, still("up", 0, 10, 10)) })
+  check.near(up, { { start = 2, finish = 2 + math.pi / 2 } }, 1e-9)
   -- Behind the last look there is nothing to turn to: the least cut.
   check.near(cuts { { start = 15 } }, { { start = 15, finish = 15.2 } }, 1e-9)
 end
@@ -109,13 +119,15 @@ end
 
 function T.tracks_must_cover_what_is_looked_at()
   local walker = { name = "w", option = "subjects[3]",
-                   track = { { time = 1, position = { 0, 0, 0 } }, { time = 5, position = { 1, 0, 0 } } } }
+                   track = { { time = 1, position = { 0, 0, 0 } },
+                             { time = 5, position = { 1, 0, 0 } } } }
   local function covered(start, finish)
     looks.check_coverage(check.run(), { { subject = walker, start = start, finish = finish } })
   end
   covered(1, 5)
   covered(2, 3)
-  check.fails("subjects[3].track: runs from 1 s to 5 s, but 'w' is looked at from 0 s to 3 s", covered,
+  check.fails("subjects[3].track: runs from 1 s to 5 s, but 'w' is looked at from 0 s to 3 s",
+              covered,
               0, 3)
   check.fails("looked at from 2 s to 5.5 s", covered, 2, 5.5)
   looks.check_coverage(check.run(), { { subject = A, start = 0, finish = 99 } })
@@ -128,9 +140,9 @@ local function plan(request, duration)
 end
 
 function T.a_plan_pulls_the_target_to_its_subject()
-  local camera = plan({ subjects = { { name = "w", track = { { time = 0, position = { 0, 10, 0 } },
-                                                           { time = 10, position = { 10, 10, 0 } } } } },
-                        keyframes = { k(0), k(10) } }, 10)
+  local walk = { { time = 0, position = { 0, 10, 0 } }, { time = 10, position = { 10, 10, 0 } } }
+  local camera = plan({ subjects = { { name = "w", track = walk } }, keyframes = { k(0), k(10) } },
+                      10)
   check.equal(#camera.spans, 1)
   local weight = 0
   for i, pull in ipairs(camera.pulls) do
@@ -150,8 +162,10 @@ end
 
 function T.nothing_is_pulled_within_a_cut()
   local camera = plan({ subjects = { { name = "a", position = { 0, 10, 0 } },
-                                   { name = "b", position = { 20, 10, 0 } } },
-                        keyframes = { k(0, "a"), k(10, "b") }, cuts = { { start = 4, finish = 6 } } }, 10)
+                                     { name = "b", position = { 20, 10, 0 } } },
+                        keyframes = { k(0, "a"), k(10, "b") },
+                        cuts = { { start = 4, finish = 6 } } }, 10)
+  check.equal(#camera.spans, 2)
   for _, pull in ipairs(camera.pulls) do check.yes(pull.time < 4 or pull.time > 6, "outside") end
   check.equal(camera.cuts, { { start = 4, finish = 6 } })
   check.equal(plan({ subjects = {}, keyframes = { k(0), k(10) } }, 10), nil)
@@ -162,10 +176,30 @@ function T.nothing_is_pulled_within_a_cut()
                 cuts = { { start = 0, finish = 10 } } }, 10)
 end
 
+-- Between two looks the target goes straight from one to the other, and times are stretched.
+function T.from_one_look_to_the_next_the_target_goes_straight()
+  local camera = plan({ subjects = { { name = "a", position = { 0, 10, 0 } },
+                                     { name = "b", position = { 20, 10, 0 } } }, stretch = 2,
+                        keyframes = { k(0, "a"), k(5, "b") } }, 10)
+  check.near({ camera.spans[1].finish, camera.spans[2].start }, { 3.5, 6.5 }, 1e-12)
+  for i, time in ipairs(camera.guess.times) do
+    local at_x = math.max(0, math.min(20, (time - 3.5) / 3 * 20))
+    local target = camera.guess.targets[i]
+    check.near({ target.x or target[1], target.y or target[2] }, { at_x, 10 }, 1e-9, "at " .. time)
+  end
+  -- A point is pulled to once, at its keyframe, with the weight of a second.
+  camera = plan({ subjects = {}, keyframes = { k(0, nil, { 1, 2, 3 }), k(8, nil, { 4, 5, 6 }) } },
+                8)
+  check.equal(camera.pulls, { { time = 0, value = { 1, 2, 3 }, weight = 1 },
+                              { time = 8, value = { 4, 5, 6 }, weight = 1 } })
+  check.equal(camera.spans, {})
+end
+
 function T.what_the_gimbal_cannot_show_is_said()
   local function hidden(height)
-    return subjects.hidden(plan({ subjects = { { name = "tower", position = { 0, 10, height } } },
-                                  keyframes = { { time = 0, position = { 0, 0, 0 } } } }, 1), VEHICLE)
+    local tower = { name = "tower", position = { 0, 10, height } }
+    local stands = { { time = 0, position = { 0, 0, 0 } } }
+    return subjects.hidden(plan({ subjects = { tower }, keyframes = stands }, 1), VEHICLE)
   end
   check.equal(hidden(0), nil)
   check.equal(hidden(10 * math.tan(0.79)), nil, "0.5 rad and 0.3 rad of image")

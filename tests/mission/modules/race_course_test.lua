@@ -12,14 +12,16 @@ local function read(options)
 end
 
 local function gate(more)
-  local made = { shape = "rectangle", width = 2, height = 1, position = { 0, 0, 3 }, normal_yaw_deg = 0 }
+  local made = { shape = "rectangle", width = 2, height = 1, position = { 0, 0, 3 },
+                 normal_yaw_deg = 0 }
   for name, value in pairs(more) do made[name] = value end
   return made
 end
 
 function T.directions_of_gates()
   for _, case in ipairs { { 0, 0, { 1, 0, 0 } }, { 90, nil, { 0, 1, 0 } }, { 180, 0, { -1, 0, 0 } },
-                          { 0, 30, { math.sqrt(3) / 2, 0, 0.5 } }, { -90, -60, { 0, -0.5, -math.sqrt(3) / 2 } } }
+                          { 0, 30, { math.sqrt(3) / 2, 0, 0.5 } },
+                              { -90, -60, { 0, -0.5, -math.sqrt(3) / 2 } } }
   do
     local made = read { gates = { gate { normal_yaw_deg = case[1], normal_pitch_deg = case[2] } } }
     check.near(made.gates[1].direction, case[3], 1e-12)
@@ -51,14 +53,16 @@ function T.sizes_that_do_not_fit_are_named()
   refused("gates[1]: expected either a radius or a side",
           { shape = "pentagon", position = place, normal_yaw_deg = 0 })
   refused("gates[1]: a ball needs its radius", { shape = "ball", position = place })
-  refused("gates[1].side: a ball has none", { shape = "ball", radius = 1, side = 2, position = place })
+  refused("gates[1].side: a ball has none", { shape = "ball", radius = 1, side = 2,
+                                              position = place })
   for _, size in ipairs { 0, -1 } do
     refused("gates[1].width: a rectangle cannot be entered with a width of " .. size,
             gate { width = size })
   end
   refused("gates[1].normal_pitch_deg: expected degrees upwards", gate { normal_pitch_deg = 90 })
   refused("gates[1].tunnel_length: expected metres, 0 or more", gate { tunnel_length = -1 })
-  for _, position in ipairs { { 1, 2 }, { 1, 2, 0 / 0 }, { 1, 2, 1 / 0 }, { 1, 2, 1e7 }, { 1, 2, "3" },
+  for _, position in ipairs { { 1, 2 }, { 1, 2, 0 / 0 }, { 1, 2, 1 / 0 }, { 1, 2, 1e7 },
+                              { 1, 2, "3" },
                               { 1, 2, 3, 4 }, "here" } do
     refused("gates[1].position: expected three finite numbers", gate { position = position })
   end
@@ -86,7 +90,8 @@ function T.keyframes_are_balls_of_the_tolerance()
   check.equal(made.gates[1], { name = "keyframe 1", shape = "ball", radius = 0.25,
                                position = { 1, 2, 3 } })
   check.equal(made.gates[2].position, { 4, 5, 6 })
-  check.fails("keyframes[2]: expected three finite numbers", read, { keyframes = { { 1, 2, 3 }, 5 } })
+  check.fails("keyframes[2]: expected three finite numbers", read,
+              { keyframes = { { 1, 2, 3 }, 5 } })
 end
 
 function T.a_course_is_given_in_one_way()
@@ -124,8 +129,8 @@ function T.gates_stand_apart()
 end
 
 function T.gates_reach_above_the_floor()
-  check.fails("gates[1]: gate 'gates[1]' cannot be entered: it ends 3.5 m above the ground, and the "
-              .. "flight stays above 4 m", read, { gates = { gate {} }, floor = 4 })
+  check.fails("gates[1]: gate 'gates[1]' cannot be entered: it ends 3.5 m above the ground, and "
+              .. "the flight stays above 4 m", read, { gates = { gate {} }, floor = 4 })
   read { gates = { gate {} }, floor = 3.4 }
   check.fails("cannot be entered", read, { gates = { gate {} }, floor = 3.5 })
   check.fails("start: 2 m above the ground, and the flight stays above 2 m", read,
@@ -135,7 +140,7 @@ end
 -- The turn from point to point is bounded by the curvature, the height by half of itself.
 function T.a_free_form_turns_no_faster_than_it_may()
   local made = read { free_form = { length = 300, spacing = 7, height = 10, curvature = 0.05 } }
-  local points, before = made.gates, nil
+  local points, before, left, right, sum = made.gates, nil, 0, 0, 0
   check.equal(#points, 44, "every 300 / 43 m")
   for i = 2, #points do
     local a, b = points[i - 1].position, points[i].position
@@ -145,10 +150,15 @@ function T.a_free_form_turns_no_faster_than_it_may()
     if before then
       local turn = (heading - before + math.pi) % (2 * math.pi) - math.pi
       check.yes(math.abs(turn) <= 0.05 * 300 / 43 + 1e-9, "turn " .. turn)
+      if turn > 0 then left = left + 1 else right = right + 1 end
+      sum = sum + math.abs(turn)
     end
     before = heading
     check.yes(b[3] >= 5 and b[3] <= 15, "height " .. b[3])
   end
+  check.yes(left >= 10 and right >= 10, "it wanders to both sides")
+  -- Half of the last turn, and up to a whole one by chance: about half of the limit in the mean.
+  check.yes(sum / 42 > 0.2 * 0.05 * 300 / 43 and sum / 42 < 0.8 * 0.05 * 300 / 43, "mean turn")
   check.equal(points[1].position, { 0, 0, 10 })
   check.equal(points[44].name, "keyframe 44")
 end

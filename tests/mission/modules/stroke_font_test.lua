@@ -20,7 +20,8 @@ end
 
 function T.known_letters()
   check.near(font.strokes("L"), { { { 0, 1 }, { 0, 0 }, { 3.4 / 6, 0 } } }, 1e-12)
-  check.near(font.strokes("t"), { { { 0, 1 }, { 4 / 6, 1 } }, { { 2 / 6, 1 }, { 2 / 6, 0 } } }, 1e-12)
+  check.near(font.strokes("t"), { { { 0, 1 }, { 4 / 6, 1 } }, { { 2 / 6, 1 }, { 2 / 6, 0 } } },
+             1e-12)
   check.near(font.strokes("-"), { { { 0, 0.5 }, { 2.4 / 6, 0.5 } } }, 1e-12, "begins at 0")
 end
 
@@ -35,7 +36,9 @@ function T.every_character_that_is_promised_is_there()
       check.yes(low > -0.1 and low < 0.01, character .. " stands on its line")
       check.near(high, 1, 0.01, character .. " is 1 high")
     end
-    for _, stroke in ipairs(strokes) do check.yes(#stroke >= 2, character .. " has a point alone") end
+    for _, stroke in ipairs(strokes) do
+      check.yes(#stroke >= 2, character .. " has a point alone")
+    end
   end
 end
 
@@ -110,7 +113,8 @@ local QUOTE = glyph { { -4, 6 }, { -4, -12 }, { 6, 9 } }
 function T.hershey_glyphs_are_read()
   local text = table.concat({ BLANK, BANG, QUOTE, "" }, "\n")
   check.near(font.hershey_strokes("!", text),
-             { { { 5 / 21, 1 }, { 5 / 21, 7 / 21 } }, { { 5 / 21, 1 / 21 }, { 5 / 21, 0 } } }, 1e-12)
+             { { { 5 / 21, 1 }, { 5 / 21, 7 / 21 } }, { { 5 / 21, 1 / 21 }, { 5 / 21, 0 } } },
+                 1e-12)
   -- The next begins where the reach of the one before ends.
   check.near(font.hershey_strokes("!\"", text)[3], { { 10 / 21, 1 }, { 20 / 21, 0 } }, 1e-12)
   check.near(font.hershey_strokes("! !", text)[3][1], { (10 + 16 + 5) / 21, 1 }, 1e-12)
@@ -120,7 +124,8 @@ function T.hershey_lines_may_be_broken_anywhere()
   local whole = table.concat({ BLANK, BANG, QUOTE }, "\n")
   local wanted = font.hershey_strokes("!\"", whole)
   for _, at in ipairs { 9, 12, 15 } do
-    local broken = table.concat({ BLANK, BANG:sub(1, at) .. "\n" .. BANG:sub(at + 1), QUOTE }, "\r\n")
+    local broken = table.concat({ BLANK, BANG:sub(1, at) .. "\n" .. BANG:sub(at + 1), QUOTE },
+                                "\r\n")
     check.equal(font.hershey_strokes("!\"", broken), wanted, "broken after " .. at)
   end
 end

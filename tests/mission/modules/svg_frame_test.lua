@@ -31,11 +31,23 @@ function T.known_cuts()
       { { { 5, 3 }, { 5, 6 } }, { { 7, 6 }, { 7, 3 } } } },
     { "over the edge within one piece", { { 2, 3 }, { 12, 3 }, { 2, 3 } },
       { { { 2, 3 }, { 10, 3 } }, { { 10, 3 }, { 2, 3 } } } },
+    { "just above", { { 1, -0.5 }, { 9, -0.5 } }, {} },
+    { "just left", { { -0.5, 1 }, { -0.5, 5 } }, {} },
+    { "a corner alone", { { -1, 1 }, { 1, -1 } }, {} },
     { "all of a point", { { 20, 20 }, { 20, 20 } }, {} },
   } do
     local pieces, any = cut(case[2])
     check.near(pieces, case[3], 1e-12, case[1])
     check.equal(any, true, case[1])
+  end
+end
+
+function T.points_that_stand_twice_stay()
+  for _, strokes in ipairs { { { { 1, 1 }, { 1, 1 }, { 5, 1 } } }, { { { 2, 2 }, { 2, 2 } } },
+                             { { { 0, 0 }, { 0, 0 } } } } do
+    local pieces, any = frames.cut(strokes, FRAME, 0)
+    check.equal(pieces, strokes)
+    check.equal(any, false)
   end
 end
 

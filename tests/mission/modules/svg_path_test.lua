@@ -148,6 +148,13 @@ function T.an_arc_that_cannot_reach_grows()
   check.near(math.deg(turned(got, 2, 0, 2)), 180, 1e-6)
   got = stroke "M0,0 A1,1 0 0 0 4,0"
   check.near(math.deg(turned(got, 2, 0, 2)), -180, 1e-6)
+  -- An ellipse grows in its own proportion: here one that is twice as high as it is wide.
+  for _, p in ipairs(stroke "M0,0 A1,2 0 0 1 6,0") do
+    check.near(((p[1] - 3) / 3) ^ 2 + (p[2] / 6) ^ 2, 1, 1e-9)
+  end
+  for _, p in ipairs(stroke "M0,0 A1,2 0 0 1 0,8") do
+    check.near((p[1] / 2) ^ 2 + ((p[2] - 4) / 4) ^ 2, 1, 1e-9)
+  end
 end
 
 function T.arcs_without_a_curve()
@@ -156,7 +163,8 @@ function T.arcs_without_a_curve()
   check.equal(stroke "M1,2 A5,5 0 1 1 1,2", { { 1, 2 } }, "ends where it begins: nothing")
 end
 
--- A turned ellipse: every point fulfils its equation about the middle, and the arc stays on one side.
+-- A turned ellipse: every point fulfils its equation about the middle, and the arc stays on one
+-- side.
 function T.turned_ellipses_fulfil_their_equation()
   local turn = math.rad(30)
   local c, s = math.cos(turn), math.sin(turn)
@@ -172,6 +180,10 @@ end
 function T.errors()
   check.fails("path data must begin with a command", path.strokes, "1,2")
   check.fails("path data must begin with a command", path.strokes, "M0,0 z 5,5")
+  for _, data in ipairs { "L1,1", "z", "h5", "B1,1" } do
+    check.fails("must begin with a move, M or m, not with '" .. data:sub(1, 1) .. "'", path.strokes,
+                data)
+  end
   check.fails("unknown path command 'B'", path.strokes, "M0,0 B1,1")
   check.fails("expected a number at ''", path.strokes, "M0,0 L1")
   check.fails("expected a number at 'L2,2'", path.strokes, "M0,0 C1,1 2,2 L2,2")

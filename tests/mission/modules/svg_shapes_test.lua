@@ -14,7 +14,8 @@ function T.transforms_move_points_as_svg_says()
   for _, case in ipairs {
     { "", { 3, 4 } }, { "translate(10)", { 13, 4 } }, { "translate(10, -2)", { 13, 2 } },
     { "scale(2)", { 6, 8 } }, { "scale(2 -1)", { 6, -4 } }, { "rotate(90)", { -4, 3 } },
-    { "rotate(-90)", { 4, -3 } }, { "rotate(90 3 4)", { 3, 4 } }, { "rotate(180, 1, 1)", { -1, -2 } },
+    { "rotate(-90)", { 4, -3 } }, { "rotate(90 3 4)", { 3, 4 } },
+        { "rotate(180, 1, 1)", { -1, -2 } },
     { "skewX(45)", { 7, 4 } }, { "skewY(45)", { 3, 7 } }, { "matrix(1 2 3 4 5 6)", { 20, 28 } },
     -- The last is applied first.
     { "translate(10,0) scale(2)", { 16, 8 } }, { "scale(2),translate(10,0)", { 26, 8 } },
@@ -57,7 +58,8 @@ function T.wrong_transforms_are_named()
 end
 
 function T.lengths_have_units()
-  for text, units in pairs { ["5"] = 5, [" 5px "] = 5, ["1in"] = 96, ["2.54cm"] = 96, ["25.4 mm"] = 96,
+  for text, units in pairs { ["5"] = 5, [" 5px "] = 5, ["1in"] = 96, ["2.54cm"] = 96,
+                             ["25.4 mm"] = 96,
                              ["72pt"] = 96, ["6pc"] = 96, ["-.5"] = -0.5, ["1e1"] = 10,
                              ["+2E-1in"] = 19.2 } do
     check.near(shapes.length({ w = text }, "w"), units, 1e-12, text)
@@ -142,9 +144,9 @@ end
 
 function T.a_view_box_is_fitted_in_the_middle()
   -- 10 x 10 shown in 40 x 20: twice as large, 10 free to the left and to the right.
-  local matrix = shapes.viewport({ viewBox = "5 5 10 10" }, { width = "40", height = "20" })
-  check.near(moved(matrix, 5, 5), { 10, 0 }, 1e-12)
-  check.near(moved(matrix, 15, 15), { 30, 20 }, 1e-12)
+  local matrix = shapes.viewport({ viewBox = "5 2 10 10" }, { width = "40", height = "20" })
+  check.near(moved(matrix, 5, 2), { 10, 0 }, 1e-12)
+  check.near(moved(matrix, 15, 12), { 30, 20 }, 1e-12)
   matrix = shapes.viewport({ viewBox = "0 0 10 20", x = "100", y = "1" }, {})
   check.near(moved(matrix, 1, 2), { 101, 3 }, 1e-12, "without a size: its own units")
   check.near(shapes.viewport({ x = "3" }, {}), { 1, 0, 0, 1, 3, 0 }, 0)
@@ -162,6 +164,8 @@ function T.frames_of_windows()
   check.near(frame(nil, "20", "10"), { 0, 0, 20, 10 }, 0)
   check.near(frame(nil, "20", nil), { 0, 0, 20, math.huge }, 0)
   check.near(frame("1 2 10 20", nil, nil), { 1, 2, 11, 22 }, 0)
+  check.near(frame("0 0 .5 .25", "2", "1"), { 0, 0, 0.5, 0.25 }, 0)
+  check.near(frame("0 0 0 1", "2", "1"), { 0, 0, 2, 1 }, 0, "none that can be seen through")
   -- A wide window over a square shows more to both sides, or to one.
   check.near(frame("0 0 10 10", "40", "20"), { -5, 0, 15, 10 }, 1e-12)
   check.near(frame("0 0 10 10", "40", "20", "xMinYMid"), { 0, 0, 20, 10 }, 1e-12)

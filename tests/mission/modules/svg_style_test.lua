@@ -9,7 +9,8 @@ local T = {}
 -- The styles of the first element named `p` within others, and what was said of rules.
 local function of(text)
   local root, notes = tree.read(text), {}
-  local rules = styles.rules(root, function(line, what) notes[#notes + 1] = line .. ": " .. what end)
+  local rules = styles.rules(root, function(line, what) notes[#notes + 1] = line .. ": "
+                             .. what end)
   local found
   local function visit(element, parent)
     local own = styles.of(element, parent, rules)
@@ -53,6 +54,11 @@ function T.declarations_may_be_written_loosely()
   check.equal(stroke("<svg><style>/* p{stroke:a} */ p{/*x*/stroke:b}</style><p/></svg>"), "b")
 end
 
+function T.rules_within_conditions_are_whole()
+  check.equal(stroke "<svg><style>@media screen{p{stroke:a}}p{fill:b}</style><p/></svg>", "a")
+  check.equal(of("<svg><style>@media all{q{x:y}}p{fill:b}</style><p/></svg>").fill, "b")
+end
+
 function T.rules_for_a_screen_count_and_others_are_said()
   local own, notes = of [[<svg><style>@media screen { p{stroke:a} }
     @media  print{p{stroke:b}} @import url(x.css); @font-face{font-family:p} q p{stroke:c}
@@ -83,7 +89,9 @@ function T.lines_come_before_faces()
     ["stroke='red' stroke-width='.1'"] = "stroke", ["stroke='red' stroke-opacity='0'"] = "fill",
     ["stroke='red' stroke-opacity='0.0%' fill-opacity='0'"] = "unseen",
     ["stroke='#ff000000'"] = "fill", ["stroke='#f000'"] = "fill", ["stroke='#f00'"] = "stroke",
-    ["stroke='#000000'"] = "stroke", ["stroke='#0000'"] = "fill",
+    ["stroke='#000000'"] = "stroke",
+    ["stroke='#000000ff'"] = "stroke", ["stroke='#000f'"] = "stroke",
+        ["stroke='#00000f00'"] = "fill", ["stroke='#0000'"] = "fill",
     ["stroke='rgba(1,2,3,0)'"] = "fill", ["stroke='rgba(1,2,3,.5)'"] = "stroke",
     ["stroke='rgb(1 2 3 / 0%)'"] = "fill", ["stroke='rgb(0,0,0)'"] = "stroke",
     ["stroke='hsl(0 0% 0%)'"] = "stroke", ["stroke=' NONE '"] = "fill",
@@ -97,27 +105,38 @@ end
 function T.paints_by_reference()
   local file = "<linearGradient id='g'/><g id='none'/><pattern id='p'/>"
   check.equal({ seen("stroke='url(#g)'", file) }, { "stroke", {} })
+  for _, server in ipairs { "linearGradient", "radialGradient", "pattern", "solidColor",
+                            "meshgradient", "hatch" } do
+    check.equal({ seen("stroke='url(#x)'", "<" .. server .. " id='x'/>") }, { "stroke", {} },
+                server)
+  end
   check.equal({ seen("stroke='url( &quot;#p&quot; ) none'", file) }, { "stroke", {} })
   check.equal({ seen("stroke='url(#absent)' fill='none'", file) }, { "unseen", { "#absent" } })
   check.equal({ seen("stroke='url(#absent) red'", file) }, { "stroke", { "#absent" } })
-  check.equal({ seen("stroke='url(#none)'", file) }, { "fill", { "#none" } }, "a group paints nothing")
+  check.equal({ seen("stroke='url(#none)'", file) }, { "fill", { "#none" } },
+              "a group paints nothing")
 end
 
 function T.hidden_elements()
-  for text, hidden in pairs { ["display='none'"] = true, ["opacity='0'"] = true, ["opacity='0%'"] = true,
-                              ["opacity='.01'"] = false, ["visibility='hidden'"] = false, [""] = false,
+  for text, hidden in pairs { ["display='none'"] = true, ["opacity='0'"] = true,
+                              ["opacity='0%'"] = true,
+                              ["opacity='.01'"] = false, ["visibility='hidden'"] = false,
+                                  [""] = false,
                               ["opacity='0e3'"] = true, ["opacity='nothing'"] = false } do
     check.equal(styles.hidden(of("<svg><p " .. text .. "/></svg>")), hidden, text)
   end
   for _, word in ipairs { "hidden", "collapse" } do
     check.yes(styles.invisible(of("<svg><g visibility='" .. word .. "'><p/></g></svg>")))
   end
-  check.yes(not styles.invisible(of("<svg><g visibility='hidden'><p visibility='visible'/></g></svg>")))
+  local within = "<svg><g visibility='hidden'><p visibility='visible'/></g></svg>"
+  check.yes(not styles.invisible(of(within)))
 end
 
 function T.colours_that_are_not_black()
-  for text, colour in pairs { black = false, ["#000"] = false, ["rgb(0, 0, 0)"] = false, none = false,
-                              BLACK = false, currentColor = false, red = "red", [" # 1 "] = "#1" } do
+  for text, colour in pairs { black = false, ["#000"] = false, ["rgb(0, 0, 0)"] = false,
+                              none = false,
+                              BLACK = false, currentColor = false, red = "red",
+                                  [" # 1 "] = "#1" } do
     check.equal(styles.colour({ stroke = text }) or false, colour, text)
   end
   check.equal(styles.colour({ stroke = "currentColor", color = "red" }), "red")

@@ -74,6 +74,15 @@ function T.what_is_outside_the_picture_is_cut_off_and_said()
   draws("<svg viewBox='0 0 10 10'>"
         .. "<path stroke='black' stroke-width='2' d='M1,10.9 L9,10.9'/></svg>",
         { { 1, 10.9, 9, 10.9 } })
+  -- The line is as wide as the picture shows it: here 1 on each side, drawn at half the size.
+  draws("<svg viewBox='0 0 10 10'><g transform='scale(.5 .5)'>"
+        .. "<path stroke='black' stroke-width='4' d='M2,21.8 L18,21.8'/></g></svg>",
+        { { 1, 10.9, 9, 10.9 } })
+  draws("<svg viewBox='0 0 10 10'><g transform='scale(.5 .5)'>"
+        .. "<path stroke='black' stroke-width='4' d='M2,22.2 L18,22.2'/></g></svg>",
+        {}, { "line 1: <path> lies outside the picture and is not drawn" })
+  draws("<svg viewBox='100 0 1 1'><path fill='red' d='M101.1,0 L101.1,1'/></svg>", {},
+        { "line 1: <path> lies outside the picture and is not drawn" })
   -- A picture that says that nothing is hidden, and one without a frame.
   draws("<svg viewBox='0 0 1 1' overflow='visible'>" .. LINE .. "</svg>", { { 0, 0, 3, 4 } })
   draws("<svg>" .. LINE .. "</svg>", { { 0, 0, 3, 4 } })
@@ -82,6 +91,30 @@ end
 function T.pictures_within_pictures()
   draws("<svg viewBox='0 0 100 100'><svg x='10' y='20' width='20' height='20' viewBox='0 0 10 10'>"
         .. LINE .. "</svg></svg>", { { 10, 20, 16, 28 } })
+end
+
+function T.a_shape_of_no_length_is_none()
+  for data, long in pairs { ["M1,1 L1,1"] = false, ["M1,1 L1,1 1,1 M3,3 L3,3"] = false,
+                            ["M1,1 L1,2"] = true, ["M1,1 L2,1"] = true, ["M1,1 L2,2 1,1"] = true,
+                            ["M1,2 L1,2 M3,3 L3,4"] = true } do
+    local strokes = svg.strokes("<svg><path stroke='black' d='" .. data .. "'/></svg>")
+    check.equal(#strokes > 0, long, data)
+  end
+end
+
+function T.what_describes_a_picture_is_not_drawn()
+  for _, name in ipairs { "defs", "symbol", "clipPath", "mask", "marker", "pattern", "title",
+                          "desc",
+                          "linearGradient", "radialGradient", "filter", "style", "metadata",
+                          "script", "view", "cursor", "font", "sodipodi:namedview" } do
+    draws("<svg><" .. name .. ">" .. LINE .. "</" .. name .. "></svg>", {})
+  end
+end
+
+-- The colour that is named is that of the use where the use gives it.
+function T.colours_are_said_where_they_are_given()
+  draws("<svg><defs><path id='a' d='M0,0 L3,4'/></defs>\n<use href='#a' stroke='red'/></svg>",
+        { { 0, 0, 3, 4 } }, { "line 2: the colour red is drawn in the light's one colour" })
 end
 
 function T.notes_name_lines_and_reasons()
@@ -128,12 +161,15 @@ end
 
 -- What the strokes are of does not matter: two files that say the same give the same.
 function T.shapes_and_paths_agree()
-  local function strokes(shape) return (svg.strokes("<svg stroke='black'>" .. shape .. "</svg>")) end
+  local function strokes(shape) return (svg.strokes("<svg stroke='black'>" .. shape
+                                                    .. "</svg>")) end
   check.near(strokes "<rect x='1' y='2' width='3' height='4'/>",
              strokes "<path d='M1,2 h3 v4 h-3 z'/>", 1e-12)
   check.near(strokes "<polygon points='0,0 5,0 5,5'/>", strokes "<path d='M0,0 5,0 5,5z'/>", 1e-12)
-  check.near(strokes "<line x1='1' y1='2' x2='1in' y2='4'/>", strokes "<path d='M1,2 L96,4'/>", 1e-12)
-  check.near(strokes "<circle cx='5' cy='5' r='2'/>", strokes "<ellipse cx='5' cy='5' rx='2' ry='2'/>",
+  check.near(strokes "<line x1='1' y1='2' x2='1in' y2='4'/>", strokes "<path d='M1,2 L96,4'/>",
+             1e-12)
+  check.near(strokes "<circle cx='5' cy='5' r='2'/>",
+             strokes "<ellipse cx='5' cy='5' rx='2' ry='2'/>",
              1e-12)
 end
 

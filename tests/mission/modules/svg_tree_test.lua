@@ -19,8 +19,10 @@ function T.elements_stand_in_their_parents()
     ["<svg/>"] = "(svg)", ["<svg></svg>"] = "(svg)", [""] = "",
     ["<svg><g><path/></g><path/></svg>"] = "(svg(g(path),path))",
     ["<svg:svg><svg:g></svg:g></svg:svg>"] = "(svg(g))",
-    ["<?xml version='1.0'?><!DOCTYPE svg [<!ENTITY a 'b'>]><svg><!-- <g> --><g/></svg>"] = "(svg(g))",
-    ["<svg ><g\n/><g\t></g ></svg >"] = "(svg(g,g))", ["text<svg>more<g/>still</svg>end"] = "(svg(g))",
+    ["<?xml version='1.0'?><!DOCTYPE svg [<!ENTITY a 'b'>]><svg><!-- <g> --><g/></svg>"]
+      = "(svg(g))",
+    ["<svg ><g\n/><g\t></g ></svg >"] = "(svg(g,g))",
+        ["text<svg>more<g/>still</svg>end"] = "(svg(g))",
     ["<svg><![CDATA[<g></h>]]></svg>"] = "(svg)", ["<svg><a.b-c:d/></svg>"] = "(svg(a.b-c:d))",
   } do
     -- A DOCTYPE with declarations of its own ends at the first '>' outside of quotes.
@@ -70,8 +72,10 @@ end
 
 function T.broken_files_are_refused_with_their_line()
   for text, message in pairs {
-    ["<svg>\n<g>"] = "line 2: <g> is not closed", ["<svg>\n</g></svg>"] = "line 2: </g> closes nothing",
-    ["</svg>"] = "line 1: </svg> closes nothing", ["<svg/>\n</svg>"] = "line 2: </svg> closes nothing",
+    ["<svg>\n<g>"] = "line 2: <g> is not closed",
+        ["<svg>\n</g></svg>"] = "line 2: </g> closes nothing",
+    ["</svg>"] = "line 1: </svg> closes nothing",
+        ["<svg/>\n</svg>"] = "line 2: </svg> closes nothing",
     ["<svg>\n<path d='M0"] = "line 2: the file ends within a tag",
     ["<svg>\n<path"] = "line 2: the file ends within a tag",
     ["<svg><!-- <g/>"] = "the file ends within <!--",

@@ -37,6 +37,11 @@ function T.directions_of_looks()
   check.near(angles(0, 0, 5, 1.5), { math.deg(1.5), 90 }, 1e-6)
   check.near(angles(0.1, 0, -5), { 0, -90 + math.deg(math.atan(0.1 / 5)) }, 1e-9)
   check.near(angles(0, -0.2, -3, 0)[1], -90, 1e-9, "less steep")
+  -- 0.05 of the distance is the share below which a look is steep, however far away.
+  for _, far in ipairs { 0.1, 100 } do
+    check.near(angles(0, 0.049 * far, far, 0)[1], 0, 1e-9)
+    check.near(angles(0, 0.051 * far, far, 0)[1], 90, 1e-9)
+  end
   check.near(angles(0, 0, 0, 0.5)[1], math.deg(0.5), 1e-9)
 end
 
@@ -52,9 +57,11 @@ function T.subjects_have_names_and_tracks()
   check.yes(by_name.subject == list[1])
   list = checked({ { position = { 0, 0, 0 } }, { track = TRACK, name = "a" } }, 3)
   check.equal({ list[1].name, list[2].name, list[2].still }, { "subject 1", "a", false })
+  check.equal({ list[1].height, list[1].width }, { 0, 0 })
   check.equal({ list[2].track[1].time, list[2].track[3].time }, { 6, 15 }, "times are stretched")
   check.equal(TRACK[1].time, 2, "a copy")
-  list = checked({ { position = { 0, 0, 0 } }, { position = { 1, 0, 0 } } }, 1, "bystanders", "person")
+  list = checked({ { position = { 0, 0, 0 } }, { position = { 1, 0, 0 } } }, 1, "bystanders",
+                 "person")
   check.equal({ list[1].name, list[2].name, list[2].option },
               { "person 1", "person 2", "bystanders[2]" })
 end

@@ -7,7 +7,8 @@ local T = {}
 
 -- A region without anything in it, and one with a wall across x = 0 and a roof over x < -20.
 local function scene(options)
-  local made = { region = { lower = { -30, -20, 1 }, upper = { 30, 20, 31 } }, upper = { 30, 20, 31 } }
+  local made = { region = { lower = { -30, -20, 1 }, upper = { 30, 20, 31 } },
+                 upper = { 30, 20, 31 } }
   function made:clearance(p) return options.wall and math.abs(p[1]) or math.huge end
   function made:covered(p) return options.indoors or (options.roof and p[1] < -20) or false end
   return made
@@ -44,7 +45,8 @@ function T.places_fill_the_region_evenly()
     counts[part] = (counts[part] or 0) + 1
   end
   for part = 0, 23 do
-    check.yes(math.abs((counts[part] or 0) - 20) <= 6, ("part %d has %d"):format(part, counts[part] or 0))
+    check.yes(math.abs((counts[part] or 0) - 20) <= 6, ("part %d has %d"):format(part, counts[part]
+        or 0))
   end
 end
 
@@ -64,6 +66,18 @@ function T.indoors_it_looks_ahead_between_floor_and_ceiling()
 end
 
 -- Passes above everything that stands there see no more; the lowest is flown all the same.
+-- Whether a scene is indoors is asked in the middle of the region, 2 m over its floor.
+function T.indoors_is_what_its_middle_says()
+  local asked = {}
+  local hall = { region = { lower = { 2, 10, 1 }, upper = { 6, 30, 9 } }, upper = { 6, 30, 9 } }
+  function hall:clearance() return 0.5 end
+  function hall:covered(p) asked[#asked + 1] = p return true end
+  check.equal(#views.over(hall, 6), 6, "half a metre is enough indoors")
+  check.equal(asked[1], { 4, 20, 3 })
+  function hall:covered() return false end
+  check.fails("only 0 of 6 places", views.over, hall, 6)
+end
+
 function T.over_a_low_scene_nobody_flies_high()
   local low = scene {}
   low.upper = { 30, 20, 4 }
