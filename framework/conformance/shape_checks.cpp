@@ -243,6 +243,32 @@ void check_ray(const Shape& shape, const Vector3d& from, const Vector3d& way, do
   }
 }
 
+// Between two places it is no farther than at the farther of both.
+void check_convex(const Shape& shape, const Vector3d& p, const Vector3d& q, Findings& findings) {
+  if (!shape.convex()) return findings.expect("convex", true, {});
+  const double at_p = shape.distance(p, nullptr), at_q = shape.distance(q, nullptr);
+  const double middle = shape.distance((p + q) / 2, nullptr);
+  findings.expect("convex", middle <= std::max(at_p, at_q) + 1e-9, [&] {
+    return "it says that it is convex, and between " + place_text(p) + " and " + place_text(q) +
+           " it is farther than at both";
+  });
+}
+
+// Likewise between two places of its surface, where a gap shows that random places miss.
+void check_surface_convex(const Shape& shape, const TriangleMesh& surface, Random& random,
+                          Findings& findings) {
+  constexpr int kPairs = 200;
+  if (surface.vertices.empty()) return;
+  const auto vertex = [&] {
+    const auto last = static_cast<std::int64_t>(surface.vertices.size()) - 1;
+    return surface.vertices[static_cast<std::size_t>(random.integer(0, last))];
+  };
+  for (int k = 0; k < kPairs; ++k) {
+    const Vector3d p = vertex(), q = vertex();
+    check_convex(shape, p, q, findings);
+  }
+}
+
 void check_shape(const Shape& shape, Random& random, const CheckOptions& options,
                  Findings& findings) {
   const Eigen::AlignedBox3d within(Vector3d::Constant(-kWithin), Vector3d::Constant(kWithin));
@@ -280,13 +306,10 @@ void check_shape(const Shape& shape, Random& random, const CheckOptions& options
     check_distance(shape, judge, p, findings);
     findings.expect("bounds", shape.surrounds() || at_p >= 0 || bounds.exteriorDistance(p) < 1e-6,
                     [&] { return place_text(p) + " is inside of it, and outside of its box"; });
-    const double middle = shape.distance((p + q) / 2, nullptr);
-    findings.expect("convex", !shape.convex() || middle <= std::max(at_p, at_q) + 1e-9, [&] {
-      return "it says that it is convex, and between " + place_text(p) + " and " + place_text(q) +
-             " it is farther than at both";
-    });
+    check_convex(shape, p, q, findings);
     if (k < kRays && options.wants("rays")) check_ray(shape, p, (q - p).normalized(), 60, findings);
   }
+  if (options.wants("convex")) check_surface_convex(shape, judge.mesh(), random, findings);
 }
 
 // What it records must make it again.
