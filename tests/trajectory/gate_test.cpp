@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include "framework/core/error.h"
 #include "framework/core/random.h"
 #include "framework/trajectory/gate_passage.h"
