@@ -12,19 +12,28 @@ local function entity(name)
   return code and code < 0x110000 and utf8.char(code) or nil
 end
 
+local LONGEST_NAME = 200  -- characters, with the '=' and the quote
+
 -- name="value" pairs of a tag.
 local function attributes_of(text)
-  local a, at = {}, 1
-  while text:find("%S", at) do
-    local name, quote, first = text:match("^%s*([^%s=<>\"'/]+)%s*=%s*([\"'])()", at)
-    if not name then
+  local a, at = {}, text:find("%S")
+  while at do
+    -- Patterns read no more than a name can be: path data may be long.
+    local head = text:sub(at, at + LONGEST_NAME)
+    local name, equals = head:match("^([^%s=<>\"'/]+)()")
+    local quote, first
+    if name then quote, first = head:match("^%s*=%s*([\"'])()", equals) end
+    if not quote then
       error(("an attribute is no name=\"value\": '%s'"):format(
-        text:match("^%s*(.-)%s*$", at):sub(1, 40)), 0)
+        head:sub(1, 40):match("^(.-)%s*$")), 0)
     end
+    first = at + first - 1
     local close = text:find(quote, first, true)
     if not close then error("an attribute lacks its closing quote", 0) end
-    a[name] = text:sub(first, close - 1):gsub("&([%w#]+);", entity)
-    at = close + 1
+    local value = text:sub(first, close - 1)
+    if value:find("&", 1, true) then value = value:gsub("&([%w#]+);", entity) end
+    a[name] = value
+    at = text:find("%S", close + 1)
   end
   return a
 end

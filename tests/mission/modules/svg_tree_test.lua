@@ -43,6 +43,20 @@ function T.attributes_are_read()
   check.equal(only("<p a='&amp;lt;'/>").attributes.a, "&lt;", "read once")
 end
 
+-- Of any length, between any spaces: patterns would be refused on long texts.
+function T.long_tags_are_read()
+  local long = ("M1,2 "):rep(20000)
+  local spaces = (" "):rep(5000)
+  check.equal(only("<p" .. spaces .. "d='" .. long .. "'" .. spaces .. "e='2'" .. spaces .. "/>")
+                .attributes, { d = long, e = "2" })
+  local many, wanted = {}, {}
+  for i = 1, 300 do
+    many[i] = ("name%d = '%d'"):format(i, i)
+    wanted["name" .. i] = tostring(i)
+  end
+  check.equal(only("<p " .. table.concat(many, "\n") .. "/>").attributes, wanted)
+end
+
 -- A value is never taken for that of another name.
 function T.attributes_without_quotes_or_value_are_refused()
   for _, text in ipairs { "<p\n d=M0,0 />", "<p\n hidden d='M0,0'/>", "<p\n d= x='1'/>", "<p\n d/>",
