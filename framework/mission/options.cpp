@@ -93,6 +93,14 @@ OptionDeclarations OptionDeclarations::from_value(const Value& list) {
     check_declaration_keys(declaration);
     Option option;
     option.name = declaration.at("name").as_text();
+    if (const Value* why = declaration.find("refused")) {
+      option.refused = why->as_text();
+      declaration = without(declaration, {"refused"});
+      if (!declaration.find("choices")) {
+        declarations.refused_.emplace_back(option.name, option.refused);
+        continue;
+      }
+    }
     const std::string type = declaration.at("type").as_text();
     option.plugins = type == "plugins";
     if (type == "plugin" || option.plugins) option.plugin_kind = declaration.at("kind").as_text();
@@ -329,6 +337,30 @@ ParameterTable OptionDeclarations::table_for(Value& given, const Registry& regis
   return ParameterTable::from_value(list);
 }
 
+void OptionDeclarations::refuse(Value& given, const std::string& what, Diagnostics& errors) const {
+  const auto named = [&](const std::string& name) {
+    return what.empty() ? name : what + "." + name;
+  };
+  for (const auto& [name, why] : refused_) {
+    const Value* value = given.find(name);
+    if (!value) continue;
+    errors.add(value->origin(), named(name), why);
+    given = without(given, {name});
+  }
+  for (const Option& option : options_) {
+    const Value* value = option.refused.empty() ? nullptr : given.find(option.name);
+    if (!value || !value->is_text()) continue;
+    const Value::List& choices = option.declaration.at("choices").as_list();
+    if (std::find(choices.begin(), choices.end(), Value(value->as_text())) != choices.end())
+      continue;
+    std::string known;
+    for (const Value& choice : choices) known += (known.empty() ? "" : ", ") + choice.as_text();
+    errors.add(value->origin(), named(option.name),
+               "expected one of " + known + ", got '" + value->as_text() + "': " + option.refused);
+    given = without(given, {option.name});
+  }
+}
+
 Value OptionDeclarations::check(const Value& given, const Registry& registry,
                                 const std::string& what) const {
   Value values = given.is_map() ? given : Value::map();
@@ -342,6 +374,7 @@ Value OptionDeclarations::check(const Value& given, const Registry& registry,
     };
     (std::any_of(options_.begin(), options_.end(), of_plugins) ? lists : plain).set(key, value);
   }
+  refuse(plain, what, errors);
   const ParameterTable table = table_for(plain, registry);
   const Parameters checked = lapwing::check(table, plain, what, errors);
   result.with_origin(checked.value().origin());

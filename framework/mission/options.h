@@ -16,6 +16,8 @@
 //   type = "vehicle"               a vehicle file's name, or a table as in such a file
 //   replaced_by = "input"          left out of what the options come to where `input` is set
 //   words = {"auto"}               on a number: these texts are allowed as well
+//   refused = "why"                nobody may set it, and who does is told why; on a choice, the
+//                                  reason why it has no others
 //   also = "string"                a short form that the kind itself writes out, for annotations
 #pragma once
 
@@ -49,6 +51,7 @@ inline constexpr BoundField kDeclarationKeys[] = {
     {"under?", "string", "the key that names a plugin, in place of `type`"},
     {"functions?", "lapwing.option[]", "of plugins: entries of those that are functions alone"},
     {"replaced_by?", "string", "an option that takes this one's place where it is set"},
+    {"refused?", "string", "why nobody may set it, or why a choice has no others"},
     {"also?", "string", "what else a script may give, for editors: a type as LuaLS writes it"}};
 
 // What may be written behind --set: "weights.yaw", and the words that its value may be.
@@ -93,6 +96,7 @@ class OptionDeclarations {
     Value own;                   // of a plugin: entries of the mission's own; null or a list
     Value functions;             // of plugins: entries of functions alone; null or a list
     std::string replaced_by;     // another option, or ""
+    std::string refused;         // of a choice: why it has no others, or ""
     std::string also;            // a short form, for annotations
     bool vehicle = false;
     bool plugins = false;  // a list of them
@@ -105,7 +109,10 @@ class OptionDeclarations {
                                Diagnostics& errors);
   // Without lists of plugins, whose entries differ.
   ParameterTable table_for(Value& given, const Registry& registry) const;
+  // Adds an error where a value is given that nothing of this kind can take.
+  void refuse(Value& given, const std::string& what, Diagnostics& errors) const;
   std::vector<Option> options_;
+  std::vector<std::pair<std::string, std::string>> refused_;  // names that nobody may set, and why
 };
 
 // What lapwing.options returns to a script.

@@ -201,6 +201,15 @@ Value half_view_value(const Camera& camera) {
   return view;
 }
 
+Value wing_value(const Vehicle& vehicle) {
+  if (!vehicle.wing) return false;
+  Value wing = Value::map();
+  wing.set("stall_speed", vehicle.wing->stall_speed);
+  wing.set("bank", vehicle.wing->bank_max);
+  wing.set("bank_rate", vehicle.wing->bank_rate_max);
+  return wing;
+}
+
 // Its name and the limits that a mission may plan with.
 constexpr BoundField kVehicleFields[] = {
     {"name", "string", "of the vehicle"},
@@ -218,6 +227,7 @@ constexpr BoundField kVehicleFields[] = {
     {"flies", "boolean", "whether its rotors are known, so that its flight can be simulated"},
     {"gimbal", "table|false",
      "{yaw_min, yaw_max, pitch_min, pitch_max, yaw_rate, pitch_rate}, rad and rad/s; false: none"},
+    {"wing", "table|false", "{stall_speed, bank, bank_rate}, m/s, rad and rad/s; false: none"},
     {"half_view", "table", "{across, up}: half the angle that the camera sees, rad"}};
 
 int vehicle_field(lua_State* state) {
@@ -239,6 +249,7 @@ int vehicle_field(lua_State* state) {
   fields.set("acceleration_down", vehicle.acceleration_down_max.value_or(infinite));
   fields.set("flies", vehicle.has_rotors);
   fields.set("gimbal", gimbal_value(vehicle));
+  fields.set("wing", wing_value(vehicle));
   fields.set("half_view", half_view_value(vehicle.camera));
   return push_field(state, "a vehicle", field, fields, kVehicleFields);
 }

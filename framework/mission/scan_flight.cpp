@@ -7,6 +7,7 @@
 #include <lua.hpp>
 
 #include "framework/core/parallel.h"
+#include "framework/core/units.h"
 #include "framework/export/small_camera.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/map/map_file.h"
@@ -114,20 +115,35 @@ std::vector<ViewKind> kinds_of(const ScanWork& work, const std::vector<int>& vie
   return kinds;
 }
 
-ScanTask task_of_scan(const ScanWork& work, const Walk& walk, const Pursuit& flown, int threads) {
+// The numbers of the views that a walk takes images of, in its order.
+std::vector<int> images_of(const Walk& walk) {
+  std::vector<int> views;
+  for (const int view : walk.views)
+    if (view >= 0) views.push_back(view);
+  return views;
+}
+
+std::vector<PlannedView> planned_views(const ScanWork& work, const Walk& walk,
+                                       const Pursuit& flown) {
+  std::vector<PlannedView> views;
+  for (std::size_t i = 0; i < walk.stops.size(); ++i) {
+    if (walk.views[i] < 0) continue;
+    const Viewpoint& v = work.graph.candidates.viewpoints[static_cast<std::size_t>(walk.views[i])];
+    views.push_back({flown.views[i].departure, v.position, v.yaw, v.pitch, {}});
+  }
+  return views;
+}
+
+// `views`: the numbers of what is taken, one for each of `taken`.
+ScanTask task_of_scan(const ScanWork& work, const std::vector<int>& views,
+                      std::vector<PlannedView> taken, int threads) {
   const SightSettings& sight = work.visible->settings();
   ScanTask task;
   task.region = sight.region;
   task.camera = sight.pinhole;
   task.range = sight.range;
   task.map = kMapName;
-  std::vector<int> views;
-  for (std::size_t i = 0; i < walk.stops.size(); ++i) {
-    if (walk.views[i] < 0) continue;
-    const Viewpoint& v = work.graph.candidates.viewpoints[static_cast<std::size_t>(walk.views[i])];
-    views.push_back(walk.views[i]);
-    task.views.push_back({flown.views[i].departure, v.position, v.yaw, v.pitch, {}});
-  }
+  task.views = std::move(taken);
   const std::vector<ViewKind> kinds = kinds_of(work, views);
   for (std::size_t i = 0; i < kinds.size(); ++i) task.views[i].kind = kinds[i];
   std::vector<std::vector<SeenVoxel>> seen(views.size());
@@ -141,6 +157,27 @@ ScanTask task_of_scan(const ScanWork& work, const Walk& walk, const Pursuit& flo
   std::sort(all.begin(), all.end());
   task.seen = std::unique(all.begin(), all.end()) - all.begin();
   return task;
+}
+
+// A tour with its views where they were flown, for what is told of it.
+TourObject flown_tour(const TourObject& tour, const std::vector<PlannedView>& views) {
+  auto work = std::make_shared<ScanWork>(*tour.work);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    work->graph.candidates.viewpoints[static_cast<std::size_t>(tour.walk[i])] = {
+        views[i].position, views[i].yaw, views[i].pitch};
+  TourObject flown = tour;
+  flown.work = std::move(work);
+  return flown;
+}
+
+// How exactly the views of passes were flown.
+std::string miss_in_words(const PassedFlight& flight) {
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "images at most %.2g m from where their passes have them, banked by at most %.2g "
+                "degrees",
+                flight.miss, degrees(flight.bank));
+  return text;
 }
 
 SolveStatus status_of(TourStatus status) {
@@ -199,6 +236,7 @@ std::vector<const SolutionObject*> legs_argument(lua_State* state, int table) {
 constexpr BoundField kScanPlanObjects[] = {
     {"tour", "lapwing.tour", "that is flown"},
     {"legs?", "lapwing.solution[]", "how, from view to view; absent: by pure pursuit"},
+    {"flight?", "lapwing.solution", "how a tour of passes is flown"},
     {"explored?", "lapwing.exploration", "what came before it, for the report"},
     {"notes?", "string[]", "sentences for the user"},
     {"figures?", "table", "of the tour, for --json"},
@@ -213,7 +251,8 @@ ParameterTable scan_plan_table() {
   return table;
 }
 
-// run:scan_plan{tour =, margin =, budget =, closed_loop_required =, seen_share =, notes =,
+// run:scan_plan{tour =, flight =, margin =, budget =, closed_loop_required =, seen_share =, notes
+// =,
 //               figures =, sections =, legs =, explored =}
 int scan_plan_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
@@ -230,6 +269,12 @@ int scan_plan_of_run(lua_State* state) {
   PlanObject made;
   made.block = value_from_lua(state, lua_gettop(state), origin, "scan_plan.figures");
   const std::vector<const SolutionObject*> legs = legs_argument(state, 2);
+  const SolutionObject* flight = nullptr;
+  if (lua_getfield(state, 2, "flight") != LUA_TNIL)
+    flight = &object_argument<SolutionObject>(state, -1, kSolutionType);
+  if ((flight != nullptr) != (tour.passing != nullptr) || (flight && !legs.empty()))
+    throw InputError(
+        "scan_plan: a tour of passes has a solution as its 'flight', others have none");
   made.block_name = "tour";
   made.sections = stated_sections(state, 2, "scan_plan.sections");
   if (lua_getfield(state, 2, "explored") != LUA_TNIL)
@@ -241,17 +286,29 @@ int scan_plan_of_run(lua_State* state) {
   Plan& plan = made.plan;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    const Walk walk = legs.empty() ? walk_of(tour) : views_of(tour);
-    Pursuit flown = legs.empty() ? pursue(walk.points, walk.stops, work.vehicle, work.flight)
-                                 : joined_flight(tour, legs);
+    const TourObject* told = &tour;  // the tour that the report is of
+    std::optional<TourObject> passed;
+    if (tour.passing) {
+      PassedFlight flown = passed_flight(tour, *flight);
+      passed = flown_tour(tour, flown.views);
+      told = &*passed;
+      made.notes.push_back(miss_in_words(flown));
+      plan.trajectory = std::move(flown.trajectory);
+      plan.task.scan = task_of_scan(work, tour.walk, std::move(flown.views), run.settings.threads);
+    } else {
+      const Walk walk = legs.empty() ? walk_of(tour) : views_of(tour);
+      Pursuit flown = legs.empty() ? pursue(walk.points, walk.stops, work.vehicle, work.flight)
+                                   : joined_flight(tour, legs);
+      plan.task.scan = task_of_scan(work, images_of(walk), planned_views(work, walk, flown),
+                                    run.settings.threads);
+      plan.trajectory = std::move(flown.trajectory);
+      if (work.vehicle.gimbal) turn_gimbal(plan.trajectory, walk, flown.views);
+    }
     plan.mission = run.name;
     plan.kind = run.kind;
     plan.vehicle = to_value(work.vehicle);
-    plan.trajectory = std::move(flown.trajectory);
-    if (work.vehicle.gimbal) turn_gimbal(plan.trajectory, walk, flown.views);
     plan.budget = given.number("budget");
     plan.task.closed_loop_required = given.boolean("closed_loop_required");
-    plan.task.scan = task_of_scan(work, walk, flown, run.settings.threads);
     plan.task.scan->seen_share = given.number("seen_share");
     const Prior& prior = *work.prior;
     plan.environment.margin = given.number("margin");
@@ -268,7 +325,7 @@ int scan_plan_of_run(lua_State* state) {
     keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *prior.mapping.map));
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
-    const auto record = record_of_scan(tour, run.settings.threads);
+    const auto record = record_of_scan(*told, run.settings.threads);
     if (!made.block.is_map()) made.block = Value::map();
     made.block.set("surface", areas_as_value(*record));
     made.notes.push_back(areas_in_words(*record));

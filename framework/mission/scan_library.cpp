@@ -45,6 +45,33 @@ std::size_t ScanWork::motion_between(int a, int b) const {
   return static_cast<std::size_t>(found - motions.begin());
 }
 
+std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {
+  std::shared_ptr<const Map> map = prior.mapping.map;
+  return free_in_both(free_space_of(map), with_room(free_space_of(prior.mesh), mesh_room));
+}
+
+std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun& run,
+                                                const Parameters& given,
+                                                const PluginChoice& information) {
+  work.information = run.settings.registry->create<ViewInformation>(
+      information.type, information.parameters, "information");
+  SightSettings sight;
+  sight.pinhole = pinhole_of(given.table("camera"));
+  sight.range = given.number("range");
+  sight.region = box_of(given.table("region"), "the region of interest");
+  work.prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
+  work.visible = std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
+  const TriangleMesh& known = work.prior->mesh->mesh();
+  if (std::none_of(known.vertices.begin(), known.vertices.end(),
+                   [&](const Eigen::Vector3d& p) { return sight.region.contains(p); }))
+    throw InputError(given.origin("region"),
+                     "the region of interest holds no surface: the prior mesh does not come into "
+                     "it, neither from the first flight nor from files");
+  sight.across = static_cast<int>(given.integer("across"));
+  if (sight.across == 0) return work.visible;
+  return std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
+}
+
 namespace {
 
 ParameterTable candidates_table() {
@@ -197,11 +224,6 @@ PluginChoice choice_at(lua_State* state, int table, const char* key) {
   return plugin_choice(state, lua_gettop(state), key);
 }
 
-std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {
-  std::shared_ptr<const Map> map = prior.mapping.map;
-  return free_in_both(free_space_of(map), with_room(free_space_of(prior.mesh), mesh_room));
-}
-
 constexpr BoundField kGraphObjects[] = {
     {"prior", "lapwing.prior", "what is known of the place"},
     {"vehicle", "lapwing.vehicle", "that flies"},
@@ -224,8 +246,6 @@ int scan_graph_of_run(lua_State* state) {
   const auto path_planner =
       registry.create<PathPlanner>(planner.type, planner.parameters, "planner");
   settings.motions.planner = path_planner.get();
-  work->information =
-      registry.create<ViewInformation>(information.type, information.parameters, "information");
   const Parameters& flight = given.table("flight");
   work->flight = {.speed = flight.number("speed"),
                   .view_speed = flight.number("view_speed"),
@@ -238,19 +258,7 @@ int scan_graph_of_run(lua_State* state) {
   if (flight.boolean("smooth"))
     work->smooth = {work->flight.speed, work->flight.acceleration, flight.number("stray")};
   const Sandbox::ClockPause pause(Sandbox::of(state));
-  SightSettings sight;
-  sight.pinhole = pinhole_of(given.table("camera"));
-  sight.range = given.number("range");
-  sight.region = settings.candidates.region;
-  work->prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
-  work->visible =
-      std::make_shared<VisibleVoxels>(work->prior->mapping.map, work->prior->mesh, sight);
-  const TriangleMesh& known = work->prior->mesh->mesh();
-  if (std::none_of(known.vertices.begin(), known.vertices.end(),
-                   [&](const Eigen::Vector3d& p) { return sight.region.contains(p); }))
-    throw InputError(given.origin("region"),
-                     "the region of interest holds no surface: the prior mesh does not come into "
-                     "it, neither from the first flight nor from files");
+  const auto coarser = make_sight(*work, run, given, information);
   const auto space = space_of(*work->prior, given.number("mesh_room"));
   const std::vector<Viewpoint> starts =
       free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")), *space,
@@ -258,11 +266,8 @@ int scan_graph_of_run(lua_State* state) {
   begin_planning(run);
   work->allowed = settings.candidates.allowed;
   work->body = settings.candidates.half;
-  sight.across = static_cast<int>(given.integer("across"));
-  const VisibleVoxels coarser(work->prior->mapping.map, work->prior->mesh, sight);
-  work->graph =
-      make_scan_graph(*space, sight.across > 0 ? coarser : *work->visible, *work->information,
-                      starts, settings, run.settings.cancellation, run.settings.progress);
+  work->graph = make_scan_graph(*space, *coarser, *work->information, starts, settings,
+                                run.settings.cancellation, run.settings.progress);
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
   const ScanGraph& graph = work->graph;
   work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);
@@ -345,7 +350,10 @@ constexpr BoundField kTourFields[] = {
     {"evaluations", "integer", "of the score"},
     {"iterations", "integer", "of the solver"},
     {"legs", "table[]",
-     "from view to view: {points, yaw_from, yaw_to, seconds}, m, rad, s without the pause"}};
+     "from view to view: {points, yaw_from, yaw_to, seconds}, m, rad, s without the pause"},
+    {"flight", "table?",
+     "of passes: {duration, times, positions, yaws, images}, s, m, rad; an image has a time and a "
+     "position"}};
 
 int tour_field(lua_State* state) {
   const TourObject& tour = object_argument<TourObject>(state, 1, kTourType);
@@ -356,7 +364,8 @@ int tour_field(lua_State* state) {
              std::isfinite(tour.report.upper_bound) ? Value(tour.report.upper_bound) : Value());
   fields.set("gap", tour.report.gap);
   const std::string field = text_argument(state, 2, "tour");
-  fields.set("legs", field == "legs" ? legs_of(tour) : Value());
+  fields.set("legs", field == "legs" && !tour.passing ? legs_of(tour) : Value());
+  fields.set("flight", field == "flight" && tour.passing ? flight_of_passes(tour) : Value());
   return push_field(state, "a tour", field, fields, kTourFields);
 }
 
@@ -383,6 +392,8 @@ int solve_tour_of_run(lua_State* state) {
   TourObject tour;
   tour.work = object_argument<GraphObject>(state, -1, kGraphType).work;
   const ScanWork& work = *tour.work;
+  if (!work.passes.empty())
+    throw InputError("solve_tour: the graph is of passes, which run:pass_tour orders");
   const PluginChoice chosen = choice_at(state, 2, "solver");
   tour.solver = chosen.type;
   tour.budget = given.number("budget");
@@ -453,7 +464,8 @@ std::span<const Binding> scan_methods_of_run() {
        "a tour of views within a budget", &tour_table, kTourObjects}};
   static const std::vector<Binding> all = [] {
     std::vector<Binding> list(std::begin(own), std::end(own));
-    for (const auto more : {prior_methods_of_run(), scan_plan_methods_of_run()})
+    for (const auto more :
+         {pass_methods_of_run(), prior_methods_of_run(), scan_plan_methods_of_run()})
       list.insert(list.end(), more.begin(), more.end());
     return list;
   }();

@@ -14,6 +14,7 @@
 #include "framework/surface/point_fusion.h"
 #include "framework/vehicle/pursuit.h"
 #include "framework/vehicle/smooth_leg.h"
+#include "framework/view/passes.h"
 #include "framework/view/scan_graph.h"
 #include "framework/view/tour_solver.h"
 #include "framework/view/tour_start.h"
@@ -61,11 +62,18 @@ struct ScanWork : LegFlight {
   int home = 0;                 // of the views, where tours begin
   Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
   Eigen::Vector3d body;         // half edges of the vehicle's box, m
+  // Of views that are taken in passing: their numbers, pass by pass, and the courses, rad.
+  std::vector<std::vector<int>> passes;
+  std::vector<double> courses;
 
   // The place of the motion between two views; Error where there is none.
   std::size_t motion_between(int a, int b) const;
   double leg_seconds(int a, int b) const { return seconds[motion_between(a, b)]; }
 };
+
+struct MissionRun;
+struct PluginChoice;
+struct SolutionObject;
 
 struct GraphObject {
   std::shared_ptr<const ScanWork> work;
@@ -77,6 +85,7 @@ struct TourObject {
   double budget = 0;
   TourReport report;
   std::vector<int> walk;
+  std::shared_ptr<const PassFlight> passing = nullptr;  // of a tour of passes
 };
 
 inline constexpr const char* kPriorType = "prior";
@@ -84,12 +93,13 @@ inline constexpr const char* kGraphType = "scan graph";
 inline constexpr const char* kTourType = "tour";
 
 void open_scan_library(lua_State* state);
-// prior, scan_graph, solve_tour, scan_plan.
+// prior, scan_graph, solve_tour, pass_graph, pass_tour, scan_plan.
 std::span<const Binding> scan_methods_of_run();
 
 // The parts of that list.
 std::span<const Binding> prior_methods_of_run();
 std::span<const Binding> scan_plan_methods_of_run();
+std::span<const Binding> pass_methods_of_run();
 void open_prior_type(lua_State* state);
 
 // Arguments that several of them take: {position =, yaw =, pitch =}; {lower =, upper =};
@@ -107,8 +117,29 @@ Value legs_of(const TourObject& tour);
 
 // The flight that the solutions of a tour's legs make, with a rest in every view; one stop per view
 // of its walk. InputError where a solution is not from view to view.
-struct SolutionObject;
 Pursuit joined_flight(const TourObject& tour, const std::vector<const SolutionObject*>& solutions);
+
+// The flight of a tour of passes as its solution has it: the gimbal turns between passes, and the
+// views are where and whither the camera looks at their times.
+struct PassedFlight {
+  Trajectory trajectory;
+  std::vector<PlannedView> views;
+  double miss = 0;  // m, farthest of a view from where its pass has it
+  double bank = 0;  // rad, largest at an image
+};
+// InputError where the solution is not of this tour, or its model has no yaw.
+PassedFlight passed_flight(const TourObject& tour, const SolutionObject& solution);
+// {duration, times, positions, yaws, images = {{time, position}, ...}}: s, m and rad.
+Value flight_of_passes(const TourObject& tour);
+
+// Places that are free in the map and so far from the prior mesh, m.
+std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room);
+// What a graph's table says of its images, looked into the prior with: `visible` and `information`
+// of the work are made, and what views are weighed by is returned. InputError where the region of
+// interest holds no surface.
+std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun& run,
+                                                const Parameters& given,
+                                                const PluginChoice& information);
 
 // The stops of a way from view to view: its corners, each with a heading on the way from the first
 // one's to the last one's, and with the time that the gimbal needs for its share of the tilt.

@@ -103,7 +103,10 @@ std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int thr
   ScoreState state(*graph.score);
   double clock = 0;
   for (std::size_t i = 0; i < tour.walk.size(); ++i) {
-    if (i > 0) clock += work.leg_seconds(tour.walk[i - 1], tour.walk[i]);
+    if (tour.passing)
+      clock = tour.passing->shots[i].time;
+    else if (i > 0)
+      clock += work.leg_seconds(tour.walk[i - 1], tour.walk[i]);
     state.add(tour.walk[i]);
     record->seconds.push_back(clock);
     record->score.push_back(state.score());

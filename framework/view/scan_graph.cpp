@@ -94,8 +94,7 @@ void in_chunks(std::size_t count, int threads, const CancellationToken* cancella
 }
 
 std::shared_ptr<const ViewScore> score_views(const VisibleVoxels& visible,
-                                             const ViewInformation& information,
-                                             const ScanGraphSettings& settings,
+                                             const ViewInformation& information, int threads,
                                              const CancellationToken* cancellation,
                                              const Share& share, ScanGraph& graph) {
   const std::vector<Viewpoint>& views = graph.candidates.viewpoints;
@@ -118,8 +117,12 @@ std::shared_ptr<const ViewScore> score_views(const VisibleVoxels& visible,
     builder.add_voxels(numbers.count() - before);
     builder.add_view(contributions);
   };
-  in_chunks(views.size(), settings.threads, cancellation, share, "view", look, keep);
+  in_chunks(views.size(), threads, cancellation, share, "view", look, keep);
   graph.voxels = numbers.take();
+  if (graph.voxels.empty())
+    throw InputError("none of " + std::to_string(views.size()) +
+                     " candidates sees anything of the region of interest: it holds no surface, or "
+                     "lies beyond the range of the rays");
   return std::make_shared<const ViewScore>(std::move(builder).take());
 }
 
@@ -175,12 +178,8 @@ ScanGraph make_scan_graph(const FreeSpace& space, const VisibleVoxels& visible,
   graph.candidates =
       generate_candidates(space, given, settings.candidates, seeds.split(0).bits(), cancellation);
   const std::vector<Viewpoint>& views = graph.candidates.viewpoints;
-  graph.score = score_views(visible, information, settings, cancellation,
+  graph.score = score_views(visible, information, settings.threads, cancellation,
                             Share(progress, kGrown, kSeen), graph);
-  if (graph.voxels.empty())
-    throw InputError("none of " + std::to_string(views.size()) +
-                     " candidates sees anything of the region of interest: it holds no surface, or "
-                     "lies beyond the range of the rays");
   std::vector<std::vector<VoxelKey>> coarse(views.size()), chunk(kChunk);
   if (settings.motions.alpha > 0) {
     std::size_t next = 0;
@@ -198,6 +197,17 @@ ScanGraph make_scan_graph(const FreeSpace& space, const VisibleVoxels& visible,
   graph.motions = find_motions(
       space, views, coarse, settings.motions, seeds.split(1).bits(), settings.threads, cancellation,
       [&](std::size_t done, std::size_t of) { motions.report(done, of, "way between views"); });
+  return graph;
+}
+
+ScanGraph score_given_views(const VisibleVoxels& visible, const ViewInformation& information,
+                            std::vector<Viewpoint> views, int threads,
+                            const CancellationToken* cancellation, Progress* progress) {
+  ScanGraph graph;
+  graph.candidates.given = static_cast<int>(views.size());
+  graph.candidates.viewpoints = std::move(views);
+  graph.score =
+      score_views(visible, information, threads, cancellation, Share(progress, 0, 1), graph);
   return graph;
 }
 

@@ -43,6 +43,13 @@ ScanGraph make_scan_graph(const FreeSpace& space, const VisibleVoxels& visible,
                           const CancellationToken* cancellation = nullptr,
                           Progress* progress = nullptr);
 
+// Of views as they are given, without motions and without a look at free space: their score and its
+// voxels. Throws as make_scan_graph.
+ScanGraph score_given_views(const VisibleVoxels& visible, const ViewInformation& information,
+                            std::vector<Viewpoint> views, int threads,
+                            const CancellationToken* cancellation = nullptr,
+                            Progress* progress = nullptr);
+
 // What one view tells of the voxels that it sees, as the graph's score has it.
 std::vector<float> contributions_of(const std::vector<SeenVoxel>& seen,
                                     const ViewInformation& information);

@@ -58,6 +58,9 @@ local MOVES = {
 local SETTLED = "it is the exploration's: set "
 local OPTIONS = {
   { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "vehicle" },
+  { name = "model", type = "text", refused = "an exploration plans a path from view to view, "
+    .. "without the motion of a vehicle model; set moves.speed and moves.turn_rate_deg, or scan "
+    .. "the place with a model (examples/scan)" },
   { name = "utility", type = "plugin", kind = "utility", default = "learned",
     summary = "value of a view" },
   { name = "map", type = "plugin", kind = "map", default = "brick", summary = "map plugin",

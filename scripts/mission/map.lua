@@ -14,6 +14,8 @@ local views = require "mission.views"
 
 local M = {}
 
+local MODEL = { name = "model", type = "text", refused = "a map is made of depth images, and "
+  .. "nothing flies; a scan (examples/scan) or a film flies with a model" }
 local SHARED = {  -- as the backends' own defaults
   { name = "resolution", type = "number", unit = "m", default = 0.2, minimum = 0.001,
     maximum = 100, summary = "edge of a voxel" },
@@ -62,7 +64,7 @@ local SENSOR = {
 }
 
 local function declarations(map, ...)
-  local all = { map }
+  local all = { map, MODEL }
   for _, list in ipairs { ... } do
     for _, declared in ipairs(list) do all[#all + 1] = declared end
   end

@@ -13,7 +13,7 @@ local function chosen(model)
 end
 
 -- What films, light paintings and scans read of a vehicle, beside what terms ask for by themselves.
-local function check(p, model)
+function M.check(p, model)
   for _, block in ipairs { "position", "velocity", "yaw" } do
     if not p:has_block(block) then
       lapwing.fail(string.format(
@@ -49,7 +49,7 @@ end
 function M.add(p, vehicle, motion)
   local model = chosen(motion.model)
   p:add_model(model)
-  check(p, model)
+  M.check(p, model)
   local force = motion.force
   if motion.smoothness then
     force = smoothness_of(p, vehicle, motion.smoothness)

@@ -47,6 +47,7 @@ local DECLARATIONS = {
     summary = "profile: legs with the time of straight flight with stops; one convex problem" },
   { name = "model", type = "choice", default = "quadrotor",
     choices = { "quadrotor", "quadrotor_full" },
+    refused = "a race uses the thrust of rotors to its limit; films and scans fly other models",
     summary = "vehicle model; a race needs the thrust of rotors" },
   { name = "vehicle", type = "vehicle", default = "vehicles/racer", summary = "file or table" },
   number("thrust", 0.9, "", "share of the thrust that is used", { above = 0, maximum = 1 }),

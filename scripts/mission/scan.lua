@@ -8,12 +8,15 @@
 -- A first flight at a safe height gives depth images; from these come a map and a mesh, and nothing
 -- else is known to what follows (reading 4.9). Views that lie in free space are tried out on the
 -- map, ways between those whose images match are searched, and a tour through them is found within
--- the budget and flown from view to view.
+-- the budget and flown from view to view. A vehicle that cannot stand still takes them in passing
+-- (scan_passing.lua).
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
+local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
+local words = require "mission.scan_words"
 local DECLARATIONS = require "mission.scan_options"
 
 local M = {}
@@ -23,7 +26,6 @@ local BUDGET = 300         -- s, where none is given
 local METRES_A_SECOND = 3  -- of a budget in metres (reading 4.6)
 local BEGIN = "cost_benefit"
 local TIGHTER = 4          -- times that a tour which flies too long is planned on less
-local LITTLE = 0.5         -- share of the budget; whatever leaves more than the rest is told so
 
 local function solver_of(tour)
   local chosen = { type = tour.solver }
@@ -117,20 +119,6 @@ local function solved(run, graph, finish, budget)
   return tour, spent + tour.evaluations
 end
 
--- What is said of what came before the tour.
-local function notes_of(run, graph, known, explored)
-  local views = string.format("%d candidates, %d motions", graph.candidates, graph.motions)
-  if not explored then
-    local before = string.format("%d depth images %s", known.images,
-                                 run.options.rounds > 1 and "so far" or "of the first flight")
-    return { (known.images > 0 and before or "files of an earlier flight") .. ", " .. views }
-  end
-  return { string.format("explored first: %d depth images on %.0f m in %.0f s, %.0f %% of the "
-                         .. "surface; %s", explored.images, explored.length, explored.flight,
-                         100 * explored.observed_surface / explored.surface, explored.reason),
-           views }
-end
-
 -- By pure pursuit, or by the solver, leg by leg; what of it is to be said.
 local function flown(run, vehicle, tour, notes, begin)
   if not run.options.flight.smooth then return nil end
@@ -142,25 +130,6 @@ local function flown(run, vehicle, tour, notes, begin)
   return legs
 end
 
--- What is said where the start leads to few of the views, however much of the battery is used.
-local function cut_off(graph)
-  if graph.joined >= LITTLE * graph.candidates then return nil end
-  return graph.reach .. ". What the others would show is not seen. More candidates "
-         .. "(candidates.most), first flights nearer to the region or a lower motions.alpha "
-         .. "would join more"
-end
-
--- What is said of a tour that leaves most of the battery although it may have more images.
-local function little_used(run, graph, tour, budget)
-  local most = run.options.tour.images
-  if run:cancelled() or tour.seconds >= LITTLE * budget or (most > 0 and tour.images >= most) then
-    return nil
-  end
-  return string.format("the tour takes %.3g of %.6g s (%s: %s); %d views lie within the budget",
-                       tour.seconds, budget, tour.name,
-                       tour.message ~= "" and tour.message or tour.status, tour.reachable)
-end
-
 -- `begin` tells which phase begins.
 local function plan_of(run, graph, vehicle, finish, known, explored, begin)
   local o = run.options
@@ -170,12 +139,11 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
   for round = 1, TIGHTER do
     begin("tour")
     local tour, evaluations = solved(run, graph, finish, budget)
-    local notes = notes_of(run, graph, known, explored)
-    notes[#notes + 1] = first.warning(run)
-    notes[#notes + 1] = first.sparse(run)
-    local little = little_used(run, graph, tour, budget)
+    local notes = words.notes(run, known, explored, string.format(
+      "%d candidates, %d motions", graph.candidates, graph.motions))
+    local little = words.little_used(run, tour, budget)
     notes[#notes + 1] = little
-    local apart = cut_off(graph)
+    local apart = words.cut_off(graph)
     notes[#notes + 1] = apart
     local legs = flown(run, vehicle, tour, notes, begin)
     begin("flight")
@@ -183,11 +151,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
       tour = tour, legs = legs, margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
       notes = notes, explored = explored,
-      figures = { score = tour.score, upper_bound = tour.upper_bound, gap = tour.gap,
-                  seconds = tour.seconds, budget = asked, images = tour.images,
-                  candidates = graph.candidates, motions = graph.motions,
-                  reachable_score = tour.reachable_score, evaluations = evaluations,
-                  explored_seconds = explored and explored.flight },
+      figures = words.figures(graph, tour, asked, evaluations, explored),
     }
     -- Corners and rests may take a little more than the legs one by one.
     local over = plan.duration - asked
@@ -204,25 +168,32 @@ local function planned(run)
   local o = run.options
   check(run)
   local vehicle = run:vehicle(o.vehicle)
-  smooth.check(run, vehicle)
+  local in_passing = smooth.check(run, vehicle)
+  passing.check(run, vehicle, in_passing)
   exploration.check(run)
   local seconds = exploration.seconds(run, vehicle, budget_of(run))
-  phases.expect(run, budget_of(run))
-  local known, poses, surface, explored = first.knowledge(run, seconds, vehicle)
-  local starts, finish = first.starts(run, poses)
+  phases.expect(run, budget_of(run), in_passing)
+  local known, poses, surface, explored =
+    first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
+  local starts, finish
+  if not in_passing then starts, finish = first.starts(run, poses) end
   local plan
   for round = 1, o.rounds do
     local function begin(phase) run:phase(phases.named(run, phase, round)) end
-    begin("views")
-    local graph = graph_of(run, known, vehicle, starts, finish)
-    local last = o.finish and finish or graph.home  -- a loop, unless said otherwise
-    plan = plan_of(run, graph, vehicle, last, known, explored, begin)
+    if in_passing then
+      plan = passing.plan(run, vehicle, known, budget_of(run), begin)
+    else
+      begin("views")
+      local graph = graph_of(run, known, vehicle, starts, finish)
+      local last = o.finish and finish or graph.home  -- a loop, unless said otherwise
+      plan = plan_of(run, graph, vehicle, last, known, explored, begin)
+    end
     if round < o.rounds and not run:cancelled() then
       -- The tour is flown, and what it sees is known from then on; candidates grow from where it
       -- was as well (thesis 4.4.4).
       begin("look")
       first.look(run, known, surface, plan.views)
-      for _, view in ipairs(plan.views) do starts[#starts + 1] = view end
+      for _, view in ipairs(starts and plan.views or {}) do starts[#starts + 1] = view end
       begin("mesh")
       known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
     end

@@ -119,8 +119,9 @@ local function new_prior(run)
                      stride = o.surface.stride }
 end
 
--- The air that the user says is free: from the safe height up, round the region and the patterns.
-local function open_air(run, known, surface, poses)
+-- The air that the user says is free: from the safe height up, round the region, the patterns and
+-- the box `air`, if there is one.
+local function open_air(run, known, surface, poses, air)
   local o, region = run.options, space.region_of(run)
   local margin = o.body[1] + 1
   local lower = { region.lower[1] - o.reach, region.lower[2] - o.reach, space.safe_height(run) }
@@ -131,14 +132,19 @@ local function open_air(run, known, surface, poses)
       upper[axis] = math.max(upper[axis], pose.position[axis])
     end
   end
+  for axis = 1, air and 3 or 0 do
+    lower[axis] = math.min(lower[axis], air.lower[axis])
+    upper[axis] = math.max(upper[axis], air.upper[axis])
+  end
   for axis = 1, 2 do lower[axis], upper[axis] = lower[axis] - margin, upper[axis] + margin end
   upper[3] = upper[3] + o.body[3]
   known:open_air { lower = lower, upper = upper, surface = surface }
 end
 
 -- What is known (a prior with its mesh), the poses of the first flights, what they were flown in,
--- if anything, and the vehicle's exploration, if there was one, which has so many seconds.
-function M.knowledge(run, seconds, vehicle)
+-- if anything, and the vehicle's exploration, if there was one, which has so many seconds. `air`: a
+-- box that is free above the safe height as well.
+function M.knowledge(run, seconds, vehicle, air)
   local o = run.options
   local files, surface = space.prior_files(run), space.surface_of(run)
   if not surface and not files then
@@ -163,7 +169,7 @@ function M.knowledge(run, seconds, vehicle)
       for _, pose in ipairs(space.poses_of(run, flight)) do poses[#poses + 1] = pose end
     end
     run:phase("first flight")
-    open_air(run, known, surface, poses)
+    open_air(run, known, surface, poses, air)
     M.look(run, known, surface, poses)
     run:phase("prior mesh")
     known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- What a scan can be told (readings 4.3, 4.6, 4.11 for defaults that the thesis never gives).
 local exploration = require "mission.scan_exploration"
+local passes = require "mission.scan_passes"
 
 local function number(name, default, unit, summary, more)
   local entry = { name = name, type = "number", default = default, unit = unit, summary = summary }
@@ -116,9 +117,11 @@ local DECLARATIONS = {
       summary = "legs by a trajectory solver, instead of pure pursuit" },
     number("stray", 0.1, "m", "that smooth legs may leave their ways at corners", POSITIVE) } },
   { name = "model", type = "plugin", kind = "vehicle_model", default = "quadrotor",
-    summary = "vehicle model; another than quadrotor needs flight.smooth" },
+    summary = "vehicle model; another than quadrotor needs flight.smooth, and one that cannot "
+    .. "stand still takes images in passing" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
-    summary = "of smooth legs" },
+    summary = "of smooth legs and of flights in passing" },
+  passes.DECLARATION,
   { name = "closed_loop", type = "choice", default = "required",
     choices = { "required", "reported" }, summary = "whether the controlled flight must pass" },
   integer("rounds", 1, 1, 5, "of planning; each but the first sees what the one before flew"),

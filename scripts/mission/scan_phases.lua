@@ -8,6 +8,7 @@ local M = {}
 
 local LOOK, MESH, WEIGH, TELL = 1.6e-6, 1.9e-6, 1.4e-7, 4e-7  -- s a pixel
 local EXPLORE, JOIN, LEG = 0.5, 0.008, 0.3                    -- s an image, a candidate, a leg
+local PASS = 0.02          -- s for a second of flight in passing
 local TOUR = 4e-6          -- s a pair of candidates
 local VIEW = 8             -- s of flight that a view takes
 local CERTIFICATE = 0.01   -- s for a second of flight, in a map with voxels of 1 m
@@ -19,8 +20,9 @@ local function pixels_of(camera, across)
   return share * share * camera.width * camera.height
 end
 
--- Tells what is to come, before the first phase begins; the tour has `seconds`.
-function M.expect(run, seconds)
+-- Tells what is to come, before the first phase begins; the tour has `seconds`, and a trajectory
+-- of its own where images are taken in passing.
+function M.expect(run, seconds, in_passing)
   local o = run.options
   local few, all = pixels_of(o.camera, o.effort.pixels), pixels_of(o.camera, 0)
   local phases = {}
@@ -41,6 +43,7 @@ function M.expect(run, seconds)
     local of = o.rounds > 1 and " of round " .. round or ""
     add("views" .. of, (WEIGH * few + JOIN) * o.candidates.most)
     add("tour" .. of, TOUR * o.candidates.most ^ 2)
+    if in_passing then add("trajectory" .. of, PASS * seconds) end
     if o.flight.smooth then add("smooth legs" .. of, LEG * seconds / VIEW) end
     add("flight" .. of, TELL * all * seconds / VIEW)
     if round < o.rounds then

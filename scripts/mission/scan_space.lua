@@ -154,9 +154,11 @@ function M.poses_of(run, flight)
 end
 
 local ranges = setmetatable({}, { __mode = "k" })  -- of runs
+local wanted = setmetatable({}, { __mode = "k" })  -- likewise: m, that images of a tour need
+function M.want_range(run, metres) wanted[run] = math.min(math.ceil(metres), FARTHEST) end
 
 -- How far depth is measured and rays go: as given, else so far that every first flight sees the
--- region's floor in the middle of its images, where that is possible.
+-- region's floor in the middle of its images, where that is possible, and as far as is wanted.
 function M.range(run)
   if ranges[run] then return ranges[run] end
   local o, range = run.options, run.options.range
@@ -177,6 +179,7 @@ function M.range(run)
       print(string.format("note: range is %g m, for a first flight over such heights sees no floor "
                           .. "within %g m", range, RANGE))
     end
+    range = math.max(range, wanted[run] or 0)
   end
   ranges[run] = range
   return range
