@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/app/run_additions.h"
 
+#include "framework/core/png.h"
 #include "framework/export/light_painting.h"
 #include "framework/export/race_report.h"
-#include "framework/geometry/png.h"
 #include "framework/vehicle/closed_loop.h"
 
 namespace lapwing {

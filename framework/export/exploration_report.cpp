@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "framework/core/png.h"
 #include "framework/core/units.h"
-#include "framework/geometry/png.h"
 
 namespace lapwing {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/export/report.h"
-#include "framework/geometry/render.h"
+#include "framework/picture/render.h"
 
 namespace lapwing {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/core/png.h"
 #include "framework/export/film_view.h"
-#include "framework/geometry/png.h"
-#include "framework/geometry/render.h"
+#include "framework/picture/render.h"
 #include "framework/trajectory/interpolate.h"
 
 namespace lapwing {

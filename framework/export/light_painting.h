@@ -2,7 +2,7 @@
 // A light painting as it comes out: the flight in simulation, photographed with an open shutter.
 #pragma once
 
-#include "framework/geometry/render.h"
+#include "framework/picture/render.h"
 #include "framework/trajectory/plan.h"
 #include "framework/vehicle/closed_loop.h"
 

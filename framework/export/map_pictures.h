@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "framework/geometry/render.h"
 #include "framework/map/map.h"
+#include "framework/picture/render.h"
 
 namespace lapwing {
 

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
+#include "framework/core/png.h"
 #include "framework/export/map_pictures.h"
-#include "framework/geometry/png.h"
 
 namespace lapwing {
 namespace {

@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <limits>
 
+#include "framework/core/png.h"
 #include "framework/export/map_pictures.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/geometry/mesh_builder.h"
-#include "framework/geometry/mesh_picture.h"
-#include "framework/geometry/png.h"
+#include "framework/picture/mesh_picture.h"
 
 namespace lapwing {
 namespace {

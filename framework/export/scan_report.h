@@ -10,9 +10,9 @@
 #include "framework/core/value.h"
 #include "framework/export/report.h"
 #include "framework/geometry/mesh_scene.h"
-#include "framework/geometry/render.h"
 #include "framework/map/known_surface.h"
 #include "framework/map/unknown_edge.h"
+#include "framework/picture/render.h"
 #include "framework/trajectory/plan.h"
 
 namespace lapwing {

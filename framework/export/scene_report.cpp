@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <optional>
 
+#include "framework/core/png.h"
 #include "framework/geometry/depth_camera.h"
-#include "framework/geometry/png.h"
 
 namespace lapwing {
 namespace {

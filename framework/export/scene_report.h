@@ -7,7 +7,7 @@
 #include "framework/export/report.h"
 #include "framework/geometry/mesh_scene.h"
 #include "framework/geometry/pose.h"
-#include "framework/geometry/render.h"
+#include "framework/picture/render.h"
 
 namespace lapwing {
 

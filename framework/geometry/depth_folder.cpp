@@ -8,7 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/geometry/png.h"
+#include "framework/core/png.h"
 
 namespace lapwing {
 namespace {

@@ -6,11 +6,11 @@
 
 #include "framework/core/units.h"
 #include "framework/geometry/mesh_file.h"
-#include "framework/geometry/mesh_picture.h"
 #include "framework/map/map_file.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/picture/mesh_picture.h"
 #include "framework/surface/surface_mesh.h"
 
 namespace lapwing {

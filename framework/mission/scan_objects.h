@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/geometry/render.h"
 #include "framework/map/ray_gaps.h"
 #include "framework/mission/map_objects.h"
+#include "framework/picture/render.h"
 #include "framework/surface/point_fusion.h"
 #include "framework/vehicle/pursuit.h"
 #include "framework/vehicle/smooth_leg.h"

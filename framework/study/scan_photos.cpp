@@ -17,7 +17,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/parallel.h"
-#include "framework/geometry/png.h"
+#include "framework/core/png.h"
 #include "framework/geometry/stereo_depth.h"
 
 namespace lapwing {

@@ -22,7 +22,7 @@ const std::map<std::string, Names>& rooms() {
   static const Names kAllButApp{"geometry", "trajectory", "vehicle",     "map",     "path",
                                 "problem",  "solve",      "view",        "explore", "verify",
                                 "export",   "config",     "conformance", "plugin",  "mission",
-                                "surface",  "shape"};
+                                "surface",  "shape",      "picture"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -35,6 +35,7 @@ const std::map<std::string, Names>& rooms() {
       {"core", {}},
       {"geometry", {}},
       {"surface", {"geometry"}},
+      {"picture", {"geometry"}},
       {"shape", {"geometry", "map"}},
       {"trajectory", {"geometry", "shape"}},
       {"vehicle", {"geometry", "trajectory"}},
@@ -45,7 +46,8 @@ const std::map<std::string, Names>& rooms() {
       {"view", {"geometry", "map", "path"}},
       {"explore", {"geometry", "map", "view", "path"}},
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
-      {"export", {"geometry", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
+      {"export",
+       {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
       {"config", {}},
       {"plugin", {}},
       {"conformance", without(kAllButApp, "mission")},
@@ -99,7 +101,7 @@ constexpr Containment kContained[] = {
     {"nlohmann/", "", true},
     {"fmt/", "", true},
     {"GeographicLib/", "", true},
-    {"png.h", "framework/geometry/", true},
+    {"png.h", "framework/core/", true},
     {"octomap/", "", true},
     {"ompl/", "", true},
     {"coin/", "", true},

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/core/png.h"
 #include "framework/export/film_charts.h"
 #include "framework/export/film_strip.h"
 #include "framework/export/flight_report.h"
-#include "framework/geometry/png.h"
 #include "tests/export/synthetic_flight.h"
 
 namespace lapwing {

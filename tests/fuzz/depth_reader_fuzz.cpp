@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "framework/core/error.h"
+#include "framework/core/png.h"
 #include "framework/geometry/depth_folder.h"
-#include "framework/geometry/png.h"
 #include "tests/fuzz/scratch_folder.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "framework/core/error.h"
-#include "framework/geometry/png.h"
+#include "framework/core/png.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace lapwing;

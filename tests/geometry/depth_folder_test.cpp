@@ -5,9 +5,9 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/core/png.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/geometry/depth_folder.h"
-#include "framework/geometry/png.h"
 
 namespace lapwing {
 namespace {

@@ -2,7 +2,7 @@
 // Sections of a report that scripts state, and calls that several kinds share.
 #include <gmock/gmock.h>
 
-#include "framework/geometry/png.h"
+#include "framework/core/png.h"
 #include "tests/mission/mission_fixture.h"
 
 namespace lapwing {

@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "framework/geometry/render.h"
-
 namespace lapwing {
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  // rows from the top, three bytes (sRGB) a pixel
+};
 
 // One number of 16 bits a pixel, rows from the top: depth in millimetres, say.
 struct Grey16 {

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "framework/geometry/mesh_picture.h"
+#include "framework/picture/mesh_picture.h"
 
 #include <cmath>
 
-#include "framework/core/error.h"
 #include "framework/core/parallel.h"
-#include "framework/geometry/daylight.h"
+#include "framework/picture/daylight.h"
 
 namespace lapwing {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kFine = 2;  // rays across a pixel and down
+constexpr int kRays = 2;  // across a pixel and down
 
-class Painter {
+class MeshPainter {
  public:
-  Painter(const MeshScene& scene, const CameraView& view) : scene_(scene), view_(view) {
+  MeshPainter(const MeshScene& scene, const CameraView& view) : scene_(scene), view_(view) {
     for (const Rgb& c : scene.mesh().colors) {
       colors_.emplace_back(linear_light(c[0] / 255.0), linear_light(c[1] / 255.0),
                            linear_light(c[2] / 255.0));
@@ -25,12 +24,12 @@ class Painter {
 
   Light pixel(int x, int y) const {
     Light sum = Light::Zero();
-    for (int k = 0; k < kFine * kFine; ++k) {
-      const double dx = (k % kFine + 0.5) / kFine - 0.5, dy = (k / kFine + 0.5) / kFine - 0.5;
+    for (int k = 0; k < kRays * kRays; ++k) {
+      const double dx = (k % kRays + 0.5) / kRays - 0.5, dy = (k / kRays + 0.5) / kRays - 0.5;
       // What saturates does so before the mean is taken, or bright outlines would be jagged.
       sum += light(x + dx, y + dy).min(1.0);
     }
-    return sum / (kFine * kFine);
+    return sum / (kRays * kRays);
   }
 
  private:
@@ -56,11 +55,8 @@ class Painter {
 
 Picture mesh_picture(const MeshScene& scene, const CameraView& view, int threads) {
   const int width = view.pinhole.width, height = view.pinhole.height;
-  if (width < 1 || height < 1 || static_cast<double>(width) * height > kLargestPicture) {
-    throw InputError("a picture of " + std::to_string(width) + " by " + std::to_string(height) +
-                     " pixels: expected at least one and at most 100 million");
-  }
-  const Painter painter(scene, view);
+  check_picture_size(width, height);
+  const MeshPainter painter(scene, view);
   Picture picture{width, height, {}};
   const auto row = static_cast<std::size_t>(width);
   picture.rgb.resize(3 * row * static_cast<std::size_t>(height));

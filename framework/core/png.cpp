@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "framework/geometry/png.h"
+#include "framework/core/png.h"
 
 #include <png.h>
 
@@ -33,21 +33,21 @@ std::string encoded(int width, int height, png_uint_32 format, const void* pixel
 
 // libpng leaves by longjmp, so nothing here may own anything: the functions that it may leave hold
 // plain numbers and pointers alone.
-struct Source {
+struct PngBytes {
   const char* bytes;
   std::size_t size, at = 0;
   char message[128] = "";
 };
 
 void take_bytes(png_structp png, png_bytep out, std::size_t count) {
-  auto* source = static_cast<Source*>(png_get_io_ptr(png));
+  auto* source = static_cast<PngBytes*>(png_get_io_ptr(png));
   if (count > source->size - source->at) png_error(png, "it ends too early");
   std::memcpy(out, source->bytes + source->at, count);
   source->at += count;
 }
 
 [[noreturn]] void leave(png_structp png, png_const_charp message) {
-  auto* source = static_cast<Source*>(png_get_error_ptr(png));
+  auto* source = static_cast<PngBytes*>(png_get_error_ptr(png));
   std::strncpy(source->message, message, sizeof source->message - 1);
   png_longjmp(png, 1);
 }
@@ -59,7 +59,7 @@ struct PngHeader {
   int depth, color;
 };
 
-bool read_header(png_structp png, png_infop info, Source* source, PngHeader* header) {
+bool read_header(png_structp png, png_infop info, PngBytes* source, PngHeader* header) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_read_fn(png, source, take_bytes);
   png_set_user_limits(png, 1'000'000, 1'000'000);
@@ -118,7 +118,7 @@ class Reader {
     throw InputError(name_ + ": not a PNG depth image: " + why);
   }
 
-  Source source_;
+  PngBytes source_;
   const std::string& name_;
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;

@@ -4,7 +4,7 @@
 
 #include "framework/geometry/camera_view.h"
 #include "framework/geometry/mesh_scene.h"
-#include "framework/geometry/render.h"
+#include "framework/picture/render.h"
 
 namespace lapwing {
 

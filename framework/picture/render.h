@@ -5,9 +5,9 @@
 // same input gives the same bytes.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "framework/core/png.h"
 #include "framework/geometry/camera_view.h"
 #include "framework/geometry/scene.h"
 
@@ -15,11 +15,6 @@ namespace lapwing {
 
 struct Color {
   double red = 0, green = 0, blue = 0;  // sRGB, 0 to 1
-};
-
-struct Picture {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;  // rows from the top, three bytes (sRGB) a pixel
 };
 
 struct Body {

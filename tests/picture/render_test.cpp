@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "framework/core/error.h"
-#include "framework/geometry/render.h"
+#include "framework/picture/render.h"
 
 namespace lapwing {
 namespace {

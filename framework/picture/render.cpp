@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "framework/geometry/render.h"
+#include "framework/picture/render.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "framework/core/error.h"
-#include "framework/geometry/daylight.h"
+#include "framework/picture/daylight.h"
 
 namespace lapwing {
 namespace {
@@ -162,10 +161,7 @@ Renderer::Renderer(const std::vector<Body>& bodies)
 
 Picture Renderer::picture(const CameraView& view) const {
   const int width = view.pinhole.width, height = view.pinhole.height;
-  if (width < 1 || height < 1 || static_cast<double>(width) * height > kLargestPicture) {
-    throw InputError("a picture of " + std::to_string(width) + " by " + std::to_string(height) +
-                     " pixels: expected at least one and at most 100 million");
-  }
+  check_picture_size(width, height);
   const Painter painter(solid_, solid_colors_, see_through_, see_through_colors_, view);
   std::vector<Sample> samples;
   samples.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

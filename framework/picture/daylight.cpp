@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "framework/geometry/daylight.h"
+#include "framework/picture/daylight.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+
+#include "framework/core/error.h"
 
 namespace lapwing {
 namespace {
@@ -48,6 +51,13 @@ std::uint8_t encoded_light(double light) {
     return bytes;
   }();
   return table[static_cast<std::size_t>(4096 * std::clamp(light, 0.0, 1.0) + 0.5)];
+}
+
+void check_picture_size(int width, int height) {
+  if (width < 1 || height < 1 || static_cast<double>(width) * height > 1e8) {
+    throw InputError("a picture of " + std::to_string(width) + " by " + std::to_string(height) +
+                     " pixels: expected at least one and at most 100 million");
+  }
 }
 
 }  // namespace lapwing
