@@ -23,7 +23,7 @@ case "$which" in
   thread)
     preset=tsan
     export TSAN_OPTIONS="halt_on_error=1:suppressions=$PWD/tests/tsan.supp"
-    options=(-R '^(core|geometry|picture|map|path|view|explore|problem|solve|conformance|app|tour_solvers|utilities)$')
+    options=(-R '^(core|geometry|picture|map|path|view|explore|problem|symbolic|solve|conformance|app|tour_solvers|utilities)$')
     ;;
   *) echo "usage: scripts/sanitize.sh address|thread [ctest options]" >&2; exit 2 ;;
 esac

@@ -118,7 +118,7 @@ int add_block(lua_State* state) {
 }
 
 // Notes a term of the script's own; whether it was one.
-bool add_own_term(lua_State* state, ScriptTermKind kind) {
+bool add_own_term(lua_State* state, WrittenTermKind kind) {
   open_problem(state);
   if (!is_script_term(state, 2, kind)) return false;
   ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
@@ -130,7 +130,7 @@ bool add_own_term(lua_State* state, ScriptTermKind kind) {
 }
 
 int add_cost(lua_State* state) {
-  if (add_own_term(state, ScriptTermKind::cost)) return 0;
+  if (add_own_term(state, WrittenTermKind::cost)) return 0;
   TrajectoryProblem& problem = open_problem(state);
   const PluginArgument argument = plugin_argument(state, "add_cost", cost_frame_table());
   problem.add_cost(argument.name, argument.weight, create<CostTerm>(state, argument));
@@ -138,7 +138,7 @@ int add_cost(lua_State* state) {
 }
 
 int add_constraint(lua_State* state) {
-  if (add_own_term(state, ScriptTermKind::constraint)) return 0;
+  if (add_own_term(state, WrittenTermKind::constraint)) return 0;
   TrajectoryProblem& problem = open_problem(state);
   const PluginArgument argument =
       plugin_argument(state, "add_constraint", constraint_frame_table());

@@ -7,6 +7,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
+#include "framework/mission/term_recording.h"
 #include "framework/problem/time_spans.h"
 
 namespace lapwing {
@@ -15,14 +16,14 @@ namespace {
 
 constexpr double kDefaultWidth = 1e-3;
 
-const char* function_key(ScriptTermKind kind) {
-  return kind == ScriptTermKind::cost ? "residual" : "value";
+const char* function_key(WrittenTermKind kind) {
+  return kind == WrittenTermKind::cost ? "residual" : "value";
 }
-const char* word_of(ScriptTermKind kind) {
-  return kind == ScriptTermKind::cost ? "cost" : "constraint";
+const char* word_of(WrittenTermKind kind) {
+  return kind == WrittenTermKind::cost ? "cost" : "constraint";
 }
 
-ParameterTable script_term_table(ScriptTermKind kind) {
+ParameterTable script_term_table(WrittenTermKind kind) {
   ParameterTable table;
   table.required_text("name", "its name in this problem, for messages and reports")
       .integer("window", 1, "neighbouring stages that it reads at the least", between(1, 64))
@@ -32,12 +33,12 @@ ParameterTable script_term_table(ScriptTermKind kind) {
       .numbers("times", {}, "s", "when it is asked; none: at every stage", at_least(0))
       .tables("spans", time_span_table(), "spans of time in which it is asked; none: always")
       .tables("except", time_span_table(), "spans of time in which it is not asked");
-  if (kind == ScriptTermKind::constraint)
+  if (kind == WrittenTermKind::constraint)
     table
         .choice("certificate", "required", {"required", "reported"},
                 "whether a plan that breaks it is not certified, or says so alone")
         .boolean("held", true, "by the solver; false: judged by the certificate alone");
-  if (kind == ScriptTermKind::cost)
+  if (kind == WrittenTermKind::cost)
     table.number("weight", 1.0, "", "weight of the squared residuals", at_least(0))
         .boolean("integral", true,
                  "the squares are integrated over time; else, and at given times, summed");
@@ -81,18 +82,6 @@ void read_parameters(const Value& given, ScriptTerm& term) {
   }
 }
 
-std::vector<double> for_all_rows(const ScriptTerm& term, const std::vector<double>& bounds,
-                                 double none, const char* which) {
-  const int rows = term.shape.tape->rows();
-  if (bounds.empty()) return std::vector<double>(rows, none);
-  if (bounds.size() == 1) return std::vector<double>(rows, bounds[0]);
-  if (static_cast<int>(bounds.size()) != rows)
-    throw InputError(term.origin, "constraint '" + term.name + "': " + which + " has " +
-                                      std::to_string(bounds.size()) +
-                                      " numbers, the function returns " + std::to_string(rows));
-  return bounds;
-}
-
 std::string one_of(const std::vector<std::string>& known) {
   std::string text;
   for (const std::string& name : known) text += (text.empty() ? "'" : ", '") + name + "'";
@@ -102,11 +91,11 @@ std::string one_of(const std::vector<std::string>& known) {
 }  // namespace
 
 ParameterTable own_cost_table() {
-  return script_term_table(ScriptTermKind::cost);
+  return script_term_table(WrittenTermKind::cost);
 }
 
 ParameterTable own_constraint_table() {
-  return script_term_table(ScriptTermKind::constraint);
+  return script_term_table(WrittenTermKind::constraint);
 }
 
 ParameterTable term_parameter_table() {
@@ -120,7 +109,7 @@ namespace {
 
 // The commonest slip: `value` for `residual`, or a slip of the pen. `index` is a table without a
 // plugin's `type` and without the function's own key.
-void refuse_misnamed_function(lua_State* state, int index, ScriptTermKind kind) {
+void refuse_misnamed_function(lua_State* state, int index, WrittenTermKind kind) {
   std::vector<std::string> names;
   lua_pushnil(state);
   while (lua_next(state, index)) {
@@ -139,7 +128,7 @@ void refuse_misnamed_function(lua_State* state, int index, ScriptTermKind kind) 
 }
 
 // "add_cost 'keep_low'", as messages call what is wrong in its table.
-std::string call_of(lua_State* state, int index, ScriptTermKind kind) {
+std::string call_of(lua_State* state, int index, WrittenTermKind kind) {
   std::string call = std::string("add_") + word_of(kind);
   if (lua_getfield(state, index, "name") == LUA_TSTRING)
     call += std::string(" '") + lua_tostring(state, -1) + "'";
@@ -148,7 +137,7 @@ std::string call_of(lua_State* state, int index, ScriptTermKind kind) {
 }
 
 // Where the function is written, which stands in the term's own table; else the line that is run.
-Origin origin_of_term(lua_State* state, int index, ScriptTermKind kind) {
+Origin origin_of_term(lua_State* state, int index, WrittenTermKind kind) {
   Origin place;
   if (lua_getfield(state, index, function_key(kind)) == LUA_TFUNCTION)
     place = place_of_function(state, lua_gettop(state));
@@ -158,7 +147,7 @@ Origin origin_of_term(lua_State* state, int index, ScriptTermKind kind) {
 
 }  // namespace
 
-bool is_script_term(lua_State* state, int index, ScriptTermKind kind) {
+bool is_script_term(lua_State* state, int index, WrittenTermKind kind) {
   if (!lua_istable(state, index)) return false;
   const bool has_type = lua_getfield(state, index, "type") != LUA_TNIL;
   const int own = lua_getfield(state, index, function_key(kind));
@@ -171,9 +160,9 @@ bool is_script_term(lua_State* state, int index, ScriptTermKind kind) {
   return !has_type && own != LUA_TNIL;
 }
 
-ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
+ScriptTerm read_script_term(lua_State* state, int index, WrittenTermKind kind) {
   // What belongs to the other kind is left to the check, which says that it is unknown.
-  const std::span<const BoundField> apart = kind == ScriptTermKind::constraint
+  const std::span<const BoundField> apart = kind == WrittenTermKind::constraint
                                                 ? std::span<const BoundField>(kOwnConstraintObjects)
                                                 : std::span<const BoundField>(kOwnCostObjects);
   const std::string call = call_of(state, index, kind);
@@ -197,7 +186,7 @@ ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
   const bool timed = !term.shape.times.empty();
   if (timed && !(term.shape.spans.empty() && term.shape.except.empty()))
     throw InputError(term.origin, call + ": give times or spans, not both");
-  if (kind == ScriptTermKind::cost) {
+  if (kind == WrittenTermKind::cost) {
     term.weight = given.number("weight");
     term.shape.integral = given.boolean("integral") && !timed;
   } else {
@@ -222,104 +211,27 @@ ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind) {
   return term;
 }
 
-namespace {
-
-// Blocks that a plan's samples hold, by the names of the shipped models; a free block does not
-// reach the plan, but for the target.
-bool is_in_plans(const std::string& block) {
-  static const std::vector<std::string> known{"time",          "step",
-                                              "position",      "yaw",
-                                              "velocity",      "yaw_rate",
-                                              "force",         "yaw_torque",
-                                              "target",        "orientation",
-                                              "body_rates",    "gimbal_yaw",
-                                              "gimbal_pitch",  "gimbal_yaw_rate",
-                                              "rotor_thrusts", "gimbal_pitch_rate"};
-  return std::find(known.begin(), known.end(), block) != known.end();
-}
-
-// What the plan says of the constraint, but for its parameters.
-void state_constraint(ScriptTerm& term, const std::vector<double>& lower,
-                      const std::vector<double>& upper, const Horizon& horizon) {
-  StatedConstraint& stated = term.stated;
-  stated.name = term.name;
-  stated.required = term.required;
-  if (horizon.step_free &&
-      !(term.shape.times.empty() && term.shape.spans.empty() && term.shape.except.empty()))
-    stated.unjudged = "it names times of a flight whose times are free";
-  if (term.recorded.operations.size() > StatedConstraint::kMostOperations)
-    stated.unjudged =
-        "it takes more than " + std::to_string(StatedConstraint::kMostOperations) + " operations";
-  for (const ConstraintStep& step : term.recorded.operations) {
-    if (step.op == ConstraintOp::input && !is_in_plans(step.name))
-      stated.unjudged = "it reads '" + step.name + "', which plans do not hold";
-    if (!std::isfinite(step.number))
-      stated.unjudged = "it computes with a number that is not finite";
-  }
-  if (!stated.unjudged.empty()) return;
-  stated.times = term.shape.times;
-  stated.spans = term.shape.spans;
-  stated.except = term.shape.except;
-  for (std::size_t r = 0; r < lower.size(); ++r) {
-    ConstraintResult result{.operation = term.recorded.results[r]};
-    if (std::isfinite(lower[r])) result.lower = lower[r];
-    if (std::isfinite(upper[r])) result.upper = upper[r];
-    if (result.lower || result.upper) stated.results.push_back(result);
-  }
-  if (stated.results.empty()) stated.unjudged = "its bounds are infinite";
-  stated.operations = term.recorded.operations;
-}
-
-}  // namespace
-
 std::vector<StatedConstraint> stated_constraints(const std::vector<ScriptTerm>& terms) {
   std::vector<StatedConstraint> all;
-  for (const ScriptTerm& term : terms) {
-    if (term.kind != ScriptTermKind::constraint) continue;
-    StatedConstraint stated = term.stated;
-    if (!stated.operations.empty())
-      for (const auto& [place, parameter] : term.recorded.parameters)
-        stated.operations[place].number = (*term.parameters.values)[parameter];
-    all.push_back(std::move(stated));
-  }
+  for (const ScriptTerm& term : terms)
+    if (term.kind == WrittenTermKind::constraint) all.push_back(stated_constraint(term));
   return all;
 }
 
 void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& problem) {
-  const std::string what = std::string(word_of(term.kind)) + " '" + term.name + "'";
-  {
-    lua_rawgeti(state, LUA_REGISTRYINDEX, term.function);
-    TermRecording recording(state, what, problem, term.parameters, term.width);
-    recording.record(lua_gettop(state), term.shape);
-    if (term.kind == ScriptTermKind::constraint) term.recorded = recording.operations();
-    lua_pop(state, 1);
-  }
-  term.shape.parameters = term.parameters.values;
-  if (!term.shape.times.empty() && term.shape.window > 1)
-    throw InputError(term.origin, what + ": at given times there is no neighbouring stage to read");
-  if (term.kind == ScriptTermKind::cost) {
-    problem.add_cost(term.name, term.weight, tape_cost(term.shape));
-    return;
-  }
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::vector<double> lower = for_all_rows(term, term.lower, -kInfinity, "lower");
-  std::vector<double> upper = for_all_rows(term, term.upper, kInfinity, "upper");
-  for (std::size_t r = 0; r < lower.size(); ++r)
-    if (lower[r] > upper[r])
-      throw InputError(term.origin,
-                       what + ": lower is above upper in result " + std::to_string(r + 1));
-  state_constraint(term, lower, upper, problem.horizon());
-  if (!term.held) return;
-  problem.add_constraint(term.name,
-                         tape_constraint(term.shape, std::move(lower), std::move(upper)));
+  TermFormula formula(term.what(), problem, term.parameters, term.width);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, term.function);
+  const Origin place = place_of_function(state, lua_gettop(state));
+  const SymbolicEntries rows = TermRecording(state, formula).record(lua_gettop(state));
+  lua_pop(state, 1);
+  add_written_term(term, formula, rows, place, problem);
 }
 
 void check_script_term(lua_State* state, ScriptTerm& term, const TrajectoryProblem& problem,
                        const Eigen::MatrixXd& guess) {
-  const std::string what = std::string(word_of(term.kind)) + " '" + term.name + "'";
+  TermFormula formula(term.what(), problem, term.parameters, term.width);
   lua_rawgeti(state, LUA_REGISTRYINDEX, term.function);
-  TermRecording recording(state, what, problem, term.parameters, term.width);
-  recording.check(lua_gettop(state), term.shape, guess);
+  TermRecording(state, formula).check(lua_gettop(state), term.shape, guess);
   lua_pop(state, 1);
   luaL_unref(state, LUA_REGISTRYINDEX, term.function);
   term.function = LUA_NOREF;

@@ -18,26 +18,12 @@
 #include <vector>
 
 #include "framework/mission/binding.h"
-#include "framework/mission/term_recording.h"
+#include "framework/symbolic/written_term.h"
 
 namespace lapwing {
 
-enum class ScriptTermKind { cost, constraint };
-
-struct ScriptTerm {
-  ScriptTermKind kind = ScriptTermKind::cost;
-  std::string name;
-  double weight = 1, width = 0;
+struct ScriptTerm : WrittenTerm {
   int function = LUA_NOREF;  // in the registry
-  TapeFunction shape;
-  std::vector<double> lower, upper;  // of a constraint: none, one for all rows, or one each
-  Origin origin;
-  TermParameters parameters;
-  // Of a constraint: whether the certificate requires it, whether solvers hold it, and what the
-  // plan states of it.
-  bool required = true, held = true;
-  RecordedOperations recorded;
-  StatedConstraint stated;
 };
 
 // What the plan of a solution says of these constraints: with their parameters as they are now.
@@ -62,8 +48,8 @@ inline constexpr BoundField kTermParameterValue[] = {
 
 // Whether the table at `index` states a term of the script's own. InputError where it also names a
 // plugin.
-bool is_script_term(lua_State* state, int index, ScriptTermKind kind);
-ScriptTerm read_script_term(lua_State* state, int index, ScriptTermKind kind);
+bool is_script_term(lua_State* state, int index, WrittenTermKind kind);
+ScriptTerm read_script_term(lua_State* state, int index, WrittenTermKind kind);
 // Records the term and adds it to the problem, which keeps its parameters alive.
 void add_script_term(lua_State* state, ScriptTerm& term, TrajectoryProblem& problem);
 // Once the problem is finished: whether the term is what its function says, also where solvers

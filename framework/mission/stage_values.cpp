@@ -4,7 +4,6 @@
 
 #include "framework/mission/guard.h"
 #include "framework/mission/term_recording.h"
-#include "framework/problem/environment_distance.h"
 #include "framework/problem/filmed_point.h"
 
 namespace lapwing {
@@ -21,21 +20,9 @@ struct StageObject {
 
 TermRecording& recording_of(lua_State* state, const StageObject& stage) {
   TermRecording& recording = TermRecording::current(state);
-  if (recording.setting().serial != stage.serial)
+  if (recording.formula().setting().serial != stage.serial)
     refuse_symbolic(state, "a stage was kept from another term or another call");
   return recording;
-}
-
-// InputErrors of the kernel, said at the line of Lua that is being run.
-template <class Body>
-decltype(auto) at_this_line(lua_State* state, Body&& body) {
-  std::string message;
-  try {
-    return body();
-  } catch (const InputError& error) {
-    message = error.what();
-  }
-  refuse_symbolic(state, message);
 }
 
 void push_block(lua_State* state, const SymbolicEntries& entries) {
@@ -52,18 +39,11 @@ int subject_of_stage(lua_State* state) {
   const std::string name = at_this_line(
       state, [&] { return text_argument(state, 2, "s:subject: the name of a subject"); });
   const Subject& subject = at_this_line(state, [&]() -> const Subject& {
-    return subject_named(recording.problem().environment(), name);
+    return subject_named(recording.formula().problem().environment(), name);
   });
-  const SymbolicScalar time = recording.read(stage.stage, recording.layout().index("time"))[0];
-  SymbolicSetting& setting = recording.setting();
-  const int number = setting.graph.add_subject(subject), at = symbolic_node(setting, time);
-  SymbolicEntries place(3);
-  for (int i = 0; i < 3; ++i) {
-    const int node = setting.graph.apply(TapeOp::track, at, -1, -1, 0, 3 * number + i);
-    place[i] = setting.graph.is_constant(node) ? SymbolicScalar{setting.graph.number(node), -1}
-                                               : SymbolicScalar{0, node};
-  }
-  push_symbolic_vector(state, std::move(place));
+  TermFormula& formula = recording.formula();
+  const SymbolicScalar time = recording.read(stage.stage, formula.layout().index("time"))[0];
+  push_symbolic_vector(state, formula.subject(subject, time));
   return 1;
 }
 
@@ -75,16 +55,8 @@ int distance_of_stage(lua_State* state) {
   const std::string name = lua_isnoneornil(state, 3) ? "" : at_this_line(state, [&] {
     return text_argument(state, 3, "s:distance: the name of an obstacle");
   });
-  SymbolicSetting& setting = recording.setting();
-  int nodes[3];
-  for (int i = 0; i < 3; ++i) nodes[i] = symbolic_node(setting, point[i]);
-  const int node = at_this_line(state, [&] {
-    return nearest_distance(setting.graph, recording.problem().environment(), name, nodes,
-                            setting.width);
-  });
-  push_symbolic(state, setting.graph.is_constant(node)
-                           ? SymbolicScalar{setting.graph.number(node), -1}
-                           : SymbolicScalar{0, node});
+  push_symbolic(state,
+                at_this_line(state, [&] { return recording.formula().distance(point, name); }));
   return 1;
 }
 
@@ -99,7 +71,7 @@ int stage_index(lua_State* state) {
                       "a neighbouring stage is s[1], s[2], ...: expected a whole number, at "
                       "least 0");
     const lua_Integer most =
-        std::min(kLargestWindow, recording.problem().horizon().stages) - 1 - stage.stage;
+        std::min(kLargestWindow, recording.formula().problem().horizon().stages) - 1 - stage.stage;
     if (later > most)
       refuse_symbolic(state, "s[" + std::to_string(later) +
                                  "]: the last neighbour that there can "
@@ -110,7 +82,7 @@ int stage_index(lua_State* state) {
   }
   const std::string name = at_this_line(
       state, [&] { return text_argument(state, 2, "a stage's field: the name of a block"); });
-  const int block = at_this_line(state, [&] { return recording.layout().index(name); });
+  const int block = at_this_line(state, [&] { return recording.formula().layout().index(name); });
   push_block(state, recording.read(stage.stage, block));
   return 1;
 }

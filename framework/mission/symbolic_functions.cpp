@@ -7,10 +7,6 @@ namespace lapwing {
 
 namespace {
 
-SymbolicScalar multiplied(lua_State* state, const SymbolicScalar& a, const SymbolicScalar& b) {
-  return symbolic_result(state, TapeOp::multiply, a, b);
-}
-
 constexpr const char* name_of(TapeOp op) {
   switch (op) {
     case TapeOp::sin:
@@ -47,15 +43,15 @@ template <TapeOp kOp>
 int function_of_one(lua_State* state) {
   expect_count(state, name_of(kOp), 1, 1);
   const double width = kOp == TapeOp::absolute ? rounding(state) : 0.0;
-  push_symbolic(
-      state, symbolic_result(state, kOp, symbolic_argument(state, 1, name_of(kOp)), {}, {}, width));
+  push_symbolic(state, symbolic_result(symbolic_setting(state), kOp,
+                                       symbolic_argument(state, 1, name_of(kOp)), {}, {}, width));
   return 1;
 }
 
 int angle_of_two(lua_State* state) {
   expect_count(state, "lapwing.atan2", 2, 2);
   const SymbolicScalar y = symbolic_argument(state, 1, "lapwing.atan2");
-  push_symbolic(state, symbolic_result(state, TapeOp::atan2, y,
+  push_symbolic(state, symbolic_result(symbolic_setting(state), TapeOp::atan2, y,
                                        symbolic_argument(state, 2, "lapwing.atan2")));
   return 1;
 }
@@ -65,14 +61,10 @@ int extreme_function(lua_State* state) {
   constexpr const char* kName = kLargest ? "lapwing.max" : "lapwing.min";
   constexpr int kMost = 200;
   expect_count(state, kName, 1, kMost);
-  const auto turned = [&](const SymbolicScalar& x) {
-    return kLargest ? x : symbolic_result(state, TapeOp::negate, x);
-  };
-  SymbolicScalar result = turned(symbolic_argument(state, 1, kName));
-  for (int i = 2; i <= lua_gettop(state); ++i)
-    result = symbolic_result(state, TapeOp::maximum, result,
-                             turned(symbolic_argument(state, i, kName)), {}, rounding(state));
-  push_symbolic(state, turned(result));
+  SymbolicEntries entries;
+  for (int i = 1; i <= lua_gettop(state); ++i)
+    entries.push_back(symbolic_argument(state, i, kName));
+  push_symbolic(state, symbolic_extreme(symbolic_setting(state), entries, kLargest));
   return 1;
 }
 
@@ -84,8 +76,7 @@ int where_function(lua_State* state) {
                     "x > 3; lapwing.where(x, a, b) is a where x > 0");
   const SymbolicScalar choice = symbolic_argument(state, 1, "lapwing.where");
   const auto chosen = [&](const SymbolicScalar& a, const SymbolicScalar& b) {
-    if (choice.known()) return choice.value > 0 ? a : b;
-    return symbolic_result(state, TapeOp::select, choice, a, b);
+    return symbolic_choice(symbolic_setting(state), choice, a, b);
   };
   if (is_symbolic_scalar(state, 2) && is_symbolic_scalar(state, 3)) {
     push_symbolic(state, chosen(symbolic_argument(state, 2, "lapwing.where"),
@@ -100,19 +91,12 @@ int where_function(lua_State* state) {
   return 1;
 }
 
-SymbolicScalar dot_product(lua_State* state, const SymbolicEntries& a, const SymbolicEntries& b) {
-  SymbolicScalar sum = multiplied(state, a[0], b[0]);
-  for (std::size_t i = 1; i < a.size(); ++i)
-    sum = symbolic_result(state, TapeOp::add, sum, multiplied(state, a[i], b[i]));
-  return sum;
-}
-
 int dot_function(lua_State* state) {
   expect_count(state, "lapwing.dot", 2, 2);
   const SymbolicEntries a = symbolic_vector_argument(state, 1, "lapwing.dot");
-  push_symbolic(state, dot_product(state, a,
-                                   symbolic_vector_argument(state, 2, "lapwing.dot",
-                                                            static_cast<int>(a.size()))));
+  const SymbolicEntries b =
+      symbolic_vector_argument(state, 2, "lapwing.dot", static_cast<int>(a.size()));
+  push_symbolic(state, symbolic_dot(symbolic_setting(state), a, b));
   return 1;
 }
 
@@ -120,31 +104,23 @@ int cross_function(lua_State* state) {
   expect_count(state, "lapwing.cross", 2, 2);
   const SymbolicEntries a = symbolic_vector_argument(state, 1, "lapwing.cross", 3);
   const SymbolicEntries b = symbolic_vector_argument(state, 2, "lapwing.cross", 3);
-  SymbolicEntries result(3);
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    result[i] = symbolic_result(state, TapeOp::subtract, multiplied(state, a[j], b[k]),
-                                multiplied(state, a[k], b[j]));
-  }
-  push_symbolic_vector(state, std::move(result));
+  push_symbolic_vector(state, symbolic_cross(symbolic_setting(state), a, b));
   return 1;
-}
-
-SymbolicScalar length_of(lua_State* state, const SymbolicEntries& v) {
-  return symbolic_result(state, TapeOp::norm, dot_product(state, v, v), {}, {}, rounding(state));
 }
 
 int norm_function(lua_State* state) {
   expect_count(state, "lapwing.norm", 1, 1);
-  push_symbolic(state, length_of(state, symbolic_vector_argument(state, 1, "lapwing.norm")));
+  push_symbolic(state, symbolic_length(symbolic_setting(state),
+                                       symbolic_vector_argument(state, 1, "lapwing.norm")));
   return 1;
 }
 
 int normalize_function(lua_State* state) {
   expect_count(state, "lapwing.normalize", 1, 1);
   SymbolicEntries v = symbolic_vector_argument(state, 1, "lapwing.normalize");
-  const SymbolicScalar length = length_of(state, v);
-  for (SymbolicScalar& entry : v) entry = symbolic_result(state, TapeOp::divide, entry, length);
+  const SymbolicScalar length = symbolic_length(symbolic_setting(state), v);
+  for (SymbolicScalar& entry : v)
+    entry = symbolic_result(symbolic_setting(state), TapeOp::divide, entry, length);
   push_symbolic_vector(state, std::move(v));
   return 1;
 }

@@ -51,8 +51,9 @@ int symbolic_arithmetic(lua_State* state) {
   const std::string what = std::string("'") + sign_of(kOperator) + "'";
   const bool first = is_list_of_numbers(state, 1), second = is_list_of_numbers(state, 2);
   if (!first && !second) {
-    push_symbolic(state, symbolic_result(state, kOp, symbolic_argument(state, 1, what),
-                                         symbolic_argument(state, 2, what)));
+    push_symbolic(state,
+                  symbolic_result(symbolic_setting(state), kOp, symbolic_argument(state, 1, what),
+                                  symbolic_argument(state, 2, what)));
     return 1;
   }
   SymbolicEntries result;
@@ -68,7 +69,7 @@ int symbolic_arithmetic(lua_State* state) {
       refuse_symbolic(state, what + " of " + describe_symbolic(state, 1) + " and " +
                                  describe_symbolic(state, 2) + ": their sizes differ");
     for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = symbolic_result(state, kOp, result[i], other[i]);
+      result[i] = symbolic_result(symbolic_setting(state), kOp, result[i], other[i]);
   } else {
     if (first && second)
       refuse_symbolic(state, what +
@@ -79,7 +80,8 @@ int symbolic_arithmetic(lua_State* state) {
       refuse_symbolic(state, "a number divided by a vector has no meaning here");
     result = symbolic_vector_argument(state, first ? 1 : 2, what);
     const SymbolicScalar factor = symbolic_argument(state, first ? 2 : 1, what);
-    for (SymbolicScalar& entry : result) entry = symbolic_result(state, kOp, entry, factor);
+    for (SymbolicScalar& entry : result)
+      entry = symbolic_result(symbolic_setting(state), kOp, entry, factor);
   }
   push_symbolic_vector(state, std::move(result));
   return 1;
@@ -87,49 +89,23 @@ int symbolic_arithmetic(lua_State* state) {
 
 int symbolic_negated(lua_State* state) {
   if (!is_list_of_numbers(state, 1)) {
-    push_symbolic(state,
-                  symbolic_result(state, TapeOp::negate, symbolic_argument(state, 1, "'-'")));
+    push_symbolic(state, symbolic_result(symbolic_setting(state), TapeOp::negate,
+                                         symbolic_argument(state, 1, "'-'")));
     return 1;
   }
   SymbolicEntries result = symbolic_vector_argument(state, 1, "'-'");
-  for (SymbolicScalar& entry : result) entry = symbolic_result(state, TapeOp::negate, entry);
+  for (SymbolicScalar& entry : result)
+    entry = symbolic_result(symbolic_setting(state), TapeOp::negate, entry);
   push_symbolic_vector(state, std::move(result));
   return 1;
 }
 
-SymbolicScalar symbolic_product(lua_State* state, const SymbolicScalar& a,
-                                const SymbolicScalar& b) {
-  return symbolic_result(state, TapeOp::multiply, a, b);
-}
-
-int symbolic_power(lua_State* state) {
+int symbolic_power_of(lua_State* state) {
   const SymbolicScalar base = symbolic_argument(state, 1, "'^'");
   const SymbolicScalar exponent = symbolic_argument(state, 2, "'^'");
-  SymbolicScalar result;
-  if (!exponent.known()) {
-    if (base.known() && !(base.value > 0))
-      refuse_symbolic(state, "'^' with an exponent that varies: the base must be above 0");
-    const SymbolicScalar log = symbolic_result(state, TapeOp::log, base);
-    result = symbolic_result(state, TapeOp::exp, symbolic_product(state, exponent, log));
-  } else if (const double p = exponent.value; p == 0) {
-    result.value = 1;
-  } else if (p == 1) {
-    result = base;
-  } else if (p == 2) {
-    result = symbolic_product(state, base, base);
-  } else if (p == 3) {
-    result = symbolic_product(state, symbolic_product(state, base, base), base);
-  } else if (p == 4) {
-    const SymbolicScalar square = symbolic_product(state, base, base);
-    result = symbolic_product(state, square, square);
-  } else if (p == -1) {
-    result = symbolic_result(state, TapeOp::divide, {.value = 1}, base);
-  } else if (p == 0.5) {
-    result = symbolic_result(state, TapeOp::sqrt, base);
-  } else {
-    result = symbolic_result(state, TapeOp::power, base, {}, {}, p);
-  }
-  push_symbolic(state, result);
+  push_symbolic(state, at_this_line(state, [&] {
+                  return symbolic_power(symbolic_setting(state), base, exponent);
+                }));
   return 1;
 }
 
@@ -215,7 +191,7 @@ void define_operators(lua_State* state, const char* type, lua_CFunction index,
       {"__mul", &guarded<symbolic_arithmetic<SymbolicOperator::multiply>>},
       {"__div", &guarded<symbolic_arithmetic<SymbolicOperator::divide>>},
       {"__unm", &guarded<symbolic_negated>},
-      {"__pow", &guarded<symbolic_power>},
+      {"__pow", &guarded<symbolic_power_of>},
       {"__lt", &guarded<refuse_comparison>},
       {"__le", &guarded<refuse_comparison>},
       {"__eq", &guarded<refuse_comparison>},
@@ -258,26 +234,6 @@ void refuse_symbolic(lua_State* state, const std::string& message) {
       throw InputError(Origin{record.source + 1, record.currentline}, text);
   }
   throw InputError(text);
-}
-
-int symbolic_node(SymbolicSetting& setting, const SymbolicScalar& scalar) {
-  return scalar.known() ? setting.graph.constant(scalar.value) : scalar.node;
-}
-
-SymbolicScalar symbolic_result(lua_State* state, TapeOp op, const SymbolicScalar& a,
-                               const SymbolicScalar& b, const SymbolicScalar& c, double number,
-                               int data) {
-  if (a.known() && b.known() && c.known()) {
-    const double x[] = {a.value, b.value, c.value};
-    return {.value = local_value({op, data, number}, x, {}, 0).value};
-  }
-  SymbolicSetting& setting = *symbolic_setting(state);
-  const int count = operand_count(op);
-  const int nodes[] = {symbolic_node(setting, a), count > 1 ? symbolic_node(setting, b) : -1,
-                       count > 2 ? symbolic_node(setting, c) : -1};
-  const int node = setting.graph.apply(op, nodes[0], nodes[1], nodes[2], number, data);
-  if (setting.graph.is_constant(node)) return {.value = setting.graph.number(node)};
-  return {.value = 0, .node = node};
 }
 
 void push_symbolic(lua_State* state, const SymbolicScalar& scalar) {

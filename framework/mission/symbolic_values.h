@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and vectors that the function of a cost term or constraint computes with.
+// The symbolic numbers (symbolic/symbolic_number.h) as scripts have them: what the function of a
+// cost term or constraint computes with.
 //
 // While a term is recorded they are nodes of an expression; when its recording is checked they are
 // plain numbers. The same operators and functions (`lapwing.sin`, `lapwing.max`, ...) take both, so
@@ -9,29 +10,12 @@
 
 #include <lua.hpp>
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
-#include "framework/problem/expression_graph.h"
+#include "framework/core/error.h"
+#include "framework/symbolic/symbolic_number.h"
 
 namespace lapwing {
-
-// A number: known, or a node of the recording under way.
-struct SymbolicScalar {
-  double value = 0;
-  int node = -1;
-  bool known() const { return node < 0; }
-};
-using SymbolicEntries = std::vector<SymbolicScalar>;
-
-// The recording under way. Values are worth nothing in another one: `serial` tells them apart.
-struct SymbolicSetting {
-  std::string what;  // "cost 'keep_low'", for messages
-  double width = 0;  // within which kinks are rounded
-  std::uint64_t serial = 0;
-  ExpressionGraph graph;
-};
 
 // Null where none is under way: functions then take plain numbers alone, and kinks are exact.
 SymbolicSetting* symbolic_setting(lua_State* state);
@@ -40,12 +24,17 @@ void set_symbolic_setting(lua_State* state, SymbolicSetting* setting);
 // InputError at the line of Lua that is being run, beginning with what is being recorded.
 [[noreturn]] void refuse_symbolic(lua_State* state, const std::string& message);
 
-// An operation; carried out at once where all operands are known.
-SymbolicScalar symbolic_result(lua_State* state, TapeOp op, const SymbolicScalar& a,
-                               const SymbolicScalar& b = {}, const SymbolicScalar& c = {},
-                               double number = 0, int data = 0);
-// The node of a number, known or not.
-int symbolic_node(SymbolicSetting& setting, const SymbolicScalar& scalar);
+// InputErrors of the kernel, said at the line of Lua that is being run.
+template <class Body>
+decltype(auto) at_this_line(lua_State* state, Body&& body) {
+  std::string message;
+  try {
+    return body();
+  } catch (const InputError& error) {
+    message = error.what();
+  }
+  refuse_symbolic(state, message);
+}
 
 void push_symbolic(lua_State* state, const SymbolicScalar& scalar);
 void push_symbolic_vector(lua_State* state, SymbolicEntries entries);

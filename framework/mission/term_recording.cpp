@@ -2,9 +2,11 @@
 #include "framework/mission/term_recording.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 
-#include "framework/core/log.h"
 #include "framework/core/parameters.h"
 #include "framework/mission/guard.h"
 
@@ -13,7 +15,6 @@ namespace lapwing {
 namespace {
 
 constexpr const char* kRecordingKey = "lapwing.term_recording";
-constexpr std::size_t kManyOperations = 20'000;  // of a tape: a solve takes minutes
 
 int refuse_parameter(lua_State* state) {
   std::vector<std::string> known;
@@ -27,11 +28,6 @@ int refuse_parameter(lua_State* state) {
   const std::string nearest = nearest_name(name, known);
   refuse_symbolic(state, "no parameter '" + name + "' in its `parameters`" +
                              (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-}
-
-std::uint64_t next_serial() {
-  static std::uint64_t serial = 0;
-  return ++serial;
 }
 
 // "sin" of "bad argument #1 to 'sin' (...)": what stands between two texts; empty where they do
@@ -71,16 +67,9 @@ std::string remedy_for(lua_State* state, const std::string& complaint) {
 
 }  // namespace
 
-TermRecording::TermRecording(lua_State* state, std::string what, const TrajectoryProblem& problem,
-                             const TermParameters& parameters, double width)
-    : state_(state), problem_(problem), parameters_(parameters), layout_(problem.layout()) {
-  setting_.what = std::move(what);
-  setting_.width = width;
-  setting_.serial = next_serial();
-  for (const char* clock : {"time", "step"})
-    if (layout_.find(clock) < 0)
-      layout_.add({.name = clock, .unit = "s", .role = BlockRole::clock});
-  set_symbolic_setting(state, &setting_);
+TermRecording::TermRecording(lua_State* state, TermFormula& formula)
+    : state_(state), formula_(formula), point_(formula) {
+  set_symbolic_setting(state, &formula.setting());
   lua_pushlightuserdata(state, this);
   lua_setfield(state, LUA_REGISTRYINDEX, kRecordingKey);
 }
@@ -102,37 +91,21 @@ TermRecording& TermRecording::current(lua_State* state) {
 // ---- what the function reads --------------------------------------------------------------------
 
 SymbolicEntries TermRecording::read(int stage, int block) {
-  const BlockSpec& spec = layout_.block(block);
-  const Horizon& horizon = problem_.horizon();
-  if (spec.name == "step" && horizon.uniform() && !horizon.step_free)
-    return {{.value = horizon.step}};
-  SymbolicEntries entries(spec.size);
-  if (!symbolic_) {
-    const std::vector<double>& values = numbers(stage, block);
-    for (int i = 0; i < spec.size; ++i) entries[i].value = values[i];
-    return entries;
-  }
-  for (int i = 0; i < spec.size; ++i) {
-    const auto same = std::find_if(inputs_.begin(), inputs_.end(), [&](const Input& input) {
-      return input.stage == stage && input.block == block && input.component == i;
-    });
-    const auto index = static_cast<int>(same - inputs_.begin());
-    if (same == inputs_.end()) inputs_.push_back({stage, block, i});
-    entries[i].node = setting_.graph.input(index);
-  }
+  if (symbolic_ || formula_.known_step(block)) return formula_.read(stage, block);
+  SymbolicEntries entries;
+  for (const double value : point_.numbers(stage, block)) entries.push_back({.value = value});
   return entries;
 }
 
 void TermRecording::push_parameters() {
   lua_newtable(state_);
-  for (const TermParameter& parameter : parameters_.list) {
+  for (const TermParameter& parameter : formula_.parameters().list) {
     SymbolicEntries entries(parameter.size);
-    for (int i = 0; i < parameter.size; ++i) {
-      if (symbolic_)
-        entries[i].node = setting_.graph.parameter(parameter.first + i);
-      else
-        entries[i].value = point_parameters_[parameter.first + i];
-    }
+    if (symbolic_)
+      entries = formula_.read(parameter);
+    else
+      for (int i = 0; i < parameter.size; ++i)
+        entries[i].value = point_.parameters()[parameter.first + i];
     if (parameter.scalar)
       push_symbolic(state_, entries[0]);
     else
@@ -159,11 +132,11 @@ Origin place_of_function(lua_State* state, int function) {
 void TermRecording::raise(int message) {
   if (lua_type(state_, message) != LUA_TSTRING) lua_error(state_);
   std::string text = lua_tostring(state_, message);
-  if (text.find(setting_.what) == text.npos) {
+  if (text.find(formula_.setting().what) == text.npos) {
     const std::size_t place = text.find(".lua:");
     const std::size_t after = place == text.npos ? text.npos : text.find(": ", place);
     const std::string remedy = remedy_for(state_, text);
-    text.insert(after == text.npos ? 0 : after + 2, setting_.what + ": ");
+    text.insert(after == text.npos ? 0 : after + 2, formula_.setting().what + ": ");
     text += remedy;
   }
   push_text(state_, text);
@@ -195,7 +168,7 @@ SymbolicEntries TermRecording::call(int function) {
   const int top = lua_gettop(state_);
   luaL_checkstack(state_, 16, "recording a term");
   lua_pushvalue(state_, function);
-  push_stage(state_, 0, setting_.serial);
+  push_stage(state_, 0, formula_.setting().serial);
   push_parameters();
   if (lua_pcall(state_, 2, LUA_MULTRET, 0) != LUA_OK) raise(lua_gettop(state_));
   SymbolicEntries rows;
@@ -204,61 +177,92 @@ SymbolicEntries TermRecording::call(int function) {
     if (results == 0) throw InputError("the function returns nothing; expected numbers or vectors");
     for (int i = 1; i <= results; ++i) collect(top + i, 0, rows);
   } catch (const InputError& error) {
-    throw InputError(place_of_function(state_, function), setting_.what + ": " + error.what());
+    throw InputError(place_of_function(state_, function),
+                     formula_.setting().what + ": " + error.what());
   }
   lua_settop(state_, top);
   return rows;
 }
 
-// Blocks and window of the result; `places` says where each input stands in an instance.
-void TermRecording::list_inputs(TapeFunction& result, std::vector<int>& places, int& width) const {
-  std::vector<int> blocks;
-  for (const Input& input : inputs_) {
-    result.window = std::max(result.window, input.stage + 1);
-    if (std::find(blocks.begin(), blocks.end(), input.block) == blocks.end())
-      blocks.push_back(input.block);
-  }
-  if (blocks.empty()) blocks.push_back(layout_.index("step"));  // a constant, once an instance
-  std::map<int, int> offsets;
-  int stride = 0;
-  result.blocks.clear();
-  for (const int block : blocks) {
-    result.blocks.push_back(layout_.block(block).name);
-    offsets[block] = stride;
-    stride += layout_.block(block).size;
-  }
-  for (const Input& input : inputs_)
-    places.push_back(input.stage * stride + offsets[input.block] + input.component);
-  width = stride * result.window;
+SymbolicEntries TermRecording::record(int function) {
+  symbolic_ = true;
+  return call(lua_absindex(state_, function));
 }
 
-void TermRecording::record(int function, TapeFunction& result) {
-  function = lua_absindex(state_, function);
-  symbolic_ = true;
-  const SymbolicEntries rows = call(function);
-  std::vector<int> outputs, places;
-  for (const SymbolicScalar& row : rows) {
-    if (row.known() && !std::isfinite(row.value))
-      throw InputError(place_of_function(state_, function),
-                       setting_.what + ": returns no finite number whatever the stage is");
-    outputs.push_back(symbolic_node(setting_, row));
+// ---- whether the tape says the same -------------------------------------------------------------
+
+// Numbers that a function may compare with: whole ones near 0, those in the lines it is written in,
+// those that it was made with, and its parameters.
+std::vector<double> TermRecording::literals(int function) const {
+  constexpr std::size_t kMostLiterals = 64;
+  constexpr double kLargest = 1000;  // where rounding is no difference yet
+  std::vector<double> found;
+  const auto add = [&](double value) {
+    if (found.size() < kMostLiterals && std::abs(value) <= kLargest &&
+        std::find(found.begin(), found.end(), value) == found.end())
+      found.push_back(value);
+  };
+  for (int whole = -5; whole <= 5; ++whole) add(whole);
+  for (const double value : point_.parameters()) add(value);
+  for (int i = 1; lua_getupvalue(state_, function, i); ++i) {
+    if (lua_type(state_, -1) == LUA_TNUMBER) add(lua_tonumber(state_, -1));
+    lua_pop(state_, 1);
   }
-  outputs_ = outputs;
-  int width = 0;
-  list_inputs(result, places, width);
-  const bool free = problem_.horizon().step_free;
-  result.affine = setting_.graph.affine(outputs, [&](int input) {
-    return layout_.block(inputs_[input].block).role == BlockRole::clock && !free;
-  });
-  result.tape = std::make_shared<const Tape>(setting_.graph, outputs, places, width);
-  const std::string place = place_of_function(state_, function).to_string();
-  result.written_at = (place.empty() ? "" : place + ": ") + setting_.what;
-  if (inputs_.empty() && parameters_.list.empty())
-    logging::warning(result.written_at + ": is the same number whatever the stage is");
-  if (setting_.graph.nodes().size() > kManyOperations)
-    logging::warning(result.written_at + ": takes " +
-                     std::to_string(setting_.graph.nodes().size()) +
-                     " operations at every stage; solving will be slow");
+  lua_Debug record;
+  lua_pushvalue(state_, function);
+  lua_getinfo(state_, ">S", &record);
+  std::ifstream file(record.source[0] == '@' ? record.source + 1 : "");
+  std::string line;
+  for (int number = 1; number <= record.lastlinedefined && std::getline(file, line); ++number)
+    if (number >= record.linedefined)
+      for (const char* at = line.c_str(); *at;) {
+        char* end = nullptr;
+        const double value =
+            std::isdigit(static_cast<unsigned char>(*at)) ? std::strtod(at, &end) : 0.0;
+        if (end) add(value), add(-value);
+        at = end ? end : at + 1;
+      }
+  return found;
+}
+
+void TermRecording::compare(int function, const TapeFunction& result, std::vector<bool>& finite) {
+  symbolic_ = false;
+  const SymbolicEntries rows = call(function);
+  const std::string difference = difference_at(point_, formula_, result, rows, finite);
+  if (difference.empty()) return;
+  throw InputError(
+      place_of_function(state_, function),
+      formula_.setting().what + ": " + difference + ", where " + point_.text() +
+          ": the function decides by a value (if, ==, and, or), which is done once, while it is "
+          "recorded, or depends on something that changes from call to call; use "
+          "lapwing.where(x, a, b), which is a where x > 0 and b elsewhere");
+}
+
+void TermRecording::check(int function, const TapeFunction& result, const Eigen::MatrixXd& guess) {
+  constexpr int kGuessed = 16;
+  function = lua_absindex(state_, function);
+  std::vector<bool> finite(result.tape->rows(), false);
+  int tried = 0;
+  while (tried < TrialPoint::kSeeded) {
+    point_.begin(tried++);
+    compare(function, result, finite);
+  }
+  for (const double literal : literals(function)) {
+    point_.begin(tried++, literal);
+    compare(function, result, finite);
+  }
+  const int last = std::max(0, static_cast<int>(guess.cols()) - result.window);
+  for (int k = 0; k < kGuessed; ++k) {
+    point_.begin(tried++, guess, last * k / (kGuessed - 1));
+    compare(function, result, finite);
+  }
+  const auto never = std::find(finite.begin(), finite.end(), false);
+  if (never != finite.end())
+    throw InputError(place_of_function(state_, function),
+                     formula_.setting().what + ": result " +
+                         std::to_string(never - finite.begin() + 1) +
+                         " is not a finite number at any of " + std::to_string(tried) +
+                         " points tried, the first guess among them, such as " + point_.text());
 }
 
 }  // namespace lapwing

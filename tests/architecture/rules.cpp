@@ -22,7 +22,7 @@ const std::map<std::string, Names>& rooms() {
   static const Names kAllButApp{"geometry", "trajectory", "vehicle",     "map",     "path",
                                 "problem",  "solve",      "view",        "explore", "verify",
                                 "export",   "config",     "conformance", "plugin",  "mission",
-                                "surface",  "shape",      "picture"};
+                                "surface",  "shape",      "picture",     "symbolic"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -42,6 +42,7 @@ const std::map<std::string, Names>& rooms() {
       {"map", {"geometry"}},
       {"path", {"geometry", "map"}},
       {"problem", {"geometry", "shape", "trajectory", "vehicle"}},
+      {"symbolic", {"geometry", "shape", "trajectory", "vehicle", "problem"}},
       {"solve", {"geometry", "shape", "trajectory", "vehicle", "problem"}},
       {"view", {"geometry", "map", "path"}},
       {"explore", {"geometry", "map", "view", "path"}},

@@ -2,7 +2,7 @@
 // A recorded term as the operations that a plan states.
 #include <algorithm>
 
-#include "framework/mission/term_recording.h"
+#include "framework/symbolic/term_formula.h"
 
 namespace lapwing {
 
@@ -69,7 +69,7 @@ std::vector<char> used_nodes(const ExpressionGraph& graph, const std::vector<int
 
 }  // namespace
 
-RecordedOperations TermRecording::operations() const {
+RecordedOperations TermFormula::operations() const {
   constexpr double kFarthest = 1e9;  // m
   const ExpressionGraph& graph = setting_.graph;
   const std::vector<char> used = used_nodes(graph, outputs_);
