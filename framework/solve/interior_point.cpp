@@ -25,8 +25,13 @@ constexpr double kSmallestStep = 1e-10;  // shorter steps are a stall
 constexpr double kProgress = 0.9;        // factor on the residual that counts as progress
 constexpr int kPatience = 15;            // iterations without progress before a proof is sought
 constexpr int kStalls = 3;               // stalls in a row that end a solve
-constexpr double kWarmFloor = 1e-3;      // least slack and multiplier of a warm start (scaled)
-constexpr double kWarmCentre = 1e-2;     // least product of the two
+// The second-order correction can go round in circles (Cartis, Optim. Methods Softw. 24(1), 2009).
+// A careful solve leaves it out after so many iterations without progress, and its target then
+// stays this share of mu.
+constexpr int kCircles = 5;
+constexpr double kCentred = 0.3;
+constexpr double kWarmFloor = 1e-3;   // least slack and multiplier of a warm start (scaled)
+constexpr double kWarmCentre = 1e-2;  // least product of the two
 
 // One side of all bounds: slack t and multiplier z where the bound is finite.
 struct BoundSide {
@@ -38,6 +43,9 @@ struct BoundSide {
     for (VectorXd* v : {&bound, &t, &z, &dt, &dz, &residual, &complement}) v->setZero(n);
   }
 };
+
+// `first` gives up early, for a proof of infeasibility may be nearer.
+enum class Effort { first, patient, careful };
 
 double step_to_boundary(const VectorXd& v, const VectorXd& d) {
   double step = 1.0;
@@ -76,12 +84,12 @@ struct InteriorPoint::Impl {
   void move(double step);
   QuadraticResult unscaled(const QuadraticProgram& problem, QuadraticResiduals& r) const;
   void solve(const QuadraticProgram& problem, const InteriorPointOptions& options,
-             const std::optional<QuadraticWarmStart>& warm_start, int patience,
+             const std::optional<QuadraticWarmStart>& warm_start, Effort effort,
              QuadraticResult& result);
   static bool contradicts(const QuadraticProgram& problem, const InteriorPointOptions& options,
                           QuadraticResult& proof);
   QuadraticStatus iterate(const QuadraticProgram& problem, const InteriorPointOptions& options,
-                          int patience, QuadraticResult& best);
+                          Effort effort, QuadraticResult& best);
 };
 
 InteriorPoint::InteriorPoint() : impl_(std::make_unique<Impl>()) {}
@@ -303,8 +311,9 @@ QuadraticResult InteriorPoint::Impl::unscaled(const QuadraticProgram& problem,
 }
 
 QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
-                                             const InteriorPointOptions& options, int patience,
+                                             const InteriorPointOptions& options, Effort effort,
                                              QuadraticResult& best) {
+  const int patience = effort == Effort::first ? kPatience : options.iteration_limit;
   int stalls = 0, progress_at = 0;
   double progress = std::numeric_limits<double>::infinity();
   double best_merit = std::numeric_limits<double>::infinity();
@@ -347,7 +356,10 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     const auto count = static_cast<double>(lower.t.size() + upper.t.size());
     if (count > 0) {
       const double ratio = after / (count * mu);
-      direction(std::max(kLeastTarget, mu * std::min(1.0, ratio * ratio * ratio)), true);
+      const bool circles = effort == Effort::careful && iteration - progress_at >= kCircles;
+      const double share = std::min(1.0, ratio * ratio * ratio);
+      direction(std::max(kLeastTarget, mu * (circles ? std::max(share, kCentred) : share)),
+                !circles);
     }
     const double step = count > 0 ? std::min(1.0, kToBoundary * step_length()) : 1.0;
     stalls = step < kSmallestStep ? stalls + 1 : 0;
@@ -378,17 +390,22 @@ QuadraticResult InteriorPoint::solve(const QuadraticProgram& problem,
     result.bound_multipliers = VectorXd::Zero(n);
     return result;
   }
-  impl_->solve(problem, options, warm_start, kPatience, result);
-  const bool undecided = result.status == QuadraticStatus::iteration_limit ||
-                         result.status == QuadraticStatus::numerical_error;
-  if (undecided && m > 0) {
+  impl_->solve(problem, options, warm_start, Effort::first, result);
+  const auto undecided = [&] {
+    return result.status == QuadraticStatus::iteration_limit ||
+           result.status == QuadraticStatus::numerical_error;
+  };
+  if (undecided() && m > 0) {
     QuadraticResult proof;
     if (Impl::contradicts(problem, options, proof)) {
       proof.iterations += result.iterations;
       return proof;
     }
+  }
+  for (const Effort effort : {Effort::patient, Effort::careful}) {
+    if (!undecided()) break;
     const int spent = result.iterations;
-    impl_->solve(problem, options, {}, options.iteration_limit, result);
+    impl_->solve(problem, options, {}, effort, result);
     result.iterations += spent;
   }
   return result;
@@ -396,14 +413,15 @@ QuadraticResult InteriorPoint::solve(const QuadraticProgram& problem,
 
 void InteriorPoint::Impl::solve(const QuadraticProgram& problem,
                                 const InteriorPointOptions& options,
-                                const std::optional<QuadraticWarmStart>& warm_start, int patience,
+                                const std::optional<QuadraticWarmStart>& warm_start, Effort effort,
                                 QuadraticResult& result) {
   set_up(problem);
-  if (warm_start && warm_start->x.size() == n())
+  if (warm_start && warm_start->x.size() == n() && warm_start->x.allFinite() &&
+      warm_start->row_multipliers.allFinite() && warm_start->bound_multipliers.allFinite())
     start_warm(problem, *warm_start);
   else
     start_cold();
-  result.status = iterate(problem, options, patience, result);
+  result.status = iterate(problem, options, effort, result);
 }
 
 // The least sum of violations of the rows within the bounds: where it is not zero, its multipliers
@@ -418,7 +436,7 @@ bool InteriorPoint::Impl::contradicts(const QuadraticProgram& problem,
   again.iteration_limit = std::max(options.iteration_limit, 100);
   Impl phase_one;
   QuadraticResult result;
-  phase_one.solve(elastic.program, again, {}, kPatience, result);
+  phase_one.solve(elastic.program, again, {}, Effort::first, result);
   proof = result;
   proof.status = QuadraticStatus::infeasible;
   proof.x = result.x.head(problem.variables());

@@ -26,7 +26,8 @@ struct InteriorPointOptions {
   const CancellationToken* cancellation = nullptr;
 };
 
-// Where to begin instead of cold: an earlier solution of a similar problem.
+// Where to begin instead of cold: an earlier solution of a similar problem. One that does not fit,
+// or is not finite, is not used.
 struct QuadraticWarmStart {
   Eigen::VectorXd x, row_multipliers, bound_multipliers;
 };

@@ -9,33 +9,22 @@
 
 #include "framework/core/error.h"
 #include "framework/core/random.h"
+#include "tests/solve/programs.h"
 
 namespace lapwing {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-QuadraticProgram dense(const MatrixXd& p, const VectorXd& c, const MatrixXd& a,
-                       const VectorXd& row_lower, const VectorXd& row_upper,
-                       const VectorXd& x_lower, const VectorXd& x_upper) {
-  const MatrixXd lower = p.triangularView<Eigen::Lower>();
-  return {lower.sparseView(), c, a.sparseView(), row_lower, row_upper, x_lower, x_upper};
-}
-
-VectorXd vector(std::initializer_list<double> numbers) {
-  return Eigen::Map<const VectorXd>(numbers.begin(), static_cast<Eigen::Index>(numbers.size()));
-}
 
 // Trap (a): known solvers call it infeasible; its optimum is the origin.
 TEST(InteriorPoint, SolvesTrapWithOriginOptimal) {
   MatrixXd a(2, 6);
   a << 1, 0, 1, 0, 1, 0, 2.4, 0, -2.4, 0, 0, 1;
-  const VectorXd bound = vector({2e4, 0.3491, 2e4, 0.3491, kInfinity, kInfinity});
+  const VectorXd bound = numbers({2e4, 0.3491, 2e4, 0.3491, kOpen, kOpen});
   const QuadraticProgram problem =
-      dense(vector({61, 2e9, 61, 2e9, 1000, 100}).asDiagonal().toDenseMatrix(), VectorXd::Zero(6),
-            a, VectorXd::Zero(2), VectorXd::Zero(2), -bound, bound);
+      dense_program(numbers({61, 2e9, 61, 2e9, 1000, 100}).asDiagonal().toDenseMatrix(),
+                    VectorXd::Zero(6), a, VectorXd::Zero(2), VectorXd::Zero(2), -bound, bound);
   const QuadraticResult result = InteriorPoint().solve(problem);
   ASSERT_EQ(result.status, QuadraticStatus::optimal);
   EXPECT_LT(result.x.cwiseAbs().maxCoeff(), 1e-6);
@@ -45,12 +34,12 @@ TEST(InteriorPoint, SolvesTrapWithOriginOptimal) {
 TEST(InteriorPoint, SolvesTrapWithBadlyScaledRows) {
   MatrixXd a(2, 6);
   a << 0.9973, -156.3, 0.9973, 154.2, 1, 0, -1.619, -1.084e4, 1.612, -1.084e4, 0, 1;
-  const VectorXd b = vector({757.8, 1.255});
+  const VectorXd b = numbers({757.8, 1.255});
   const QuadraticProgram problem =
-      dense(vector({11, 1e7, 11, 1e7, 700, 1000}).asDiagonal().toDenseMatrix(),
-            vector({876.8, 0, 876.8, 0, 0, 0}), a, b, b,
-            vector({-2000, -0.3491, -2000, -0.3491, -kInfinity, -kInfinity}),
-            vector({-0.0001, 0.3491, -0.0001, 0.3491, kInfinity, kInfinity}));
+      dense_program(numbers({11, 1e7, 11, 1e7, 700, 1000}).asDiagonal().toDenseMatrix(),
+                    numbers({876.8, 0, 876.8, 0, 0, 0}), a, b, b,
+                    numbers({-2000, -0.3491, -2000, -0.3491, -kOpen, -kOpen}),
+                    numbers({-0.0001, 0.3491, -0.0001, 0.3491, kOpen, kOpen}));
   const QuadraticResult result = InteriorPoint().solve(problem);
   ASSERT_EQ(result.status, QuadraticStatus::optimal);
   const QuadraticResiduals r =
@@ -81,8 +70,8 @@ TEST(InteriorPoint, FindsTheMinimumSnapPolynomial) {
     for (int i = d; i < 10; ++i) a(5 + d, i) = falling(i, d) * std::pow(end, i - d);
   }
   b(5) = 5.0;
-  const VectorXd open = VectorXd::Constant(10, kInfinity);
-  const QuadraticProgram problem = dense(p, VectorXd::Zero(10), a, b, b, -open, open);
+  const VectorXd open = VectorXd::Constant(10, kOpen);
+  const QuadraticProgram problem = dense_program(p, VectorXd::Zero(10), a, b, b, -open, open);
   const QuadraticResult result = InteriorPoint().solve(problem);
   ASSERT_EQ(result.status, QuadraticStatus::optimal);
   const double expected[] = {0.2016, -0.1344, 0.03456, -0.004032, 0.0001792};
@@ -117,8 +106,8 @@ RandomProblem feasible(Random& random) {
   const VectorXd ax = a * x;
   const auto place = [&](double value, double& low, double& high, double& multiplier) {
     const auto kind = random.integer(0, 5);
-    low = kind == 0 ? -kInfinity : value - random.uniform(0.1, 5);
-    high = kind == 1 ? kInfinity : value + random.uniform(0.1, 5);
+    low = kind == 0 ? -kOpen : value - random.uniform(0.1, 5);
+    high = kind == 1 ? kOpen : value + random.uniform(0.1, 5);
     if (kind == 2) low = value, multiplier = random.uniform(0.1, 3);
     if (kind == 3) high = value, multiplier = -random.uniform(0.1, 3);
     if (kind == 4) low = high = value, multiplier = random.normal();
@@ -126,7 +115,7 @@ RandomProblem feasible(Random& random) {
   for (int r = 0; r < m; ++r) place(ax(r), row_lower(r), row_upper(r), y(r));
   for (int i = 0; i < n; ++i) place(x(i), x_lower(i), x_upper(i), z(i));
   const VectorXd c = a.transpose() * y + z - p * x;
-  return {dense(p, c, a, row_lower, row_upper, x_lower, x_upper), x};
+  return {dense_program(p, c, a, row_lower, row_upper, x_lower, x_upper), x};
 }
 
 TEST(InteriorPoint, AnswersRandomFeasibleProblems) {
@@ -165,25 +154,25 @@ TEST(InteriorPoint, AnswersRandomInfeasibleProblems) {
     program.row_lower.conservativeResize(m + 1);
     program.row_upper.conservativeResize(m + 1);
     program.row_lower(m) = reach + random.uniform(0.01, 5);
-    program.row_upper(m) = kInfinity;
+    program.row_upper(m) = kOpen;
     EXPECT_EQ(InteriorPoint().solve(program).status, QuadraticStatus::infeasible)
         << "problem " << k;
   }
 }
 
 TEST(InteriorPoint, SaysWhenTheCostFallsForEver) {
-  const VectorXd open = VectorXd::Constant(2, kInfinity);
-  const MatrixXd p = vector({1, 0}).asDiagonal();
-  const QuadraticProgram problem =
-      dense(p, vector({0, -1}), MatrixXd::Zero(0, 2), VectorXd(0), VectorXd(0), -open, open);
+  const VectorXd open = VectorXd::Constant(2, kOpen);
+  const MatrixXd p = numbers({1, 0}).asDiagonal();
+  const QuadraticProgram problem = dense_program(p, numbers({0, -1}), MatrixXd::Zero(0, 2),
+                                                 VectorXd(0), VectorXd(0), -open, open);
   EXPECT_EQ(InteriorPoint().solve(problem).status, QuadraticStatus::unbounded);
 }
 
 // A long way along a slight curvature is no ray: the optimum of -x + 1e-9 x^2 / 2 is at 1e9.
 TEST(InteriorPoint, SlightCurvatureIsNotUnbounded) {
   const QuadraticProgram problem =
-      dense(MatrixXd::Constant(1, 1, 1e-9), vector({-1}), MatrixXd::Zero(0, 1), VectorXd(0),
-            VectorXd(0), vector({0}), vector({kInfinity}));
+      dense_program(MatrixXd::Constant(1, 1, 1e-9), numbers({-1}), MatrixXd::Zero(0, 1),
+                    VectorXd(0), VectorXd(0), numbers({0}), numbers({kOpen}));
   const QuadraticResult result = InteriorPoint().solve(problem);
   ASSERT_EQ(result.status, QuadraticStatus::optimal);
   EXPECT_NEAR(result.x(0), 1e9, 1e3);
@@ -193,18 +182,19 @@ TEST(InteriorPoint, SlightCurvatureIsNotUnbounded) {
 TEST(InteriorPoint, HugeNumbersEndInAStatus) {
   MatrixXd a(2, 2);
   a << 1, 1e300, 1e-300, 1;
-  const VectorXd open = VectorXd::Constant(2, kInfinity);
+  const VectorXd open = VectorXd::Constant(2, kOpen);
   const QuadraticProgram problem =
-      dense(MatrixXd::Identity(2, 2) * 1e300, vector({1e308, -1e308}), a, vector({1e308, -1e308}),
-            vector({1e308, 1e308}), -open, open);
+      dense_program(MatrixXd::Identity(2, 2) * 1e300, numbers({1e308, -1e308}), a,
+                    numbers({1e308, -1e308}), numbers({1e308, 1e308}), -open, open);
   const QuadraticResult result = InteriorPoint().solve(problem);
   EXPECT_NE(result.status, QuadraticStatus::optimal);
   EXPECT_EQ(result.x.size(), 2);
 }
 
 TEST(InteriorPoint, RefusesCrossedBoundsAndBadNumbers) {
-  QuadraticProgram problem = dense(MatrixXd::Identity(1, 1), vector({0}), MatrixXd::Zero(0, 1),
-                                   VectorXd(0), VectorXd(0), vector({2}), vector({1}));
+  QuadraticProgram problem =
+      dense_program(MatrixXd::Identity(1, 1), numbers({0}), MatrixXd::Zero(0, 1), VectorXd(0),
+                    VectorXd(0), numbers({2}), numbers({1}));
   EXPECT_EQ(InteriorPoint().solve(problem).status, QuadraticStatus::infeasible);
   problem.gradient(0) = std::nan("");
   EXPECT_THROW(InteriorPoint().solve(problem), Error);
