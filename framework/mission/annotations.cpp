@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/core/json.h"
+#include "framework/mission/declared_entry.h"
 #include "framework/mission/script_interface.h"
 #include "framework/vehicle/vehicle.h"
 
@@ -74,29 +75,13 @@ std::string quoted_alternatives(const Value& list) {
   return text;
 }
 
-std::string text_of(const Value& entry, const char* key) {
-  const Value* value = entry.find(key);
-  return value && value->is_text() ? value->as_text() : "";
-}
-
-bool is_required(const Value& entry) {
-  const Value* value = entry.find("required");
-  return value && value->as_boolean();
-}
-
 // "above 0, m, default 2" after a summary.
 std::string details_of(const Value& entry) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-  if (const std::string unit = text_of(entry, "unit"); !unit.empty()) add(unit);
-  Range range;
-  if (const Value* bound = entry.find("minimum")) range.minimum = bound->as_number();
-  if (const Value* bound = entry.find("maximum")) range.maximum = bound->as_number();
-  if (const Value* bound = entry.find("above")) {
-    range.minimum = bound->as_number();
-    range.minimum_excluded = true;
-  }
-  if (const std::string in_words = range.to_string(); !in_words.empty()) add(in_words);
+  if (const std::string unit = declared_text(entry, "unit"); !unit.empty()) add(unit);
+  if (const std::string in_words = declared_range(entry).to_string(); !in_words.empty())
+    add(in_words);
   if (const Value* fallback = entry.find("default");
       fallback && !fallback->is_null() && fallback->type() != Value::Type::map)
     add("default " + to_json(*fallback, -1));
@@ -154,11 +139,11 @@ class AnnotationWriter {
   }
 
   std::string type_of(const Value& entry, const std::string& owner) {
-    const std::string type = text_of(entry, "type");
+    const std::string type = declared_text(entry, "type");
     const std::string words =
         entry.find("words") ? "|" + quoted_alternatives(entry.at("words")) : "";
-    const std::string nested = owner + "." + text_of(entry, "name");
-    const bool has_unit = !text_of(entry, "unit").empty();
+    const std::string nested = owner + "." + declared_text(entry, "name");
+    const bool has_unit = !declared_text(entry, "unit").empty();
     if (type == "number") return (has_unit ? "number|string" : "number") + words;
     if (type == "integer") return "integer" + words;
     if (type == "numbers") return has_unit ? "(number|string)[]" : "number[]";
@@ -166,7 +151,7 @@ class AnnotationWriter {
     if (type == "choice") return quoted_alternatives(entry.at("choices"));
     if (type == "vehicle") return "string|lapwing.vehicle_file";
     if (type == "plugin") return plugin_type(entry, nested);
-    if (type == "plugins") return choice_alias(text_of(entry, "kind")) + "[]";
+    if (type == "plugins") return choice_alias(declared_text(entry, "kind")) + "[]";
     if (type == "table" || type == "tables") {
       pending_.emplace_back(nested, entry.at("table"));
       return type == "table" ? nested : nested + "[]";
@@ -175,12 +160,12 @@ class AnnotationWriter {
   }
 
   std::string plugin_type(const Value& entry, const std::string& nested) {
-    const std::string alias = choice_alias(text_of(entry, "kind"));
+    const std::string alias = choice_alias(declared_text(entry, "kind"));
     const Value* own = entry.find("table");
     if (!own) return alias;
     Value all = *own;
     Value chosen = Value::map();
-    chosen.set("name", text_of(entry, "under"));
+    chosen.set("name", declared_text(entry, "under"));
     chosen.set("type", "text");
     chosen.set("summary", "which plugin; its own parameters may stand beside it");
     all.push_back(std::move(chosen));
@@ -191,13 +176,13 @@ class AnnotationWriter {
   void write_entries(const Value& entries, const std::string& owner,
                      const std::vector<std::string>& left_out) {
     for (const Value& entry : entries.as_list()) {
-      const std::string name = text_of(entry, "name");
+      const std::string name = declared_text(entry, "name");
       if (std::find(left_out.begin(), left_out.end(), name) != left_out.end()) continue;
       const std::string details = details_of(entry);
-      const std::string also = text_of(entry, "also");
-      write_field(name + (is_required(entry) ? "" : "?"),
+      const std::string also = declared_text(entry, "also");
+      write_field(name + (declared_required(entry) ? "" : "?"),
                   type_of(entry, owner) + (also.empty() ? "" : "|" + also),
-                  text_of(entry, "summary") + (details.empty() ? "" : " (" + details + ")"));
+                  declared_text(entry, "summary") + (details.empty() ? "" : " (" + details + ")"));
     }
   }
 
@@ -318,28 +303,6 @@ std::string call_of(const Binding& binding) {
 
 std::string annotations_of(const ScriptInterface& interface, const Registry& registry) {
   return AnnotationWriter(interface, registry).write();
-}
-
-std::string argument_table_of(const ScriptInterface& interface, const std::string& owner) {
-  std::string text = "| shot | argument | default | |\n|---|---|---|---|\n";
-  for (const DescribedFunction& function : interface.described) {
-    if (function.owner != owner) continue;
-    text += "| `" + function.name + "` | | | " + function.summary + " |\n";
-    for (const Value& entry : function.declarations.as_list()) {
-      const Value* fallback = entry.find("default");
-      const std::string unit = text_of(entry, "unit");
-      text += "| | `" + text_of(entry, "name") + "` | " +
-              (is_required(entry) ? "required"
-               : fallback         ? to_json(*fallback, -1) + (unit.empty() ? "" : " " + unit)
-                                  : "–") +
-              " | " + text_of(entry, "summary");
-      Value bare = entry;
-      bare.set("default", Value());
-      const std::string details = details_of(bare);
-      text += (details.empty() ? "" : " (" + details + ")") + " |\n";
-    }
-  }
-  return text;
 }
 
 std::string call_table_of(const ScriptInterface& interface) {

@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/mission/declared_entry.h"
 #include "framework/mission/script_interface.h"
 #include "framework/vehicle/vehicle.h"
 
 namespace lapwing {
 
 namespace {
-
-std::string text_at(const Value& entry, const char* key) {
-  const Value* value = entry.find(key);
-  return value && value->is_text() ? value->as_text() : "";
-}
 
 Value typed(const char* type) {
   Value schema = Value::map();
@@ -51,9 +47,8 @@ class SchemaWriter {
   Value properties_of(const Value& entries, Value* required = nullptr) {
     Value properties = Value::map();
     for (const Value& entry : entries.as_list()) {
-      properties.set(text_at(entry, "name"), schema_of(entry));
-      const Value* must = entry.find("required");
-      if (required && must && must->as_boolean()) required->push_back(text_at(entry, "name"));
+      properties.set(declared_text(entry, "name"), schema_of(entry));
+      if (required && declared_required(entry)) required->push_back(declared_text(entry, "name"));
     }
     return properties;
   }
@@ -67,7 +62,7 @@ class SchemaWriter {
       if (const Value* bound = entry.find(key)) schema.set(name, *bound);
     if (const Value* bound = entry.find("above")) schema.set("exclusiveMinimum", *bound);
     Value::List ways{std::move(schema)};
-    if (!text_at(entry, "unit").empty()) {
+    if (!declared_text(entry, "unit").empty()) {
       Value with_unit = typed("string");
       with_unit.set("pattern", "^[-+]?[0-9.]+([eE][-+]?[0-9]+)? *[A-Za-z%]");
       ways.push_back(std::move(with_unit));
@@ -77,7 +72,7 @@ class SchemaWriter {
   }
 
   Value bare_schema_of(const Value& entry) {
-    const std::string type = text_at(entry, "type");
+    const std::string type = declared_text(entry, "type");
     if (type == "boolean") return typed("boolean");
     if (type == "number" || type == "integer") return number_of(entry, type.c_str());
     if (type == "text") return typed("string");
@@ -109,8 +104,8 @@ class SchemaWriter {
 
   Value schema_of(const Value& entry) {
     Value schema = bare_schema_of(entry);
-    std::string summary = text_at(entry, "summary");
-    if (const std::string unit = text_at(entry, "unit"); !unit.empty())
+    std::string summary = declared_text(entry, "summary");
+    if (const std::string unit = declared_text(entry, "unit"); !unit.empty())
       summary += (summary.empty() ? "" : ", ") + unit;
     if (!summary.empty()) schema.set("description", summary);
     if (const Value* fallback = entry.find("default"); fallback && !fallback->is_null())
@@ -126,7 +121,7 @@ class SchemaWriter {
 
   // A plugin's name, or a table: which keys it may have depends on the plugin that it names.
   Value plugin_schema_of(const Value& entry) {
-    const std::string kind = text_at(entry, "kind");
+    const std::string kind = declared_text(entry, "kind");
     Value names = Value::list(), branches = Value::list(), all = Value::map();
     const Value* settled = entry.find("settled");
     const bool own = entry.find("table") || settled;
@@ -136,14 +131,15 @@ class SchemaWriter {
       if (own) {
         const Value parameters = plugin.parameters.to_value();
         for (const Value& parameter : parameters.as_list())
-          if (const std::string name = text_at(parameter, "name");
+          if (const std::string name = declared_text(parameter, "name");
               !all.find(name) && !(settled && settled->find(name)))
             all.set(name, schema_of(parameter));
       } else {
         branches.push_back(branch_of(plugin));
       }
     }
-    const std::string under = text_at(entry, "under").empty() ? "type" : text_at(entry, "under");
+    const std::string under =
+        declared_text(entry, "under").empty() ? "type" : declared_text(entry, "under");
     Value table = typed("object");
     if (own) {
       if (const Value* more = entry.find("table")) {
@@ -163,7 +159,7 @@ class SchemaWriter {
 
   // A list of tables: by its `type` of one plugin, or without one the mission's own entries.
   Value plugins_schema_of(const Value& entry) {
-    const std::string kind = text_at(entry, "kind");
+    const std::string kind = declared_text(entry, "kind");
     Value function = entry.at("table");
     if (const Value* more = entry.find("functions"))
       for (const Value& one : more->as_list()) function.push_back(one);

@@ -47,6 +47,10 @@ std::string call_table_of(const ScriptInterface& interface);
 // "| argument | default | |" of the functions that `owner` describes.
 std::string argument_table_of(const ScriptInterface& interface, const std::string& owner);
 
+// "| option | default | |" of every option of the missions of a kind, those within tables by dotted
+// names; with a column "of" where the kind's functions have different options.
+std::string option_table_of(const ScriptInterface& interface, const std::string& kind);
+
 // A JSON schema for configurations: of missions of one kind, of all ("" for `kind`), or of vehicle
 // files ("vehicle"). InputError naming the kinds there are.
 Value config_schema(const ScriptInterface& interface, const Registry& registry,

@@ -15,19 +15,19 @@ local M = {}
 
 local CAMERA = {
   { name = "width", type = "integer", default = 160, minimum = 1, maximum = 2000,
-    summary = "pixels" },
+    summary = "width of the image in pixels" },
   { name = "height", type = "integer", default = 120, minimum = 1, maximum = 2000,
-    summary = "pixels" },
+    summary = "height of the image in pixels" },
   { name = "view_deg", type = "number", unit = "deg", default = 90, minimum = 1, maximum = 170,
-    summary = "angle across the image" },
+    summary = "horizontal angle of view" },
   { name = "pitch_deg", type = "number", unit = "deg", default = -10, minimum = -89, maximum = 89,
-    summary = "of every view, positive up" },
+    summary = "pitch of every view, positive upwards" },
   { name = "range", type = "number", unit = "m", default = 20, minimum = 0.1, maximum = 1000,
     summary = "largest depth" },
   { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
     summary = "share of pixels without a measurement" },
   { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
-    summary = "noise of the depth" },
+    summary = "standard deviation of the depth" },
   { name = "stereo_baseline", type = "number", unit = "m", above = 0,
     summary = "baseline of a stereo pair; absent: a depth camera" },
 }
@@ -38,17 +38,17 @@ local MARGIN = 0.4  -- times the body's edge
 
 local MOVES = {
   { name = "step", type = "number", unit = "m", above = 0,
-    summary = "step along the axes of the camera; absent: that of the scene, else 2.5" },
+    summary = "step along the axes of the camera; absent: that of the scene, else 2.5 m" },
   { name = "turn_deg", type = "number", unit = "deg", minimum = 1, maximum = 180,
-    summary = "turn to a neighbour; absent: that of the scene, else 25" },
+    summary = "turn to a neighbour; absent: that of the scene, else 25 degrees" },
   { name = "body", type = "number", unit = "m", above = 0,
-    summary = "edge of the box that must be free; absent: that of the scene, else 1" },
+    summary = "edge of the box that must be free; absent: that of the scene, else 1 m" },
   { name = "clear", type = "number", unit = "m", above = 0,
-    summary = "edge of the box assumed free at the start; absent: that of the scene, else 6" },
+    summary = "edge of the box assumed free at the start; absent: that of the scene, else 6 m" },
   { name = "visits", type = "integer", default = 2, minimum = 1, maximum = 100,
     summary = "largest number of images from a viewpoint" },
   { name = "speed", type = "number", unit = "m/s", above = 0,
-    summary = "speed between viewpoints; absent: that of the scene, else 2" },
+    summary = "speed between viewpoints; absent: that of the scene, else 2 m/s" },
   { name = "turn_rate_deg", type = "number", unit = "deg/s", default = 60, above = 0,
     summary = "turn rate on the spot" },
   { name = "pause", type = "number", unit = "s", default = 0.5, minimum = 0,
@@ -73,7 +73,7 @@ local OPTIONS = {
     summary = "occupancy probability of a voxel with a measured point" },
   { name = "miss", type = "number", default = 0.1, minimum = 0.001, maximum = 0.499,
     summary = "occupancy probability of a voxel that a ray passed" },
-  { name = "camera", type = "table", table = CAMERA, summary = "the depth camera" },
+  { name = "camera", type = "table", table = CAMERA, summary = "depth camera" },
   { name = "moves", type = "table", table = MOVES, summary = "moves from a viewpoint" },
   { name = "steps", type = "integer", default = 200, minimum = 1, maximum = 1000000,
     summary = "largest number of images" },
@@ -82,7 +82,7 @@ local OPTIONS = {
   { name = "margin", type = "number", unit = "m", minimum = 0,
     summary = "certified distance from obstacles of the final map; absent: 0.4 of moves.body" },
   { name = "budget", type = "number", unit = "s", above = 0,
-    summary = "of flight; absent: one battery" },
+    summary = "flight time; absent: one battery" },
   { name = "wall_clock_guard", type = "number", unit = "s", above = 0,
     summary = "limit of computing time; a run that it ends may not repeat" },
   { name = "compare", type = "boolean", default = true,
@@ -92,8 +92,9 @@ local OPTIONS = {
   { name = "start_yaw_deg", type = "number", unit = "deg", minimum = -360,
     maximum = 360, summary = "heading at the start; absent: 0" },
   { name = "lower", type = "numbers", size = 3, unit = "m",
-    summary = "lower corner of the bounding box of the flight; with upper" },
-  { name = "upper", type = "numbers", size = 3, unit = "m", summary = "the other corner" },
+    summary = "lower corner of the bounding box of the flight; absent: no box" },
+  { name = "upper", type = "numbers", size = 3, unit = "m",
+    summary = "upper corner of the bounding box of the flight" },
 }
 
 local function options_with(more)
@@ -180,9 +181,9 @@ end
 ---@return lapwing.mission
 function M.of_scene(given)
   return mission(given, {
-    { name = "scene", type = "text", summary = "a scene of scripts/scene: downtown, street, ..." },
+    { name = "scene", type = "text", summary = "scene of scripts/scene: downtown, street, ..." },
     { name = "scene_seed", type = "integer", default = 1, minimum = 0, maximum = 9007199254740991,
-      summary = "of the scene" },
+      summary = "seed of the scene" },
   }, function(run) return run:surface(named_scene(run)) end)
 end
 
@@ -191,9 +192,9 @@ end
 ---@return lapwing.mission
 function M.of_mesh(given)
   return mission(given, {
-      { name = "input", type = "text", summary = "a mesh of the user's own" },
+      { name = "input", type = "text", summary = "mesh file" },
       { name = "unit", type = "number", unit = "m", above = 0, maximum = 1e6,
-        summary = "m per unit of the mesh; absent: as its file says" },
+        summary = "metres per unit of the mesh file; absent: as the file says" },
       { name = "up", type = "choice", default = "file", choices = { "file", "x", "y", "z" },
         summary = "axis of the mesh that points up; file: as the file says" },
       { name = "ground", type = "boolean", default = true,

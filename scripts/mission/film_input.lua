@@ -111,83 +111,87 @@ function input.written_out(given)
 end
 
 local track = { name = "track", type = "tables", also = "fun(time: number): number[]",
-  summary = "positions and times, with straight lines between them",
+  summary = "positions at times, linear in between; or a function of time",
   table = {
-    { name = "time", type = "number", unit = "s", required = true, summary = "of the film" },
+    { name = "time", type = "number", unit = "s", required = true, summary = "time in the film" },
     { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-      minimum = -1e6, maximum = 1e6, summary = "of its middle" } } }
+      minimum = -1e6, maximum = 1e6, summary = "position of the centre" } } }
 
 input.bystander = {
-  { name = "name", type = "text", summary = "for messages" },
+  { name = "name", type = "text", summary = "name in messages and reports" },
   { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
-    summary = "fixed position" },
+    summary = "fixed position; or give a track" },
   track,
   { name = "distance", type = "number", unit = "m", required = true, above = 0, maximum = 1e5,
-    summary = "distance of the whole path from it" },
+    summary = "smallest distance of the path from it" },
 }
 
 input.subject = {
-  { name = "name", type = "text", summary = "name used by keyframes" },
+  { name = "name", type = "text", summary = "name, to which keyframes refer" },
   { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
-    summary = "of its middle, where it stands still" },
+    summary = "fixed position of the centre; or give a track" },
   track,
   { name = "height", type = "number", unit = "m", default = 0, minimum = 0, maximum = 1e5,
-    summary = "from foot to top" },
+    summary = "height of its upright cylinder" },
   { name = "width", type = "number", unit = "m", default = 0, minimum = 0, maximum = 1e5,
-    summary = "diameter" },
+    summary = "diameter of its upright cylinder" },
   { name = "distance", type = "number", unit = "m", minimum = 0,
-    summary = "distance of the camera from its centre; absent: free" },
+    summary = "distance that the flight keeps from its centre; absent: none" },
   { name = "place", type = "numbers", size = 2, minimum = 0, maximum = 1,
-    summary = "place in the image, from the upper left corner: {0.33, 0.5} is the left third" },
+    summary = "wanted place in the image, from the upper left (0, 0) to the lower right (1, 1)" },
   { name = "size", type = "number", above = 0, maximum = 1,
-    summary = "wanted height as a share of the image height; absent: any" },
+    summary = "wanted height as a share of the image height, in the centre of the image" },
 }
 
 input.keyframe = {
   { name = "time", type = "number", unit = "s", minimum = 0,
-    summary = "time; absent: evenly between the others, or set by timing" },
+    summary = "time; absent: even between the others, or set by a speed" },
   { name = "speed", type = "number", unit = "m/s", above = 0, maximum = 1e3,
-    summary = "speed on the leg to it; absent: that of the film" },
+    summary = "speed on the leg to it; absent: `speed` of the film" },
   { name = "time_weight", type = "number", above = 0,
-    summary = "free timing: weight of the squared time error, in s of flight" },
+    summary = "weight of the squared time error if times are wishes, in s of flight" },
   { name = "earliest", type = "number", unit = "s", minimum = 0,
-    summary = "free timing: earliest" },
-  { name = "latest", type = "number", unit = "s", minimum = 0, summary = "free timing: latest" },
+    summary = "earliest time if times are wishes" },
+  { name = "latest", type = "number", unit = "s", minimum = 0,
+    summary = "latest time if times are wishes" },
   { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-    minimum = -1e6, maximum = 1e6, summary = "world: east, north, up" },
-  { name = "yaw_deg", type = "number", unit = "deg", summary = "0 is east, counter-clockwise" },
+    minimum = -1e6, maximum = 1e6, summary = "position in the world: east, north, up" },
+  { name = "yaw_deg", type = "number", unit = "deg",
+    summary = "heading: 0 is east, counter-clockwise" },
   { name = "look_at", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
     also = "string",
-    summary = "a point, or a subject's name; absent: as the keyframe before" },
-  { name = "subject", type = "text", summary = "name of the filmed subject" },
+    summary = "looked at: a point, or the name of a subject; absent: as the keyframe before" },
+  { name = "subject", type = "text",
+    summary = "name of the filmed subject; set by `look_at = NAME`" },
 }
 
 input.cut = {
-  { name = "start", type = "number", unit = "s", required = true, minimum = 0, summary = "" },
+  { name = "start", type = "number", unit = "s", required = true, minimum = 0,
+    summary = "start of the span" },
   { name = "finish", type = "number", unit = "s", minimum = 0,
     summary = "end; absent: as soon as the camera can film what follows" },
 }
 
 -- Beside the parameters of its shape.
 input.obstacle = {
-  { name = "name", type = "text", default = "", summary = "for messages" },
+  { name = "name", type = "text", default = "", summary = "name in messages and reports" },
   { name = "side", type = "choice", default = "keep_out", choices = { "keep_out", "keep_inside" },
     summary = "where the flight stays" },
   { name = "opaque", type = "boolean", default = true,
-    summary = "whether it hides subjects; airspace does not" },
-  { name = "track", type = "tables", summary = "how it moves; absent: it stands still",
+    summary = "whether it hides subjects; false for closed airspace" },
+  { name = "track", type = "tables", summary = "motion; absent: it stands still",
     table = {
-      { name = "time", type = "number", unit = "s", required = true, summary = "of the film" },
+      { name = "time", type = "number", unit = "s", required = true, summary = "time in the film" },
       { name = "move", type = "numbers", size = 3, unit = "m", required = true, minimum = -1e6,
-        maximum = 1e6, summary = "added to its place, straight in between" } } },
+        maximum = 1e6, summary = "displacement, linear between these times" } } },
 }
 
 input.flight_zone = {
-  { name = "name", type = "text", default = "", summary = "for messages" },
+  { name = "name", type = "text", default = "", summary = "name in messages and reports" },
   { name = "corners", type = "numbers", unit = "m", required = true, also = "number[][]",
-    summary = "x and y in turn, or {{x, y}, ...}" },
-  { name = "floor", type = "number", unit = "m", summary = "absent: the ground and below" },
-  { name = "ceiling", type = "number", unit = "m", summary = "absent: all above" },
+    summary = "corners of the polygon: {{x, y}, ...}, or x, y, x, y, ..." },
+  { name = "floor", type = "number", unit = "m", summary = "lower end; absent: none" },
+  { name = "ceiling", type = "number", unit = "m", summary = "upper end; absent: none" },
 }
 
 input.volume = {

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Maps: what depth images, files or views of a scene tell of a space.
+-- Maps of depth images, of views of a scene, or of map files.
 --
 --   local map = require "mission.map"
 --   return map.of_scene { name = "street", scene = "street" }
@@ -26,7 +26,7 @@ local SHARED = {  -- as the backends' own defaults
   { name = "observations", type = "boolean", default = false,
     summary = "count the measurements of each voxel, for its uncertainty" },
 }
--- What the mission settles for every backend: who sets `map.resolution` learns where it belongs.
+-- Options of the mission that are parameters of every backend: `map.resolution` is an error.
 local SCANS = { resolution = "every map takes it: set resolution instead",
                 mode = "every map takes it: set mode instead",
                 pixel_step = "every map takes it: set pixel_step instead",
@@ -40,27 +40,27 @@ end
 
 local function map_with(settled)
   return { name = "map", type = "plugin", kind = "map", default = "brick", settled = settled,
-           summary = "the map's backend, and its update rule" }
+           summary = "map plugin and its update rule" }
 end
-local INPUT = { name = "input", type = "text", summary = "the user's own data" }
+local INPUT = { name = "input", type = "text", summary = "file or folder to read" }
 
 local FOLDER = { INPUT, {
   name = "range", type = "number", unit = "m", minimum = 0.01, maximum = 1000,
-  summary = "beyond it a ray clears and adds no hit; absent: none" } }
+  summary = "range beyond which a ray clears voxels and adds no hit; absent: none" } }
 
 local SENSOR = {
   { name = "width", type = "integer", default = 160, minimum = 1, maximum = 10000,
-    summary = "pixels" },
+    summary = "width of the image in pixels" },
   { name = "height", type = "integer", default = 120, minimum = 1, maximum = 10000,
-    summary = "pixels" },
+    summary = "height of the image in pixels" },
   { name = "view_deg", type = "number", unit = "deg", default = 90, minimum = 1, maximum = 170,
-    summary = "angle across the image" },
+    summary = "horizontal angle of view" },
   { name = "range", type = "number", unit = "m", default = 20, minimum = 0.01, maximum = 1000,
     summary = "largest depth" },
   { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
     summary = "share of pixels without a measurement" },
   { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
-    summary = "noise of the depth" },
+    summary = "standard deviation of the depth" },
 }
 
 local function declarations(map, ...)
@@ -91,10 +91,10 @@ end
 ---@return lapwing.mission
 function M.of_scene(given)
   local own = {
-    { name = "scene", type = "text", summary = "a scene of scripts/scene: street, suburb, ..." },
+    { name = "scene", type = "text", summary = "scene of scripts/scene: street, suburb, ..." },
     { name = "scene_seed", type = "integer", default = 1, minimum = 0, maximum = 9007199254740991,
-      summary = "of the scene" },
-    { name = "sensor", type = "table", table = SENSOR, summary = "the depth camera" },
+      summary = "seed of the scene" },
+    { name = "sensor", type = "table", table = SENSOR, summary = "depth camera" },
     { name = "views", type = "integer", default = 400, minimum = 1, maximum = 100000,
       summary = "number of images" },
   }

@@ -13,19 +13,22 @@
 -- it.
 local own = {}
 
-local name = { name = "name", type = "text", summary = "for messages and reports" }
+local name = { name = "name", type = "text", summary = "name in messages and reports" }
 own.declared = {
   { name = "costs", type = "plugins", kind = "cost_term", also = "lapwing.own_cost[]",
-    summary = "cost terms beside those of the mission",
+    summary = "additional cost terms",
     table = { name, { name = "weight", type = "number", default = 1, minimum = 0, maximum = 1e9,
-                      summary = "of its squares" } } },
+                      summary = "factor on the squared residuals" } } },
   { name = "constraints", type = "plugins", kind = "constraint", also = "lapwing.own_constraint[]",
-    summary = "constraints beside those of the mission", table = { name },
+    summary = "additional constraints", table = { name },
     functions = {
-      { name = "lower", type = "number", summary = "lower bound; a script may list bounds" },
-      { name = "upper", type = "number", summary = "upper bound; a script may list bounds" },
+      { name = "lower", type = "number",
+        summary = "of a function: lower bound; a script may list one for each value" },
+      { name = "upper", type = "number",
+        summary = "of a function: upper bound; a script may list one for each value" },
       { name = "certificate", type = "choice", choices = { "required", "reported" },
-        default = "required", summary = "effect of a violation on the certificate" } } },
+        default = "required",
+          summary = "of a function: effect of a violation on the certificate" } } },
 }
 
 -- What of a function is an option. Lists of bounds are the script's alone.

@@ -8,18 +8,19 @@ end
 
 -- A gate, in a script or in a file.
 M.GATE = {
-  { name = "name", type = "text", summary = "in messages" },
-  { name = "shape", type = "choice", required = true, summary = "of the opening",
+  { name = "name", type = "text", summary = "name in messages and reports" },
+  { name = "shape", type = "choice", required = true, summary = "shape of the opening",
     choices = { "ball", "rectangle", "triangle", "pentagon", "hexagon" } },
   { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-    summary = "centre, world" },
-  number("normal_yaw_deg", "deg", "direction of flight; a ball has none"),
-  number("normal_pitch_deg", "deg", "the same, upwards"),
-  number("width", "m", "of a rectangle or a triangle"),
-  number("height", "m", "of a rectangle or a triangle"),
-  number("radius", "m", "of a ball; of a pentagon or hexagon to its corners"),
-  number("side", "m", "of a pentagon or hexagon"),
-  number("tunnel_length", "m", "half before, half behind the gate"),
+    summary = "centre in the world" },
+  number("normal_yaw_deg", "deg",
+         "direction of flight: 0 is east, counter-clockwise; not for a ball"),
+  number("normal_pitch_deg", "deg", "direction of flight, upwards; absent: 0"),
+  number("width", "m", "width of a rectangle or triangle"),
+  number("height", "m", "height of a rectangle or triangle"),
+  number("radius", "m", "radius of a ball, or to the corners of a pentagon or hexagon"),
+  number("side", "m", "side of a pentagon or hexagon"),
+  number("tunnel_length", "m", "length of a tunnel, half of it before the gate; absent: 0"),
 }
 
 -- Courses that others publish name these angles without their unit, which is degrees.

@@ -11,13 +11,13 @@ local HIT, MISS, PITCH_DEG, VIEW_DEG = 0.9, 0.1, -10, 90
 local WIDTH, HEIGHT = 160, 120
 
 M.DECLARATION = { name = "exploration", type = "table",
-  summary = "exploration without prior knowledge, instead of the first flight", table = {
+  summary = "exploration without prior knowledge, in place of the first flight", table = {
     { name = "images", type = "integer", default = 0, minimum = 0, maximum = 100000,
       summary = "largest number of depth images; 0: no exploration" },
     { name = "budget", type = "number", unit = "s", above = 0,
       summary = "flight time; absent: what the tour leaves of one battery" },
     { name = "range", type = "number", unit = "m", default = 20, minimum = 1, maximum = 1000,
-      summary = "of its depth camera" },
+      summary = "largest depth" },
     { name = "speed", type = "number", unit = "m/s", default = 2, above = 0,
       summary = "speed between viewpoints" },
     { name = "clear", type = "number", unit = "m", default = 6, minimum = 1, maximum = 100,

@@ -178,45 +178,70 @@ TEST(Described, EveryMissionFunctionIsAsked) {
             "race.course scan.of_mesh scan.of_prior scan.of_scene ");
 }
 
-// The words in code of a text.
-std::set<std::string> words_in_code(const std::string& text) {
-  std::set<std::string> words;
-  const std::regex code("`([^`\n]+)`"), word("[A-Za-z_][A-Za-z0-9_]*");
-  for (std::sregex_iterator at(text.begin(), text.end(), code), end; at != end; ++at) {
-    const std::string inside = (*at)[1];
-    for (std::sregex_iterator w(inside.begin(), inside.end(), word); w != end; ++w)
-      words.insert(w->str());
-  }
-  return words;
+const std::vector<std::string> kKinds{"explore", "film", "light_painting", "map", "race", "scan"};
+
+TEST(Described, OptionsInTheReadmeOfTheirMission) {
+  const ScriptInterface interface = shipped_interface();
+  std::set<std::string> kinds;
+  for (const MissionFunction& mission : interface.missions) kinds.insert(mission.kind);
+  EXPECT_EQ(kinds, std::set<std::string>(kKinds.begin(), kKinds.end()));
+  for (const std::string& kind : kinds)
+    expect_fresh_part(kTree / "scripts/mission/README.md", "options of " + kind,
+                      option_table_of(interface, kind));
 }
 
-// The README of missions is written by hand: it explains every option that there is, and its tables
-// begin with no option that there is not.
-TEST(Described, OptionsInTheReadmeOfTheirMission) {
-  const std::string text = read_file(kTree / "scripts/mission/README.md");
-  std::map<std::string, std::set<std::string>> options;  // by kind
-  for (const MissionFunction& mission : shipped_interface().missions)
-    for (const Value& option : mission.declarations.as_list())
-      options[mission.kind].insert(option.at("name").as_text());
-  EXPECT_EQ(options.size(), 6u);
-  for (const auto& [kind, names] : options) {
-    const std::size_t from = text.find("\n## " + kind + "\n");
-    ASSERT_NE(from, std::string::npos) << kind;
-    const std::string section = text.substr(from, text.find("\n## ", from + 1) - from);
-    const std::set<std::string> explained = words_in_code(section);
-    for (const std::string& name : names)
-      EXPECT_TRUE(explained.contains(name)) << "missions of kind " << kind << " have an option '"
-                                            << name << "' that their README does not explain";
-    const std::size_t table = section.find("\n| option |"), end = section.find("\n\n", table);
-    ASSERT_NE(table, std::string::npos) << kind;
-    std::istringstream rows(section.substr(table, end - table));
-    for (std::string row; std::getline(rows, row);) {
-      if (row.rfind("| `", 0) != 0) continue;
-      for (const std::string& name : words_in_code(row.substr(0, row.find('|', 1))))
-        EXPECT_TRUE(names.contains(name) || (kind == "film" && name == "subject"))  // short form
-            << "missions of kind " << kind << " have no option '" << name << "'";
-    }
+// Every entry of a declaration, of those in it too, by its dotted name.
+void collect_entries(const Value& entries, const std::string& prefix,
+                     std::map<std::string, std::string>& summaries) {
+  for (const Value& entry : entries.as_list()) {
+    const std::string name = prefix + entry.at("name").as_text();
+    const std::string type = entry.at("type").as_text();
+    const Value* summary = entry.find("summary");
+    summaries[name] = summary ? summary->as_text() : "";
+    for (const char* list : {"table", "functions"})
+      if (const Value* inner = entry.find(list))
+        collect_entries(*inner, name + (type == "tables" || type == "plugins" ? "[]." : "."),
+                        summaries);
   }
+}
+
+// Counted here by other code than that which writes the tables.
+TEST(Described, EveryOptionOfAMissionHasItsRowAndASummary) {
+  const ScriptInterface interface = shipped_interface();
+  for (const std::string& kind : kKinds) {
+    std::map<std::string, std::string> summaries;
+    for (const MissionFunction& mission : interface.missions)
+      if (mission.kind == kind) collect_entries(mission.declarations, "", summaries);
+    const std::string table = option_table_of(interface, kind);
+    for (const auto& [name, summary] : summaries) {
+      EXPECT_NE(summary, "") << kind << ": " << name;
+      EXPECT_NE(table.find("\n| `" + name + "` | "), std::string::npos) << kind << ": " << name;
+    }
+    EXPECT_GT(summaries.size(), 15u) << kind;
+  }
+}
+
+// A row tells name, default, meaning, form, unit and range; functions with options of their own are
+// named.
+TEST(Described, RowsOfOptions) {
+  const auto options = [](const char* json) { return from_json(json, "declarations"); };
+  ScriptInterface interface;
+  interface.missions.push_back({"dive", "deep", options(R"([
+        {"name": "depth", "type": "number", "unit": "m", "above": 0, "maximum": 40, "default": 3,
+         "words": ["auto"], "summary": "below the surface"},
+        {"name": "legs", "type": "tables", "summary": "one by one", "table": [
+          {"name": "to", "type": "numbers", "size": 3, "unit": "m", "required": true,
+           "summary": "its end"}]}])")});
+  interface.missions.push_back({"dive", "shallow", options(R"([
+        {"name": "depth", "type": "number", "unit": "m", "above": 0, "maximum": 40, "default": 3,
+         "words": ["auto"], "summary": "below the surface"}])")});
+  EXPECT_EQ(option_table_of(interface, "dive"),
+            "| option | of | default | |\n|---|---|---|---|\n"
+            "| `depth` | all | 3 m | below the surface (m, above 0 and at most 40 or `auto`) |\n"
+            "| `legs` | `deep` | – | one by one (list of tables) |\n"
+            "| `legs[].to` | | required | its end (3 numbers, m) |\n");
+  interface.missions.pop_back();
+  EXPECT_EQ(option_table_of(interface, "dive").rfind("| option | default | |\n", 0), 0u);
 }
 
 TEST_F(CommandLine, SaysWhatThereIs) {
