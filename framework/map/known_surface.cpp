@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: voxels are sorted by key, so that each is found by bisection. From the centroid of a
+// triangle, places along its normal are looked up in steps of half a voxel, up to two voxels to
+// either side: the reconstruction may lie that far from the voxels of the surface. The triangle
+// takes the largest share of the voxels found. Areas are sums over triangles, by class.
 #include "framework/map/known_surface.h"
 
 #include <algorithm>

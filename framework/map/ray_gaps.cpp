@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: at a depth d along the optical axis, the rays of four neighbouring pixels form a square of
+// edge d / f. Its diagonal sqrt(2) d / f is the gap. `gap_at` takes the smallest gap of the images
+// that see the place. The ray to the camera is cast only for images that would reduce it.
+//
+// widest_gaps evaluates a lattice, one layer per task, and then takes the maximum over each place
+// and its 26 neighbours. Between two places of the lattice may lie the edge of an image's frame or
+// of what it sees, and then the wider gap is the right one.
 #include "framework/map/ray_gaps.h"
 
 #include <algorithm>

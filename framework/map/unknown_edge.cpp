@@ -1,4 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: every voxel of the region, and of a rim around it, has one byte of state.
+//   1. read: never measured (kNever), air, or surface.
+//   2. leave_out_known: never measured voxels that touch a surface voxel, or lie within 1.5 voxels
+//      of the mesh, are the thickness of a known surface (kBeside).
+//   3. close_gaps: a morphological opening (voxel_balls.h). Never measured voxels that lie in no
+//      ball of such voxels are gaps between rays (kGap). The radius of the ball is half the gap
+//      between rays there and half a voxel's diagonal (measure_gaps). A gap becomes air up to a
+//      ball's radius from air, by breadth-first search across faces.
+//   4. marked_edge: what is still kNever, in the region and across a face from air, is the edge. It
+//      is roomy where a sphere of the stated width fits among kNever.
+//   5. opening_from: a flood fill over 26 neighbours joins the edge to openings. Faces towards air
+//      are added as vectors within cubes of 8 voxels, so that a slope has its own area and not that
+//      of its stairs.
+// Steps 2 to 4 work by tiles, in parallel. A tile without unmeasured voxels, or without air near
+// it, is skipped. Tiles read states of the step before, so the result is the same for any number of
+// threads.
 #include "framework/map/unknown_edge.h"
 
 #include <algorithm>

@@ -1,5 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows that the kernel makes itself: dynamics, held last inputs, the clock.
+//
+// How: a dynamics row is the difference between the state that the model's flow f reaches from
+// stage i and the state of stage i + 1: x_{i+1} - f on a line, log(f^-1 q_{i+1}) for an
+// orientation. With C the Jacobian of the flow's arguments in the columns (argument_chain), P the
+// projection of a reached quaternion to its tangent, and D_f, D_x the Jacobians of the difference,
+// the derivatives are
+//
+//   with respect to stage i       D_f P (df/darguments) C
+//   with respect to stage i + 1   D_x
+//
+// The curvature of lambda' row has up to three parts: that of the flow, C' H C; that of a
+// quaternion moved by its tangent (add_retraction_curvature); that of the logarithm
+// (add_difference_curvature). A model that is affine, on lines and with a fixed step has one
+// Jacobian for all stages.
 #include "framework/problem/trajectory_problem_impl.h"
 
 namespace lapwing {

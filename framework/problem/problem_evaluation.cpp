@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values, local models and violations of a trajectory problem.
+// Values and local models of a trajectory problem.
+//
+// How: an evaluation of a term gives one dense block per instance. Its entries are added to the
+// value arrays of the sparse matrices through slots, which problem_pattern.cpp listed once in the
+// order of the same loops. No index is searched during a solve, and the patterns never change.
+//   cost w sum r^2   gradient 2 w J'r, Hessian 2 w J'J. Terms with a constant Jacobian have their
+//                    part of the Hessian in `constant_hessian`, which is copied at the start.
+//   curvature        `exact` adds the second derivatives of residuals and rows. `convex` adds those
+//                    of the constraints' rows alone, and of each instance's block only the positive
+//                    semidefinite part, so that the quadratic model stays convex.
+//   bounds           on columns become limits of the step, x_min - x and x_max - x.
 #include <cmath>
 
 #include "framework/problem/convex_part.h"

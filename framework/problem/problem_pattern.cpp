@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sparsity and slots of the local model, computed once.
+//
+// How: each source of entries (models, held inputs and clock, closure, constraints, costs) is a
+// loop that calls visit(row, column). Every loop runs twice. The first run collects the entries in
+// a SparsePattern. The second run, after `finish`, lists the slot of each entry: its place in the
+// value array of the compressed matrix. Evaluations run through the same entries in the same order,
+// and write through the slots. A slot of -1 stands for an entry that is left out: a column that is
+// constant, or a zero of a Jacobian that never changes.
+//
+// Rows: for each model the flow of every interval, then its held inputs; the clock; the closure;
+// the constraints that are not bounds. The Hessian always has its whole diagonal.
 #include "framework/problem/trajectory_problem_impl.h"
 
 namespace lapwing {

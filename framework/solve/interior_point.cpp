@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: w = (x, s) stacks the variables and a slack s = A x of each inequality row. A finite bound
+// on an entry of w has a distance t > 0 and a multiplier z > 0 (BoundSide). One iteration of
+// `iterate`
+//   1. measures the residuals in the problem as given, and ends where they are small, or where x or
+//      the multipliers prove that the problem is unbounded or infeasible;
+//   2. factorises: t, z and s are eliminated, which leaves the system of interior_point.h in dx and
+//      dy, with z / t on the diagonals D_x and D_s;
+//   3. solves twice with these factors. The predictor aims at t z = 0. It would reduce the mean mu
+//      of t z to mu_a. The second solve aims at (mu_a / mu)^3 mu, and its right side has the
+//      second-order term dt dz of the predictor (Mehrotra 1992);
+//   4. moves 0.995 of the way to the nearest t = 0 or z = 0, in all numbers alike.
+// Fixed variables do not move, and rows without bounds take no part. If a solve ends undecided,
+// `contradicts` minimises the sum of violations: if it is not 0, its multipliers prove
+// infeasibility. Else the problem is solved once more from a cold start, with all iterations.
 #include "framework/solve/interior_point.h"
 
 #include <algorithm>

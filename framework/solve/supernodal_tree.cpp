@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// How:
+//   elimination_tree   For every column j, start at each entry i < j and follow parents until a
+//                      column that was reached for this j already. A column without a parent gets
+//                      j. Every column passed has an entry of L in row j, so `below` counts them
+//                      exactly (Liu, "The role of elimination trees in sparse factorization",
+//                      1990). The time is that of the number of entries of L.
+//   merge_columns      Relaxed supernodes (Ashcraft and Grimes 1989): a child is merged with its
+//                      parent where the model `cost` says that one panel of both is cheaper than
+//                      two, the stored zeros included. Children with most rows come first, as they
+//                      add fewest zeros.
+//   supernode_order    Postorder of the tree of supernodes, without recursion: a child comes before
+//                      its parent, so that its update matrix is on top of the stack.
 #include "framework/solve/supernodal_tree.h"
 
 #include <algorithm>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: a pixel becomes a point of the camera frame, depth times ray. Its normal is the cross
+// product of the differences to its horizontal and to its vertical neighbours. Pixels at depth
+// edges and pixels seen at a flat angle are left out. Points are added up in a hash table of cubes,
+// position and normal with the weight
+//
+//   cos(incidence) / (1 + distance^2)
+//
+// which prefers close and frontal measurements. An image counts once per cube. `points` sorts the
+// cubes by index, so that the order of the hash table has no effect.
 #include "framework/surface/point_fusion.h"
 
 #include <algorithm>

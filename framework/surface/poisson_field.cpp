@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: Poisson reconstruction (Kazhdan, Bolitho and Hoppe 2006). The indicator function chi of the
+// solid has a gradient that is large at the surface and along its normals. Given the field V of
+// normals of the samples, chi solves laplace(chi) = div V. CGAL refines a Delaunay triangulation of
+// the samples, takes chi linear on each tetrahedron, and fills the sparse matrix;
+// poisson_equations.h solves it. CGAL then shifts chi so that its median at the samples is 0. A
+// value is interpolated in the tetrahedron around the place.
+//
+// This is the only source that includes CGAL, because that is slow to compile.
 #include "framework/surface/poisson_field.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distance of the continuous path from every obstacle and zone, never overestimated.
 //
-// The path between two integrated points is replaced by their chord; it leaves the chord by at most
-// |a|max h^2 / 8 (kBulge), which is taken off the distance.
+// How: the path between two integrated points is replaced by their chord. It leaves the chord by at
+// most |a|max h^2 / 8 (`bulge`), which is subtracted from the distance. For each chord and
+// obstacle:
+//   1. A distance changes by at most the way travelled. So the distance at the middle of the chord,
+//      less half its length, is a lower bound. If it is above the worst so far, the chord is done.
+//   2. Else the smallest distance on the chord is searched: by golden sections where the distance
+//      is a convex function, by the shape's own exact answer if it has one, else by halving (branch
+//      and bound with the same lower bound).
+// An obstacle that moves is straight in between its times. The chord is cut there and taken
+// relative to the obstacle, where it is straight again. For an obstacle to stay inside of, the sign
+// is turned.
 #include <algorithm>
 #include <map>
 #include <string_view>
@@ -206,7 +215,7 @@ void check_clearance(const Flight& flight, Certificate& certificate) {
 }
 
 void check_flight_zones(const Flight& flight, Certificate& certificate) {
-  check_side(flight, Side::keep_inside, "flight_zone", "the environment has no zone to stay in",
+  check_side(flight, Side::keep_inside, "flight_zone", "the environment has no flight zone",
              certificate);
 }
 

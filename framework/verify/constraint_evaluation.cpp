@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: a constraint of a script is a list of operations in the plan. An operation reads numbers,
+// blocks of the motion, or results of earlier operations, so one pass from the front evaluates all
+// of them: `values_` has one number per operation, and the results are picked from it. problem_of
+// checks the list first: an operand that is not earlier, a block that the motion lacks or a number
+// that is not finite is refused, and evaluation needs no further test. The constructor finds the
+// reader of each block by name once.
+//
+// The solver evaluates the same function on a tape of its own (framework/problem/tape.h). The two
+// share the list of operations and no code.
 #include "framework/verify/constraint_evaluation.h"
 
 #include <algorithm>
@@ -92,7 +101,7 @@ std::string place(std::size_t operation) {
 // What is wrong with one operation, to be read after "operation 3 ".
 std::string fault_of(const ConstraintStep& step, std::size_t at, const Plan& plan) {
   const auto kind = static_cast<std::size_t>(step.op);
-  if (kind >= static_cast<std::size_t>(kConstraintOps)) return "is none that there is";
+  if (kind >= static_cast<std::size_t>(kConstraintOps)) return "is unknown";
   if (!std::isfinite(step.number)) return "holds a number that is not finite";
   for (int k = 0; k < operand_count(step.op); ++k)
     if (step.operands[k] < 0 || static_cast<std::size_t>(step.operands[k]) >= at)
@@ -127,7 +136,7 @@ std::string fault_of(const ConstraintStep& step, std::size_t at, const Plan& pla
 
 std::string fault_of(const ConstraintResult& result, std::size_t operations) {
   if (result.operation < 0 || static_cast<std::size_t>(result.operation) >= operations)
-    return "is of operation " + std::to_string(result.operation) + ", which there is not";
+    return "is of operation " + std::to_string(result.operation) + ", which does not exist";
   for (const auto& bound : {result.lower, result.upper})
     if (bound && !std::isfinite(*bound)) return "has a bound that is not finite";
   if (!result.lower && !result.upper) return "has no bound";
@@ -158,11 +167,11 @@ std::string problem_of(const StatedConstraint& constraint, const Plan& plan) {
     if (const std::string fault = fault_of(constraint.results[r], count); !fault.empty())
       return ": result " + std::to_string(r) + " " + fault;
   for (const double time : constraint.times)
-    if (!sound_time(time)) return " is asked at a time that no flight has";
+    if (!sound_time(time)) return " is evaluated at an invalid time";
   for (const auto* spans : {&constraint.spans, &constraint.except})
     for (const TimeSpan& span : *spans)
       if (!sound_time(span.start) || !sound_time(span.finish) || span.start > span.finish)
-        return " is asked in a span that ends before it begins";
+        return " is evaluated in a span that ends before it begins";
   return "";
 }
 

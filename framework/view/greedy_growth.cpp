@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: lazy greedy insertion (Minoux 1978; thesis 2.4). `extra_` and `after_` have for every view
+// the fewest seconds that it adds and the place in the walk. They are exact, and updated after each
+// insertion. `known_` has the gain of a view when it was last evaluated. By submodularity gains
+// only fall while the tour grows, so this is an upper bound.
+//
+// A step puts all views that fit on a heap, by known gain or by known gain per second. An entry on
+// top that was not evaluated in this step is evaluated and put back. An entry on top that was
+// evaluated in this step is the best, because all others are below it even with their upper bounds:
+// it is inserted. With `patience` only so many views are evaluated, and then the best of these is
+// taken. Equal promises go to the lower number, so that the result does not depend on the heap.
 #include "framework/view/greedy_growth.h"
 
 #include <algorithm>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: the score f is monotone and submodular. For any set S and the best tour T therefore
+//
+//   f(T) <= f(S + T) <= f(S) + sum of f(v|S) over the views v of T
+//
+// (Nemhauser, Wolsey and Fisher 1978). What T can add to S is bounded by a knapsack: every view
+// takes at least `least_seconds`, half of two legs, and all of T takes at most the budget. The
+// fractional knapsack, filled by gain per second, is at least the integral one (Dantzig 1957). A
+// limit of images bounds the sum by the largest gains too. Start and end are on every tour: their
+// gains count, and their halves of legs come off the budget. Every S gives a bound; the empty set
+// and parts of a good tour in greedy order are tried, and the smallest bound is taken. The score of
+// all reachable views is one more.
 #include "framework/view/tour_bound.h"
 
 #include <algorithm>

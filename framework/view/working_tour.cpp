@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: the walk has every view that is passed, not only those that were put in: neighbours in it
+// are joined by a motion of the graph. `insert` and `take_out` therefore add the shortest ways with
+// the views on them. `visits_` counts how often a view is passed. Its first visit adds it to the
+// score, and its last departure removes it. Seconds change by the legs that come and go.
+//
+// The cheapest place of a view v is the leg from a to b with the smallest d(a, v) + d(v, b) - d(a,
+// b), where d is the time of the shortest way. An insertion changes one leg. `update_places`
+// compares all views with the new legs, and searches the whole walk only for views whose best leg
+// is gone. `shorten` takes the order that walk_order.h proposes (2-opt, or-opt) if it is shorter
+// and within the limit of images.
 #include "framework/view/working_tour.h"
 
 #include <algorithm>

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ours: a tour is ruined and repaired, again and again, and kept where that made it better.
+// Large neighbourhood search with simulated annealing: a tour is partly removed and repaired, again
+// and again.
 //
-// Each iteration takes some views out (a stretch, a neighbourhood, or any), shortens the order by
-// 2-opt and or-opt, and puts in what promises most gain per second, until nothing fits: insertion,
-// dropping, swaps and moves of segments in one. Some begin the other way round: a cluster of views
-// comes in, over the budget if need be, and what is worth least per second goes. Gains are
-// evaluated lazily: what views bring is remembered, and what leaves the tour raises only what
-// shares voxels with it. A worse tour may follow a better one as simulated annealing allows; the
-// best of all is what comes out, so it is never worse than where it began: the initial tour, or one
-// grown by gain per second.
+// How: each iteration starts from the current tour. `ruin` removes some views (a stretch of the
+// walk, neighbours, or random ones), or `exchange` inserts a cluster of views beyond the budget and
+// removes the views of least worth per second. The order is shortened by 2-opt and or-opt. Then
+// views are inserted by gain per second, with random factors, until none fits (greedy_growth.h). A
+// tour of higher value becomes the current one. One of lower value does so with the probability
+// exp(change / heat), where the heat falls with the work done. The value is the score, and a part
+// of the mean score per second for what is left of the budget.
+//
+// Gains are estimates between evaluations (KnownGains): the gain of a view rises only when a view
+// that shares voxels with it leaves the tour. The result is the best tour of all, so it is at least
+// as good as the first one: the initial tour, or that of recursive greedy (recursive_growth.h).
 //
 //   tour: {solver: local_search, iterations: 2000}
 #include <algorithm>

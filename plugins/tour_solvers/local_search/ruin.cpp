@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: Overlaps gives each view 512 bits, one for each part of the list of voxels, in the order of
+// their keys. Two views share about as many voxels as they share bits. When a view leaves the tour,
+// its loss is known exactly. A view that shares bits with it may gain up to that share of the loss,
+// and at most what it brings alone. This estimate decides which views are evaluated first.
+//
+// `exchange` enters a cluster that no single view of it is worth the way to: it inserts several
+// views at once and then removes the views with the least known gain per second saved, times a
+// random factor, until the tour fits the budget again.
 #include "plugins/tour_solvers/local_search/ruin.h"
 
 #include <algorithm>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only source that knows CBC.
+// The only source that includes CBC.
+//
+// How: the rows are passed to Clp as a sparse matrix; CBC minimises, so the objective changes its
+// sign. Clp solves the linear relaxation, whose value is a first bound. Branch and bound follows,
+// with Gomory, knapsack, rounding and flow cuts, and with heuristics (rounding, feasibility pump
+// without a start, diving, RINS). The start is set as the first solution. Two handlers ask whether
+// to end: one at nodes, one at every pivot of Clp, because a single relaxation can take long.
 #include "plugins/tour_solvers/milp/integer_program.h"
 
 #include <algorithm>

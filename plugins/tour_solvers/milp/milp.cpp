@@ -163,8 +163,7 @@ class Milp final : public TourSolver {
       // The way from start to end alone is a tour: a program without any knows too few arcs.
       result.status = TourStatus::iteration_limit;
       result.message = std::string("no tour found") +
-                       (found.infeasible ? ", the arcs that are kept join none (" : " (") + size +
-                       ")";
+                       (found.infeasible ? ", as the kept arcs connect none (" : " (") + size + ")";
       return;
     }
     const double sum = additive.score_of(best);

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: the columns are x, then g, for each arc, then y for each view (tour_program.h). Arcs join a
+// view with its nearest others, both ways. An arc past a chosen view is left out: it is two arcs.
+//
+// g is positive and falls along a tour, so arcs that are taken form one walk from the start, and no
+// cycle apart from it. kLeastSeconds keeps this true for arcs that take no time. An arc that cannot
+// be on a tour within the budget is fixed to 0. Where each view is visited once, x_ab + x_ba <= y_a
+// forbids turning back, which the relaxation would otherwise use.
+//
+// A tour becomes a point of the program by chosen_on: no arc may be taken twice, so a part between
+// two uses of an arc is turned round. A point becomes a tour by Hierholzer's algorithm: at every
+// view as many taken arcs come as go, except at start and end.
 #include "plugins/tour_solvers/milp/tour_program.h"
 
 #include <algorithm>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: `Bridge` answers Ipopt's calls from a Program. Matrices are passed as triplets whose order
+// is that of the compressed columns, so that values are copied as they are. Row multipliers of
+// Ipopt have the opposite sign of the kernel's; those of bounds are its zl - zu.
+//
+// intermediate_callback ends a pass where
+//   - the optimality error is small relative to the cost (Ipopt's own test is absolute);
+//   - Ipopt restores feasibility for more than ten iterations: the elastic program does it better;
+//   - an orientation has turned so far that its chart is nearly singular (program.h);
+//   - the user or a time limit ends the solve.
+// Ipopt 3.11 does not tell the callback its iterate. `accepted_` is the point at which derivatives
+// were last asked for: Ipopt asks for them at accepted points only.
 #include "plugins/trajectory_solvers/ipopt/pass.h"
 
 #define HAVE_CSTDDEF  // Ipopt 3.11's headers ask for the C++ headers by name

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: move_to moves the stages to x. Cost, rows and derivatives are computed when first asked for
+// and kept until the next x. Derivatives of the local model are in the tangent at x; with
+// orientations they are multiplied by B (turn_map), which is the identity but for a 3 x 3 block J
+// for each of them.
+//
+// `linearise` gives the Hessian of cost + mu'c. That of factor * cost + lambda'c is factor times
+// the one with mu = lambda / factor. While Ipopt restores feasibility the factor is 0; then it is
+// the difference of two, with mu = lambda and with mu = 0.
 #include "plugins/trajectory_solvers/ipopt/program.h"
 
 #include <cmath>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: the error e of a limited quantity is measured from its limits moved by y / rho. A quantity
+// with e = 0 is inactive and adds neither gradient nor Hessian. Bounds act on their column, rows
+// through the Jacobian: gradient += J' (rho e). The Gauss-Newton Hessian adds rho a a' for each
+// active row a.
+//
+// `update` sets y = -rho e, the multiplier that makes the gradient of the Lagrangian equal to that
+// of L. `raise` multiplies rho by 10 where the miss did not fall to a quarter, and by 100 where it
+// hardly fell.
 #include "plugins/trajectory_solvers/nlopt/augmented_cost.h"
 
 #include <algorithm>

@@ -367,7 +367,7 @@ std::string Run::message(SolveStatus status, const Stages& at) const {
   if (!crossed_.empty()) return crossed_;
   if (status == SolveStatus::infeasible) return say_missed(problem_.violations(at));
   if (status == SolveStatus::feasible)
-    return "NLopt made no more progress before the cost was shown to be the least";
+    return "NLopt ended without further progress; the cost may not be optimal";
   return "";
 }
 

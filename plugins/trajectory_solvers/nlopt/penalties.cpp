@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: in the coordinates w of scaling.h the Hessian is the identity. A limit with the normal a in
+// the variables has the normal n = S' a in w, and n'n = a' H^-1 a.
+//   1. Scale without limits. The equations' normals are the columns of N, with N'N = A H^-1 A'. The
+//      diagonal of its inverse is the curvature of the cost when one equation moves and all others
+//      hold. It comes from a Cholesky factor with columns of length 1; a dependent column gets a
+//      large number instead of a division by zero.
+//   2. Scale again, the equations held by these penalties.
+//   3. Other limits: 1 / n'n at up to five limits of each name; the rest take the nearest of these.
+// All penalties are 10 times that curvature.
 #include "plugins/trajectory_solvers/nlopt/penalties.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: the pattern of the dynamics' Jacobian is read once. The last column of each row is its
+// pivot: the number that the row determines. Sorted by pivot, the rows are triangular in the
+// pivots. `forward` solves J dx = 0, or J dx = -rows, by substitution from the first row to the
+// last. `backward` solves the transposed system from the last row to the first, which is the
+// adjoint method: the multiplier of a row cancels the gradient of its pivot. Both take the time of
+// one pass over the Jacobian's entries.
 #include "plugins/trajectory_solvers/nlopt/reduced_problem.h"
 
 #include <algorithm>
@@ -11,12 +17,12 @@ std::string ReducedProblem::unsupported(const TrajectoryProblem& problem) {
   const StageLayout& layout = problem.layout();
   for (int b = 0; b < layout.count(); ++b)
     if (layout.block(b).topology == Topology::quaternion)
-      return "nlopt does not take orientations, such as block '" + layout.block(b).name +
-             "': take the solver ipopt";
+      return "nlopt does not support orientations, such as block '" + layout.block(b).name +
+             "': use the solver ipopt";
   if (problem.horizon().step_free)
-    return "nlopt does not take free steps: give the film a duration, or take the solver ipopt";
+    return "nlopt does not support free steps: give the film a duration, or use the solver ipopt";
   if (problem.horizon().periodic)
-    return "nlopt does not take periodic flights: take the solver ipopt";
+    return "nlopt does not support periodic flights: use the solver ipopt";
   return "";
 }
 

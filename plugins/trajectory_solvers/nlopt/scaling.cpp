@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// How: band_ holds the lower triangle of H in all columns; row c has the entries (c, c - width + 1)
+// to (c, c). set_whole goes from the last column to the first and removes column c from what is
+// left: a dependent one by its row (substitute), an independent one by completing the square
+// (complete_square), a fixed one by setting it to 0. The row then holds b or f of scaling.h instead
+// of entries of H. to_variables runs through the rows forward, to_gradient backward.
+//
+// A pivot can lose all its digits by cancellation. `gross_` has the sum of what was ever added to
+// it; a pivot below 1e-11 of that is rounding and is raised to it.
 #include "plugins/trajectory_solvers/nlopt/scaling.h"
 
 #include <algorithm>
