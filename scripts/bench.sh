@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds and runs the benchmarks, each against its named opponent: scripts/bench.sh [options of the
-# benchmark program, such as --benchmark_filter=REGEX]. Prints medians and ratios.
+# Builds and runs the benchmarks, each with the method that it is compared with: scripts/bench.sh
+# [options of the benchmark program, such as --benchmark_filter=REGEX]. Prints medians and ratios.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# Configuring and building, sourced by the other scripts. Everything that CMake and the compiler say
-# goes to build/PRESET.log; a failure prints its end.
+# Configuring and building, sourced by the other scripts. The output of CMake and the compiler goes
+# to build/PRESET.log; a failure prints its end.
 
-# lapwing_configure PRESET [CMake options]: configures a folder that is not, and one whose options
-# differ from the given (as -DNAME=VALUE). Options that are not given stay as they are.
+# lapwing_configure PRESET [CMake options]: configures a folder if it is not configured, or if the
+# given options (-DNAME=VALUE) differ. Other options keep their values.
 lapwing_configure() {
   local preset=$1 log="build/$1.log" cache="build/$1/CMakeCache.txt" option name needed=false
   shift
@@ -18,7 +18,7 @@ lapwing_configure() {
   cmake --preset "$preset" "$@" >"$log" 2>&1 || { tail -n 30 "$log" >&2; return 1; }
 }
 
-# lapwing_build PRESET TARGET...: configures if that was never done, and builds quietly.
+# lapwing_build PRESET TARGET...: configures if necessary, and builds quietly.
 lapwing_build() {
   local preset=$1 log="build/$1.log" began=$SECONDS
   shift

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Checks the sources of build/release, which must be built: scripts/check_sources.sh [--alone].
-# No source compiles longer than 15 s; with --alone, every one compiles by itself.
+# No source takes longer than 15 s to compile. With --alone, every source must compile separately.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly source_budget=15
@@ -14,13 +14,13 @@ esac
 [ -f build/release/.ninja_log ] ||
   { echo "check_sources.sh: build/release is not built; scripts/test.sh builds it" >&2; exit 2; }
 
-# What took longer than the budget beside other work is compiled once more by itself, and its
-# processor time counts; of several sources that were joined, each by itself: two at a time, and what
-# is over the budget then, alone. .ninja_log: start, end (ms), time stamp, output, command hash.
+# Objects over the budget in the log are compiled again, each source of a unity build separately,
+# and their processor time counts: first two at a time, then those over the budget alone.
+# .ninja_log: start, end (ms), time stamp, output, command hash.
 mapfile -t candidates < <(awk -v limit=$((source_budget * 1000)) \
   '$4 ~ /\.c(pp|xx)\.o$/ { took[$4] = $2 - $1 } END { for (o in took) if (took[o] > limit) print o }' \
   build/release/.ninja_log)
-# Processor seconds of a compiler's command; "does not compile" where it fails.
+# Processor seconds of a compile command; "does not compile" if it fails.
 compile_seconds() {
   local TIMEFORMAT=%U seconds
   seconds=$({ time (cd build/release && CCACHE_DISABLE=1 bash -c "$1" >/dev/null 2>&1); } 2>&1) ||
@@ -29,11 +29,11 @@ compile_seconds() {
 }
 export -f compile_seconds
 over_budget() { awk -v s="$1" -v limit="$source_budget" 'BEGIN { exit !(s + 0 != s || s > limit) }'; }
-# An object's sources, each with the command that compiles it by itself (tab between).
+# The sources of an object, each with the command that compiles it separately, after a tab.
 sources_of() {
   local command joined source
   command=$(ninja -C build/release -t commands "$1" 2>/dev/null | tail -n 1)
-  [[ "$command" == *" -c "* ]] || return 0  # a source that is gone
+  [[ "$command" == *" -c "* ]] || return 0  # a deleted source
   joined=${command##* -c }
   if [[ "$joined" != *_cxx.cxx ]]; then
     printf '%s\t%s\n' "$joined" "$command"
@@ -43,9 +43,10 @@ sources_of() {
     printf '%s\t%s\n' "$source" "${command%% -MD *} -o /dev/null -c $source"
   done < <(cd build/release && sed -n 's/^#include "\(.*\)"$/\1/p' "$joined")
 }
-# What a joined source takes from its neighbours is missing one day: each compiles by itself.
+# In a unity build a source may lack an include that a neighbour has. Here each source is compiled
+# separately.
 if $alone; then
-  echo "Compiling every source by itself ..."
+  echo "Compiling every source separately ..."
   missing=$(ninja -C build/release -t targets all |
     sed -n 's/^\([^:]*_cxx\.cxx\.o\):.*/\1/p' | sort -u |
     while read -r object; do sources_of "$object"; done |
@@ -55,7 +56,7 @@ if $alone; then
     (cd build/release && CCACHE_DISABLE=1 xargs -0 -r -n 2 -P 2 \
        bash -c 'bash -c "$1" >/dev/null 2>&1 || echo "  $0"'))
   if [ -n "$missing" ]; then
-    printf 'check_sources.sh: sources that do not compile by themselves:\n%s\n' "$missing" >&2
+    printf 'check_sources.sh: sources that do not compile separately:\n%s\n' "$missing" >&2
     exit 1
   fi
 fi
@@ -63,7 +64,7 @@ checks=()  # source, command
 for object in "${candidates[@]}"; do
   while IFS=$'\t' read -r source command; do checks+=("$source" "$command"); done < <(sources_of "$object")
 done
-echo "Timing $((${#checks[@]} / 2)) sources by themselves ..."
+echo "Timing $((${#checks[@]} / 2)) sources separately ..."
 slow=()
 if [ ${#checks[@]} -gt 0 ]; then
   while IFS=$'\t' read -r seconds source command; do

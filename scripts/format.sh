@@ -24,6 +24,6 @@ fi
 differing=$(printf '%s\0' "${files[@]}" |
   xargs -0 -n 1 -P 2 bash -c 'clang-format "$0" | cmp -s - "$0" || echo "  $0"' | sort)
 [ -z "$differing" ] && exit 0
-printf 'format.sh: these files differ from .clang-format; scripts/format.sh mends them:\n%s\n' \
+printf 'format.sh: these files differ from .clang-format; scripts/format.sh formats them:\n%s\n' \
   "$differing" >&2
 exit 1

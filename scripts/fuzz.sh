@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Feeds every reader of foreign bytes with what libFuzzer makes up, under the sanitizers for addresses
-# and undefined behaviour: scripts/fuzz.sh [--minutes N] [READER...]
+# Fuzzes every reader of foreign files with libFuzzer, under AddressSanitizer and
+# UndefinedBehaviorSanitizer: scripts/fuzz.sh [--minutes N] [READER...]
 # The minutes (10) are for all of them, one after the other. A finding is kept as a file in
 # tests/fuzz/READER, where an ordinary test replays it from then on. Prints the inputs tried per
-# reader, in this run and in all since build/fuzz was made. Exit status 1 where something was found.
+# reader, in this run and in all since build/fuzz was made. Exit status 1 if something was found.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
@@ -31,7 +31,7 @@ seconds=$(awk -v m="$minutes" -v n=${#readers[@]} 'BEGIN { s = int(60 * m / n); 
 scripts/setup.sh --yes --for build --for fuzz
 lapwing_build fuzz "${readers[@]/#/fuzz_}"
 
-# More would be read more slowly and show little else, unless an input to start from is longer.
+# Longer inputs are slow and find little more, unless an initial input is longer.
 longest_input() {
   local longest
   longest=$(find "tests/fuzz/$1" -type f -printf '%s\n' | sort -n | tail -n 1)
@@ -41,7 +41,7 @@ longest_input() {
 fuzz() {
   local reader=$1 made=build/fuzz/corpus/$1 artifacts=build/fuzz/found/$1 log=build/fuzz/$1.log file
   mkdir -p "$made" "$artifacts"
-  # What libFuzzer made up before is where it goes on from. Leaks are findings as well.
+  # Continues from the inputs of earlier runs. Leaks are findings too.
   ASAN_OPTIONS=detect_leaks=1 "build/fuzz/bin/fuzz_$reader" -max_total_time="$seconds" \
     -max_len="$(longest_input "$reader")" -rss_limit_mb=4096 -timeout=60 -print_final_stats=1 \
     -artifact_prefix="$artifacts/" "$made" "tests/fuzz/$reader" >"$log" 2>&1 || true
@@ -52,7 +52,7 @@ fuzz() {
     mv "$file" "tests/fuzz/$reader/"
     found+=("tests/fuzz/$reader/$(basename "$file")")
   done
-  # It must have come to its end: an input of the folder that it dies of leaves no file.
+  # It must have ended regularly: a crash on an input of the folder leaves no file.
   grep -a -q '^Done [0-9]* runs' "$log" || [ ${#found[@]} -gt 0 ] ||
     found+=("one of the inputs that are there already: $log")
 }
@@ -69,5 +69,5 @@ for reader in "${readers[@]}"; do
 done
 printf '%-22s %14d %14d  %d\n' all "$sum" "$sum_ever" ${#all_found[@]}
 [ ${#all_found[@]} -gt 0 ] || exit 0
-printf 'fuzz.sh: found, to be mended: %s\n' "${all_found[@]}" >&2
+printf 'fuzz.sh: found, to be fixed: %s\n' "${all_found[@]}" >&2
 exit 1

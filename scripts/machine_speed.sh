@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Prints how many times slower this machine compiles now than one with two free cores, on which a cold
-# build takes 300 s: two compilers at a time, on a source that is always the same. Never less than 1.
+# Prints how many times slower this machine compiles now than a machine with two free cores, on
+# which a cold build takes 300 s. It runs two compilers at a time on a fixed source. At least 1.
 #   scripts/machine_speed.sh
 set -euo pipefail
 readonly reference=2.5  # s, of this source on such a machine

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages that Lapwing needs; sourced by the other scripts.
-# What building needs, and authors of plugins: CMake's own default calls make.
+# For building, and for authors of plugins: the default generator of CMake calls make.
 lapwing_packages=(
   g++ cmake ninja-build make ccache pkg-config
   libeigen3-dev libyaml-cpp-dev liblua5.4-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
@@ -14,7 +14,7 @@ lapwing_fuzz_packages=(clang libclang-rt-14-dev)
 lapwing_learn_packages=(libtorch-dev)
 lapwing_fresh_packages=(debootstrap)
 lapwing_check_packages=(clang-format clang-tidy)  # for scripts/format.sh and scripts/tidy.sh
-lapwing_package_packages=(dpkg-dev file)  # dpkg-shlibdeps finds what a .deb depends on
+lapwing_package_packages=(dpkg-dev file)  # dpkg-shlibdeps finds the dependencies of a .deb
 
 # Prints the packages among "$@" that are not installed.
 lapwing_missing() {

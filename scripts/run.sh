@@ -13,7 +13,7 @@ fi
   . scripts/packages.sh
   . scripts/build.sh
   scripts/setup.sh --for build || exit 2
-  # What tests need is not asked for here; a folder that has tests keeps them.
+  # Tests are not needed here. A build folder with tests keeps them.
   [ -f build/release/build.ninja ] || lapwing_configure release -DLAPWING_TESTS=OFF
   lapwing_build release lapwing_app lapwing_all_plugins
 )

@@ -3,7 +3,7 @@
 # Builds everything with sanitizers and runs the tests:
 #   scripts/sanitize.sh address [ctest options]   the whole suite, with AddressSanitizer and
 #                                                 UndefinedBehaviorSanitizer (preset asan)
-#   scripts/sanitize.sh thread [ctest options]    what runs on several threads, with ThreadSanitizer
+#   scripts/sanitize.sh thread [ctest options]    the tests of threaded code, with ThreadSanitizer
 #                                                 (preset tsan)
 # Tests labelled `long` and `browser` are left out.
 set -euo pipefail

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian packages that building, testing, benchmarking and so on need.
 #   scripts/setup.sh [--yes] [--for build|test|bench|fuzz|learn|fresh|check|package]...
-# Prints what it would install; asks first on a terminal unless --yes. Default: build and test.
+# Prints the packages to install. Asks first on a terminal, unless --yes. Default: build and test.
 # `fuzz` is for scripts/fuzz.sh, `learn` for the preset `learn`, `fresh` for tests/fresh_machine,
 # `check` for scripts/format.sh and scripts/tidy.sh, `package` for scripts/package.sh.
 set -euo pipefail
@@ -42,7 +42,7 @@ for what in "${wanted[@]}"; do
 done
 
 if ! command -v dpkg-query >/dev/null; then
-  echo "setup.sh: this is not a Debian; install by hand: ${packages[*]}" >&2
+  echo "setup.sh: this is not Debian; install by hand: ${packages[*]}" >&2
   exit 2
 fi
 mapfile -t missing < <(lapwing_missing "${packages[@]}")
@@ -66,7 +66,7 @@ if ! { "${as_root[@]}" apt-get update -q &&
        "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q \
          --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
   tail -n 20 "$log" >&2
-  echo "setup.sh: apt-get failed; its whole output is in $log" >&2
+  echo "setup.sh: apt-get failed; its output is in $log" >&2
   exit 1
 fi
 rm -f "$log"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Counts and names the tests that were skipped, by reason: scripts/skipped_tests.sh LastTest.log, the
-# log that ctest leaves in BUILD/Testing/Temporary. The tests' own output is what counts.
+# Counts and names the tests that were skipped, by reason: scripts/skipped_tests.sh LastTest.log,
+# the log of ctest in BUILD/Testing/Temporary. The output of the tests counts.
 set -euo pipefail
 [ $# -eq 1 ] && [ -f "$1" ] || { echo "usage: scripts/skipped_tests.sh LastTest.log" >&2; exit 2; }
 awk '

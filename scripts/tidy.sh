@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs clang-tidy, with .clang-tidy, over the sources that changed; a warning is an error.
 #   scripts/tidy.sh [--since COMMIT] [--minutes N] [FILE...]
-# Without files: what differs from COMMIT, or else what the commits of the last day changed, the last
-# change first; and what is not committed yet. A source is checked with the headers that it includes.
-# With --minutes no source is begun after N minutes; how many were left out is printed.
-# Exit status: 0 no warnings, 1 warnings, 2 it cannot run.
+# Without files: those that differ from COMMIT, or were changed by the commits of the last day,
+# latest first; and those with uncommitted changes. A source is checked with the headers that it
+# includes. With --minutes no check starts after N minutes, and the number of unchecked sources is
+# printed. Exit status: 0 no warnings, 1 warnings, 2 it cannot run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -35,13 +35,13 @@ else
     else git log --since='1 day ago' --name-only --pretty=format: -- '*.cpp'; fi
   } | awk 'NF && !seen[$0]++')
 fi
-# Commands that compile each source by itself, and without the precompiled headers of another compiler.
+# Commands that compile each source separately, without the precompiled headers of another compiler.
 mkdir -p build
 cmake -S . -B build/tidy -G Ninja -DCMAKE_BUILD_TYPE=Debug -DLAPWING_TESTS=ON -DLAPWING_UNITY=OFF \
   -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >build/tidy.log 2>&1 ||
   { tail -n 30 build/tidy.log >&2; exit 2; }
 
-# Sources that are in no target (templates, generated ones) have no command.
+# Sources without a target (templates, generated ones) have no command.
 known=()
 for file in "${files[@]}"; do
   ! grep -qF "\"file\": \"$PWD/$file\"" build/tidy/compile_commands.json || known+=("$file")

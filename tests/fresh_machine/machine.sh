@@ -1,27 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-# What run.sh and steps.sh share: whether a machine can be made here, and of what. Sourced.
+# Functions of run.sh and steps.sh: whether a machine can be made here, and from which mirror.
+# Sourced.
 
 readonly debian=bookworm  # Debian 12
 
-# The mirror of Debian 12 in this machine's own configuration of apt; "" where there is none.
+# The mirror of Debian 12 in the apt configuration of this machine; "" if there is none.
 mirror_of_apt() {
   apt-get indextargets --format '$(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 2>/dev/null |
     awk -v release="$debian" '$2 == release && $3 == "main" && !found { print $1; found = 1 }'
 }
 
-# Prints why no machine can be made here; fails where one can.
+# Prints why no machine can be made here; fails if one can be made.
 why_not() {
   [ "$(id -u)" = 0 ] || { echo "a chroot needs root"; return; }
   command -v debootstrap >/dev/null ||
-    { echo "there is no debootstrap (package debootstrap: scripts/setup.sh --for fresh)"; return; }
+    { echo "debootstrap is not installed (scripts/setup.sh --for fresh installs it)"; return; }
   [ -n "$(mirror_of_apt)" ] || { echo "apt knows no mirror of Debian 12 ($debian)"; return; }
   unshare --mount --pid --fork --kill-child chroot / /bin/true 2>/dev/null ||
-    { echo "this container allows no chroot in a name space of its own"; return; }
+    { echo "this container allows no chroot in a separate name space"; return; }
   return 1
 }
 
-# commands_of README HEADING: what the shell snippets of a section say to type, in order; a Lua snippet
-# becomes the file that its first line names.
+# commands_of README HEADING: the commands of the shell snippets of a section, in order. A Lua
+# snippet becomes the file that its first line names.
 commands_of() {
   awk -v heading="$2" '
     !fenced && /^## / { inside = index($0, heading) == 1 }

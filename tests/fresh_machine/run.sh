@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# A machine that never saw the project: makes a bare Debian 12, types both commands of the README
-# there, as root and as a user with sudo, installs what was built and writes the plugin of
-# plugins/README.md against it. README.md beside this file says more.
+# Makes a bare Debian 12 and runs both commands of the README there, as root and as a user with
+# sudo. Then installs the build and builds the plugin of plugins/README.md against it. See README.md
+# here.
 #   tests/fresh_machine/run.sh [--keep]
-# Exit status: 0 all of it works, 1 something does not or takes longer than 20 minutes, 77 it cannot
-# run here (the reason is printed). LAPWING_FRESH_SECONDS is another limit, for a slow machine.
+# Exit status: 0 all steps pass, 1 a step fails or all take longer than 20 minutes, 77 it cannot run
+# here (the reason is printed). LAPWING_FRESH_SECONDS sets another limit, for a slow machine.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 cd "$root"
@@ -29,7 +29,7 @@ export machine log root
 inner= watch=
 cleanup() {
   trap - EXIT INT TERM HUP
-  # The mounts live in the name space of this process alone, and end with it.
+  # The mounts exist in the name space of this process only, and end with it.
   [ -z "$inner" ] || { kill -KILL "$inner" 2>/dev/null; wait "$inner" 2>/dev/null; } || true
   [ -z "$watch" ] || kill "$watch" 2>/dev/null || true
   if $keep; then echo "fresh_machine: kept in $machine"; else rm -rf --one-file-system "$machine"; fi
@@ -39,10 +39,11 @@ trap 'exit 130' INT
 trap 'exit 143' TERM HUP
 
 began=$SECONDS
-# `unshare` heeds no TERM; whatever runs in there ends with it.
+# `unshare` ignores TERM. All processes of its name space end with it.
 unshare --mount --pid --fork --kill-child bash tests/fresh_machine/steps.sh &
 inner=$!
-# Whoever reads our output waits for everyone who holds it: the clock holds none of it, and is ended.
+# A reader of our output waits for every process that has it open. So the timer closes it, and is
+# ended.
 sleep "$most" </dev/null >/dev/null 2>&1 &
 watch=$!
 status=0 ended=
@@ -50,13 +51,13 @@ wait -n -p ended "$inner" "$watch" || status=$?
 took=$((SECONDS - began))
 if [ "${ended:-}" = "$watch" ]; then
   tail -n 20 "$log" >&2
-  echo "fresh_machine: stopped after $took s: its limit is $most s; all of it is in $log" >&2
+  echo "fresh_machine: stopped after $took s: its limit is $most s; the log is $log" >&2
   exit 1
 fi
 inner=
 if [ "$status" -ne 0 ]; then
   tail -n 60 "$log" >&2
-  echo "fresh_machine: failed after $took s; all of it is in $log" >&2
+  echo "fresh_machine: failed after $took s; the log is $log" >&2
   exit 1
 fi
-echo "fresh_machine: all of it works, in $took s of the $most s that it may take"
+echo "fresh_machine: all steps pass, in $took s of at most $most s"

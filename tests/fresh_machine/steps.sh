@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The steps, in a name space of mounts and processes that run.sh made: $machine is the new machine's
-# folder, $root the checkout, $log where everything goes. Whatever is mounted here nobody else sees.
+# The steps, in a name space of mounts and processes that run.sh made. $machine is the folder of the
+# new machine, $root the checkout, $log the log file. Mounts are not visible outside.
 set -euo pipefail
 . "$root/tests/fresh_machine/machine.sh"
 exec 3>&1 >>"$log" 2>&1 </dev/null
@@ -18,13 +18,13 @@ step() {
   printf '  %4d s  %s\n' $((SECONDS - began)) "$text" >&3
 }
 
-# What this machine's apt and network are set to goes along; nothing of it is written elsewhere.
+# Copies the settings of apt and network of this machine to the new one, and nowhere else.
 proxies=()
 for name in http_proxy https_proxy ftp_proxy no_proxy HTTP_PROXY HTTPS_PROXY NO_PROXY; do
   [ -z "${!name:-}" ] || proxies+=("$name=${!name}")
 done
 
-# in_machine MACHINE FOLDER USER HOME COMMAND: a line of bash there, with a bare environment.
+# in_machine MACHINE FOLDER USER HOME COMMAND: runs a line of bash there, with an empty environment.
 in_machine() {
   chroot "$1" /usr/sbin/runuser -u "$3" -- /usr/bin/env -i HOME="$4" USER="$3" \
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb \
@@ -40,7 +40,7 @@ bare_debian() {
   rm -rf "$machine/etc/apt"
   cp -a /etc/apt "$machine/etc/apt"
   cp -an /usr/share/keyrings/. "$machine/usr/share/keyrings/"
-  # A machine that is thrown away need not sync.
+  # A temporary machine needs no sync.
   echo force-unsafe-io >"$machine/etc/dpkg/dpkg.cfg.d/unsafe-io"
   cp -L /etc/resolv.conf /etc/hosts "$machine/etc/"
   local ca=/usr/local/share/ca-certificates
@@ -68,15 +68,15 @@ mounts() {
   ln -s pts/ptmx "$machine/dev/ptmx"
 }
 
-# The bare machine once more, for who installs the package and has no source.
+# A second bare machine, for the installation of the package without sources.
 readonly bare="$machine/var/bare"
 copy_of_bare() {
   mkdir "$bare"
   tar -C "$machine" --exclude=./var/bare -c . | tar -C "$bare" -x
 }
 
-# The package that scripts/package.sh writes, installed by apt there, flies the first example and names
-# the plugins that it brought.
+# apt installs the package of scripts/package.sh there. The program then runs the first example and
+# lists its plugins.
 package() {
   as_root "bash scripts/package.sh" || return 1
   cp "$machine$place"/build/lapwing_*.deb "$bare/root/"
@@ -92,7 +92,7 @@ test -s out/castle_flyover/report.html
 test -s /usr/share/man/man1/lapwing.1"
 }
 
-# A copy of the files that git knows or would take, as they are now.
+# A copy of the tracked and untracked files of git, without the ignored ones.
 checkout() {
   rm -rf "$machine$place"
   mkdir -p "$machine$place"
@@ -109,19 +109,19 @@ a_user_with_sudo() {
     chroot "$machine" useradd -m -s /bin/bash "$user" &&
     echo "$user ALL=(ALL) NOPASSWD: ALL" >"$machine/etc/sudoers.d/$user" &&
     chroot "$machine" chown -R "$user:" /var/cache/ccache &&
-    # So that either command has something to install by sudo.
+    # Both commands then have something to install by sudo.
     as_root "apt-get purge -y -q make ninja-build libgmock-dev libgtest-dev"
 }
 
-# What the READMEs say to type is taken from there, so that what is tried is what they say.
+# The commands are read from the READMEs.
 mapfile -t typed < <(commands_of "$root/README.md" '## Two commands' | sed 's/ *# .*//')
 [ ${#typed[@]} -eq 2 ] || { echo "README.md: expected two commands, not ${#typed[@]}" >&3; exit 1; }
 readonly first=${typed[0]} second=${typed[1]}
 install=$(commands_of "$root/README.md" '## `lapwing` as a command' | grep '^cmake ')
 guide=$(commands_of "$root/plugins/README.md" '## A first cost term')
 
-# The plugin in ten minutes, against what was installed; then installed beside it, as the guide says
-# too, and flown with no --plugin-path.
+# The plugin of the guide, built against the installation; then installed beside it, as in the
+# guide, and used without --plugin-path.
 plugin() {
   as_user "
 set -e
@@ -146,6 +146,6 @@ step "scripts/package.sh, and its package on a bare Debian 12" package
 step "a user with sudo" a_user_with_sudo
 checkout "$user"
 step "as a user: $first" as_user "$first"
-# The longest programs, which know nothing of who runs them, ran as root.
+# The longest programs do not depend on the user, and ran as root.
 step "as a user: $second -E ^missions" as_user "$second -E ^missions"
 step "cmake --install, and a plugin against it" plugin
