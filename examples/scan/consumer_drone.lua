@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- A church from a consumer drone of which only its maker's limits are known. It rests in every view;
--- between views it flies smooth legs within its limits of speed, acceleration and jerk.
+-- A church from a consumer drone of which only its maker's limits are known. It rests in every
+-- view. Between views it flies smooth legs within its limits of speed, acceleration and jerk.
 local scan = require "mission.scan"
 
 return scan.of_scene {

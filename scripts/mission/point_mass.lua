@@ -25,12 +25,16 @@ end
 
 -- The derivative of a position that is kept small, from the third order on taken from what the
 -- model moves by: the force over the mass, or the acceleration. It is the same figure, while the
--- fourth difference of positions has rounding errors 1 / step^2 larger.
+-- fourth difference of positions has rounding errors 1 / step^2 larger. A wing moves by its
+-- accelerations along, across and up. Differences of positions do not see those that alternate.
 local function smoothness_of(p, vehicle, smooth)
   if smooth.order > 2 and p:has_block("force") then
     return { block = "force", order = smooth.order - 2, weight = smooth.weight / vehicle.mass ^ 2 }
   elseif smooth.order > 2 and p:has_block("acceleration") then
     return { block = "acceleration", order = smooth.order - 2, weight = smooth.weight }
+  elseif smooth.order > 2 and p:has_block("lateral_acceleration") then
+    return { block = "lateral_acceleration forward_acceleration climb_acceleration",
+             order = smooth.order - 2, weight = smooth.weight }
   end
   return { order = smooth.order, weight = smooth.weight }
 end

@@ -8,8 +8,7 @@ local patterns = require "mission.scan_patterns"
 local M = {}
 
 local SAFE_ABOVE = 4      -- m of a region, unless said otherwise
-local FLIGHT_ABOVE = { crosshatch = 5 }  -- m of the safe height, likewise
-local FLIGHT_ABOVE_ELSE = 15
+local FLIGHT_ABOVE, FLIGHT_ABOVE_ELSE = { crosshatch = 5 }, 15  -- m of the safe height, likewise
 local VIEW = 4            -- m from a wall, to look along it: beside the body, round a mesh's bounds
 local DOWN_APART = 0.5    -- heights over the floor, between images that look down
 local FEWEST_DOWN, MOST_DOWN = 6, 200
@@ -65,7 +64,7 @@ function M.resolution(run)
   return edge
 end
 
--- How far up or down the map and the reconstruction may move a surface.
+-- How far the map and the reconstruction may move a surface up or down.
 local function moved(run) return M.resolution(run) + run.options.surface.cell end
 
 -- Round the bounds of a mesh of the user's, so that its outermost walls belong to it and are seen

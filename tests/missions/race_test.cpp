@@ -60,7 +60,7 @@ TEST_F(Race, OtherSolversSayWhichOneToTake) {
   const Flown flown = fly("../racing/seven_gates.lua", "--set solver=nlopt");
   EXPECT_EQ(flown.status, 1);
   EXPECT_EQ(flown.result.at("solver").at("status").as_text(), "unsupported");
-  EXPECT_NE(flown.result.at("notes").as_list().at(0).as_text().find("take the solver ipopt"),
+  EXPECT_NE(flown.result.at("notes").as_list().at(0).as_text().find("use the solver ipopt"),
             std::string::npos);
 }
 

@@ -224,7 +224,7 @@ TEST(StatedConstraints, CorruptOperationsAreRefusedByName) {
   refused(broken, "operation 1 reads operation -1");
   broken = west(4);
   broken.operations.push_back({.op = static_cast<ConstraintOp>(77)});
-  refused(broken, "operation 1 is none that there is");
+  refused(broken, "operation 1 is unknown");
   broken = west(4);
   broken.operations.push_back(constant(none));
   refused(broken, "holds a number that is not finite");
@@ -239,7 +239,7 @@ TEST(StatedConstraints, CorruptOperationsAreRefusedByName) {
   refused(broken, "a sample -1 later");
   broken = west(4);
   broken.results[0].operation = 9;
-  refused(broken, "result 0 is of operation 9, which there is not");
+  refused(broken, "result 0 is of operation 9, which does not exist");
   refused(west(none), "has a bound that is not finite");
   broken = west(4);
   broken.results[0].lower = 5;

@@ -38,6 +38,14 @@ T inverse_root(const T& s, double least) {
   return root * (1.0 + d * (0.375 * d - 0.5));
 }
 
+// Thrust less drag over the mass, m/s^2: what changes the speed and the height.
+template <class T, class Velocity>
+T excess_thrust(const Velocity& v, const T& forward, const T& climb, double least) {
+  const T across = v.x() * v.x() + v.y() * v.y(), all = across + v.z() * v.z();
+  const T speed = across * inverse_root(across, least);
+  return (speed * forward + v.z() * (climb + kGravity)) * inverse_root(all, least);
+}
+
 // One row each: airspeed above the stall, and both sides of the excess thrust.
 class WingLimitRows final : public DifferentiableConstraint<WingLimitRows> {
  public:
@@ -55,12 +63,10 @@ class WingLimitRows final : public DifferentiableConstraint<WingLimitRows> {
     using std::sqrt;
     const auto v = stage.template vector<3>(0);
     const T tangent = stage.scalar(1) * (1 / kGravity);
-    const T across = v.x() * v.x() + v.y() * v.y(), all = across + v.z() * v.z();
+    const T all = v.x() * v.x() + v.y() * v.y() + v.z() * v.z();
     const double stall = limits_.stall_speed * limits_.stall_speed;
     rows[0] = all * (1 / stall) - sqrt(1.0 + tangent * tangent);
-    const T speed = across * inverse_root(across, stall / 4);
-    rows[1] = (speed * stage.scalar(2) + v.z() * (stage.scalar(3) + kGravity)) *
-              inverse_root(all, stall / 4);
+    rows[1] = excess_thrust<T>(v, stage.scalar(2), stage.scalar(3), stall / 4);
   }
 
   void bounds(InstanceRange range, double* lower, double* upper) const override {
@@ -68,6 +74,34 @@ class WingLimitRows final : public DifferentiableConstraint<WingLimitRows> {
       *lower++ = 0, *upper++ = kInfinity;
       *lower++ = limits_.thrust_min, *upper++ = limits_.thrust_max;
     }
+  }
+
+ private:
+  WingLimits limits_;
+};
+
+// The excess thrust at the end of each step: inputs are held over it while the speed changes.
+class ThrustAtEnds final : public DifferentiableConstraint<ThrustAtEnds> {
+ public:
+  explicit ThrustAtEnds(const WingLimits& limits) : limits_(limits) {}
+
+  FunctionShape declare(const ProblemSetting& setting) {
+    return {.blocks =
+                setting.layout.indices({"velocity", "forward_acceleration", "climb_acceleration"}),
+            .window = 2,
+            .rows = 1,
+            .row_names = {"excess_thrust"}};
+  }
+
+  template <class T>
+  void residual(const Stage<T>& stage, Rows<T>& rows) const {
+    rows[0] = excess_thrust<T>(stage[1].template vector<3>(0), stage.scalar(1), stage.scalar(2),
+                               limits_.stall_speed * limits_.stall_speed / 4);
+  }
+
+  void bounds(InstanceRange range, double* lower, double* upper) const override {
+    std::fill_n(lower, range.count, limits_.thrust_min);
+    std::fill_n(upper, range.count, limits_.thrust_max);
   }
 
  private:
@@ -204,6 +238,7 @@ class FixedWing final : public DifferentiableModel<FixedWing, 8, 3> {
   std::vector<std::pair<std::string, std::unique_ptr<Constraint>>> conditions() const override {
     std::vector<std::pair<std::string, std::unique_ptr<Constraint>>> all;
     all.emplace_back("limits", std::make_unique<WingLimitRows>(limits_));
+    all.emplace_back("thrust_at_ends", std::make_unique<ThrustAtEnds>(limits_));
     all.emplace_back("course", std::make_unique<StartingCourse>());
     return all;
   }

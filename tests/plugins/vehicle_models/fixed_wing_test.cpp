@@ -87,13 +87,13 @@ TEST(FixedWing, ConditionsSayStallThrustAndCourse) {
   const Environment environment;
   const Horizon horizon{.stages = 4, .step = 0.2};
   auto conditions = model->conditions();
-  ASSERT_EQ(conditions.size(), 2u);
+  ASSERT_EQ(conditions.size(), 3u);
   Workspace workspace;
   Random random(3);
   for (auto& [name, constraint] : conditions) {
     const FunctionShape shape = constraint->bind({layout, horizon, vehicle, environment});
-    const std::size_t width = name == "limits" ? 6 : 4;
-    std::vector<double> x{15, 4, 2, 1, 0.5, 0.2};
+    const std::size_t width = name == "limits" ? 6 : name == "course" ? 4 : 10;
+    std::vector<double> x{15, 4, 2, 1, 0.5, 14, 5, 1, 0.2, 0.3};
     x.resize(width);
     for (double& value : x) value += random.uniform(-1, 1);
     RowMajorMatrix stated(shape.rows, width);
@@ -114,6 +114,11 @@ TEST(FixedWing, ConditionsSayStallThrustAndCourse) {
   std::vector<double> climbing{16, 0, 4, 0, 1, 0};
   conditions[0].second->evaluate({0, 1}, climbing.data(), rows.data(), nullptr, workspace);
   EXPECT_NEAR(rows[1], (16 + kGravity * 4) / std::hypot(16, 4), 1e-12);
+  // The inputs of a step at the velocity of its end.
+  std::vector<double> step{16, 0, 0, 1, 0, 16, 0, 4, -9, -9};
+  EXPECT_EQ(conditions[1].first, "thrust_at_ends");
+  conditions[1].second->evaluate({0, 1}, step.data(), rows.data(), nullptr, workspace);
+  EXPECT_NEAR(rows[0], (16 + kGravity * 4) / std::hypot(16, 4), 1e-12);
 }
 
 TEST(FixedWing, NeedsAWingAndCannotRest) {
