@@ -28,7 +28,7 @@ void add_plugin_commands(CLI::App& app, Invocation& invocation, std::string& nam
   add_json(*path, invocation);
   path->callback([&] { command = [&] { return show_plugin_path(invocation); }; });
   CLI::App* check = plugins->add_subcommand(
-      "check", "run the checks of its kind, each test in a process of its own");
+      "check", "run the checks of its kind, each test in a separate process");
   add_text(*check, "plugin", "FILE.so|[KIND/]NAME", "a library, or the name of a plugin",
            [&](const std::string& given) { asked.target = given; })
       ->required();

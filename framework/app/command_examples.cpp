@@ -15,7 +15,7 @@ constexpr const char* kOfPlans =
     "error; 130 interrupted";
 constexpr const char* kOfFiles = "0 done; 2 bad input; 3 internal error";
 constexpr const char* kOfStudies =
-    "0 done; 2 bad input; 3 internal error; 130 interrupted: --resume goes on";
+    "0 done; 2 bad input; 3 internal error; 130 interrupted: --resume continues";
 
 struct CommandExamples {
   const char* path;
@@ -38,7 +38,7 @@ const std::vector<CommandExamples>& command_examples() {
         "lapwing sweep shot.lua --vary \"start_velocity=[0, 0, 0],[1, 0, 0]\" -o out/starts",
         "lapwing sweep shot.lua --vary weights.smoothness=0.1,1,10 --resume"},
        "the worst of the runs: 0 all certified; 1 one is infeasible or not certified; 2 bad input; "
-       "3 internal error; 130 interrupted: --resume goes on"},
+       "3 internal error; 130 interrupted: --resume continues"},
       {"lapwing diff",
        {"lapwing diff out/a out/b", "lapwing diff out/a/plan.json out/b/plan.json -o diff.html"},
        "0 the plans are the same; 1 they differ; 2 bad input; 3 internal error"},
@@ -47,7 +47,7 @@ const std::vector<CommandExamples>& command_examples() {
        "0 certified; 1 not certified; 2 bad input; 3 internal error"},
       {"lapwing simulate",
        {"lapwing simulate out/shot/plan.json --wind 5,1 --mass-error 10 -o flight.html"},
-       "0 done; 1 the vehicle is lost or further from the plan than a certificate allows; 2 bad "
+       "0 done; 1 the vehicle is lost, or farther from the plan than a certificate allows; 2 bad "
        "input; 3 internal error"},
       {"lapwing export",
        {"lapwing export out/shot/plan.json --format csv -o shot.csv"},

@@ -91,13 +91,15 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
                        FlightConditions& conditions, std::string& format,
                        std::filesystem::path& target, Judges& judges, bool& uncertified,
                        Command& command) {
-  CLI::App* verify = app.add_subcommand("verify", "judge a plan from its numbers alone");
+  CLI::App* verify =
+      app.add_subcommand("verify", "judge a plan again, independently of its solver");
   add_plan(*verify, plan);
   add_text(*verify, "--vehicle", "FILE",
-           "judge by this vehicle file, or its name in configs/; default: the plan's own vehicle",
+           "vehicle file, or its name in configs/, that states the limits; default: the vehicle of "
+           "the plan",
            [&](const std::string& path) { judges.vehicle = path; });
   add_text(*verify, "--environment", "FILE",
-           "judge by the obstacles of this YAML file; default: those of the plan",
+           "YAML file that states the obstacles; default: those of the plan",
            [&](const std::string& path) { judges.environment = path; });
   add_json(*verify, invocation);
   verify->callback([&] { command = [&] { return verify_plan(plan, judges, invocation); }; });
@@ -220,12 +222,12 @@ ExitStatus guarded_command(const Command& command, const Invocation& invocation)
                         "cannot use '" + error.path1().string() + "': " + error.code().message());
   } catch (const std::bad_alloc&) {
     return report_error(invocation, ExitStatus::defect,
-                        "out of memory: this needs more than the system or a limit (ulimit -v) "
+                        "out of memory: it needs more than the system or a limit (ulimit -v) "
                         "gives");
   } catch (const std::system_error& error) {
     const bool scarce = error.code() == std::errc::resource_unavailable_try_again;
     return report_error(invocation, ExitStatus::defect,
-                        scarce ? "the system gives no more threads or memory; is there a limit "
+                        scarce ? "the system refuses more threads or memory; is there a limit "
                                  "(ulimit -u, ulimit -v)?"
                                : std::string("internal error: ") + error.what());
   } catch (const std::exception& error) {
@@ -278,7 +280,7 @@ void declare_commands(CLI::App& app, Requests& asked) {
   Invocation& invocation = asked.invocation;
   Command& command = asked.command;
   app.set_version_flag("--version", std::string("lapwing ") + program_version(),
-                       "the program's version");
+                       "print the version of the program");
   app.require_subcommand(1);
   add_repeated(app, "--plugin-path", "DIR", invocation.plugin_path,
                "a folder of plugins, searched first; repeatable; default: none");

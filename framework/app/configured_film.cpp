@@ -78,7 +78,7 @@ class ConfiguredFilm {
       const std::string name = "keyframe " + std::to_string(i + 1);
       const auto position = stated_numbers(asked[i], "position");
       if (position && !same_vector(*position, here[i].position))
-        fault(name + " is elsewhere in the plan than in its configuration");
+        fault(name + " has another position in the plan than in its configuration");
       timed = keyframe_time(name, asked[i], here[i]) || timed;
       yaw(name, asked[i], here[i]);
     }
@@ -172,7 +172,7 @@ class ConfiguredFilm {
   }
 
   void track(const std::string& who, const Value& asked, const Subject& here) {
-    const std::string wrong = who + " is elsewhere in the plan than in its configuration";
+    const std::string wrong = who + " has another position in the plan than in its configuration";
     if (const auto position = stated_numbers(asked, "position")) {
       if (here.positions.size() != 1 || !same_vector(*position, here.positions[0])) fault(wrong);
       return;

@@ -141,7 +141,7 @@ void compare_race(const Plan& plan, ConfigurationComparison& found) {
   if (!stated_text(asked, "input").empty())
     found.not_compared.push_back("gates of the file '" + stated_text(asked, "input") + "'");
   else if (free_form && stated_number(*free_form, "length"))
-    found.not_compared.push_back("gates of a course that was drawn by chance");
+    found.not_compared.push_back("gates of a random course");
   else
     compare_gates(plan, found);
   const auto floor = stated_number(asked, "floor");
@@ -183,8 +183,8 @@ void compare_scan(const Plan& plan, ConfigurationComparison& found) {
                  " rad", Than::above, found);
   compare_closed_loop(plan, found);
   found.not_compared.push_back(
-      "the map and the mesh that the tour keeps away from and sees in, its views and how many "
-      "voxels they see: they come of the first flight");
+      "the map and the mesh of the tour, its views and how many "
+      "voxels they see: they result from the first flight");
 }
 
 void compare_light_painting(const Plan& plan, ConfigurationComparison& found) {
@@ -201,7 +201,8 @@ void compare_light_painting(const Plan& plan, ConfigurationComparison& found) {
     found.faults.push_back(
         "the closed loop is reported only in the plan, and required of light "
         "paintings");
-  found.not_compared.push_back("the strokes: they come of a text, a picture or a list of points");
+  found.not_compared.push_back(
+      "the strokes: they result from a text, a picture or a list of points");
 }
 
 }  // namespace lapwing

@@ -112,7 +112,7 @@ void compare_obstacles(const Plan& plan, ConfigurationComparison& found) {
   count("maps", "map", maps);
   if (meshes + maps > 0)
     found.not_compared.push_back(
-        "what the files of meshes and maps hold: they are compared by name and number");
+        "the content of mesh and map files: they are compared by name and number");
 }
 
 void compare_zones(const Plan& plan, ConfigurationComparison& found) {

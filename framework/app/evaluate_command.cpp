@@ -100,8 +100,8 @@ ScanCase case_of(const fs::path& script, std::uint64_t seed, const Invocation& g
   if (!found) throw InputError(script.string() + ": the mission states no tour");
   if (!surface) {
     throw InputError(script.string() +
-                     ": nothing is known of the true surface, only files of a flight; a study "
-                     "needs a scene or a mesh to judge by");
+                     ": the true surface is not known, only files of a flight; a study "
+                     "needs a scene or a mesh");
   }
   found->surface = surface;
   return std::move(*found);

@@ -82,14 +82,15 @@ Value settings_for(const ExploreEvaluation& request, Value stated) {
   const fs::path episodes = request.folder / "episodes";
   if (fs::exists(episodes) && !fs::is_empty(episodes)) {
     if (!fs::exists(settings))
-      throw InputError("'" + episodes.string() + "' is there, but no settings.json that says " +
-                       "what it holds: choose another folder with -o");
+      throw InputError("'" + episodes.string() + "' exists, but no settings.json that states " +
+                       "its content: choose another folder with -o");
     const Value there = from_json(read_file(settings), settings.string());
     if (!of_an_evaluation(there))
       throw InputError("'" + settings.string() +
                        "' is not of an evaluation of explorations: choose another folder with -o");
     if (!request.resume)
-      throw InputError("'" + request.folder.string() + "' holds an evaluation: go on with " +
+      throw InputError("'" + request.folder.string() +
+                       "' contains an evaluation: continue it with " +
                        "--resume, or choose another folder with -o");
     if (const std::string difference = settings_difference(there, stated); !difference.empty()) {
       throw InputError("'" + settings.string() +
@@ -126,7 +127,7 @@ void require_same_starts(const ExploreEvaluation& request, const Value& stated,
   if (!fs::exists(settings))
     throw InputError(option + ": no evaluation is there (no settings.json)");
   if (fs::exists(request.folder) && fs::equivalent(request.folder, request.against))
-    throw InputError(option + ": is this evaluation's own folder");
+    throw InputError(option + ": is the folder of this evaluation");
   const Value there = from_json(read_file(settings), settings.string());
   const auto part = [&](const Value& of) {
     Value kept = Value::map();
@@ -141,7 +142,7 @@ void require_same_starts(const ExploreEvaluation& request, const Value& stated,
   };
   if (const std::string difference = settings_difference(part(there), part(stated));
       !difference.empty())
-    throw InputError(option + ": its starts are not these: " + difference);
+    throw InputError(option + ": its starts differ: " + difference);
   for (const WorldName& world : worlds)
     for (const std::string& utility : utilities)
       for (std::int64_t episode = 1; episode <= request.episodes; ++episode) {
@@ -185,7 +186,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
   for (const std::string& text : invocation.overrides) apply_override(parameters, text);
   for (const auto& [name, given] : parameters.as_map()) {
     if (std::find(utilities.begin(), utilities.end(), name) == utilities.end())
-      throw InputError("--set " + name + ": no such utility is evaluated");
+      throw InputError("--set " + name + ": this utility is not among those evaluated");
     registry.create<ViewUtility>(name, given, name);
   }
   // What another run of other settings left would be taken for this one's.
@@ -256,7 +257,7 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
     std::cout << visible_text(tables.text);
     for (const auto& [world, own] : records.moves.as_map())
       std::cout << "\n"
-                << visible_line(world) << " was explored by the moves that its scene recommends: "
+                << visible_line(world) << " was explored with the moves that its scene recommends: "
                 << visible_line(settings_text(own)) << " (--moves KEY=VALUE sets others)";
     std::cout << "\nreport: " << visible_line(report) << std::endl;
   }

@@ -80,10 +80,10 @@ std::vector<WorldName> distinct_worlds(const std::vector<std::string>& given,
       const auto [found, fresh] = taken.emplace(file_text(name.text()), one);
       if (found->first.size() > kLongestName)
         throw InputError(command + ": the name of world '" + name.text() + "' is too long for " +
-                         "files that are called after it: rename it");
+                         "files that are named after it: rename it");
       if (!fresh)
         throw InputError(command + ": the worlds '" + found->second + "' and '" + one +
-                         "' would both be called '" + name.text() +
+                         "' would both have the name '" + name.text() +
                          "': name each once, and files of one name one after the other, into "
                          "folders of their own");
       names.push_back(std::move(name));
@@ -115,7 +115,8 @@ std::vector<WorldName> world_names(const std::string& given) {
   const std::uint64_t first = seed_of(seeds.substr(0, dash), given);
   const std::uint64_t last = dash == seeds.npos ? first : seed_of(seeds.substr(dash + 1), given);
   if (last < first || last - first > 10'000)
-    throw InputError("world '" + given + "': the last seed lies before the first, or far beyond");
+    throw InputError("world '" + given +
+                     "': the last seed is below the first, or too far above it");
   std::vector<WorldName> names;
   if (last > kLargestSeed)
     throw InputError("world '" + given + "': expected seeds up to " + std::to_string(kLargestSeed));
@@ -127,7 +128,7 @@ std::vector<WorldName> world_names(const std::string& given) {
 void require_world(const WorldName& name, const std::string& up) {
   if (!up.empty()) up_axis(up);
   if (!up.empty() && !name.is_mesh())
-    throw InputError("--up is for mesh files, and '" + name.scene + "' is none");
+    throw InputError("--up is for mesh files, not for '" + name.scene + "'");
   if (fs::exists(name.file())) return;
   if (name.is_mesh()) throw InputError("'" + name.file().string() + "' not found");
   throw InputError(no_scene(name.scene) + " and no file");
@@ -206,9 +207,9 @@ Value ExplorationSetup::set_mapping(const std::vector<std::string>& given) {
           .number("pitch_deg", -10, "deg", "of every view, positive up", between(-89, 89))
           .number("range", EpisodeSettings().sensor.range, "m", "largest depth", between(0.1, 1000))
           .number("resolution", 0.4, "m", "edge of a voxel", between(0.01, 10))
-          .number("hit", 0.9, "", "that a voxel with a measured point is occupied",
+          .number("hit", 0.9, "", "occupancy probability of a voxel with a measured point",
                   between(0.501, 0.999))
-          .number("miss", 0.1, "", "that a voxel that a ray passed is occupied",
+          .number("miss", 0.1, "", "occupancy probability of a voxel that a ray passed",
                   between(0.001, 0.499)),
       mapping, "");
   episode.sensor.pinhole =

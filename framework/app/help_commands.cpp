@@ -62,7 +62,8 @@ std::string unknown_word(const CLI::App& app, const ReachedCommand& reached) {
   const std::vector<std::string> commands = names_of_commands(*reached.app);
   if (rest.empty()) return "";
   if (commands.empty())
-    return "'" + reached.path + "' takes no '" + rest.front() + "' beside what it has been given";
+    return "'" + reached.path + "' takes no '" + rest.front() +
+           "' in addition to the other arguments";
   return "unknown command '" + rest.front() + "'" + did_you_mean(rest.front(), commands);
 }
 
@@ -107,7 +108,7 @@ ExitStatus print_help(const CLI::App& app, const std::vector<std::string>& words
 
 void add_help_commands(CLI::App& app, const Invocation& invocation, HelpRequest& asked,
                        Command& command) {
-  CLI::App* version = app.add_subcommand("version", "the program's version");
+  CLI::App* version = app.add_subcommand("version", "print the version of the program");
   version->callback([&] {
     command = [] {
       std::cout << "lapwing " << program_version() << std::endl;
@@ -116,7 +117,7 @@ void add_help_commands(CLI::App& app, const Invocation& invocation, HelpRequest&
   });
   CLI::App* help = app.add_subcommand("help", "list the commands, or describe one");
   add_text(*help, "command", "COMMAND...",
-           "a command such as run, or map info; default: all commands",
+           "a command, such as run or map info; default: all commands",
            [&](const std::string& word) { asked.words.push_back(word); })
       ->expected(-1)
       ->take_all();
@@ -139,7 +140,7 @@ void add_help_commands(CLI::App& app, const Invocation& invocation, HelpRequest&
   })->required();
   add_text(*names, "script", "MISSION.lua", "whose settings",
            [&](const std::string& path) { asked.script = path; });
-  add_text(*names, "typed", "KEY=", "what they begin with",
+  add_text(*names, "typed", "KEY=", "the beginning of the names",
            [&](const std::string& text) { asked.typed = text; });
   names->callback([&] {
     command = [&] {
@@ -179,7 +180,7 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> below = shown_commands(*reached.app);
   if (!message.empty() || below.empty())
     return (message.empty() ? reason : message) + "\nRun '" + reached.path +
-           " --help' for what it takes.";
+           " --help' for its options.";
   message = "expected a command after '" + reached.path + "':";
   for (const CLI::App* command : below) {
     std::string name = command->get_name();
@@ -187,7 +188,8 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
     message += "\n  " + name + " " + command->get_description();
   }
   return message + "\nRun '" + reached.path +
-         (reached.app == &app ? " help COMMAND'" : " COMMAND --help'") + " for what one takes.";
+         (reached.app == &app ? " help COMMAND'" : " COMMAND --help'") +
+         " for the options of a command.";
 }
 
 }  // namespace lapwing

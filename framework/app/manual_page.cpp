@@ -86,10 +86,11 @@ std::string manual_page(const CommandEntry& tree, const std::string& version) {
       ".SH NAME\nlapwing \\- plan flights for camera drones\n"
       ".SH SYNOPSIS\n\\fBlapwing\\fR \\fICOMMAND\\fR [\\fIOPTION\\fR]...\n"
       ".SH DESCRIPTION\n"
-      "A mission script in Lua says what a flight is for.  Lapwing finds a smooth trajectory that\n"
+      "A mission script in Lua states the purpose of a flight.  Lapwing finds a smooth trajectory "
+      "that\n"
       "the vehicle can fly, has it judged by an independent verifier, and writes a plan, a report\n"
       "and files for flight.\n"
-      ".SH OPTIONS\nThese go with every command.\n" +
+      ".SH OPTIONS\nOptions of every command.\n" +
       options_as_roff(tree) + ".SH COMMANDS\n";
   for (const CommandEntry* command : every_command(tree)) {
     if (!command->commands.empty()) continue;
@@ -109,7 +110,7 @@ std::string manual_page(const CommandEntry& tree, const std::string& version) {
       ".TP\n\\fBLAPWING_DATA\\fR\nfolders that scripts may read, joined by colons\n"
       ".TP\n\\fBLAPWING_PLUGIN_PATH\\fR\nfolders of plugins, joined by colons\n"
       ".TP\n\\fBLAPWING_HOME\\fR\nthe folder that holds configs and scripts\n"
-      ".TP\n\\fBNO_COLOR\\fR\nwhere it is set and not empty, nothing is coloured unless "
+      ".TP\n\\fBNO_COLOR\\fR\nif it is set and not empty, nothing is coloured unless "
       "\\fB\\-\\-color always\\fR asks for it\n"
       ".SH FILES\n"
       ".TP\n\\fIout/MISSION/plan.json\\fR\nthe plan; beside it report.html, trajectory.csv and "

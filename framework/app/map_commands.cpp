@@ -74,7 +74,7 @@ ExitStatus show_map(const fs::path& file, const Invocation& invocation) {
   std::printf("  leaves     %zu\n", read.leaves.size());
   std::printf("  free       %llu voxels\n", static_cast<unsigned long long>(counts.free));
   std::printf("  occupied   %llu voxels\n", static_cast<unsigned long long>(counts.occupied));
-  std::printf("  undecided  %llu voxels, known and neither\n",
+  std::printf("  undecided  %llu voxels, known, but neither free nor occupied\n",
               static_cast<unsigned long long>(counts.known - counts.free - counts.occupied));
   if (const auto bounds = map->bounds()) {
     const char* axes = "xyz";

@@ -55,7 +55,7 @@ void print_summary(const MappingOutcome& outcome, const std::string& status) {
     std::printf("  integrated in %.3g s, %.3g ms an image\n", mapping.seconds,
                 1e3 * mapping.seconds / static_cast<double>(mapping.scans));
   if (counts.free + counts.occupied == 0)
-    std::printf("  nothing was measured often enough to be free or occupied\n");
+    std::printf("  no voxel was measured often enough to be free or occupied\n");
   std::printf("  report: %s\n",
               visible_line((outcome.target.folder() / "report.html").string()).c_str());
   if (const std::string old = outcome.target.old_run_in_words(); !old.empty())

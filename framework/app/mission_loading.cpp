@@ -59,7 +59,7 @@ void require_script(const fs::path& script) {
                      file + "`");
   if (script.extension() == ".yaml")
     throw InputError("'" + file +
-                     "' is not a mission script, NAME.lua; a configuration is laid over "
+                     "' is not a mission script, NAME.lua; a configuration is applied to "
                      "one by --config " +
                      file);
   if (!fs::exists(script) && fs::exists(file + ".lua"))

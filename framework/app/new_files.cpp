@@ -74,8 +74,7 @@ void expect_free_class(const std::string& name, const std::string& class_name,
   for (std::string one; taken >> one;)
     if (one == class_name)
       throw InputError("'" + name + "' cannot be a plugin's name: its class would be " +
-                       class_name + ", which is one of the kernel's; choose another, such as my_" +
-                       name);
+                       class_name + ", which the kernel uses; choose another, such as my_" + name);
 }
 
 // keep_low: KeepLow

@@ -42,8 +42,7 @@ void print_others(const Certificate& certificate) {
     if (!failed && !follows) print_check(check);
   }
   if (not_made > 0)
-    std::printf("  the other %d checks were not made: they need a document that holds together\n",
-                not_made);
+    std::printf("  the other %d checks were not made: they need a consistent document\n", not_made);
 }
 
 void print_failures(const Certificate& certificate) {
@@ -59,11 +58,11 @@ void warn_of_changes(const JudgedPlan& judged, const Judges& judges) {
   for (const Value& section : judged.provenance.at("document").at("changed").as_list())
     sections += (sections.empty() ? "" : ", ") + section.as_text();
   if (!sections.empty())
-    std::fprintf(stderr, "lapwing: the plan was changed after it was planned: %s\n",
+    std::fprintf(stderr, "lapwing: the plan was changed after planning: %s\n",
                  visible_line(sections).c_str());
   else if (own && stored && stored->type() == Value::Type::boolean && stored->as_boolean() != now)
     std::fprintf(stderr,
-                 "lapwing: the plan says of itself that it is %scertified; its numbers say that "
+                 "lapwing: the plan states that it is %scertified; its numbers show that "
                  "it is %scertified\n",
                  stored->as_boolean() ? "" : "not ", now ? "" : "not ");
   for (const std::string& change : judged.changes)
@@ -116,9 +115,9 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
       failures += "\n  " + visible_line(to_line(check));
     std::fprintf(stderr, "lapwing: '%s' is not certified%s%s\n",
                  visible_line(file.string()).c_str(),
-                 uncertified ? ", and exported all the same:" : ":", failures.c_str());
+                 uncertified ? ", and exported on request:" : ":", failures.c_str());
     if (!uncertified) {
-      std::fprintf(stderr, "  nothing was written; --uncertified exports it all the same\n");
+      std::fprintf(stderr, "  nothing was written; --uncertified exports it\n");
       return ExitStatus::not_certified;
     }
   }

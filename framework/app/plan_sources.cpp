@@ -138,9 +138,9 @@ Plan with_environment(Plan plan, const fs::path& file, std::map<std::string, fs:
   ParameterTable named;
   named.text("name", "", "for messages").required_text("file", "beside this file");
   ParameterTable table = shapes_table();
-  table.tables("meshes", named, "to keep away from, in metres with z up")
-      .tables("maps", named, "occupied or unknown: to keep away from")
-      .optional_number("margin", "m", "kept from every surface; absent: as the plan has it",
+  table.tables("meshes", named, "obstacle, in metres with z up")
+      .tables("maps", named, "occupied and unknown voxels are obstacles")
+      .optional_number("margin", "m", "distance from every surface; absent: that of the plan",
                        at_least(0));
   Value whole = read_yaml(file), rest = Value::map(), stated = Value::list();
   rest.with_origin(whole.origin());
@@ -161,11 +161,10 @@ Plan with_environment(Plan plan, const fs::path& file, std::map<std::string, fs:
     environment.obstacles.push_back(obstacle_from(stated.as_list()[i], what));
     Obstacle& obstacle = environment.obstacles.back();
     if (!judged_by_itself(obstacle.type) || obstacle.parameters.find("file"))
-      throw InputError(
-          stated.as_list()[i].origin(),
-          what + ": '" + obstacle.type +
-              "' is not a shape that the verifier has a distance of by itself: sphere, "
-              "box, prism, capsule, cone, half_space; meshes and maps have lists");
+      throw InputError(stated.as_list()[i].origin(),
+                       what + ": '" + obstacle.type +
+                           "' is not a shape whose distance the verifier computes: sphere, "
+                           "box, prism, capsule, cone, half_space; meshes and maps have lists");
     const std::string problem = problem_of(obstacle);
     if (!problem.empty()) throw InputError(stated.as_list()[i].origin(), what + problem);
   }

@@ -122,7 +122,7 @@ class OnePlugin {
     const bool described = asked_.only.empty() && entry_.reference.empty();
     if (described)
       tests.push_back(
-          {"reference", "warned", "it names no source; say \"own\" where there is none"});
+          {"reference", "warned", "it names no source; write \"own\" if there is none"});
     return tests;
   }
 

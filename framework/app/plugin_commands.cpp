@@ -87,7 +87,7 @@ void refuse_unknown_plugin(const Registry& registry, const std::string& name) {
   throw InputError(
       "there is no plugin '" + name + "'" +
       (nearest.empty() ? "; see 'lapwing plugins list'" : "; did you mean '" + nearest + "'?") +
-      "; one of a folder of your own is found with --plugin-path FOLDER");
+      "; --plugin-path FOLDER adds a folder of your plugins");
 }
 
 ExitStatus list_plugins(const Invocation& invocation) {

@@ -129,7 +129,7 @@ std::string tolerances_in_words(const Value& tolerances) {
   add("seen_share", "seen again at least ", 100, " %");
   if (!tolerances.at("closed_loop_required").as_boolean())
     words += std::string(words.empty() ? "" : ", ") + "the closed loop is reported only";
-  return words.empty() ? "none of the task's own" : words;
+  return words.empty() ? "no requirement of the task" : words;
 }
 
 // What is known of a plan's vehicle, obstacles and document, in the order in which it is said.
@@ -260,7 +260,7 @@ class Examination {
 
   void compare_digest() {
     if (!digest_->stated) {
-      faults_.push_back("the document states no digest: whether it was changed cannot be told");
+      faults_.push_back("the document states no digest: changes cannot be detected");
       return;
     }
     if (digest_->changed.empty()) return;
@@ -270,7 +270,7 @@ class Examination {
       changed += (i ? ", " : "") + digest_->changed[i];
     if (count > kSectionsListed)
       changed += " and " + std::to_string(count - kSectionsListed) + " more";
-    faults_.push_back("the document was changed after it was written: " + changed);
+    faults_.push_back("the document was changed after writing: " + changed);
   }
 
   std::string vehicle_in_words() const {
@@ -285,7 +285,7 @@ class Examination {
            plain_number(judged_.environment.margin, 4) + " m";
   }
   std::string task() const {
-    return judged_.kind + ": " + in_words(task_in(judged_), "nothing to meet") +
+    return judged_.kind + ": " + in_words(task_in(judged_), "no requirement") +
            (judged_.budget ? ", budget " + plain_number(*judged_.budget, 4) + " s" : "");
   }
   std::string summary() const {

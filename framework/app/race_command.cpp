@@ -69,7 +69,7 @@ ExitStatus race_plan(const std::filesystem::path& file, const std::vector<std::s
   const Plan plan = read_plan_file(file);
   const Certificate certificate = verify(plan, file.parent_path());
   if (const Check* document = certificate.find("document"); !document->pass)
-    throw InputError("the plan does not hold together: " + document->detail);
+    throw InputError("the plan is inconsistent: " + document->detail);
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   std::vector<RacedPilot> raced;
   for (const std::string& text : pilots) {

@@ -39,7 +39,7 @@ std::optional<RunAddition> game(const MissionResult& result, const Certificate& 
   if (result.pilots.empty()) return std::nullopt;
   const Check* document = certificate.find("document");
   if (document && !document->pass)
-    return not_flown("the plan does not hold together: " + document->detail);
+    return not_flown("the plan is inconsistent: " + document->detail);
   try {
     if (token.cancelled()) throw Cancelled();
     const std::vector<RacedPilot> raced = flown_by_pilots(result, token);

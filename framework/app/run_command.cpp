@@ -155,7 +155,7 @@ void print_summary(const RunOutcome& outcome, bool verbose) {
        findings(outcome, details ? all_notes(result) : told_notes(result)))
     std::cout << "  " << visible_text(finding) << "\n";
   if (outcome.status == "ok" && result.report.status == SolveStatus::iteration_limit)
-    std::cout << "  the solver came to its iteration limit: every check holds, a slightly better "
+    std::cout << "  the solver reached its iteration limit: every check passes; a slightly better "
                  "flight may exist\n";
   for (const RunAddition& addition : outcome.additions) {
     std::cout << visible_text(addition.summary);

@@ -16,8 +16,8 @@ RunTarget::RunTarget(const std::string& mission, const Invocation& invocation)
   require_run_folder(folder_);
   old_ = mission_in(folder_);
   if (!named && old_ && *old_ != mission)
-    throw InputError("'" + folder_.string() + "' holds the run of mission '" + *old_ +
-                     "', whose name makes the same folder as '" + mission +
+    throw InputError("'" + folder_.string() + "' contains the run of mission '" + *old_ +
+                     "', whose name gives the same folder as '" + mission +
                      "'; name another folder with --out, or rename one of the two");
 }
 
@@ -29,7 +29,7 @@ std::string RunTarget::old_run_in_words() const {
   if (!old_) return "";
   const std::string of = *old_ == mission_ ? "" : " of '" + *old_ + "'";
   if (!kept_.empty()) return "the run" + of + " that was there is kept in '" + kept_.string() + "'";
-  return "replaces the run" + of + " that was there; --keep keeps it";
+  return "replaces the run" + of + " in this folder; --keep keeps it";
 }
 
 void RunTarget::add_to(Value& object) const {

@@ -36,7 +36,7 @@ UpAxis axis_of_option(const std::string& up) {
 }
 
 MeshFileOptions mesh_options(const SceneStatement& stated) {
-  if (stated.seed) throw InputError("--seed is of scenes that a script makes, not of a mesh file");
+  if (stated.seed) throw InputError("--seed is for scenes of a script, not for a mesh file");
   MeshFileOptions options;
   if (stated.unit && !(*stated.unit > 0))
     throw InputError("--unit: expected a number of metres above 0, got " +
@@ -77,7 +77,8 @@ ExitStatus view_scene(const fs::path& file, const SceneStatement& stated, const 
     return ExitStatus::done;
   }
   if (stated.unit || !stated.up.empty())
-    throw InputError("--unit and --up are of mesh files; a script's scene is in metres, z up");
+    throw InputError(
+        "--unit and --up are for mesh files; the scene of a script is in metres, z up");
   const std::uint64_t seed = stated.seed.value_or(invocation.seed);
   const Registry registry = invocation.registry();
   MissionSettings settings;

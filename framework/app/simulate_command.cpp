@@ -110,7 +110,7 @@ void print(const Plan& plan, const Simulation& simulation) {
     std::printf("  light from the drawing  worst %.3f m, mean %.4f m\n", error.worst, error.mean);
   }
   if (!path.lost && !kept(path))
-    std::printf("  beyond what a certificate allows: %.3g m and %.3g degrees\n",
+    std::printf("  more than a certificate allows: %.3g m and %.3g degrees\n",
                 tolerances::kTracking, degrees(tolerances::kTrackingYaw));
 }
 
@@ -118,7 +118,7 @@ void print(const Plan& plan, const Simulation& simulation) {
 void require_a_sound_plan(const Plan& plan, const std::filesystem::path& folder) {
   const Certificate certificate = verify(plan, folder);
   const Check* document = certificate.find("document");
-  if (!document->pass) throw InputError({}, "the plan does not hold together: " + document->detail);
+  if (!document->pass) throw InputError({}, "the plan is inconsistent: " + document->detail);
 }
 
 }  // namespace

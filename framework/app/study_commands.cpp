@@ -34,8 +34,8 @@ std::uint64_t read_seed(const std::string& text) {
 
 void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluation& asked,
                        Command& command) {
-  CLI::App* scan = evaluate.add_subcommand(
-      "scan", "compare scan tours by the surface models that their images give");
+  CLI::App* scan =
+      evaluate.add_subcommand("scan", "compare scan tours by the surface models from their images");
   add_text(*scan, "missions", "MISSION.lua...", "scans to plan by every method",
            [&](const std::string& path) { asked.missions.emplace_back(path); })
       ->required()

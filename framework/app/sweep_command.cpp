@@ -110,8 +110,8 @@ void require_same(const fs::path& file, const Value& now) {
   }
   if (!differing.empty())
     throw InputError("--resume: the sweep in '" + file.parent_path().string() +
-                     "' was made of something else: " + differing + " (see " + file.string() +
-                     "); leave --resume out to begin anew");
+                     "' has other inputs: " + differing + " (see " + file.string() +
+                     "); leave --resume out to start again");
 }
 
 constexpr const char* kTable = "table.csv";
@@ -187,7 +187,7 @@ void keep_finished(std::vector<SweepRun>& runs) {
       again.push_back(&run);
     } else if (const std::string changed = changed_input(run.folder); !changed.empty()) {
       throw InputError("--resume: '" + changed + "', which " + run.name +
-                       " read, has changed since; leave --resume out to begin anew");
+                       " read, has changed since; leave --resume out to start again");
     }
   }
   for (SweepRun* run : again) {
@@ -207,7 +207,7 @@ void require_sweep_folder(const Sweep& asked, const Invocation& invocation, cons
     const Value* script = before.find("script");
     if (invocation.out.empty() && script && script->is_text() &&
         script->as_text() != asked.script.string())
-      throw InputError("'" + out.string() + "' holds the sweep of '" + script->as_text() +
+      throw InputError("'" + out.string() + "' contains the sweep of '" + script->as_text() +
                        "'; give another folder with -o, or -o " + out.string() + " to replace it");
     return;
   }
@@ -270,12 +270,12 @@ ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
               << "\ntable: " << visible_line((out / kTable).string())
               << "\nreport: " << visible_line((out / kReport).string()) << std::endl;
   if (interruption.token().cancelled())
-    std::cerr << "lapwing: interrupted; the same line with --resume does what is missing\n";
+    std::cerr << "lapwing: interrupted; the same command with --resume runs what is missing\n";
   int worst = 0;
   for (const SweepRun& run : runs) {
     if (!run.exit) {
       if (!interruption.token().cancelled())
-        std::cerr << "lapwing: " << run.name << " was ended by a signal; --resume does it again\n";
+        std::cerr << "lapwing: " << run.name << " was ended by a signal; --resume runs it again\n";
       return interruption.token().cancelled() ? ExitStatus::interrupted : ExitStatus::defect;
     }
     worst = std::max(worst, *run.exit);

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 const Trainable& trainable_of(const Registry& registry, const std::string& utility) {
   registry.find("utility", utility);
   const void* table = registry.extension("utility", utility, kTrainable);
-  if (!table) throw InputError("utility '" + utility + "' is not one that is trained");
+  if (!table) throw InputError("utility '" + utility + "' is not a trained utility");
   return *static_cast<const Trainable*>(table);
 }
 
@@ -84,7 +84,7 @@ std::vector<std::int64_t> missing_episodes(const TrainRequest& request, const st
       missing.push_back(episode);
     } else if (!request.resume) {
       throw InputError("'" + file.string() +
-                       "' is there: --resume keeps it and makes those that are missing, another " +
+                       "' exists: --resume keeps it and makes the missing ones; another " +
                        "folder keeps both");
     } else {
       const SampleSet there = read_samples(file);
@@ -93,7 +93,7 @@ std::vector<std::int64_t> missing_episodes(const TrainRequest& request, const st
                                          ? "it is episode " + std::to_string(there.episode)
                                          : settings_difference(there.made_by, made_by);
       if (!difference.empty())
-        throw InputError("'" + file.string() + "' was made otherwise: " + difference +
+        throw InputError("'" + file.string() + "' was made with other settings: " + difference +
                          "; another folder keeps both");
     }
   }
@@ -178,7 +178,8 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
   const Interruption interruption;
   const Trainable& trainable = trainable_of(registry, request.utility);
   if (request.validation.empty())
-    throw InputError("train fit: say with --validation what it is judged by");
+    throw InputError(
+        "train fit: name samples with --validation, which the model is evaluated with");
   FitRequest fit;
   fit.training = sample_files(request.samples);
   fit.validation = sample_files(request.validation);
@@ -191,7 +192,7 @@ ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) 
   for (const fs::path& file : {fit.model, fit.checkpoint})
     if (!request.resume && fs::exists(file))
       throw InputError("'" + file.string() +
-                       "' is there: --resume goes on with it, another name keeps both");
+                       "' exists: --resume continues it; another name keeps both");
   require_writable(fit.model);
   require_writable(fit.checkpoint);
   fit.seed = invocation.seed;

@@ -23,7 +23,7 @@ fs::path shipped_root() {
   if (const char* home = std::getenv("LAPWING_HOME"); home && *home) {
     if (holds_shipped_files(home)) return home;
     throw InputError(std::string("LAPWING_HOME is '") + home +
-                     "', which holds neither configs/ nor scripts/");
+                     "', which has neither configs/ nor scripts/");
   }
   // <prefix>/lib/liblapwing.so, or one folder deeper: <prefix>/lib/x86_64-linux-gnu.
   fs::path prefix = library_folder();
@@ -42,7 +42,7 @@ fs::path shipped_folder(const std::string& name) {
   const fs::path folder = shipped_root() / name;
   if (fs::is_directory(folder)) return folder;
   throw InputError("'" + folder.string() +
-                   "' is missing; LAPWING_HOME may name another folder that holds " + name + "/");
+                   "' is missing; LAPWING_HOME may name another folder that has " + name + "/");
 }
 
 }  // namespace lapwing

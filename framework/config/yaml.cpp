@@ -226,7 +226,7 @@ void require_plain_text(std::string_view text, const std::string& source) {
   }
   if (std::count_if(text.begin(), text.end(), is_flow_sign) > kMostFlowSigns) {
     throw InputError(source + ": more than " + std::to_string(kMostFlowSigns) +
-                     " of the signs [ ] { } and the comma: too many entries for YAML");
+                     " of the characters [ ] { } and comma: too many entries for YAML");
   }
   // yaml-cpp would guess an encoding instead.
   const std::size_t bad = std::min(first_invalid_utf8(text), text.find('\0'));

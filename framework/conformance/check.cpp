@@ -12,7 +12,7 @@
 namespace lapwing {
 namespace {
 
-// Bounds are numbers, in order, and a range states the same as its instances one by one.
+// Bounds are numbers, in order, and a range has the same meaning as its instances one by one.
 void check_bounds(const BoundSubject& subject, Findings& findings) {
   const auto& constraint = static_cast<const Constraint&>(subject.function);
   const int m = subject.shape.rows, count = subject.count();

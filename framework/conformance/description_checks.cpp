@@ -77,7 +77,7 @@ void check_spec(const ParameterSpec& spec, const std::string& path, Findings& fi
     need(spec.range.contains(given.as_number()), "has a default outside of its own range");
   if (spec.type == ParameterType::choice && given.is_text())
     need(std::find(spec.choices.begin(), spec.choices.end(), given.as_text()) != spec.choices.end(),
-         "has a default that is none of its own choices");
+         "has a default that is not one of its choices");
   need(!spec.required || given.is_null(), "is required and has a default");
   if (!spec.table) return;
   for (const ParameterSpec& inner : spec.table->specs())

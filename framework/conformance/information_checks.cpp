@@ -84,7 +84,7 @@ void check_chains(const ViewInformation& information, std::uint64_t seed, Findin
         more.push_back(view);
         const double gain = told_by(more) - now;
         findings.expect("submodular", gain >= -1e-6, [&] {
-          return "one more view takes away " + text_of(-gain) + " of what others tell";
+          return "one more view reduces the information of the others by " + text_of(-gain);
         });
         findings.expect("submodular", gain <= before[view] + 1e-4, [&] {
           return "a view adds " + text_of(gain) + " to more views, " + text_of(before[view]) +

@@ -138,7 +138,7 @@ std::string fault_of_walk(const TourDefinition& d, const std::vector<int>& walk)
   };
   std::vector<int> visits(n, 0);
   for (const int v : walk) {
-    if (v < 0 || v >= n) return "visits view " + std::to_string(v) + ", which there is not";
+    if (v < 0 || v >= n) return "visits view " + std::to_string(v) + ", which does not exist";
     ++visits[v];
   }
   // Start and end are stopped at once, every other view whenever it is reached.

@@ -56,7 +56,7 @@ PluginError plugin_failure(std::string_view plugin, std::string_view call,
   const std::string where = "plugin '" + std::string(plugin) + "' failed in " + std::string(call);
   if (scarce)
     return PluginError(where +
-                       ": out of memory: this needs more than the system or a limit "
+                       ": out of memory: it needs more than the system or a limit "
                        "(ulimit -v) gives");
   return PluginError(where + ": " + what + cure_of_plugin(plugin));
 }

@@ -167,8 +167,8 @@ void finish_exchange(const fs::path& folder, const NameTest& is_own) {
 std::string finish_exchange_to_read(const fs::path& folder, const NameTest& is_own) {
   std::error_code code;
   if (!fs::is_directory(fs::symlink_status(folder / kReady, code))) return "";
-  const std::string left = "'" + folder.string() + "' holds files of a run that was ended while " +
-                           "it put them in their places, and they were left as they are: ";
+  const std::string left = "'" + folder.string() + "' has files of a run that was ended while " +
+                           "it moved them to their places; they were not changed: ";
   const Descriptor there(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (there.number < 0) return left + std::strerror(errno);
   if (::flock(there.number, LOCK_EX | LOCK_NB) != 0)
@@ -224,7 +224,7 @@ namespace {
 
 [[noreturn]] void refuse_claimed(const fs::path& folder) {
   throw InputError("another process is writing into '" + folder.string() +
-                   "'; wait until it has ended, or choose another folder");
+                   "'; wait until it ends, or choose another folder");
 }
 
 // False where another process has it. A file system without locks refuses nobody.

@@ -49,7 +49,7 @@ void write_folder_atomically(const fs::path& folder, const NamedContents& files)
   std::error_code code;
   const bool exists = fs::exists(fs::symlink_status(target, code));
   if (exists && (fs::is_symlink(target) || !fs::is_directory(target))) {
-    refuse_folder(folder, "it is there and is not a folder");
+    refuse_folder(folder, "it exists and is not a folder");
   }
   if (exists) {
     for (const auto& item : fs::directory_iterator(target)) {

@@ -119,7 +119,7 @@ ProcessResult run_in_own_process(const ProcessLimits& limits,
                                  const std::function<std::string()>& work) {
   Pipe pipe;
   const pid_t copy = ::fork();
-  if (copy < 0) throw Error(std::string("no process of its own: ") + std::strerror(errno));
+  if (copy < 0) throw Error(std::string("no separate process: ") + std::strerror(errno));
   if (copy == 0) {
     pipe.close(0);
     run_copy(pipe.end(1), limits, work);
@@ -153,7 +153,7 @@ std::string in_own_process(const std::string& what, const ProcessLimits& limits,
     case ProcessEnd::refused:
       throw InputError(result.text);
     case ProcessEnd::crashed:
-      throw InputError(what + ": the reader crashed on it (" + result.text + ")");
+      throw InputError(what + ": reading it crashed (" + result.text + ")");
     default:
       throw InputError(what + ": " + result.text);
   }

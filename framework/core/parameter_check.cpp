@@ -345,7 +345,7 @@ bool Parameters::has(std::string_view name) const {
   for (const Entry& entry : entries_) {
     if (entry.name == name) return entry.present;
   }
-  throw Error("parameter '" + std::string(name) + "' was asked for but never declared");
+  throw Error("parameter '" + std::string(name) + "' was requested but never declared");
 }
 
 bool Parameters::boolean(std::string_view name) const {

@@ -169,19 +169,19 @@ void Explorer::begin(const Viewpoint& start) {
   if (!map_.grid().contains(start.position))
     throw InputError("the start lies outside the largest map");
   if (!within_bounds(start))
-    throw InputError("the start lies outside the bounds that the explorer stays in");
+    throw InputError("the start lies outside the bounds of the exploration");
   const Eigen::AlignedBox3d cleared = cleared_box(map_.grid(), start.position, settings_.clear);
   if (truth_.box_blocked(cleared))
     throw StartError("the start at (" + plain_number(start.position.x()) + ", " +
                      plain_number(start.position.y()) + ", " + plain_number(start.position.z()) +
                      ") lies in an obstacle: a box of " + plain_number(settings_.clear) +
-                     " m about it must be free");
+                     " m around it must be free");
   means_.touch(clear_box(map_, cleared));
   int ways = 0;
   for (const Viewpoint& next : neighbours_of(start, settings_.step, settings_.turn))
     ways += next.position != start.position && within_bounds(next) && graph_.free(start, next);
   if (ways == 0)
-    throw StartError("no neighbour of the start could be reached: a step of " +
+    throw StartError("no neighbour of the start is reachable: a step of " +
                      plain_number(settings_.step) + " m leaves the box of " +
                      plain_number(settings_.clear) + " m that is known to be free, or the bounds");
   at_ = graph_.add(start);
@@ -432,15 +432,15 @@ const char* to_string(EpisodeEnd end) {
 std::string explain(EpisodeEnd end) {
   switch (end) {
     case EpisodeEnd::steps:
-      return "all images that were asked for are taken";
+      return "all requested images are taken";
     case EpisodeEnd::budget:
-      return "the next view lies beyond the flight's budget";
+      return "the next view is beyond the budget of the flight";
     case EpisodeEnd::nothing_to_gain:
-      return "nothing left to gain: no view that could be reached has a utility above 0";
+      return "nothing left to gain: no reachable view has a utility above 0";
     case EpisodeEnd::no_way:
-      return "no view is left that could be reached through known free space";
+      return "no view is reachable through known free space";
     case EpisodeEnd::time:
-      return "stopped by the wall clock's guard";
+      return "stopped by wall_clock_guard";
     case EpisodeEnd::cancelled:
       return "cancelled";
   }

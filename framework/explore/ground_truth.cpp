@@ -71,7 +71,7 @@ GroundTruth::GroundTruth(std::shared_ptr<const MeshScene> scene, const Eigen::Al
   lay_out();
   find_space(surface_voxels(mesh.vertices, mesh.triangles, resolution), inside);
   if (surface_.empty())
-    throw InputError("the scene has no surface that could be seen from the space around it");
+    throw InputError("the scene has no surface that is visible from the space around it");
 }
 
 void GroundTruth::lay_out() {
@@ -135,7 +135,7 @@ void GroundTruth::find_space(std::span<const VoxelKey> all,
       }
   if (held.size() < 2)
     throw InputError(inside ? "the start lies in a voxel of the surface: in an obstacle"
-                            : "the region of interest is full: there is no space in it");
+                            : "the region of interest has no free space");
   const auto label =
       static_cast<std::uint16_t>(std::max_element(held.begin() + 1, held.end()) - held.begin());
   for (std::size_t k = 0; k < space_.size(); ++k) space_[k] = fill.labels()[k] == label;
@@ -311,8 +311,7 @@ Viewpoint random_start(const GroundTruth& truth, double clear, double reach, dou
   constexpr int kDraws = 100'000;
   int outside = 0, blocked = 0, far = 0;
   const Eigen::AlignedBox3d box = bounds ? truth.region().intersection(*bounds) : truth.region();
-  if (box.isEmpty())
-    throw InputError("found no place to start from: the bounds have nothing of the region");
+  if (box.isEmpty()) throw InputError("found no start: the bounds do not overlap the region");
   const Eigen::Vector3d low = box.min(), high = box.max();
   for (int draw = 0; draw < kDraws; ++draw) {
     Eigen::Vector3d p;
@@ -329,10 +328,10 @@ Viewpoint random_start(const GroundTruth& truth, double clear, double reach, dou
     }
   }
   const auto share = [&](int count) { return plain_number(100.0 * count / kDraws) + " %"; };
-  const std::string why = "found no place to start from: of 100,000 drawn in the region " +
+  const std::string why = "found no start: of 100,000 random places in the region " +
                           share(outside) + " lie in no free space, " + share(blocked) +
-                          " have something within the box of " + plain_number(clear) +
-                          " m that is cleared, " + share(far) + " have no surface within " +
+                          " have an obstacle within the box of " + plain_number(clear) +
+                          " m that must be free, " + share(far) + " have no surface within " +
                           plain_number(reach) + " m";
   if (blocked > 0) throw StartError(why);
   throw InputError(why);

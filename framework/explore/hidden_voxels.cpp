@@ -18,18 +18,20 @@ void HiddenVoxels::follow(double farthest) const {
   const std::lock_guard lock(mutex_);
   if (farthest <= farthest_) return;
   if (seen_)
-    throw InputError("voxels up to " + plain_number(farthest) +
-                     " m behind surfaces are wanted after the first image, and only those up to " +
-                     plain_number(farthest_) + " m were followed");
+    throw InputError(
+        "voxels up to " + plain_number(farthest) +
+        " m behind surfaces are requested after the first image, and only those up to " +
+        plain_number(farthest_) + " m were followed");
   farthest_ = farthest;
 }
 
 void HiddenVoxels::require_followed(double farthest) const {
   const std::lock_guard lock(mutex_);
   if (farthest > farthest_)
-    throw InputError("voxels up to " + plain_number(farthest) +
-                     " m behind surfaces were not followed; a utility's require_fit says before "
-                     "the first image that it wants them");
+    throw InputError(
+        "voxels up to " + plain_number(farthest) +
+        " m behind surfaces were not followed; require_fit of a utility must state before "
+        "the first image that it needs them");
 }
 
 void HiddenVoxels::saw(const PosedDepthImage& measured) {

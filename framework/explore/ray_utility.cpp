@@ -6,7 +6,7 @@
 namespace lapwing {
 
 ParameterTable RayUtility::parameters() {
-  return ParameterTable().integer("pixel_step", 2, "one ray per so many columns and rows",
+  return ParameterTable().integer("pixel_step", 2, "a ray for every n-th column and row",
                                   between(1, 64));
 }
 

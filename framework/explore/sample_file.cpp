@@ -48,7 +48,7 @@ void write_samples(const SampleSet& samples, const std::filesystem::path& path) 
 SampleSet read_samples(const std::filesystem::path& path) {
   const std::string bytes = read_file(path, kMostBytes);
   const auto refuse = [&](const std::string& why) {
-    return InputError("'" + path.string() + "' is not a file of samples: " + why +
+    return InputError("'" + path.string() + "' is not a sample file: " + why +
                       "; delete it or leave it out");
   };
   if (bytes.starts_with("lapwing samples ") && !bytes.starts_with(kMagic))
@@ -78,7 +78,7 @@ SampleSet read_samples(const std::filesystem::path& path) {
     throw refuse("it says " + std::to_string(count) + " samples, its " + std::to_string(rest) +
                  " bytes hold another number");
   if (sha256(std::string_view(bytes).substr(begin)) != sum)
-    throw refuse("its data is not what its checksum is of");
+    throw refuse("its data does not match its checksum");
   samples.targets.resize(static_cast<std::size_t>(count));
   const std::size_t numbers = samples.targets.size() * sizeof(float);
   std::memcpy(samples.targets.data(), bytes.data() + begin, numbers);

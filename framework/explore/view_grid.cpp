@@ -156,7 +156,7 @@ std::string mapping_fault(const Value& value) {
   }
   for (const auto& [key, given] : value.as_map())
     if (std::find(std::begin(kMappingKeys), std::end(kMappingKeys), key) == std::end(kMappingKeys))
-      return "it has a " + key + ", which nothing asks for";
+      return "it has a " + key + ", which nothing reads";
   return "";
 }
 

@@ -81,9 +81,10 @@ Section certificate_section(const Plan& plan) {
       if (check.group == group) checks.push_back(check);
     }
     if (checks.empty()) continue;
-    section.blocks.push_back(check_table(
-        group == CheckGroup::safety ? "Safety: the vehicle can fly it" : "Task: what was asked",
-        checks));
+    section.blocks.push_back(check_table(group == CheckGroup::safety
+                                             ? "Safety: the vehicle can fly the plan"
+                                             : "Task: the requirements of the mission",
+                                         checks));
   }
   return section;
 }
@@ -156,7 +157,7 @@ Miss miss_of(const Trajectory& trajectory, const KeyframeTask& keyframe) {
 }
 
 Section keyframe_section(const Plan& plan) {
-  Table table{"How close the flight comes to its keyframes",
+  Table table{"Distances from the keyframes",
               {{"keyframe", ""},
                {"time", "s"},
                {"miss at its time", "m"},

@@ -137,7 +137,7 @@ std::vector<Section> race_sections(const Plan& plan, const std::vector<RacedPilo
   how.text = "The score is the time of all laps, " + number_text(rules.deviation_price) +
              " s for every metre of mean distance from the course, " +
              number_text(rules.gate_price) +
-             " s for every gate that was missed, and the handicap. The lower wins.";
+             " s for every missed gate, and the handicap. The lower score wins.";
   sections.push_back({"Race", {results(pilots, winner_of(pilots)), how}});
   Section paths{"Paths, coloured by speed", {}};
   for (const RacedPilot& pilot : pilots)
@@ -170,7 +170,7 @@ Report race_report(const Plan& plan, const std::vector<RacedPilot>& pilots,
                    const RaceRules& rules) {
   Report report;
   report.title = plan.mission;
-  report.subtitle = "a race flown by hand, in simulation";
+  report.subtitle = "a simulated race, flown by hand";
   const int winner = winner_of(pilots);
   report.status = winner < 0 ? "nobody finished"
                              : pilots[static_cast<std::size_t>(winner)].pilot.name + " wins";

@@ -70,7 +70,7 @@ fs::path with_name(const fs::path& folder) {
   const std::string name = named.filename().string();
   if (name.empty() || name == "." || name == "..")
     throw InputError("'" + folder.string() +
-                     "' cannot be kept under another name: it is named by its place alone");
+                     "' cannot be kept under another name: its path has no name");
   return named;
 }
 

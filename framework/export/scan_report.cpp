@@ -45,11 +45,10 @@ Image overview_image(const MeshScene& scene, const Eigen::AlignedBox3d& box, dou
 }
 
 Section known_section(const ScanRecord& record, const Eigen::AlignedBox3d& region) {
-  Section section{"What the first flight knew", {}};
+  Section section{"Knowledge of the first flight", {}};
   if (record.scene)
-    section.blocks.push_back(
-        Image{encode_png(*record.scene),
-              "The scene that was flown in; planning never sees it, only what follows"});
+    section.blocks.push_back(Image{encode_png(*record.scene),
+                                   "The scene of the simulation; the planner does not know it"});
   const MapPicture heights = height_picture(*record.map, kMostMapPixels);
   section.blocks.push_back(
       Image{encode_png(heights.picture), "The map from above: highest occupied voxels from " +
@@ -62,7 +61,7 @@ Section known_section(const ScanRecord& record, const Eigen::AlignedBox3d& regio
             "The map at " + number_text(low, 3) +
                 " m: black is occupied, light is free to fly, grey and dark are unknown"});
   section.blocks.push_back(overview_image(*record.prior, region, 1.05,
-                                          "The prior mesh, made of the first flight's images"));
+                                          "The prior mesh, from the images of the first flight"));
   return section;
 }
 
@@ -134,11 +133,12 @@ MeshScene colored_voxels(const ScanRecord& record, const std::vector<VoxelShare>
 
 Section view_section(const ScanRecord& record, const ScanTask& scan) {
   const double yaw = record.shown.yaw + 0.7;
-  return {"One view",
-          {overview_image(colored_voxels(record, record.told, scan), scan.region, yaw,
-                          "The view of the tour that tells most by itself (red), and the voxels "
-                          "that its rays meet: from nothing (violet) to a third of all there is to "
-                          "know of a voxel (yellow); grey is the prior mesh")}};
+  return {
+      "One view",
+      {overview_image(colored_voxels(record, record.told, scan), scan.region, yaw,
+                      "The view of the tour with the most information (red), and the voxels "
+                      "that its rays meet: from none (violet) to a third of the full information "
+                      "about a voxel (yellow); grey is the prior mesh")}};
 }
 
 // The prior mesh, every triangle by what the tour tells of it, and openings to what nobody saw.
@@ -204,25 +204,24 @@ std::string openings_in_words(const std::vector<Opening>& openings) {
 std::string unknown_warning(const ScanRecord& record) {
   std::string text;
   if (unknown_area(record) > kMuchUnknown * record.areas.known)
-    text += ". That is much: the first flight never saw behind it";
+    text += ". This is a large share: the first flight did not see behind it";
   const auto passable = std::find_if(record.openings.begin(), record.openings.end(),
                                      [](const Opening& o) { return o.passable; });
   if (passable != record.openings.end()) {
     const bool largest = passable == record.openings.begin();
     text += ". The vehicle (" + number_text(record.body_width, 3) + " m wide) would pass through " +
             (largest ? "the largest opening" : "the opening of " + opening_in_words(*passable)) +
-            ": what hides behind it may be far larger";
+            ": the hidden surface behind it may be far larger";
   }
   if (text.empty()) return "";
   return text +
-         ". Fly the first flight lower, more obliquely or wider (flights), or plan once more on "
-         "what this tour sees (rounds = 2)";
+         ". Fly the first flight lower, more obliquely or wider (flights), or plan again with "
+         "the images of this tour (rounds = 2)";
 }
 
 // What nobody looked from is not considered: other free places may show more.
 std::string visible_in_words(const ScanRecord& record) {
-  return "visible from any of the " + std::to_string(record.candidates.size()) +
-         " views that were considered";
+  return "visible from any of the " + std::to_string(record.candidates.size()) + " candidate views";
 }
 
 // "12 m^2 of the known surface lie outside the region (above it) and are not counted", or "".
@@ -242,15 +241,15 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   const auto all = static_cast<double>(std::max<std::size_t>(record.coverage.size(), 1));
   const SurfaceAreas& areas = record.areas;
   Facts facts{{
-      {"surface of the region, as far as it is known", square_metres(areas.known), "m^2"},
+      {"known surface of the region", square_metres(areas.known), "m^2"},
       {"of it seen by the tour", square_metres(areas.seen),
        "m^2, " + percent(areas.seen, areas.known) + " %"},
       {"of it " + visible_in_words(record), square_metres(areas.visible),
        "m^2, " + percent(areas.visible, areas.known) + " %"},
-      {"unknown, not counted: behind openings in what was measured, at least",
+      {"unknown, not counted: behind openings of the measured space, at least",
        lower_bound_text(unknown_area(record)), "m^2"},
-      {"on average the tour tells", number_text(100 * sum / all, 3),
-       "% of what there is to know of a voxel that some candidate sees"},
+      {"mean information of the tour", number_text(100 * sum / all, 3),
+       "% of the full information about a voxel that any candidate sees"},
   }};
   if (!record.openings.empty())
     facts.facts.push_back({"behind", openings_in_words(record.openings), ""});
@@ -268,10 +267,10 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   }
   const MeshScene scene = colored_surface(record);
   const std::string caption =
-      "What the tour tells of the known surface, from little (violet) to all (yellow). Red: seen "
-      "from a view that was considered, not by the tour. Dark: from none of them. Light grey: "
-      "outside the region. Magenta: openings to what the first flight never saw. Where there is no "
-      "surface, none is known";
+      "Information of the tour about the known surface, from little (violet) to all (yellow). Red: "
+      "seen from a candidate view, but not by the tour. Dark: seen from no candidate. Light grey: "
+      "outside the region. Magenta: openings to space that the first flight did not see. No "
+      "surface is known elsewhere";
   TextBlock words;
   words.text = areas_in_words(record);
   if (record.truth) words.text += "\n\n" + truth_in_words(record);
@@ -314,10 +313,10 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
   chart.series = {{"tour", record.seconds, record.score, true}};
   chart.limits = {{"all views within the budget", record.reachable}};
   if (std::isfinite(record.upper_bound))
-    chart.limits.push_back({"no tour tells more", record.upper_bound});
+    chart.limits.push_back({"upper bound of any tour", record.upper_bound});
   Facts facts{{{"images", std::to_string(scan.views.size()), ""},
-               {"planned for what they show", std::to_string(planned), ""},
-               {"there to keep images matchable",
+               {"planned for their information", std::to_string(planned), ""},
+               {"planned to keep images matchable",
                 std::to_string(static_cast<long>(scan.views.size()) - planned), ""}}};
   return {"Tour",
           {std::move(facts), PathView{"The tour from above", Projection::above, drawing},

@@ -106,7 +106,7 @@ Report scene_report(const MeshScene& scene, const SceneReport& given) {
   if (indoors) below = opened(mesh, cut);
   const MeshScene& seen = below ? *below : scene;
   const std::string without =
-      indoors ? "; what begins higher than " + number_text(cut) + " m is left out" : "";
+      indoors ? "; parts that begin above " + number_text(cut) + " m are left out" : "";
   Section views{"Views", {}};
   const char* sides[] = {"south-west", "south-east", "north-east", "north-west"};
   for (int k = 0; k < 4; ++k) {

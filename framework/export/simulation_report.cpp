@@ -56,9 +56,9 @@ Facts facts_of(const Simulation& simulation) {
   const FlightConditions& c = simulation.conditions;
   Facts facts;
   facts.facts = {{"wind", number(c.wind_mean), "m/s"},
-                 {"it blows to", number(degrees(c.wind_yaw)), "\u00b0"},
+                 {"wind blows towards", number(degrees(c.wind_yaw)), "\u00b0"},
                  {"gusts", number(c.wind_gust), "m/s"},
-                 {"mass above the plan's", number(100 * c.mass_error), "%"},
+                 {"mass above that of the plan", number(100 * c.mass_error), "%"},
                  {"seed of the gusts", std::to_string(c.seed), ""}};
   for (const Check& check : simulation.distances)
     facts.facts.push_back(
@@ -87,7 +87,7 @@ std::string Simulation::conditions_in_words() const {
 
 std::string distance_in_words(const Check& check) {
   return (check.worst ? number(*check.worst) : std::string("?")) + " m at " + number(check.at) +
-         " s, " + number(check.limit) + " m are to be kept: " + check.detail;
+         " s, " + number(check.limit) + " m are required: " + check.detail;
 }
 
 Report simulation_report(const Plan& plan, const Vehicle& vehicle, const Simulation& simulation,
@@ -95,7 +95,7 @@ Report simulation_report(const Plan& plan, const Vehicle& vehicle, const Simulat
   const FlownPath& path = simulation.path;
   Report report;
   report.title = plan.mission;
-  report.subtitle = "flown in simulation by vehicle '" + vehicle.name + "'";
+  report.subtitle = "simulated flight of vehicle '" + vehicle.name + "'";
   report.status = path.lost ? "lost" : simulation.too_near() ? "too near" : "flown";
   report.status_mark = path.lost || simulation.too_near() ? Mark::fail : Mark::pass;
   report.sections.push_back({"Conditions and distances", {facts_of(simulation)}});

@@ -24,7 +24,7 @@ struct Simulation {
   std::string conditions_in_words() const;
 };
 
-// "clearance 0.42 m at 3.1 s, 0.5 m are to be kept: box 'wall'"
+// "clearance 0.42 m at 3.1 s, 0.5 m are required: box 'wall'"
 std::string distance_in_words(const Check& check);
 
 // `folder` holds the meshes of the plan's environment.

@@ -47,8 +47,8 @@ bool unit_stated(const MeshFile& file) {
 std::string of_a_grid(const Eigen::AlignedBox3d& box) {
   const double error = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   return text_of(
-      "such coordinates are those of a grid of the land (UTM and the like), and single precision "
-      "keeps them to %.2g m. Subtract a corner of it from all of them in the program that wrote "
+      "such coordinates are those of a map grid (such as UTM), and single precision "
+      "resolves them to %.2g m. Subtract a corner from all of them in the program that wrote "
       "the file, so that the place lies at the origin",
       2 * kSinglePrecision * error);
 }
@@ -84,9 +84,9 @@ void require_near(const MeshFile& file, const std::string& name) {
   if (box.isEmpty()) return;
   if (box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() <= kFarthest) return;
   std::string what =
-      name + ": it lies between " + corners(box) + ", and 1e5 m is as far as can be: ";
+      name + ": it lies between " + corners(box) + ", and coordinates up to 1e5 m are possible: ";
   if (far_for_its_size(box)) throw InputError(what + of_a_grid(box));
-  throw InputError(what + text_of("%g m are taken for one unit of the file; ", file.unit) +
+  throw InputError(what + text_of("one unit of the file is read as %g m; ", file.unit) +
                    other_unit(file, box.sizes().z()));
 }
 

@@ -119,7 +119,7 @@ void check_collada(std::string_view text, const std::string& name) {
                          (*end == '"' || *end == '\'');
       if (!whole || value > static_cast<double>(text.size())) {
         fail(name, "'" + std::string(text.substr(at, std::min<std::size_t>(30, text.size() - at))) +
-                       "' claims what the file cannot hold");
+                       "' claims more than the file has");
       }
     }
   }

@@ -75,7 +75,7 @@ class Numbers {
     while (at_ < bytes_.size() && space(bytes_[at_])) ++at_;
     const std::size_t begin = at_;
     while (at_ < bytes_.size() && !space(bytes_[at_])) ++at_;
-    if (begin == at_) fail_ply(name_, "it ends before all that its header claims");
+    if (begin == at_) fail_ply(name_, "it ends before the data that its header claims");
     double value = 0;
     const char* first = bytes_.data() + begin;
     const char* last = bytes_.data() + at_;
@@ -90,7 +90,7 @@ class Numbers {
 
   double next_binary(const Type& type) {
     const auto size = static_cast<std::size_t>(type.bytes);
-    if (left() < size) fail_ply(name_, "it ends before all that its header claims");
+    if (left() < size) fail_ply(name_, "it ends before the data that its header claims");
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < size; ++i) {
       const auto byte = static_cast<unsigned char>(bytes_[at_ + i]);
@@ -285,7 +285,7 @@ class PlyBody {
     const double length = numbers_.next(property.length);
     if (!(length >= 0) || length != std::floor(length) ||
         length > static_cast<double>(numbers_.left()) + 1) {
-      fail_ply(name_, "a list claims more entries than the file holds");
+      fail_ply(name_, "a list claims more entries than the file has");
     }
     const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
     for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(length); ++i) {

@@ -167,7 +167,7 @@ void check_options(const Pinhole& pinhole, const StereoOptions& options) {
   }
   if (pinhole.focal_x * options.baseline / options.nearest >= pinhole.width) {
     throw InputError("a stereo camera cannot see as near as " + std::to_string(options.nearest) +
-                     " m: there the two pictures have nothing in common");
+                     " m: at that distance the two images do not overlap");
   }
 }
 

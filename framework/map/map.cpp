@@ -131,8 +131,8 @@ bool Map::box_free(const Eigen::Vector3d& lower_W, const Eigen::Vector3d& upper_
 bool Map::swept_box_free(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
                          const Eigen::Vector3d& half) const {
   if (!from_W.allFinite() || !to_W.allFinite() || !half.allFinite() || half.minCoeff() < 0)
-    throw InputError("a box of half edges " + text(half) + " moved from " + text(from_W) + " to " +
-                     text(to_W) + ": numbers must be finite, edges not negative");
+    throw InputError("a box with half edges " + text(half) + " moved from " + text(from_W) +
+                     " to " + text(to_W) + ": numbers must be finite, edges not negative");
   for (const Eigen::Vector3d& end : {from_W, to_W}) {
     // Touching the end of the largest map is as good as touching a wall.
     const double slack = 2 * kTouching * grid_.resolution();

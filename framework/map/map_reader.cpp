@@ -28,7 +28,7 @@ class Reader {
     if (size_ == 0 && at_ == bytes_.size()) return std::move(file_);
     const std::size_t least = file_.two_states ? size_ / 4 : size_ * node_bytes();
     if (size_ > 8 * bytes_.size() || least > bytes_.size() - at_)
-      fail("says that it holds " + std::to_string(size_) + " nodes, for which at least " +
+      fail("states " + std::to_string(size_) + " nodes, for which at least " +
            std::to_string(least) + " bytes are needed, but " + std::to_string(bytes_.size() - at_) +
            " bytes follow: it was cut off");
     if (file_.two_states) {
@@ -38,8 +38,7 @@ class Reader {
       log_odds({}, kTreeDepth);
     }
     if (nodes_ != size_)
-      fail("says that it holds " + std::to_string(size_) + " nodes, but holds " +
-           std::to_string(nodes_));
+      fail("states " + std::to_string(size_) + " nodes, but holds " + std::to_string(nodes_));
     if (at_ != bytes_.size())
       fail("goes on for " + std::to_string(bytes_.size() - at_) + " bytes after its last node");
     return std::move(file_);

@@ -19,7 +19,8 @@ ParameterTable map_parameters() {
       .number("free_below", 0.25, "", "a voxel with a lower probability is free", between(0.2, 0.5))
       .number("occupied_above", 0.75, "", "a voxel with a higher probability is occupied",
               between(0.5, 0.8))
-      .optional_number("maximum_range", "m", "beyond it rays clear and add no hit; none: no limit",
+      .optional_number("maximum_range", "m",
+                       "range beyond which rays clear voxels and add no hit; absent: no limit",
                        above(0))
       .integer("pixel_step", 1, "use every n-th pixel of every n-th row of depth images",
                between(1, 64))
@@ -48,10 +49,10 @@ MapSettings map_settings(const Parameters& parameters) {
   Diagnostics errors;
   if (settings.clamp_min >= settings.free_below)
     errors.add(parameters.origin("clamp_min"), "clamp_min",
-               "must be less than free_below, or no voxel could ever be free");
+               "must be less than free_below, or no voxel can be free");
   if (settings.clamp_max <= settings.occupied_above)
     errors.add(parameters.origin("clamp_max"), "clamp_max",
-               "must be more than occupied_above, or no voxel could ever be occupied");
+               "must be more than occupied_above, or no voxel can be occupied");
   errors.throw_if_any();
   return settings;
 }

@@ -48,8 +48,8 @@ void scan_points(const PosedDepthImage& measured, int pixel_step, double maximum
       if (std::isinf(depth) && depth > 0) {
         if (!std::isfinite(maximum_range))
           throw InputError(place(x, y) +
-                           " of a depth image found nothing: give the map a "
-                           "maximum_range, up to which such rays are free");
+                           " of a depth image is infinite: give the map a "
+                           "maximum_range, up to which such rays clear voxels");
         // The middle of a voxel at most 0.87 voxels away still lies beyond.
         const double far = (maximum_range + 2 * resolution) / ray.norm();
         points_W.push_back((p + far * ray).cast<float>());

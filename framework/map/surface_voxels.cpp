@@ -106,8 +106,8 @@ class Collector {
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     tidied_ = keys_.size();
     if (tidied_ > most_)
-      throw InputError("the surface goes through more than " + std::to_string(most_) +
-                       " voxels of " + std::to_string(grid_.resolution()) + " m: take larger ones");
+      throw InputError("the surface crosses more than " + std::to_string(most_) + " voxels of " +
+                       std::to_string(grid_.resolution()) + " m: take larger ones");
   }
 
   VoxelGrid grid_;

@@ -167,7 +167,7 @@ class AnnotationWriter {
     Value chosen = Value::map();
     chosen.set("name", declared_text(entry, "under"));
     chosen.set("type", "text");
-    chosen.set("summary", "which plugin; its own parameters may stand beside it");
+    chosen.set("summary", "name of the plugin; its parameters may follow in this table");
     all.push_back(std::move(chosen));
     pending_.emplace_back(nested, std::move(all));
     return nested + "|" + alias;

@@ -101,7 +101,7 @@ int fail_in_file(lua_State* state) {
                    (path.empty() ? "" : path + ": ") + message + slip_near(content, path));
 }
 
-// file:check("gates[2]", declarations): the table there, checked as options are, with defaults.
+// file:check("gates[2]", declarations): the table there, checked like options, with defaults.
 int check_part(lua_State* state) {
   const Value& content = content_of(state);
   const std::string path = text_argument(state, 2, "check");
@@ -155,16 +155,17 @@ void open_data_library(lua_State* state) {
       {"fail", &guarded<fail_in_file>, "(path: string, message: string)",
        "an error on the line of that value: \"gates[2].radius\""},
       {"check", &guarded<check_part>, "(path: string, declarations: lapwing.option[]): table",
-       "the table there, checked as options are, with defaults"},
+       "the table there, checked like options, with defaults"},
       {"expect_keys", &guarded<expect_keys>, "(path: string, known: string[], slips?: boolean)",
-       "an error for any other key of the table there; slips: for those nearly known alone"}};
+       "an error for any other key of the table there; slips: for misspelt ones only"}};
   static const Binding functions[] = {
       {"read_json", &guarded<read_json>, "(name: string, folder?: string): any, lapwing.data_file",
-       "a table, from a file in the script's folder, a --data folder or configs/, and the file"},
+       "a table from a file in the folder of the script, a --data folder or configs/, and the "
+       "file"},
       {"read_yaml", &guarded<read_yaml_data>,
        "(name: string, folder?: string): any, lapwing.data_file", "the same from a YAML file"},
       {"read_text", &guarded<read_text>, "(name: string, folder?: string): string",
-       "the text of such a file"}};
+       "the text of a file"}};
   define_type<DataFile>(state, kDataFileType, {methods});
   lua_getglobal(state, "lapwing");
   bind_functions(state, "lapwing", functions);

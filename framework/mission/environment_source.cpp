@@ -137,56 +137,56 @@ Eigen::AlignedBox3d drawn_region(const Environment& environment,
 ParameterTable shapes_table() {
   const Range far = between(-1e6, 1e6);
   ParameterTable sphere;
-  sphere.text("name", "", "for messages")
+  sphere.text("name", "", "name in messages")
       .required_numbers("center", 3, "m", "world", far)
       .required_number("radius", "m", "", {0, 1e6, true});
   ParameterTable box;
-  box.text("name", "", "for messages")
+  box.text("name", "", "name in messages")
       .required_numbers("lower", 3, "m", "lowest corner, world", far)
       .required_numbers("upper", 3, "m", "highest corner, world", far);
   ParameterTable zone;
-  zone.text("name", "", "for messages")
-      .required_numbers("corners", 0, "m", "x and y of each corner in turn, world", far)
-      .optional_number("floor", "m", "lowest height that is closed; absent: the ground and below")
-      .optional_number("ceiling", "m", "highest height that is closed; absent: all above");
+  zone.text("name", "", "name in messages")
+      .required_numbers("corners", 0, "m", "x and y of each corner, in order, world", far)
+      .optional_number("floor", "m", "lower end; absent: none")
+      .optional_number("ceiling", "m", "upper end; absent: none");
   ParameterTable table;
-  table.tables("spheres", sphere, "to keep out of")
-      .tables("boxes", box, "to keep out of, parallel to the axes")
-      .tables("zones", zone, "not to be flown over")
-      .tables("flight_zones", zone, "not to be left, every one of them");
+  table.tables("spheres", sphere, "spheres that the flight stays out of")
+      .tables("boxes", box, "boxes that the flight stays out of")
+      .tables("zones", zone, "zones that the flight stays out of")
+      .tables("flight_zones", zone, "zones that the flight stays inside of");
   return table;
 }
 
 ParameterTable environment_table() {
   const Range far = between(-1e6, 1e6);
   ParameterTable mesh;
-  mesh.text("name", "", "for messages").required_text("file", "a mesh, in metres with z up");
+  mesh.text("name", "", "name in messages").required_text("file", "mesh file, in metres with z up");
   ParameterTable map;
-  map.text("name", "", "for messages")
+  map.text("name", "", "name in messages")
       .required_numbers("lower", 3, "m", "lowest corner, world", far)
       .required_numbers("upper", 3, "m", "highest corner, world", far)
-      .required_text("file", "a map, .ot or .bt")
+      .required_text("file", "map file, .ot or .bt")
       .text("type", "brick", "plugin that holds it");
   ParameterTable region;
   region.optional_numbers("lower", 3, "m", "lowest corner, world", far)
       .optional_numbers("upper", 3, "m", "highest corner", far);
   ParameterTable point;
-  point.required_number("time", "s", "from the start of the flight")
-      .required_numbers("position", 3, "m", "of its middle, world", far);
+  point.required_number("time", "s", "time from the start of the flight")
+      .required_numbers("position", 3, "m", "position of its centre, world", far);
   ParameterTable subject;
-  subject.required_text("name", "by which it is asked for")
-      .number("height", 0, "m", "from foot to top", between(0, 1e5))
+  subject.required_text("name", "name, to which keyframes refer")
+      .number("height", 0, "m", "height from foot to top", between(0, 1e5))
       .number("width", 0, "m", "diameter", between(0, 1e5))
-      .number("distance", 0, "m", "kept from its middle, judged by the certificate",
+      .number("distance", 0, "m", "distance from its centre that the certificate requires",
               between(0, 1e5))
-      .boolean("filmed", true, "else a bystander, whom no camera looks for")
-      .tables("track", point, "where it is, straight in between", true);
+      .boolean("filmed", true, "false: a bystander, who is not filmed")
+      .tables("track", point, "positions, linear in between", true);
   ParameterTable table = shapes_table();
-  table.tables("meshes", mesh, "to keep away from")
-      .tables("maps", map, "occupied or unknown: to keep away from; known to within a box")
-      .tables("subjects", subject, "what is filmed")
-      .table("region", region, "where the distances of maps are wanted; absent: everywhere")
-      .number("margin", 0, "m", "kept from every surface", at_least(0));
+  table.tables("meshes", mesh, "meshes that the flight stays out of")
+      .tables("maps", map, "occupied and unknown voxels are obstacles, within a box")
+      .tables("subjects", subject, "subjects and bystanders")
+      .table("region", region, "box in which distances of maps are computed; absent: everywhere")
+      .number("margin", 0, "m", "distance from every surface", at_least(0));
   return table;
 }
 
@@ -207,13 +207,13 @@ std::vector<Obstacle> shapes_of(const Parameters& given) {
 
 ParameterTable obstacle_table() {
   ParameterTable point;
-  point.required_number("time", "s", "from the start of the flight")
-      .required_numbers("move", 3, "m", "added to its place", between(-1e6, 1e6));
+  point.required_number("time", "s", "time from the start of the flight")
+      .required_numbers("move", 3, "m", "displacement", between(-1e6, 1e6));
   ParameterTable table;
-  table.text("name", "", "for messages")
+  table.text("name", "", "name in messages")
       .choice("side", "keep_out", {"keep_out", "keep_inside"}, "where the flight stays")
-      .boolean("opaque", true, "whether it hides subjects; airspace does not")
-      .tables("track", point, "how it moves, straight in between; absent: it stands still");
+      .boolean("opaque", true, "whether it hides subjects; false for closed airspace")
+      .tables("track", point, "displacements, linear in between; absent: it stands still");
   return table;
 }
 

@@ -26,35 +26,37 @@ ParameterTable explore_table() {
       .number("view_deg", 90, "deg", "angle across", {1, 170})
       .number("pitch_deg", -10, "deg", "positive up", between(-89, 89));
   ParameterTable noise;
-  noise.number("dropped", 0, "", "share of the pixels without a measurement", between(0, 1))
-      .number("sigma", 0, "m", "of the depth, normal", between(0, 100));
+  noise.number("dropped", 0, "", "share of pixels without a measurement", between(0, 1))
+      .number("sigma", 0, "m", "standard deviation of the depth", between(0, 100));
   ParameterTable start;
   start.required_numbers("position", 3, "m", "world").number("yaw", 0, "rad", "heading");
   ParameterTable bounds;
   bounds.required_numbers("lower", 3, "m", "corner").required_numbers("upper", 3, "m", "corner");
   const EpisodeSettings standard;
   ParameterTable table;
-  table.table("camera", camera, "a pinhole in the middle of its image")
-      .table("noise", noise, "of the sensor")
-      .optional_number("stereo_baseline", "m", "depth by a pair of cameras", above(0))
+  table.table("camera", camera, "pinhole camera")
+      .table("noise", noise, "noise of the sensor")
+      .optional_number("stereo_baseline", "m",
+                       "distance of a pair of cameras, which measures depth", above(0))
       .number("range", standard.sensor.range, "m", "largest depth", above(0))
-      .number("step", standard.step, "m", "to a neighbour", above(0))
-      .number("turn_deg", 25, "deg", "to a neighbour", between(1, 180))
+      .number("step", standard.step, "m", "step to a neighbour", above(0))
+      .number("turn_deg", 25, "deg", "turn to a neighbour", between(1, 180))
       .number("body", standard.body, "m", "edge of the box that must be free", above(0))
       .number("clear", standard.clear, "m", "edge of the box that is free at the start", above(0))
-      .integer("visits", standard.visits, "images from a viewpoint", between(1, 100))
-      .integer("lookahead", 1, "views of the ways that are valued",
+      .integer("visits", standard.visits, "largest number of images from a viewpoint",
+               between(1, 100))
+      .integer("lookahead", 1, "length of the evaluated view sequences",
                between(1, EpisodeSettings::kMostLookahead))
       .integer("steps", standard.steps, "images", between(1, 1000000))
-      .number("speed", standard.speed, "m/s", "between viewpoints", above(0))
-      .number("turn_rate_deg", 60, "deg/s", "on the spot", above(0))
-      .number("pause", standard.pause, "s", "for an image", at_least(0))
-      .optional_number("budget", "s", "of flight", above(0))
-      .optional_number("wall_clock_guard", "s", "of computing", above(0))
-      .tables("bounds", bounds, "a box that the explorer stays in, at most one")
-      .tables("start", start, "where it begins, at most one; none: drawn by the run's seed")
-      .boolean("ground", false, "lay a floor under the surface, and explore above it")
-      .boolean("compare", false, "let the oracle explore from the same start");
+      .number("speed", standard.speed, "m/s", "speed between viewpoints", above(0))
+      .number("turn_rate_deg", 60, "deg/s", "turn rate on the spot", above(0))
+      .number("pause", standard.pause, "s", "pause for an image", at_least(0))
+      .optional_number("budget", "s", "flight time", above(0))
+      .optional_number("wall_clock_guard", "s", "limit of computing time", above(0))
+      .tables("bounds", bounds, "bounding box of the flight, at most one")
+      .tables("start", start, "start, at most one; none: drawn with the seed of the run")
+      .boolean("ground", false, "add a ground plane under the surface, and explore above it")
+      .boolean("compare", false, "run the oracle from the same start");
   return table;
 }
 
@@ -216,8 +218,10 @@ Trajectory trajectory_of(const Exploration& e, bool gimbal) {
 
 ParameterTable explored_plan_table() {
   ParameterTable table;
-  table.number("margin", 0.4, "m", "that the certificate asks for", at_least(0))
-      .text("note", "", "a sentence for the user");
+  table
+      .number("margin", 0.4, "m", "distance from obstacles that the certificate requires",
+              at_least(0))
+      .text("note", "", "sentence for the user");
   return table;
 }
 
@@ -289,18 +293,19 @@ Value viewpoint_value(const Viewpoint& view) {
 }
 
 constexpr BoundField kExplorationFields[] = {
-    {"end", "string", "what ended it, in a word"},
-    {"reason", "string", "the same in words"},
-    {"images", "integer", "that were taken"},
+    {"end", "string", "reason of the end, as one word"},
+    {"reason", "string", "reason of the end, as a sentence"},
+    {"images", "integer", "number of images"},
     {"efficiency", "number", "the observed surface summed over images (thesis 5.6)"},
-    {"observed_surface", "number", "voxels of the surface, at the end"},
-    {"surface", "number", "voxels of it that can be seen at all"},
-    {"length", "number", "of the path, m"},
-    {"flight", "number", "s that it took to fly, images included"},
-    {"seconds", "number", "of computing"},
-    {"relative", "number?", "efficiency over the oracle's from the same start, with `compare`"},
+    {"observed_surface", "number", "observed voxels of the surface at the end"},
+    {"surface", "number", "visible voxels of the surface"},
+    {"length", "number", "length of the path, m"},
+    {"flight", "number", "flight time in s, images included"},
+    {"seconds", "number", "computing time in s"},
+    {"relative", "number?",
+     "efficiency relative to the oracle from the same start, with `compare`"},
     {"views", "table[]", "{position, yaw, pitch} of every image, m and rad"},
-    {"cleared", "table", "the box that was taken to be free at the start: {lower, upper}, m"}};
+    {"cleared", "table", "box assumed free at the start: {lower, upper}, m"}};
 
 int exploration_field(lua_State* state) {
   const Exploration& e =
@@ -464,7 +469,7 @@ bool needs_truth(const Registry& registry, const std::string& utility) {
 void open_explore_library(lua_State* state) {
   static const Binding methods[] = {
       {"plan", &guarded<plan_exploration>, "(wanted: @): lapwing.plan",
-       "its flown path as a plan, in the map that it made", &explored_plan_table, kVehicleObject}};
+       "the flown path as a plan, in its map", &explored_plan_table, kVehicleObject}};
   define_type<ExplorationObject>(state, kExplorationType, {methods}, &guarded<exploration_field>);
   note_fields(state, kExplorationType, kExplorationFields);
 }

@@ -15,10 +15,9 @@ void open_explore_library(lua_State* state);
 
 // run:explore, and the table that it takes.
 ParameterTable explore_table();
-inline constexpr BoundField kExploreObjects[] = {
-    {"surface", "lapwing.surface", "that is explored"},
-    {"map", "lapwing.map_choice", "that is made of it"},
-    {"utility", "lapwing.utility", "how useful a view is"}};
+inline constexpr BoundField kExploreObjects[] = {{"surface", "lapwing.surface", "explored surface"},
+                                                 {"map", "lapwing.map_choice", "map to build"},
+                                                 {"utility", "lapwing.utility", "value of a view"}};
 int explore_surface(lua_State* state);
 
 // What a report shows of the exploration at a place of the stack. InputError where there is none.

@@ -57,16 +57,18 @@ int fly_plan(lua_State* state) {
 }
 
 constexpr BoundField kPathVehicle[] = {
-    {"vehicle?", "lapwing.vehicle", "whose limits hold, beside speed and acceleration"}};
+    {"vehicle?", "lapwing.vehicle",
+     "vehicle whose limits hold, in addition to speed and acceleration"}};
 
 ParameterTable time_path_table() {
   ParameterTable table;
   table.required_numbers("points", 0, "m", "x, y, z of each point in turn, world")
-      .number("spacing", 0.01, "m", "between the points of the answer", above(0))
-      .number("rounding", 0, "m", "of corners, standard deviation", at_least(0))
-      .number("share", 1, "", "of what the vehicle can do", {0, 1, true})
+      .number("spacing", 0.01, "m", "distance between the points of the result", above(0))
+      .number("rounding", 0, "m", "rounding of corners, standard deviation", at_least(0))
+      .number("share", 1, "", "share of the limits of the vehicle", {0, 1, true})
       .optional_number("speed", "m/s", "largest", above(0))
-      .optional_number("acceleration", "m/s^2", "largest, along and across together", above(0));
+      .optional_number("acceleration", "m/s^2",
+                       "largest acceleration, along and across the path together", above(0));
   return table;
 }
 
@@ -141,12 +143,13 @@ int stops_of_keyframes(lua_State* state) {
 
 ParameterTable keyframe_times_table() {
   ParameterTable wish;
-  wish.optional_number("time", "s", "exact, or preferred where there is a time_weight")
-      .optional_number("time_weight", "1/s^2", "of the squared distance from `time`", at_least(0))
+  wish.optional_number("time", "s", "wished time: exact, or preferred with a time_weight")
+      .optional_number("time_weight", "1/s^2", "weight of the squared distance from `time`",
+                       at_least(0))
       .optional_number("earliest", "s", "not before")
       .optional_number("latest", "s", "not after");
   ParameterTable table;
-  table.tables("wishes", wish, "of each keyframe; the first one is passed at 0 s", true)
+  table.tables("wishes", wish, "wish of each keyframe; the first one is passed at 0 s", true)
       .required_numbers("legs", 0, "s", "shortest duration of each leg", above(0));
   return table;
 }
@@ -183,18 +186,19 @@ int times_of_keyframes(lua_State* state) {
 ParameterTable pursue_table() {
   const PursuitSettings standard;
   ParameterTable view;
-  view.integer("point", 1, "of the path, from 1 on", at_least(1))
+  view.integer("point", 1, "number of the path point, from 1", at_least(1))
       .number("yaw", 0, "rad", "heading");
   ParameterTable table;
   table.required_numbers("points", 0, "m", "x, y, z of each point in turn, world")
-      .tables("views", view, "where images are taken")
-      .number("speed", standard.speed, "m/s", "on the way", above(0))
+      .tables("views", view, "places of images")
+      .number("speed", standard.speed, "m/s", "speed between views", above(0))
       .number("view_speed", standard.view_speed, "m/s", "near a view", above(0))
-      .number("slow_within", standard.slow_within, "m", "of a view", above(0))
-      .number("lookahead", standard.lookahead, "m", "of what is pursued", above(0))
+      .number("slow_within", standard.slow_within, "m",
+              "distance from a view within which view_speed holds", above(0))
+      .number("lookahead", standard.lookahead, "m", "distance of the pursued point", above(0))
       .number("acceleration", standard.acceleration, "m/s^2", "largest", above(0))
-      .boolean("stop", standard.stop, "at every view")
-      .number("pause", standard.pause, "s", "in every view", between(0, 3600));
+      .boolean("stop", standard.stop, "whether to stop at every view")
+      .number("pause", standard.pause, "s", "pause at every view", between(0, 3600));
   return table;
 }
 
@@ -245,20 +249,20 @@ int pursue_path(lua_State* state) {
 std::span<const Binding> flight_methods_of_run() {
   static const Binding methods[] = {
       {"fly", &guarded<fly_plan>, "(plan: lapwing.plan): table",
-       "the flight under control in still air: position_error, yaw_error, lost; of a drawing also "
+       "the simulated flight in still air: position_error, yaw_error, lost; of a drawing also "
        "mean_drawing_error, worst_drawing_error"},
       {"time_path", &guarded<time_path>, "(path: @): table",
-       "{points, times}: the path in even steps and when they are passed, as fast as the limits "
+       "{points, times}: the path in even steps and the times of passing them, as fast as the "
+       "limits "
        "allow, from rest to rest",
        &time_path_table, kPathVehicle},
       {"path_distance", &guarded<path_distance>, "(places: @): number",
-       "how far the farthest of the points is from the path, m", &path_distance_table},
+       "largest distance of the points from the path, m", &path_distance_table},
       {"keyframe_stops", &guarded<stops_of_keyframes>, "(places: @): integer[]",
-       "for each keyframe the number of the nearest point of the path, in order",
-       &keyframe_stops_table},
+       "number of the nearest path point of each keyframe, in order", &keyframe_stops_table},
       {"keyframe_times", &guarded<times_of_keyframes>, "(asked: @): number[]?, integer?",
        "the cheapest times that grant every wish: duration and weighted squared distances from "
-       "preferred times; or nil and the keyframe that can have none of its times",
+       "preferred times; or nil and the keyframe whose wish cannot be met",
        &keyframe_times_table},
       {"pursue", &guarded<pursue_path>, "(path: @): table",
        "a flight along straight lines by pure pursuit, simulated: duration, views, lost, "

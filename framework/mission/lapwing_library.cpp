@@ -129,10 +129,10 @@ void open_lapwing_library(lua_State* state, MissionRun& run) {
   static const Binding functions[] = {
       {"options", &guarded<options>,
        "(declarations: lapwing.option[], given: table): lapwing.options",
-       "a mission's options: what may be set, and what the script sets"},
+       "the options of a mission: declarations, and values of the script"},
       {"arguments", &guarded<arguments>,
        "(what: string, declarations: lapwing.option[], given: table): table",
-       "the arguments of a function, checked as options are, with their defaults"},
+       "the arguments of a function, checked like options, with defaults"},
       {"local_from_geodetic", &guarded<local_from_geodetic>,
        "(origin: lapwing.geodetic, point: lapwing.geodetic): number[]",
        "{east, north, up} of the point from the origin, m"},

@@ -38,7 +38,7 @@ class Reader {
         return read_table(index, path, without);
       default:
         if (is_symbolic_vector(state_, index)) return read_vector(index, path);
-        refuse(path, std::string("a ") + luaL_typename(state_, index) + " cannot stand here");
+        refuse(path, std::string("a ") + luaL_typename(state_, index) + " is not allowed here");
     }
   }
 
@@ -68,7 +68,8 @@ class Reader {
     hold(kCopies * length);
     const std::string_view view(text, length);
     if (!is_utf8(view)) refuse(path, "expected text in UTF-8");
-    if (view.find('\0') != view.npos) refuse(path, "a text with a NUL character cannot stand here");
+    if (view.find('\0') != view.npos)
+      refuse(path, "a text with a NUL character is not allowed here");
     return std::string(view);
   }
 
@@ -85,7 +86,7 @@ class Reader {
   Value read_table(int index, const std::string& path, std::span<const std::string_view> without) {
     const void* identity = lua_topointer(state_, index);
     if (std::find(open_.begin(), open_.end(), identity) != open_.end()) {
-      refuse(path, "a table that holds itself cannot stand here");
+      refuse(path, "a table that contains itself is not allowed here");
     }
     if (open_.size() >= kDeepest) refuse(path, "tables nested more than 32 deep");
     luaL_checkstack(state_, 8, "nested tables");
@@ -108,8 +109,7 @@ class Reader {
   }
 
   Value read_list(int index, lua_Integer length, const std::string& path) {
-    if (entries_ != length)
-      refuse(path, "a list with gaps, or numbered from something else than 1");
+    if (entries_ != length) refuse(path, "a list with gaps, or not numbered from 1");
     Value list = Value::list();
     for (lua_Integer i = 1; i <= length; ++i) {
       lua_rawgeti(state_, index, i);
@@ -125,7 +125,7 @@ class Reader {
     for (const SymbolicScalar& entry : symbolic_vector_argument(state_, index, path)) {
       if (!entry.known())
         refuse(path,
-               "a value of a stage is unknown until the problem is solved: it cannot stand "
+               "a value of a stage is unknown until the problem is solved: it is not allowed "
                "here");
       if (!std::isfinite(entry.value)) refuse(path, "expected a vector of finite numbers");
       list.push_back(located(Value(entry.value)));

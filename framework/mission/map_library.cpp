@@ -53,9 +53,9 @@ int surface(lua_State* state) {
 ParameterTable mesh_file_table() {
   return ParameterTable()
       .required_text("file", "a mesh, .obj, .ply, .dae, ...")
-      .optional_number("unit", "m", "that one unit of the file is; absent: what it says", above(0))
-      .choice("up", "file", {"file", "x", "y", "z"},
-              "the axis that points up; file: the one that it says");
+      .optional_number("unit", "m", "metres per unit of the file; absent: as the file says",
+                       above(0))
+      .choice("up", "file", {"file", "x", "y", "z"}, "axis that points up; file: as the file says");
 }
 
 // run:read_surface{file =, unit =, up =}: from a mesh file.
@@ -90,7 +90,7 @@ int clearance(lua_State* state) {
   return 1;
 }
 
-// surface:covered(p): whether there is anything straight above.
+// surface:covered(p): whether there is a surface straight above.
 int covered(lua_State* state) {
   const SurfaceObject& surface = whole_surface(state);
   const Eigen::Vector3d p = point_argument(state, 2, "covered");
@@ -118,19 +118,19 @@ int add_ground(lua_State* state) {
   return 0;
 }
 
-// surface:discard(): nothing is left that anything could look at.
+// surface:discard(): deletes the surface; it cannot be used any more.
 int discard(lua_State* state) {
   whole_surface(state).scene.reset();
   return 0;
 }
 
 constexpr BoundField kSurfaceFields[] = {
-    {"name", "string", "of its scene or file"},
-    {"triangles", "integer", "how many there are"},
+    {"name", "string", "name of its scene or file"},
+    {"triangles", "integer", "number of triangles"},
     {"lower", "number[]", "lowest corner of its bounds, m"},
     {"upper", "number[]", "highest corner of its bounds, m"},
-    {"region", "table", "of interest: {lower, upper}, m"},
-    {"moves", "table", "that its scene recommends for explorations"}};
+    {"region", "table", "region of interest: {lower, upper}, m"},
+    {"moves", "table", "moves that its scene recommends for explorations"}};
 
 int surface_field(lua_State* state) {
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
@@ -171,17 +171,17 @@ ParameterTable scan_table() {
       .integer("height", 120, "pixels", between(1, 10000))
       .number("view_deg", 90, "deg", "angle across", {1, 170});
   ParameterTable noise;
-  noise.number("dropped", 0, "", "share of the pixels without a measurement", between(0, 1))
-      .number("sigma", 0, "m", "of the depth, normal", between(0, 100));
+  noise.number("dropped", 0, "", "share of pixels without a measurement", between(0, 1))
+      .number("sigma", 0, "m", "standard deviation of the depth", between(0, 100));
   ParameterTable pose;
   pose.required_numbers("position", 3, "m", "world")
       .number("yaw", 0, "rad", "heading")
       .number("pitch", 0, "rad", "positive up");
   ParameterTable table;
-  table.table("camera", camera, "a pinhole in the middle of its image")
-      .table("noise", noise, "of the sensor")
+  table.table("camera", camera, "pinhole camera")
+      .table("noise", noise, "noise of the sensor")
       .number("range", 20, "m", "largest depth", above(0))
-      .tables("poses", pose, "of the camera", true);
+      .tables("poses", pose, "poses of the camera", true);
   return table;
 }
 
@@ -213,7 +213,7 @@ int scan(lua_State* state) {
   for (const Parameters& pose : given.tables("poses"))
     poses.push_back(
         camera_pose(vector_of(pose.numbers("position")), pose.number("yaw"), pose.number("pitch")));
-  if (poses.empty()) throw InputError(given.origin("poses"), "scan: no pose to look from");
+  if (poses.empty()) throw InputError(given.origin("poses"), "scan: no pose");
   begin_planning(run);
   const Sandbox::ClockPause pause(Sandbox::of(state));
   map_surface(mapping, *surface.scene, poses, sensor, run.settings.seed, work_of(run));
@@ -279,20 +279,20 @@ int counts(lua_State* state) {
 
 void open_map_library(lua_State* state) {
   static const Binding methods[] = {
-      {"scan", &guarded<scan>, "(look: @)", "depth images of a surface, put into the map",
-       &scan_table, kSurfaceObject},
+      {"scan", &guarded<scan>, "(look: @)", "integrates depth images of a surface", &scan_table,
+       kSurfaceObject},
       {"scan_folder", &guarded<scan_folder>, "(name: string)",
        "the same from a folder of depth images"},
-      {"load", &guarded<load>, "(name: string)", "all of a map file of the same resolution"},
+      {"load", &guarded<load>, "(name: string)", "loads a map file of the same resolution"},
       {"counts", &guarded<counts>, "(): table", "voxels and memory: known, free, occupied, bytes"}};
   static const Binding of_surface[] = {
       {"clearance", &guarded<clearance>, "(place: number[]): number",
-       "m to the nearest triangle, 50 at most"},
+       "distance to the nearest triangle in m, 50 at most"},
       {"covered", &guarded<covered>, "(place: number[]): boolean",
-       "whether there is anything straight above"},
+       "whether there is a surface straight above"},
       {"add_ground", &guarded<add_ground>, "()",
        "adds a plane through its lowest point, 100 m beyond it on every side"},
-      {"discard", &guarded<discard>, "()", "nothing is left that anything could look at"}};
+      {"discard", &guarded<discard>, "()", "deletes the surface; it cannot be used any more"}};
   define_type<MapObject>(state, kMapType, {methods});
   define_type<SurfaceObject>(state, kSurfaceType, {of_surface}, &guarded<surface_field>);
   note_fields(state, kSurfaceType, kSurfaceFields);
@@ -301,15 +301,15 @@ void open_map_library(lua_State* state) {
 std::span<const Binding> map_methods_of_run() {
   static const Binding methods[] = {
       {"surface", &guarded<surface>, "(scene: lapwing.scene): lapwing.surface",
-       "a surface to look at, from a scene"},
+       "a surface from a scene"},
       {"read_surface", &guarded<read_surface>, "(mesh: @): lapwing.surface",
        "the same from a mesh file", &mesh_file_table},
       {"map", &guarded<map>, "(choice: lapwing.map_choice): lapwing.map",
-       "an empty map; a mission's `plan` may return it in place of a plan"},
+       "an empty map; the `plan` of a mission may return a map instead of a plan"},
       {"map_resolution", &guarded<map_resolution>, "(name: string): number",
        "the edge of a voxel of a map file, m"},
       {"explore", &guarded<explore_surface>, "(settings: @): lapwing.exploration",
-       "an exploration of a surface, whatever came out", &explore_table, kExploreObjects}};
+       "an exploration of a surface", &explore_table, kExploreObjects}};
   return methods;
 }
 

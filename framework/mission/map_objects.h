@@ -25,8 +25,7 @@ struct SurfaceObject {
 inline constexpr const char* kMapType = "map";
 inline constexpr const char* kSurfaceType = "surface";
 
-inline constexpr BoundField kSurfaceObject[] = {
-    {"surface", "lapwing.surface", "that is looked at"}};
+inline constexpr BoundField kSurfaceObject[] = {{"surface", "lapwing.surface", "seen surface"}};
 
 // Adds the types above; after open_lapwing_library.
 void open_map_library(lua_State* state);

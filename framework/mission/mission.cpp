@@ -99,8 +99,9 @@ void Mission::Impl::read_mission(lua_State* state) {
   const int mission = lua_gettop(state);
   static constexpr std::string_view kParts[] = {"options", "plan"};
   ParameterTable table;
-  table.required_text("kind", "of mission: film, race, ...")
-      .text("name", name_of_script(script), "of the mission; absent: the script's file name");
+  table.required_text("kind", "kind of the mission: film, race, ...")
+      .text("name", name_of_script(script),
+            "name of the mission; absent: the file name of the script");
   const Parameters parts =
       check(table, value_from_lua(state, mission, origin, "mission", kParts), "mission");
   run.kind = parts.text("kind");

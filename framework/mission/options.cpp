@@ -177,7 +177,8 @@ Value OptionDeclarations::plugin_entry(const Option& option, Value& given,
   expanded.set(option.under, type);
   given.set(option.name, std::move(expanded));
 
-  Value table = ParameterTable{}.text(option.under, type.as_text(), "which plugin").to_value();
+  Value table =
+      ParameterTable{}.text(option.under, type.as_text(), "name of the plugin").to_value();
   if (option.own.is_list())
     for (const Value& entry : option.own.as_list()) table.push_back(entry);
   const Value own = plugin.parameters.to_value();

@@ -32,27 +32,27 @@ namespace lapwing {
 
 // The keys of a declaration.
 inline constexpr BoundField kDeclarationKeys[] = {
-    {"name", "string", "of the option"},
+    {"name", "string", "name of the option"},
     {"type", "string",
      "boolean, integer, number, numbers, text, choice, table, tables, plugin, plugins, vehicle"},
     {"summary?", "string", "one line"},
-    {"unit?", "string", "of a number or of numbers: m, s, m/s, deg, ..."},
-    {"default?", "any", "what it is where nobody sets it"},
-    {"required?", "boolean", "whether somebody must"},
-    {"minimum?", "number", "of a number, or of each of numbers"},
-    {"above?", "number", "the same; itself not allowed"},
-    {"maximum?", "number", "of a number, or of each of numbers"},
-    {"choices?", "string[]", "of a choice"},
-    {"size?", "integer", "how many numbers"},
+    {"unit?", "string", "unit of a number or of numbers: m, s, m/s, deg, ..."},
+    {"default?", "any", "value if it is not set"},
+    {"required?", "boolean", "whether it must be set"},
+    {"minimum?", "number", "smallest value of a number, or of each of numbers"},
+    {"above?", "number", "exclusive lower bound"},
+    {"maximum?", "number", "largest value of a number, or of each of numbers"},
+    {"choices?", "string[]", "values of a choice"},
+    {"size?", "integer", "length of the list of numbers"},
     {"table?", "lapwing.option[]", "entries of a table, or of each of tables"},
-    {"kind?", "string", "of a plugin: trajectory_solver, ..."},
+    {"kind?", "string", "kind of a plugin: trajectory_solver, ..."},
     {"words?", "string[]", "texts that are allowed in place of a number"},
     {"settled?", "table<string, string>", "parameters of a plugin that cannot be set, and why"},
     {"under?", "string", "the key that names a plugin, in place of `type`"},
-    {"functions?", "lapwing.option[]", "of plugins: entries of those that are functions alone"},
-    {"replaced_by?", "string", "an option that takes this one's place where it is set"},
-    {"refused?", "string", "why nobody may set it, or why a choice has no others"},
-    {"also?", "string", "what else a script may give, for editors: a type as LuaLS writes it"}};
+    {"functions?", "lapwing.option[]", "entries of plugins that are functions of the script"},
+    {"replaced_by?", "string", "option that replaces this one if it is set"},
+    {"refused?", "string", "reason why it cannot be set, or why a choice has no others"},
+    {"also?", "string", "another form that a script may give, as a type of LuaLS"}};
 
 // What may be written behind --set: "weights.yaw", and the words that its value may be.
 struct SettableOption {

@@ -22,25 +22,25 @@ namespace {
 
 ParameterTable pass_table() {
   ParameterTable table;
-  table.required_numbers("from", 3, "m", "where the first image is taken")
-      .required_numbers("to", 3, "m", "where the last one is taken, at the same height")
-      .integer("images", 2, "evenly, both ends included", between(2, 100000))
-      .number("yaw", 0, "rad", "of the camera from the course, which is that from end to end")
-      .number("pitch", 0, "rad", "of the camera, positive up");
+  table.required_numbers("from", 3, "m", "place of the first image")
+      .required_numbers("to", 3, "m", "place of the last image, at the same height")
+      .integer("images", 2, "number of images, evenly spaced, both ends included",
+               between(2, 100000))
+      .number("yaw", 0, "rad", "yaw of the camera relative to the course")
+      .number("pitch", 0, "rad", "pitch of the camera, positive upwards");
   return table;
 }
 
 ParameterTable pass_graph_table() {
   ParameterTable table;
-  table.table("region", box_table(), "of interest")
-      .table("allowed", box_table(), "where the vehicle's middle may be; all of it must be free")
-      .tables("passes", pass_table(), "straight and level, with images along them", true)
-      .numbers("body", {1, 1, 0.5}, "m", "half edges of the vehicle's box")
-      .number("mesh_room", 1, "m", "more that is kept from the prior mesh", at_least(0))
-      .table("camera", pinhole_table(), "of the images")
-      .integer("across", 0, "pixels a row of the images that views are weighed by; 0: all",
-               between(0, 10000))
-      .number("range", 60, "m", "of a ray through a pixel", above(0));
+  table.table("region", box_table(), "region of interest")
+      .table("allowed", box_table(), "box for the centre of the vehicle; all of it must be free")
+      .tables("passes", pass_table(), "straight and level passes, with images along them", true)
+      .numbers("body", {1, 1, 0.5}, "m", "half edges of the box of the vehicle")
+      .number("mesh_room", 1, "m", "additional distance from the prior mesh", at_least(0))
+      .table("camera", pinhole_table(), "camera of the images")
+      .integer("across", 0, "pixels per row in the evaluation of views; 0: all", between(0, 10000))
+      .number("range", 60, "m", "length of a ray", above(0));
   return table;
 }
 
@@ -86,9 +86,9 @@ void trim_passes(ScanWork& work) {
 }
 
 constexpr BoundField kPassGraphObjects[] = {
-    {"prior", "lapwing.prior", "what is known of the place"},
-    {"vehicle", "lapwing.vehicle", "that flies"},
-    {"information", "lapwing.information", "what a view tells of a voxel"}};
+    {"prior", "lapwing.prior", "known map and mesh"},
+    {"vehicle", "lapwing.vehicle", "vehicle"},
+    {"information", "lapwing.information", "information of a view about a voxel"}};
 
 void check_air(const ScanWork& work, double mesh_room, const Parameters& given) {
   const Eigen::AlignedBox3d& air = work.allowed;
@@ -97,7 +97,7 @@ void check_air(const ScanWork& work, double mesh_room, const Parameters& given) 
   char text[300];
   std::snprintf(text, sizeof text,
                 "the air for turns is not known to be free between (%.4g, %.4g, %.4g) and (%.4g, "
-                "%.4g, %.4g): a higher safe_height, or a map that shows that air, would help",
+                "%.4g, %.4g): raise safe_height, or use a map that shows this air",
                 air.min().x(), air.min().y(), air.min().z(), air.max().x(), air.max().y(),
                 air.max().z());
   throw InputError(given.origin("allowed"), text);
@@ -115,11 +115,12 @@ int pass_graph_of_run(lua_State* state) {
   lua_getfield(state, 2, "vehicle");
   work->vehicle = object_argument<Vehicle>(state, -1, kVehicleType);
   if (!work->vehicle.gimbal)
-    throw InputError("vehicle '" + work->vehicle.name +
-                     "' has no gimbal: images that are taken in passing look down or aside");
+    throw InputError(
+        "vehicle '" + work->vehicle.name +
+        "' has no gimbal: images in passing need a camera that looks down or sideways");
   lua_getfield(state, 2, "information");
   const PluginChoice information = plugin_choice(state, lua_gettop(state), "information");
-  work->allowed = box_of(given.table("allowed"), "the air that is allowed");
+  work->allowed = box_of(given.table("allowed"), "the box for the vehicle");
   work->body = vector_of(given.numbers("body"));
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const auto coarser = make_sight(*work, run, given, information);
@@ -146,16 +147,16 @@ int pass_graph_of_run(lua_State* state) {
   return 1;
 }
 
-constexpr BoundField kPassTourObjects[] = {{"graph", "lapwing.scan_graph", "of passes"}};
+constexpr BoundField kPassTourObjects[] = {{"graph", "lapwing.scan_graph", "graph of passes"}};
 ParameterTable pass_tour_table() {
   ParameterTable table;
-  table.required_number("budget", "s", "of flight", above(0))
-      .required_number("speed", "m/s", "of the whole flight", above(0))
-      .required_number("radius", "m", "of turns", above(0))
-      .number("lead", 0, "m", "straight before a pass' first image and behind its last",
+  table.required_number("budget", "s", "flight time", above(0))
+      .required_number("speed", "m/s", "speed of the whole flight", above(0))
+      .required_number("radius", "m", "radius of the turns", above(0))
+      .number("lead", 0, "m", "straight flight before the first and after the last image of a pass",
               at_least(0))
-      .integer("images", 0, "most images; 0 for any number", at_least(0))
-      .integer("iterations", 200, "of the search", at_least(0));
+      .integer("images", 0, "largest number of images; 0: any number", at_least(0))
+      .integer("iterations", 200, "iterations of the search", at_least(0));
   return table;
 }
 
@@ -287,7 +288,8 @@ PassedFlight passed_flight(const TourObject& tour, const SolutionObject& solutio
 std::span<const Binding> pass_methods_of_run() {
   static const Binding methods[] = {
       {"pass_graph", &guarded<pass_graph_of_run>, "(settings: @): lapwing.scan_graph",
-       "views of a region that are taken in passing", &pass_graph_table, kPassGraphObjects},
+       "views of a region for a vehicle that cannot stand still, along straight passes",
+       &pass_graph_table, kPassGraphObjects},
       {"pass_tour", &guarded<pass_tour_of_run>, "(settings: @): lapwing.tour",
        "a tour of passes within a budget", &pass_tour_table, kPassTourObjects}};
   return methods;

@@ -52,8 +52,8 @@ namespace {
 // -- run:solve
 // -------------------------------------------------------------------------------------
 
-constexpr BoundField kWarmStart[] = {
-    {"warm_start?", "lapwing.solution", "of a problem of the same size, to begin from"}};
+constexpr BoundField kWarmStart[] = {{"warm_start?", "lapwing.solution",
+                                      "solution of a problem of the same size, for a warm start"}};
 
 std::optional<WarmStart> warm_start_argument(lua_State* state, int index,
                                              const TrajectoryProblem& problem) {
@@ -85,7 +85,8 @@ std::vector<StatedConstraint> constraints_of(const ProblemObject& object) {
   return all;
 }
 
-// run:solve(problem, solver [, {warm_start = solution}]): a solution, whatever came out.
+// run:solve(problem, solver [, {warm_start = solution}]): a solution; its `status` states the
+// outcome.
 int solve(lua_State* state) {
   MissionRun& run = run_of(state);
   const ProblemObject& object = object_argument<ProblemObject>(state, 2, kProblemType);
@@ -132,14 +133,14 @@ Value positions_of(const SolutionObject& solution) {
 constexpr BoundField kSolutionFields[] = {
     {"status", "string",
      "optimal, feasible, infeasible, iteration_limit, time_limit, cancelled, ..."},
-    {"message", "string", "what the solver says of it"},
+    {"message", "string", "message of the solver"},
     {"solver", "string", "its name"},
-    {"cost", "number", "weighted, of all terms"},
-    {"iterations", "integer", "of the solver"},
+    {"cost", "number", "sum of all weighted terms"},
+    {"iterations", "integer", "iterations of the solver"},
     {"violations", "table[]", "the worst of each constraint: {name, row, amount, time}"},
     {"legs", "number[]", "durations of the legs, s"},
     {"duration", "number", "s"},
-    {"defects", "number[]", "of each leg, as shares of what a certificate allows"},
+    {"defects", "number[]", "defect of each leg, as a share of the limit of the certificate"},
     {"path", "number[]", "x, y, z of every stage in turn, m, world"}};
 
 int solution_field(lua_State* state) {
@@ -212,7 +213,7 @@ Value wing_value(const Vehicle& vehicle) {
 
 // Its name and the limits that a mission may plan with.
 constexpr BoundField kVehicleFields[] = {
-    {"name", "string", "of the vehicle"},
+    {"name", "string", "name of the vehicle"},
     {"mass", "number", "kg"},
     {"speed_across", "number", "largest, m/s"},
     {"climb_speed", "number", "largest, m/s"},
@@ -221,9 +222,9 @@ constexpr BoundField kVehicleFields[] = {
     {"acceleration_up", "number", "largest, m/s^2; math.huge where the file states none"},
     {"acceleration_down", "number", "largest, m/s^2; math.huge where the file states none"},
     {"yaw_rate", "number", "largest, rad/s"},
-    {"thrust_max", "number", "of all rotors, that is used, N"},
-    {"rotor_thrust_max", "number", "of one rotor, N"},
-    {"flight_time", "number", "of a battery, s"},
+    {"thrust_max", "number", "largest used thrust of all rotors, N"},
+    {"rotor_thrust_max", "number", "largest thrust of one rotor, N"},
+    {"flight_time", "number", "flight time of one battery, s"},
     {"flies", "boolean", "whether its rotors are known, so that its flight can be simulated"},
     {"gimbal", "table|false",
      "{yaw_min, yaw_max, pitch_min, pitch_max, yaw_rate, pitch_rate}, rad and rad/s; false: none"},
@@ -259,8 +260,8 @@ int vehicle_field(lua_State* state) {
 
 ParameterTable span_table() {
   ParameterTable table;
-  table.required_number("start", "s", "from the start of the flight", at_least(0))
-      .required_number("finish", "s", "from the start of the flight", at_least(0));
+  table.required_number("start", "s", "start of the span, in the flight", at_least(0))
+      .required_number("finish", "s", "end of the span, in the flight", at_least(0));
   return table;
 }
 
@@ -271,33 +272,34 @@ ParameterTable task_table() {
       .required_numbers("position", 3, "m", "where, world")
       .optional_number("yaw", "rad", "heading")
       .number("tolerance", standard.tolerance, "m", "largest miss", above(0))
-      .number("time_tolerance", standard.time_tolerance, "s", "how far off in time", at_least(0))
+      .number("time_tolerance", standard.time_tolerance, "s", "largest time error", at_least(0))
       .number("yaw_tolerance", standard.yaw_tolerance, "rad", "largest miss of yaw", above(0));
   ParameterTable stroke;
   stroke.required_numbers("points", 0, "m", "x, y, z of each point in turn, world");
   ParameterTable gate;
-  gate.text("name", "", "in messages")
+  gate.text("name", "", "name in messages")
       .choice("shape", "ball", {"ball", "rectangle", "triangle", "pentagon", "hexagon"}, "opening")
-      .required_numbers("position", 3, "m", "middle, world")
-      .numbers("direction", {1, 0, 0}, "", "of flight")
-      .numbers("up", {0, 0, 1}, "", "which way it stands")
-      .number("tunnel_length", 0, "m", "half before, half behind", at_least(0));
+      .required_numbers("position", 3, "m", "centre, world")
+      .numbers("direction", {1, 0, 0}, "", "direction of flight")
+      .numbers("up", {0, 0, 1}, "", "upward direction of the opening")
+      .number("tunnel_length", 0, "m", "length, half before and half behind the opening",
+              at_least(0));
   for (const char* size : {"width", "height", "radius", "side"})
-    gate.optional_number(size, "m", "as the shape needs it", above(0));
+    gate.optional_number(size, "m", "size of the opening, if its shape has it", above(0));
   ParameterTable framing = span_table();
-  framing.required_text("subject", "which is in the image");
+  framing.required_text("subject", "subject in the image");
   ParameterTable table;
-  table.tables("keyframes", keyframe, "to fly through")
-      .tables("gates", gate, "to fly through in this order")
-      .boolean("closed_loop_required", true, "else tracking under control is reported only")
-      .tables("framing", framing, "which subject is in the image, and when")
-      .tables("strokes", stroke, "to draw with light")
+  table.tables("keyframes", keyframe, "keyframes of the flight")
+      .tables("gates", gate, "gates in the order of flight")
+      .boolean("closed_loop_required", true, "false: tracking under control is reported only")
+      .tables("framing", framing, "subject in the image, by span of time")
+      .tables("strokes", stroke, "strokes to draw with light")
       .number("drawing_tolerance", Task{}.drawing_tolerance, "m",
               "mean distance between light and strokes", above(0))
-      .numbers("drawing_view", {0, 1, 0}, "", "the way that spectators look")
-      .number("framing_share", Task{}.framing_share, "", "of that time", {0, 1, true})
+      .numbers("drawing_view", {0, 1, 0}, "", "viewing direction of the spectators")
+      .number("framing_share", Task{}.framing_share, "", "share of that time", {0, 1, true})
       .boolean("line_of_sight_required", true,
-               "for that share of the time; else hidden subjects are reported only");
+               "for that share of the time; false: hidden subjects are reported only");
   return table;
 }
 
@@ -349,12 +351,12 @@ ParameterTable plan_table() {
       .optional_number("lon", "", "degrees east", between(-180, 180))
       .optional_number("alt", "m", "above the ellipsoid");
   ParameterTable table;
-  table.table("task", task_table(), "what the flight is to do")
-      .tables("cuts", span_table(), "footage that is thrown away")
-      .optional_number("budget", "s", "of flight", above(0))
-      .tables("lights", span_table(), "when the light is on")
-      .table("geodetic_origin", origin, "where the world frame lies")
-      .tables("players", player_table(), "who fly the course by hand, in simulation");
+  table.table("task", task_table(), "task that the certificate checks")
+      .tables("cuts", span_table(), "spans of discarded footage")
+      .optional_number("budget", "s", "flight time", above(0))
+      .tables("lights", span_table(), "spans in which the light is on")
+      .table("geodetic_origin", origin, "origin of the world frame")
+      .tables("players", player_table(), "pilots of the course, in simulation");
   return table;
 }
 
@@ -369,13 +371,14 @@ std::vector<std::string> notes_argument(lua_State* state, int index, const char*
   return notes;
 }
 
-constexpr BoundField kPlanObjects[] = {{"solution", "lapwing.solution", "whose motion it is"},
-                                       {"notes?", "string[]", "sentences for the user"},
-                                       {"details?", "string[]",
-                                        "sentences on what was tried and came to nothing: shown "
-                                        "where the plan is not certified, or asked for"},
-                                       {"figures?", "table", "the kind's own figures, for --json"},
-                                       kStatedSections};
+constexpr BoundField kPlanObjects[] = {
+    {"solution", "lapwing.solution", "solution with the motion"},
+    {"notes?", "string[]", "sentences for the user"},
+    {"details?", "string[]",
+     "sentences on failed attempts: shown "
+     "if the plan is not certified, or with --verbose"},
+    {"figures?", "table", "figures of the mission kind, for --json"},
+    kStatedSections};
 
 // plan:add_sections(sections): more of its report.
 int add_sections(lua_State* state) {
@@ -431,7 +434,7 @@ int plan(lua_State* state) {
 
 constexpr BoundField kPlanFields[] = {
     {"duration", "number", "s"},
-    {"views", "table[]", "of a scan: {position, yaw, pitch}, m and rad"}};
+    {"views", "table[]", "views of a scan: {position, yaw, pitch}, m and rad"}};
 
 int plan_field(lua_State* state) {
   const PlanObject& made = object_argument<PlanObject>(state, 1, kPlanType);
@@ -482,11 +485,12 @@ std::span<const Binding> solving_methods_of_run() {
       {"solve", &guarded<solve>,
        "(problem: lapwing.problem, solver: lapwing.trajectory_solver, options?: @): "
        "lapwing.solution",
-       "a solution, whatever came out", nullptr, kWarmStart},
-      {"plan", &guarded<plan>, "(made: @): lapwing.plan", "what a mission's `plan` returns",
-       &plan_table, kPlanObjects},
+       "a solution; its `status` states the outcome", nullptr, kWarmStart},
+      {"plan", &guarded<plan>, "(made: @): lapwing.plan",
+       "the plan that `plan` of a mission returns", &plan_table, kPlanObjects},
       {"certify", &guarded<certify>, "(plan: lapwing.plan): table",
-       "the verifier's answer: `feasible`, `failures` (sentences), `checks`, each as in a plan, "
+       "the result of the verifier: `feasible`, `failures` (sentences), `checks`, each as in a "
+       "plan, "
        "with "
        "`line`: its result in words"}};
   return methods;

@@ -6,11 +6,13 @@ namespace lapwing {
 ParameterTable player_table() {
   ParameterTable table;
   table.required_text("log", "stick log: CSV, time,forward,left")
-      .text("name", "", "absent: the log's")
-      .number("weight", 0.5, "", "of the stick against the automatic control", between(0, 1))
-      .number("strength", 4, "m/s^2", "of a full deflection", above(0))
-      .number("reach", 3, "m", "off the course that a full deflection ends", above(0))
-      .number("speed", 1, "", "of the reference, times the planned one", between(0.1, 3))
+      .text("name", "", "name; absent: that of the log")
+      .number("weight", 0.5, "", "share of the stick against the planned acceleration",
+              between(0, 1))
+      .number("strength", 4, "m/s^2", "acceleration of a full deflection", above(0))
+      .number("reach", 3, "m", "distance from the course that ends the effect of the stick",
+              above(0))
+      .number("speed", 1, "", "factor on the reference speed", between(0.1, 3))
       .number("handicap", 0, "s", "added to the score", between(-3600, 3600));
   return table;
 }

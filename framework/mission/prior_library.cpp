@@ -70,13 +70,13 @@ Prior& prior_argument(lua_State* state) {
 
 ParameterTable look_table() {
   ParameterTable noise;
-  noise.number("dropped", 0, "", "share of the pixels without a measurement", between(0, 1))
-      .number("sigma", 0, "m", "of the depth, normal", between(0, 100));
+  noise.number("dropped", 0, "", "share of pixels without a measurement", between(0, 1))
+      .number("sigma", 0, "m", "standard deviation of the depth", between(0, 100));
   ParameterTable table;
-  table.table("camera", pinhole_table(), "of the depth images")
-      .table("noise", noise, "of the sensor")
+  table.table("camera", pinhole_table(), "camera of the depth images")
+      .table("noise", noise, "noise of the sensor")
       .number("range", 60, "m", "largest depth", above(0))
-      .tables("poses", viewpoint_table(), "of the camera", true);
+      .tables("poses", viewpoint_table(), "poses of the camera", true);
   return table;
 }
 
@@ -93,7 +93,7 @@ int look(lua_State* state) {
   const Parameters& errors = given.table("noise");
   const DepthNoise sensor{errors.number("dropped"), errors.number("sigma")};
   const auto poses = given.tables("poses");
-  if (poses.empty()) throw InputError(given.origin("poses"), "look: no pose to look from");
+  if (poses.empty()) throw InputError(given.origin("poses"), "look: no pose");
   begin_planning(run);
   if (run.settings.observe_surface) run.settings.observe_surface(surface.scene);
   const Sandbox::ClockPause pause(Sandbox::of(state));
@@ -152,7 +152,8 @@ void add_free(const std::array<int, 3>& low, const std::array<int, 3>& high, int
 }
 
 constexpr BoundField kFlownIn[] = {
-    {"surface?", "lapwing.surface", "the scene flown in: an error where it reaches into the box"}};
+    {"surface?", "lapwing.surface",
+     "scene of the simulation: an error if it reaches into the box"}};
 
 // prior:open_air{lower =, upper =}: free as far as nothing was measured there. With `surface`, the
 // scene flown in, it is an error when that reaches into the box.
@@ -170,8 +171,8 @@ int open_air(lua_State* state) {
         if (box.contains(p)) top = std::max(top, p.z());
       char text[240];
       std::snprintf(text, sizeof text,
-                    "the scene reaches into the air that safe_height %.4g m says is free, up to "
-                    "%.4g m: fly and begin higher",
+                    "the scene reaches into the air above safe_height = %.4g m, up to "
+                    "%.4g m: raise safe_height",
                     box.min().z(), top);
       throw InputError(given.origin(), text);
     }
@@ -217,9 +218,9 @@ int open_air(lua_State* state) {
 ParameterTable earlier_table() {
   ParameterTable table;
   table.required_text("map", ".ot or .bt")
-      .required_text("mesh", "a mesh, in metres with z up")
-      .table("camera", pinhole_table(), "of that flight's images, as far as is known")
-      .number("range", 60, "m", "of them", above(0));
+      .required_text("mesh", "mesh file, in metres with z up")
+      .table("camera", pinhole_table(), "camera of the images of that flight")
+      .number("range", 60, "m", "range of those images", above(0));
   return table;
 }
 
@@ -243,7 +244,7 @@ int load_prior(lua_State* state) {
   prior.rays.elsewhere = gap_between_rays(pinhole_of(given.table("camera")), given.number("range"));
   MeshFile read = read_mesh(run.files.find(mesh, "meshes"));
   const auto known = prior.mapping.map->bounds();
-  if (!known) throw InputError(given.origin("map"), "'" + name + "' knows no voxel");
+  if (!known) throw InputError(given.origin("map"), "'" + name + "' has no known voxel");
   // A mesh that belongs to the map has most of its corners at voxels that are not free; at the rim
   // of what is known it may reach beyond by a voxel.
   std::size_t blocked = 0, within = 0;
@@ -318,7 +319,7 @@ int reconstruct(lua_State* state) {
 
 constexpr BoundField kPriorFields[] = {
     {"images", "integer", "depth images that were taken for it"},
-    {"triangles", "integer", "of its mesh; 0 before it has one"}};
+    {"triangles", "integer", "number of triangles of its mesh; 0 without a mesh"}};
 
 int prior_field(lua_State* state) {
   const PriorObject& object = object_argument<PriorObject>(state, 1, kPriorType);
@@ -331,13 +332,14 @@ int prior_field(lua_State* state) {
   return push_field(state, "a prior", field, fields, kPriorFields);
 }
 
-constexpr BoundField kPriorObjects[] = {{"map", "lapwing.map_choice", "of what is known"}};
+constexpr BoundField kPriorObjects[] = {{"map", "lapwing.map_choice", "map of the prior"}};
 ParameterTable prior_table() {
   ParameterTable table;
-  table.number("spacing", 0.3, "m", "between points of the surface", above(0))
-      .number("range", 60, "m", "of depth that is used for the surface", above(0))
-      .number("incidence_deg", 80, "deg", "between normal and ray, likewise", {1, 90})
-      .integer("stride", 2, "every so many pixels, likewise", between(1, 64));
+  table.number("spacing", 0.3, "m", "distance between points of the surface", above(0))
+      .number("range", 60, "m", "largest depth that is used for the surface", above(0))
+      .number("incidence_deg", 80, "deg", "largest angle between normal and ray, for the surface",
+              {1, 90})
+      .integer("stride", 2, "fuse every n-th pixel", between(1, 64));
   return table;
 }
 
@@ -364,22 +366,23 @@ int prior_of_run(lua_State* state) {
 }  // namespace
 
 std::span<const Binding> prior_methods_of_run() {
-  static const Binding methods[] = {
-      {"prior", &guarded<prior_of_run>, "(settings: @): lapwing.prior",
-       "what is known of a place: nothing yet", &prior_table, kPriorObjects}};
+  static const Binding methods[] = {{"prior", &guarded<prior_of_run>,
+                                     "(settings: @): lapwing.prior", "a prior without knowledge",
+                                     &prior_table, kPriorObjects}};
   return methods;
 }
 
 void open_prior_type(lua_State* state) {
   static const Binding methods[] = {
-      {"look", &guarded<look>, "(look: @)", "depth images of a scene, into its map and its points",
-       &look_table, kSurfaceObject},
+      {"look", &guarded<look>, "(look: @)",
+       "integrates depth images of a scene into its map and its points", &look_table,
+       kSurfaceObject},
       {"open_air", &guarded<open_air>, "(box: @)",
-       "a box that is said to be free: what was measured in it stays", &box_table, kFlownIn},
+       "marks a box as free; measurements in it are kept", &box_table, kFlownIn},
       {"load", &guarded<load_prior>, "(files: @)", "map and mesh of an earlier flight",
        &earlier_table},
-      {"reconstruct", &guarded<reconstruct>, "(settings: @)", "its mesh, from all that was seen",
-       &reconstruct_table}};
+      {"reconstruct", &guarded<reconstruct>, "(settings: @)",
+       "reconstructs its mesh from all images", &reconstruct_table}};
   define_type<PriorObject>(state, kPriorType, {methods}, &guarded<prior_field>);
   note_fields(state, kPriorType, kPriorFields);
 }

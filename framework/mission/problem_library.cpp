@@ -33,14 +33,15 @@ struct PluginArgument {
 
 ParameterTable plugin_frame_table() {
   ParameterTable frame;
-  frame.required_text("type", "which plugin").optional_text("name", "its name in this problem");
+  frame.required_text("type", "name of the plugin")
+      .optional_text("name", "its name in this problem");
   return frame;
 }
 
 ParameterTable constraint_frame_table() {
   return plugin_frame_table().choice(
       "certificate", "other_checks", {"other_checks", "listed"},
-      "other_checks judge what it holds; or it is listed, as not judged independently");
+      "other_checks: other checks cover it; listed: it is reported as not checked");
 }
 
 ParameterTable cost_frame_table() {
@@ -99,9 +100,9 @@ int rests_of_problem(lua_State* state) {
 
 ParameterTable block_table() {
   ParameterTable table;
-  table.required_text("name", "of the block")
+  table.required_text("name", "name of the block")
       .integer("size", 1, "numbers in it", between(1, 64))
-      .text("unit", "", "of each number");
+      .text("unit", "", "unit of each number");
   return table;
 }
 
@@ -154,8 +155,8 @@ int add_constraint(lua_State* state) {
 constexpr BoundField kGuessedPlaces[] = {{"positions", "number[][]", "m, world: {{x, y, z}, ...}"}};
 ParameterTable guessed_path_table() {
   ParameterTable table;
-  table.required_numbers("times", 0, "s", "of the points")
-      .numbers("yaws", {}, "rad", "at the points; none: 0");
+  table.required_numbers("times", 0, "s", "times of the points")
+      .numbers("yaws", {}, "rad", "yaw at the points; none: 0");
   return table;
 }
 
@@ -216,10 +217,12 @@ int set_parameter(lua_State* state) {
   return 0;
 }
 
-constexpr BoundField kGuessedValues[] = {{"values", "number[][]", "of the block at these times"}};
+constexpr BoundField kGuessedValues[] = {
+    {"values", "number[][]", "values of the block at these times"}};
 ParameterTable guessed_block_table() {
   ParameterTable table;
-  table.required_text("block", "which block").required_numbers("times", 0, "s", "of the values");
+  table.required_text("block", "name of the block")
+      .required_numbers("times", 0, "s", "times of the values");
   return table;
 }
 
@@ -311,8 +314,9 @@ Horizon horizon_of_legs(const Parameters& given) {
 
 ParameterTable leg_table() {
   ParameterTable leg;
-  leg.required_number("duration", "s", "of the leg; where it is free, the first guess", above(0))
-      .integer("intervals", 20, "between stages", between(1, 100000))
+  leg.required_number("duration", "s", "duration of the leg; if it is free, the first guess",
+                      above(0))
+      .integer("intervals", 20, "number of intervals between stages", between(1, 100000))
       .choice("mode", "free", {"free", "fixed"}, "free: the leg chooses its duration")
       .number("shortest", 0, "s", "bound on a free duration", at_least(0))
       .optional_number("longest", "s", "bound on a free duration", above(0));
@@ -324,19 +328,19 @@ ParameterTable leg_table() {
 namespace {
 
 constexpr BoundField kProblemObjects[] = {
-    {"vehicle", "lapwing.vehicle", "that flies"},
+    {"vehicle", "lapwing.vehicle", "vehicle"},
     {"obstacles?", "lapwing.shape[]",
      "shapes by plugin, with name, side, opaque and track beside their parameters"}};
 
 ParameterTable problem_table() {
   ParameterTable table;
-  table.optional_number("duration", "s", "of the flight; needed without legs", above(0))
-      .tables("legs", leg_table(), "parts with steps of their own")
+  table.optional_number("duration", "s", "duration of the flight; required without legs", above(0))
+      .tables("legs", leg_table(), "legs with separate steps")
       .boolean("periodic", false, "the last state closes onto the first")
-      .integer("turns", 0, "of yaw, counter-clockwise, in one period", between(-1000, 1000))
+      .integer("turns", 0, "turns of yaw in one period, counter-clockwise", between(-1000, 1000))
       .number("step", 0.1, "s", "longest time between two stages", above(0))
       .choice("step_mode", "fixed", {"fixed", "free"}, "free: the step is a variable")
-      .table("environment", environment_table(), "what surrounds the flight");
+      .table("environment", environment_table(), "obstacles, subjects and zones");
   return table;
 }
 
@@ -395,7 +399,7 @@ std::span<const Binding> problem_methods_of_run() {
       {"vehicle", &guarded<vehicle_of_run>, "(source: string|table): lapwing.vehicle",
        "a vehicle, by the name of its file in configs/ or as a table like such a file"},
       {"problem", &guarded<problem_of_run>, "(stated: @): lapwing.problem",
-       "a problem to be stated, over a duration or in legs with steps of their own", &problem_table,
+       "a problem, over a duration or in legs with separate steps", &problem_table,
        kProblemObjects}};
   return methods;
 }
@@ -403,41 +407,42 @@ std::span<const Binding> problem_methods_of_run() {
 void open_problem_library(lua_State* state) {
   static const Binding methods[] = {
       {"add_model", &guarded<add_model>, "(model: lapwing.vehicle_model)",
-       "a plugin by name, with its own parameters: how the vehicle moves"},
+       "adds a vehicle model: a plugin by name, with its parameters"},
       {"has_block", &guarded<has_block>, "(name: string): boolean",
        "whether a model or the script added a block of that name"},
       {"rests", &guarded<rests_of_problem>, "(): boolean",
        "whether the vehicle can stand still, by the models that were added"},
       {"add_block", &guarded<add_block>, "(block: @)", "a free block", &block_table},
       {"add_cost", &guarded<add_cost>, "(term: lapwing.cost_term|lapwing.own_cost)",
-       "what is bad: a plugin by name, or a function of the script's own"},
+       "adds a cost: a plugin by name, or a function of the script"},
       {"add_constraint", &guarded<add_constraint>,
        "(constraint: lapwing.constraint|lapwing.own_constraint)",
-       "what must hold: a plugin by name, or a function of the script's own"},
+       "adds a constraint: a plugin by name, or a function of the script"},
       {"set_parameter", &guarded<set_parameter>, "(change: @)",
-       "another value for a parameter of a term of the script's own, before the next solve",
-       &term_parameter_table, kTermParameterValue},
-      {"guess_path", &guarded<guess_path>, "(path: @)", "where solvers begin", &guessed_path_table,
-       kGuessedPlaces},
+       "sets a parameter of a term of the script, before the next solve", &term_parameter_table,
+       kTermParameterValue},
+      {"guess_path", &guarded<guess_path>, "(path: @)", "sets the initial guess of solvers",
+       &guessed_path_table, kGuessedPlaces},
       {"guess_block", &guarded<guess_block>, "(guess: @)",
-       "the same for one block: target, gimbal_pitch", &guessed_block_table, kGuessedValues},
+       "sets the initial guess of a block: target, gimbal_pitch", &guessed_block_table,
+       kGuessedValues},
       {"guess_solution", &guarded<guess_solution>, "(solution: lapwing.solution)",
-       "begin, leg by leg, from the solution of a problem with the same legs"},
+       "sets the initial guess, leg by leg, from the solution of a problem with the same legs"},
       {"nearest_obstacle", &guarded<nearest>, "(place: number[], time?: number): number, string",
        "distance of the nearest obstacle in m, negative inside, and its name"},
       {"flight_zone_distance", &guarded<flight_zone_distance>,
        "(place: number[], time?: number): number, string",
        "distance from the nearest face of a flight zone, negative outside, and its name"},
       {"plan_way", &guarded<plan_way>, "(wanted: @): number[][]?, string?, string?",
-       "a free way that keeps the margin, the distance to bystanders that stand still, and `more` "
-       "metres, through a passage that none of the `excluded` ways has; or nil, why in words, and "
+       "a free path that keeps the margin, the distance to bystanders that stand still, and `more` "
+       "metres, through a passage that none of the `excluded` paths has; or nil, the reason, and "
        "the "
        "planner's status",
        &way_table, kWayObjects},
       {"grow_corridor", &guarded<grow_corridor_of_problem>, "(along: @): table[]",
-       "free boxes along a way, {from, to, lower, size}, parts in shares of its length", nullptr,
+       "free boxes along a path, {from, to, lower, size}, parts in shares of its length", nullptr,
        kCorridorWay},
-      {"finish", &guarded<finish>, "()", "binds everything; nothing can be added after"}};
+      {"finish", &guarded<finish>, "()", "completes the problem; nothing can be added afterwards"}};
   static const BoundTable tables[] = {
       {"plugin_frame", &plugin_frame_table, {}},
       {"constraint_frame", &constraint_frame_table, {}},

@@ -69,7 +69,7 @@ struct SolutionObject {
 };
 
 // What several functions take beside plain data.
-inline constexpr BoundField kVehicleObject[] = {{"vehicle", "lapwing.vehicle", "that flies"}};
+inline constexpr BoundField kVehicleObject[] = {{"vehicle", "lapwing.vehicle", "vehicle"}};
 
 // What `plan` returns, beside what the plan document holds.
 struct PlanObject {
@@ -123,9 +123,9 @@ inline constexpr const char* kDataFileType = "data_file";
 
 // What a mission script returns.
 inline constexpr BoundField kMissionParts[] = {
-    {"kind", "string", "of mission: film, race, ..."},
-    {"name?", "string", "of the mission; absent: the script's file name"},
-    {"options?", "lapwing.options|table", "what may be set"},
+    {"kind", "string", "kind of the mission: film, race, ..."},
+    {"name?", "string", "name of the mission; absent: the file name of the script"},
+    {"options?", "lapwing.options|table", "declared options"},
     {"plan", "fun(run: lapwing.run): lapwing.plan|lapwing.map",
      "called once the options are known"}};
 
@@ -146,7 +146,8 @@ std::span<const Binding> solving_methods_of_run();  // solve, plan, certify
 // Sections of a report from the key `sections` of the table at `index`; none where it lacks.
 // InputError naming what is wrong in them, beginning with `what`.
 inline constexpr BoundField kStatedSections = {
-    "sections?", "table[]", "of the report: text, facts, tables, charts, drawings, images"};
+    "sections?", "table[]",
+    "sections of the report: text, facts, tables, charts, drawings, images"};
 std::vector<Section> stated_sections(lua_State* state, int index, const std::string& what);
 
 // "iqp" or {type = "iqp", ...}, as options that choose a plugin are given.

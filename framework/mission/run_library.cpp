@@ -57,7 +57,7 @@ int phase(lua_State* state) {
   return 0;
 }
 
-// run:fail("keyframes[2].time", "message"): an error where that option was written.
+// run:fail("keyframes[2].time", "message"): an error at the place of that option.
 int fail(lua_State* state) {
   const std::string path = text_argument(state, 2, "fail");
   const std::string message = text_argument(state, 3, "fail");
@@ -106,20 +106,20 @@ int stated(lua_State* state) {
 
 std::span<const Binding> told_methods() {
   static const Binding methods[] = {
-      {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user asked to end"},
+      {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user cancelled the run"},
       {"phases", &guarded<phases>, "(phases: table[])",
-       "what the work consists of: {name, weight}, the weight in any unit or none"},
-      {"phase", &guarded<phase>, "(name: string)", "that begins; the one before has ended"},
+       "states the phases of the work: {name, weight}, the weight in any unit or none"},
+      {"phase", &guarded<phase>, "(name: string)", "begins a phase; the one before has ended"},
       {"progress", &guarded<progress>, "(fraction: number, words: string)",
-       "how far the work is, 0 to 1, and with what"},
+       "reports progress, 0 to 1, with a text"},
       {"fail", &guarded<fail>, "(option: string, message: string)",
-       "an error where that option was written"},
+       "an error at the place of that option"},
       {"expect_plugin", &guarded<expect_plugin>, "(option: string, kind: string)",
-       "an error where that option is given and names no plugin of the kind"},
+       "an error at that option if it names no plugin of the kind"},
       {"expect_players", &guarded<expect_players>, "(option: string)",
-       "an error where that option names a log of sticks that cannot be read"},
+       "an error at that option if it names a stick log that cannot be read"},
       {"stated", &guarded<stated>, "(option: string): boolean",
-       "whether that option was written, or is its default"}};
+       "whether that option was set, or has its default"}};
   return methods;
 }
 

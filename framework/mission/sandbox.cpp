@@ -79,8 +79,8 @@ ParameterTable sandbox_table() {
   table.number("memory", standard.memory, "", "MB of memory that a script may use", between(1, 1e5))
       .integer("instructions", standard.instructions,
                "instructions of the Lua machine that a script may run", between(1000, 1e15))
-      .number("seconds", standard.seconds, "s", "a script's own time; solving does not count",
-              between(0.01, 1e6))
+      .number("seconds", standard.seconds, "s",
+              "computing time of a script; solving does not count", between(0.01, 1e6))
       .number("pattern_work", standard.pattern_work, "",
               "steps that one string pattern may need at the worst", between(1, 1e15));
   return table;
@@ -160,8 +160,8 @@ void Sandbox::claim(lua_State* state, std::size_t bytes) {
 }
 
 std::string Sandbox::too_much_memory() const {
-  return "the script wants more than " + shortest(limits_.memory) +
-         " MB of memory; raise sandbox.memory if it needs it";
+  return "the script needs more than " + shortest(limits_.memory) +
+         " MB of memory; raise sandbox.memory";
 }
 
 void Sandbox::arm(lua_State* state) {
@@ -173,7 +173,7 @@ void Sandbox::begin_overrun(std::string message) {
   if (overrun_) return;
   overrun_ = true;
   overrun_message_ = message.empty() ? "the script ran for more than " + shortest(limits_.seconds) +
-                                           " s; raise sandbox.seconds if it needs to"
+                                           " s; raise sandbox.seconds if necessary"
                                      : std::move(message);
 }
 
@@ -195,7 +195,7 @@ void Sandbox::count(lua_State* state, lua_Debug* record) {
   executed_ += lua_gethookcount(state);
   if (!overrun_ && executed_ > limits_.instructions) {
     begin_overrun("the script ran more than " + std::to_string(limits_.instructions) +
-                  " instructions; raise sandbox.instructions if it needs to");
+                  " instructions; raise sandbox.instructions if necessary");
   }
   if (!overrun_ && out_of_time()) begin_overrun("");
   if (!overrun_ && cancellation_ && cancellation_->cancelled()) {

@@ -180,7 +180,7 @@ int random(lua_State* state) {
 }
 
 int refuse_seed(lua_State*) {
-  throw InputError("math.randomseed: random numbers are seeded by the run; use --seed");
+  throw InputError("math.randomseed: the run seeds random numbers; use --seed");
 }
 
 // An error that the limits raise comes out of a hook, and until it is caught hooks stay off: a

@@ -83,7 +83,7 @@ bool same_key(const OrderedKey& a, const OrderedKey& b) {
 
 [[noreturn]] void refuse_unordered() {
   throw InputError(
-      "pairs, next: two keys are functions of Lua's own that are not numbered (such as the one "
+      "pairs, next: two keys are built-in functions of Lua without a number (such as the one "
       "that "
       "ipairs returns); their order would differ from run to run. Keep the keys in a list as well");
 }

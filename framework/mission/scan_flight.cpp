@@ -174,7 +174,7 @@ TourObject flown_tour(const TourObject& tour, const std::vector<PlannedView>& vi
 std::string miss_in_words(const PassedFlight& flight) {
   char text[120];
   std::snprintf(text, sizeof text,
-                "images at most %.2g m from where their passes have them, banked by at most %.2g "
+                "images at most %.2g m from their places on the passes, banked by at most %.2g "
                 "degrees",
                 flight.miss, degrees(flight.bank));
   return text;
@@ -234,20 +234,22 @@ std::vector<const SolutionObject*> legs_argument(lua_State* state, int table) {
 }
 
 constexpr BoundField kScanPlanObjects[] = {
-    {"tour", "lapwing.tour", "that is flown"},
-    {"legs?", "lapwing.solution[]", "how, from view to view; absent: by pure pursuit"},
-    {"flight?", "lapwing.solution", "how a tour of passes is flown"},
-    {"explored?", "lapwing.exploration", "what came before it, for the report"},
+    {"tour", "lapwing.tour", "flown tour"},
+    {"legs?", "lapwing.solution[]", "solutions from view to view; absent: pure pursuit"},
+    {"flight?", "lapwing.solution", "solution of a tour of passes"},
+    {"explored?", "lapwing.exploration", "exploration before it, for the report"},
     {"notes?", "string[]", "sentences for the user"},
-    {"figures?", "table", "of the tour, for --json"},
+    {"figures?", "table", "figures of the tour, for --json"},
     kStatedSections};
 ParameterTable scan_plan_table() {
   ParameterTable table;
-  table.number("margin", 0.4, "m", "kept from what is not free, and from the mesh", at_least(0))
-      .required_number("budget", "s", "of flight", above(0))
-      .number("seen_share", ScanTask{}.seen_share, "", "of the voxels that must be seen again",
-              {0, 1, true})
-      .boolean("closed_loop_required", true, "else tracking under control is reported only");
+  table
+      .number("margin", 0.4, "m", "distance from occupied and unknown voxels, and from the mesh",
+              at_least(0))
+      .required_number("budget", "s", "flight time", above(0))
+      .number("seen_share", ScanTask{}.seen_share, "",
+              "share of the voxels that must be seen again", {0, 1, true})
+      .boolean("closed_loop_required", true, "false: tracking under control is reported only");
   return table;
 }
 

@@ -64,9 +64,9 @@ std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun
   const TriangleMesh& known = work.prior->mesh->mesh();
   if (std::none_of(known.vertices.begin(), known.vertices.end(),
                    [&](const Eigen::Vector3d& p) { return sight.region.contains(p); }))
-    throw InputError(given.origin("region"),
-                     "the region of interest holds no surface: the prior mesh does not come into "
-                     "it, neither from the first flight nor from files");
+    throw InputError(
+        given.origin("region"),
+        "the region of interest has no surface: the prior mesh does not reach into it");
   sight.across = static_cast<int>(given.integer("across"));
   if (sight.across == 0) return work.visible;
   return std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
@@ -78,16 +78,18 @@ ParameterTable candidates_table() {
   const CandidateSettings standard;
   ParameterTable table;
   table.integer("most", standard.most, "views", between(1, 100000))
-      .integer("least", standard.least, "where growing finds fewer, free places are drawn as well",
+      .integer("least", standard.least, "number below which random free places are added",
                between(0, 100000))
-      .integer("directions", standard.directions, "of a place, where there are many",
-               between(1, 1000))
-      .number("step", standard.step, "m", "between neighbours at the region", above(0))
-      .number("step_growth", standard.step_growth, "", "m more for every metre away from it",
-              at_least(0))
-      .number("distance_apart", standard.distance_apart, "m", "or so far in angle", above(0))
-      .number("angle_apart_deg", 15, "deg", "or so far in distance", between(0, 180))
-      .number("pitch_min_deg", -90, "deg", "lowest that the camera looks", between(-90, 0))
+      .integer("directions", standard.directions,
+               "viewing directions per place, if there are many places", between(1, 1000))
+      .number("step", standard.step, "m", "distance of neighbouring places at the region", above(0))
+      .number("step_growth", standard.step_growth, "",
+              "growth of that distance, per metre from the region", at_least(0))
+      .number("distance_apart", standard.distance_apart, "m",
+              "smallest distance of two candidates, unless their angle differs", above(0))
+      .number("angle_apart_deg", 15, "deg",
+              "smallest angle of two candidates, unless their place differs", between(0, 180))
+      .number("pitch_min_deg", -90, "deg", "lowest pitch of the camera", between(-90, 0))
       .number("pitch_max_deg", 0, "deg", "highest", between(-90, 90));
   return table;
 }
@@ -96,13 +98,15 @@ ParameterTable motions_table() {
   const MotionSettings standard;
   ParameterTable table;
   table
-      .integer("neighbours", standard.neighbours, "that each view is joined with", between(1, 1000))
-      .integer("among", standard.among, "nearest views, of those whose images match",
+      .integer("neighbours", standard.neighbours,
+               "number of matching views to which a view is connected", between(1, 1000))
+      .integer("among", standard.among, "number of nearest views among which they are searched",
                between(1, 100000))
-      .number("alpha", standard.alpha, "", "of (4.8): share of what two matchable views both see",
+      .number("alpha", standard.alpha, "", "common content that connected views need, of (4.8)",
               between(0, 1))
-      .number("longest_detour", standard.longest_detour, "", "straight lines long", at_least(1))
-      .integer("coarse", ScanGraphSettings{}.coarse_across, "pixels across, of compared views",
+      .number("longest_detour", standard.longest_detour, "",
+              "longest path of a motion, in straight lines", at_least(1))
+      .integer("coarse", ScanGraphSettings{}.coarse_across, "pixels per row of compared views",
                between(1, 10000));
   return table;
 }
@@ -110,35 +114,38 @@ ParameterTable motions_table() {
 ParameterTable flight_table() {
   const PursuitSettings standard;
   ParameterTable table;
-  table.number("speed", standard.speed, "m/s", "on the way", above(0))
+  table.number("speed", standard.speed, "m/s", "speed between views", above(0))
       .number("view_speed", standard.view_speed, "m/s", "near a view", above(0))
-      .number("slow_within", standard.slow_within, "m", "of a view", above(0))
-      .number("lookahead", standard.lookahead, "m", "of the pursued point", above(0))
+      .number("slow_within", standard.slow_within, "m",
+              "distance from a view within which view_speed holds", above(0))
+      .number("lookahead", standard.lookahead, "m", "distance of the pursued point", above(0))
       .number("acceleration", standard.acceleration, "m/s^2", "largest", above(0))
-      .number("pause", 0.5, "s", "at rest in a view, for the image", between(0, 60))
-      .number("view_seconds", 3, "s", "that a view costs at least, beside the way", at_least(0))
-      .boolean("smooth", false, "legs will be solutions of problems, not pursuit")
-      .number("stray", SmoothLegSettings{}.stray, "m", "of smooth legs, at corners", above(0));
+      .number("pause", 0.5, "s", "rest at a view, for the image", between(0, 60))
+      .number("view_seconds", 3, "s", "time added to a leg for the view at its end", at_least(0))
+      .boolean("smooth", false, "legs by a trajectory solver, instead of pure pursuit")
+      .number("stray", SmoothLegSettings{}.stray, "m",
+              "largest distance of a smooth leg from its path", above(0));
   return table;
 }
 
 ParameterTable graph_table() {
   ParameterTable table;
-  table.table("region", box_table(), "of interest")
-      .table("allowed", box_table(), "where the vehicle's middle may be")
-      .tables("starts", viewpoint_table(), "where candidates grow from, if there is room", true)
+  table.table("region", box_table(), "region of interest")
+      .table("allowed", box_table(), "box for the centre of the vehicle")
+      .tables("starts", viewpoint_table(), "places from which candidates grow, if they are free",
+              true)
       .boolean("fixed", true,
-               "tours begin at the first of the starts, else at the first of those "
-               "that most views are joined to")
-      .integer("needed", 1, "of the starts, the first so many: there must be room", between(1, 2))
+               "tours begin at the first of the starts; false: at the first of those "
+               "that are connected to most views")
+      .integer("needed", 1, "number of starts, the first ones, that must be free", between(1, 2))
       .numbers("body", {1, 1, 0.5}, "m", "half edges of the vehicle's box")
-      .number("mesh_room", 1, "m", "more that is kept from the prior mesh", at_least(0))
-      .table("candidates", candidates_table(), "views worth considering")
-      .table("motions", motions_table(), "ways between them")
-      .table("camera", pinhole_table(), "of the images")
-      .integer("across", 0, "pixels a row of the images that candidates are weighed by; 0: all",
+      .number("mesh_room", 1, "m", "additional distance from the prior mesh", at_least(0))
+      .table("candidates", candidates_table(), "candidate views")
+      .table("motions", motions_table(), "motions between views")
+      .table("camera", pinhole_table(), "camera of the images")
+      .integer("across", 0, "pixels per row in the evaluation of candidates; 0: all",
                between(0, 10000))
-      .number("range", 60, "m", "of a ray through a pixel", above(0))
+      .number("range", 60, "m", "length of a ray", above(0))
       .table("flight", flight_table(), "speeds along a tour");
   return table;
 }
@@ -151,7 +158,7 @@ ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run)
   ScanGraphSettings s;
   const Parameters& candidates = given.table("candidates");
   s.candidates.region = box_of(given.table("region"), "the region of interest");
-  s.candidates.allowed = box_of(given.table("allowed"), "the room that is allowed");
+  s.candidates.allowed = box_of(given.table("allowed"), "the box for the vehicle");
   s.candidates.half = vector3_of(given.numbers("body"));
   s.candidates.step = candidates.number("step");
   s.candidates.step_growth = candidates.number("step_growth");
@@ -186,15 +193,16 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
     if (free) starts.push_back(view);
     if (free || starts.size() >= needed) continue;
     char text[300];
-    std::snprintf(text, sizeof text,
-                  "no free %s: at (%.4g, %.4g, %.4g) the map does not show that there is room "
-                  "for a box of %.3g x %.3g x %.3g m%s",
-                  starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
-                  2 * settings.half.y(), 2 * settings.half.z(),
-                  settings.allowed.contains(p) ? "" : ", and it lies where none may be");
+    std::snprintf(
+        text, sizeof text,
+        "no free %s: at (%.4g, %.4g, %.4g) the map does not show free space "
+        "for a box of %.3g x %.3g x %.3g m%s",
+        starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
+        2 * settings.half.y(), 2 * settings.half.z(),
+        settings.allowed.contains(p) ? "" : ", and it lies outside the space of the tour");
     throw InputError(entry.origin(), text);
   }
-  if (starts.empty()) throw InputError("no free start: none was given");
+  if (starts.empty()) throw InputError("no free start: none is given");
   return starts;
 }
 
@@ -225,10 +233,10 @@ PluginChoice choice_at(lua_State* state, int table, const char* key) {
 }
 
 constexpr BoundField kGraphObjects[] = {
-    {"prior", "lapwing.prior", "what is known of the place"},
-    {"vehicle", "lapwing.vehicle", "that flies"},
-    {"information", "lapwing.information", "what a view tells of a voxel"},
-    {"planner", "lapwing.path_planner", "of ways round obstacles"}};
+    {"prior", "lapwing.prior", "known map and mesh"},
+    {"vehicle", "lapwing.vehicle", "vehicle"},
+    {"information", "lapwing.information", "information of a view about a voxel"},
+    {"planner", "lapwing.path_planner", "planner of paths around obstacles"}};
 
 // run:scan_graph{prior =, vehicle =, region =, allowed =, starts =, ...}
 int scan_graph_of_run(lua_State* state) {
@@ -280,24 +288,24 @@ int scan_graph_of_run(lua_State* state) {
                 std::to_string(graph.motions.unmatched) + " unmatched, " +
                 std::to_string(graph.motions.blocked) + " blocked, " +
                 std::to_string(graph.motions.planned) +
-                " round obstacles); voxels: " + std::to_string(graph.voxels.size()) +
+                " around obstacles); voxels: " + std::to_string(graph.voxels.size()) +
                 "; score: " + std::to_string(graph.score->bytes() >> 20) + " MiB");
   new_object(state, kGraphType, GraphObject{std::move(work)});
   return 1;
 }
 
-// "12 of 300 candidates are joined to the start by motions; 200 are joined to a start near
+// "12 of 300 candidates are connected to the start by motions; 200 are connected to a start near
 // (1.5, 20, 8)": the last where they are more.
 std::string reach_in_words(const ScanWork& work, int start) {
   std::string text = std::to_string(work.islands.joined(start)) + " of " +
                      std::to_string(work.graph.candidates.viewpoints.size()) +
-                     " candidates are joined to the start by motions";
+                     " candidates are connected to the start by motions";
   const auto& views = work.graph.candidates.viewpoints;
   const auto other = work.islands.largest_beside(start, views);
   if (other && other->views > work.islands.joined(start)) {
     const Eigen::Vector3d& p = views[static_cast<std::size_t>(other->middle)].position;
     char place[100];
-    std::snprintf(place, sizeof place, " are joined to a start near (%.4g, %.4g, %.4g)", p.x(),
+    std::snprintf(place, sizeof place, " are connected to a start near (%.4g, %.4g, %.4g)", p.x(),
                   p.y(), p.z());
     text += "; " + std::to_string(other->views) + place;
   }
@@ -306,15 +314,15 @@ std::string reach_in_words(const ScanWork& work, int start) {
 
 constexpr BoundField kGraphFields[] = {
     {"candidates", "integer", "views"},
-    {"motions", "integer", "ways between two views"},
-    {"planned", "integer", "of them: round obstacles"},
-    {"unmatched", "integer", "pairs whose images could not be matched"},
-    {"blocked", "integer", "pairs without a free way"},
-    {"voxels", "integer", "that are scored"},
-    {"total", "number", "score of seeing all of them perfectly"},
-    {"home", "integer", "the candidate in which tours begin, from 1"},
-    {"joined", "integer", "views that motions join to that one, itself included"},
-    {"reach", "string", "how many views can be reached from the start, in words"}};
+    {"motions", "integer", "number of motions between two views"},
+    {"planned", "integer", "number of motions around obstacles"},
+    {"unmatched", "integer", "pairs whose images do not match"},
+    {"blocked", "integer", "pairs without a free path"},
+    {"voxels", "integer", "number of scored voxels"},
+    {"total", "number", "score of full information about all of them"},
+    {"home", "integer", "candidate at which tours begin, from 1"},
+    {"joined", "integer", "number of views connected to it, itself included"},
+    {"reach", "string", "sentence with the number of views connected to the start"}};
 
 int graph_field(lua_State* state) {
   const ScanWork& work = *object_argument<GraphObject>(state, 1, kGraphType).work;
@@ -337,20 +345,20 @@ int graph_field(lua_State* state) {
 constexpr BoundField kTourFields[] = {
     {"name", "string", "the solver's"},
     {"status", "string", "optimal, feasible, infeasible, iteration_limit, ..."},
-    {"message", "string", "what the solver says of it"},
-    {"score", "number", "what its views show"},
-    {"upper_bound", "number?", "no tour shows more; nil where none was found"},
-    {"gap", "number", "share of the bound that is missing"},
-    {"seconds", "number", "of flight"},
+    {"message", "string", "message of the solver"},
+    {"score", "number", "score of its views"},
+    {"upper_bound", "number?", "upper bound of the score of any tour; nil if none is known"},
+    {"gap", "number", "gap to the bound, as a share of it"},
+    {"seconds", "number", "flight time in s"},
     {"budget", "number", "s"},
     {"images", "integer", "different views in it"},
     {"visits", "integer", "views in order, passed ones included"},
-    {"reachable", "integer", "views that some tour within the budget has"},
-    {"reachable_score", "number", "what they show together"},
-    {"evaluations", "integer", "of the score"},
-    {"iterations", "integer", "of the solver"},
+    {"reachable", "integer", "number of views on any tour within the budget"},
+    {"reachable_score", "number", "score of all of them"},
+    {"evaluations", "integer", "evaluations of the score"},
+    {"iterations", "integer", "iterations of the solver"},
     {"legs", "table[]",
-     "from view to view: {points, yaw_from, yaw_to, seconds}, m, rad, s without the pause"},
+     "legs from view to view: {points, yaw_from, yaw_to, seconds}, m, rad, s without the pause"},
     {"flight", "table?",
      "of passes: {duration, times, positions, yaws, images}, s, m, rad; an image has a time and a "
      "position"}};
@@ -370,17 +378,18 @@ int tour_field(lua_State* state) {
 }
 
 constexpr BoundField kTourObjects[] = {
-    {"graph", "lapwing.scan_graph", "of views"},
-    {"solver", "lapwing.tour_solver", "that looks for a tour"},
-    {"initial?", "lapwing.tour", "of the same graph, to begin from"}};
+    {"graph", "lapwing.scan_graph", "graph of views"},
+    {"solver", "lapwing.tour_solver", "solver"},
+    {"initial?", "lapwing.tour", "initial tour of the same graph"}};
 ParameterTable tour_table() {
   ParameterTable table;
-  table.required_number("budget", "s", "of flight", above(0))
-      .integer("finish", 1, "candidate in which it ends, from 1, the start", at_least(1))
-      .integer("images", 0, "most different images; 0 for any number", at_least(0))
-      .integer("iterations", 0, "of the solver; 0 for its own", at_least(0))
-      .integer("evaluations", 0, "of the score, in all; 0 for any number", at_least(0))
-      .optional_number("guard", "s", "of computing, by the wall's clock", above(0));
+  table.required_number("budget", "s", "flight time", above(0))
+      .integer("finish", 1, "candidate at which it ends, from 1; absent: the start", at_least(1))
+      .integer("images", 0, "largest number of images; 0: any number", at_least(0))
+      .integer("iterations", 0, "iterations of the solver; 0: its default", at_least(0))
+      .integer("evaluations", 0, "largest number of evaluations of the score; 0: any number",
+               at_least(0))
+      .optional_number("guard", "s", "wall-clock limit", above(0));
   return table;
 }
 
@@ -430,7 +439,7 @@ int solve_tour_of_run(lua_State* state) {
     const TourProblem problem(std::move(definition));
     const std::string wrong = request.initial ? problem.problem_of(*request.initial) : "";
     if (!wrong.empty())
-      throw InputError("solve_tour: the initial tour is none of this problem: " + wrong);
+      throw InputError("solve_tour: the initial tour is not a tour of this problem: " + wrong);
     TourResult result = solver->solve(problem, request);
     if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     tour.report = result.report;
@@ -459,7 +468,7 @@ void open_scan_library(lua_State* state) {
 std::span<const Binding> scan_methods_of_run() {
   static const Binding own[] = {
       {"scan_graph", &guarded<scan_graph_of_run>, "(settings: @): lapwing.scan_graph",
-       "views of a region, and ways between them", &graph_table, kGraphObjects},
+       "candidate views of a region, and motions between them", &graph_table, kGraphObjects},
       {"solve_tour", &guarded<solve_tour_of_run>, "(settings: @): lapwing.tour",
        "a tour of views within a budget", &tour_table, kTourObjects}};
   static const std::vector<Binding> all = [] {

@@ -78,8 +78,8 @@ std::vector<Eigen::Matrix<double, N, 1>> points_argument(lua_State* state, int i
 
 ParameterTable new_scene_table() {
   ParameterTable table;
-  table.required_text("name", "of the scene")
-      .integer("seed", 1, "of its random numbers", at_least(0));
+  table.required_text("name", "name of the scene")
+      .integer("seed", 1, "seed of its random numbers", at_least(0));
   return table;
 }
 
@@ -223,22 +223,22 @@ int triangles(lua_State* state) {
 
 ParameterTable scene_moves_table() {
   return ParameterTable()
-      .optional_number("step", "m", "to a neighbour", above(0))
-      .optional_number("turn_deg", "deg", "to a neighbour", between(1, 180))
+      .optional_number("step", "m", "step to a neighbour", above(0))
+      .optional_number("turn_deg", "deg", "turn to a neighbour", between(1, 180))
       .optional_number("body", "m", "edge of the box that must be free", above(0))
       .optional_number("clear", "m", "edge of the box that is free at the start", above(0))
-      .optional_number("speed", "m/s", "between viewpoints", above(0));
+      .optional_number("speed", "m/s", "speed between viewpoints", above(0));
 }
 
 void open_scene_library(lua_State* state) {
   static const Binding methods[] = {
       {"color", &guarded<color>, "(red: number, green: number, blue: number)",
-       "the colour, 0 to 255, of what follows"},
+       "sets the colour of the following parts, 0 to 255"},
       {"push", &guarded<push>, "(origin: number[], yaw?: number, scale?: number)",
-       "a frame, in which what follows is placed"},
-      {"pop", &guarded<pop>, "()", "back to the frame before"},
+       "begins a frame, in which the following parts are placed"},
+      {"pop", &guarded<pop>, "()", "ends the frame"},
       {"quad", &guarded<quad>, "(a: number[], b: number[], c: number[], d: number[])",
-       "a flat face, seen from where its corners go counter-clockwise"},
+       "a flat face, seen from the side on which its corners go counter-clockwise"},
       {"face", &guarded<face>, "(corners: number[][])", "the same with any number of corners"},
       {"box", &guarded<box>, "(lower: number[], upper: number[])", "a box"},
       {"prism", &guarded<prism>, "(corners: number[][], floor: number, ceiling: number)",
@@ -252,17 +252,15 @@ void open_scene_library(lua_State* state) {
        "(corner: number[], step: number, columns: integer, heights: number[])",
        "a surface over a grid"},
       {"region", &guarded<region>, "(lower: number[], upper: number[])",
-       "the region of interest, which a scene must name"},
+       "sets the region of interest, which a scene needs"},
       {"moves", &guarded<moves>, "(moves: @)",
-       "how explorations of it should move where the user does not say: indoors in smaller steps",
-       &scene_moves_table},
+       "moves that explorations of it use by default: smaller steps indoors", &scene_moves_table},
       {"uniform", &guarded<uniform>, "(low: number, high: number): number",
-       "a random number of the scene's seed"},
-      {"integer", &guarded<integer>, "(low: integer, high: integer): integer",
-       "the same, a whole one"},
-      {"triangles", &guarded<triangles>, "(): integer", "how many there are so far"}};
+       "a random number from the seed of the scene"},
+      {"integer", &guarded<integer>, "(low: integer, high: integer): integer", "a random integer"},
+      {"triangles", &guarded<triangles>, "(): integer", "number of triangles so far"}};
   static const Binding functions[] = {{"scene", &guarded<scene>, "(settings: @): lapwing.scene",
-                                       "a scene to be built, in metres", &new_scene_table}};
+                                       "an empty scene, in metres", &new_scene_table}};
   define_type<SceneObject>(state, kSceneType, {methods});
   lua_getglobal(state, "lapwing");
   bind_functions(state, "lapwing", functions);

@@ -26,22 +26,22 @@ const char* word_of(WrittenTermKind kind) {
 ParameterTable script_term_table(WrittenTermKind kind) {
   ParameterTable table;
   table.required_text("name", "its name in this problem, for messages and reports")
-      .integer("window", 1, "neighbouring stages that it reads at the least", between(1, 64))
+      .integer("window", 1, "smallest number of neighbouring stages that it reads", between(1, 64))
       .number("smoothing", kDefaultWidth, "",
-              "within which the kinks of max, min, abs and norm are rounded; 0: not at all",
-              at_least(0))
-      .numbers("times", {}, "s", "when it is asked; none: at every stage", at_least(0))
-      .tables("spans", time_span_table(), "spans of time in which it is asked; none: always")
-      .tables("except", time_span_table(), "spans of time in which it is not asked");
+              "width of the rounding of max, min, abs and norm; 0: none", at_least(0))
+      .numbers("times", {}, "s", "times of evaluation; none: every stage", at_least(0))
+      .tables("spans", time_span_table(), "spans of evaluation; none: always")
+      .tables("except", time_span_table(), "spans without evaluation");
   if (kind == WrittenTermKind::constraint)
     table
         .choice("certificate", "required", {"required", "reported"},
-                "whether a plan that breaks it is not certified, or says so alone")
-        .boolean("held", true, "by the solver; false: judged by the certificate alone");
+                "effect of a violation on the certificate")
+        .boolean("held", true,
+                 "whether the solver holds it; false: only the certificate checks it");
   if (kind == WrittenTermKind::cost)
     table.number("weight", 1.0, "", "weight of the squared residuals", at_least(0))
         .boolean("integral", true,
-                 "the squares are integrated over time; else, and at given times, summed");
+                 "integrate the squares over time; false, and at given times: sum them");
   return table;
 }
 
@@ -100,8 +100,8 @@ ParameterTable own_constraint_table() {
 
 ParameterTable term_parameter_table() {
   ParameterTable table;
-  table.required_text("term", "name of a term of the script's own")
-      .required_text("name", "of one of its parameters");
+  table.required_text("term", "name of a term of the script")
+      .required_text("name", "name of one of its parameters");
   return table;
 }
 
@@ -155,7 +155,7 @@ bool is_script_term(lua_State* state, int index, WrittenTermKind kind) {
   if (has_type && own == LUA_TFUNCTION)
     throw InputError(Sandbox::of(state).script_position(state),
                      std::string("add_") + word_of(kind) + ": give a plugin's `type` or a `" +
-                         function_key(kind) + "` of your own, not both");
+                         function_key(kind) + "`, not both");
   if (!has_type && own == LUA_TNIL) refuse_misnamed_function(state, index, kind);
   return !has_type && own != LUA_TNIL;
 }
@@ -196,7 +196,7 @@ ScriptTerm read_script_term(lua_State* state, int index, WrittenTermKind kind) {
     const Value upper = field_value(state, index, "upper", term.origin, call + ".upper");
     if (lower.is_null() && upper.is_null())
       throw InputError(term.origin, call + ": give `lower`, `upper` or both: what '" + term.name +
-                                        "' must keep between");
+                                        "' must stay between");
     if (!lower.is_null()) term.lower = numbers_of(lower, call + ".lower");
     if (!upper.is_null()) term.upper = numbers_of(upper, call + ".upper");
   }
@@ -256,7 +256,7 @@ void set_term_parameter(lua_State* state, int index, std::vector<ScriptTerm>& te
   if (term == terms.end()) {
     for (const ScriptTerm& entry : terms) known.push_back(entry.name);
     throw InputError(given.origin(), "set_parameter: no term '" + given.text("term") +
-                                         "' of the script's own; " + one_of(known));
+                                         "' of the script; " + one_of(known));
   }
   for (const TermParameter& parameter : term->parameters.list) {
     known.push_back(parameter.name);

@@ -35,16 +35,17 @@ ParameterTable own_constraint_table();
 ParameterTable term_parameter_table();
 inline constexpr BoundField kOwnCostObjects[] = {
     {"residual", "fun(s: lapwing.stage, q: table): any",
-     "of a stage and of the parameters: numbers and vectors whose squares are summed"},
-    {"parameters?", "table<string, number|number[]>", "that can be changed between two solves"}};
+     "function of a stage and the parameters: numbers and vectors whose squares are summed"},
+    {"parameters?", "table<string, number|number[]>",
+     "parameters, which can be changed between two solves"}};
 inline constexpr BoundField kOwnConstraintObjects[] = {
     {"value", "fun(s: lapwing.stage, q: table): any",
-     "of a stage and of the parameters: numbers and vectors that are bounded"},
-    {"parameters?", "table<string, number|number[]>", "that can be changed between two solves"},
-    {"lower?", "number|number[]", "for every result, or one for each"},
-    {"upper?", "number|number[]", "for every result, or one for each"}};
-inline constexpr BoundField kTermParameterValue[] = {
-    {"value", "number|number[]", "that it has from then on"}};
+     "function of a stage and the parameters: numbers and vectors that are bounded"},
+    {"parameters?", "table<string, number|number[]>",
+     "parameters, which can be changed between two solves"},
+    {"lower?", "number|number[]", "bound of every result, or one for each"},
+    {"upper?", "number|number[]", "bound of every result, or one for each"}};
+inline constexpr BoundField kTermParameterValue[] = {{"value", "number|number[]", "new value"}};
 
 // Whether the table at `index` states a term of the script's own. InputError where it also names a
 // plugin.

@@ -100,10 +100,10 @@ void push_stage(lua_State* state, int stage, std::uint64_t serial) {
 void open_stage_values(lua_State* state) {
   static const Binding methods[] = {
       {"subject", &guarded<subject_of_stage>, "(name: string): lapwing.vector",
-       "where a subject of the environment is at that time, m"},
+       "position of a subject of the environment at that time, m"},
       {"distance", &guarded<distance_of_stage>,
        "(point: lapwing.vector, name?: string): lapwing.value",
-       "m from a point to the nearest obstacle, or to the one of that name; negative inside"}};
+       "distance in m to the nearest obstacle, or to the one of that name; negative inside"}};
   static constexpr BoundField kFields[] = {
       {"time", "lapwing.value", "s"},
       {"step", "lapwing.value", "s, to the next stage"},

@@ -145,9 +145,9 @@ void open_symbolic_functions(lua_State* state) {
   static constexpr const char* kOne = "(x: lapwing.value): lapwing.value";
   static constexpr const char* kMany = "(...: lapwing.value): lapwing.value";
   static const Binding functions[] = {
-      {"sin", &guarded<function_of_one<TapeOp::sin>>, kOne, "of an angle in rad"},
-      {"cos", &guarded<function_of_one<TapeOp::cos>>, kOne, "of an angle in rad"},
-      {"tan", &guarded<function_of_one<TapeOp::tan>>, kOne, "of an angle in rad"},
+      {"sin", &guarded<function_of_one<TapeOp::sin>>, kOne, "sine of an angle in rad"},
+      {"cos", &guarded<function_of_one<TapeOp::cos>>, kOne, "cosine of an angle in rad"},
+      {"tan", &guarded<function_of_one<TapeOp::tan>>, kOne, "tangent of an angle in rad"},
       {"exp", &guarded<function_of_one<TapeOp::exp>>, kOne, "e to the power of x"},
       {"log", &guarded<function_of_one<TapeOp::log>>, kOne, "the natural logarithm"},
       {"sqrt", &guarded<function_of_one<TapeOp::sqrt>>, kOne, "the square root"},
@@ -166,7 +166,7 @@ void open_symbolic_functions(lua_State* state) {
       {"norm", &guarded<norm_function>, "(v: lapwing.vector): lapwing.value",
        "the length, rounded at 0"},
       {"normalize", &guarded<normalize_function>, "(v: lapwing.vector): lapwing.vector",
-       "of length 1"},
+       "the vector scaled to length 1"},
       {"vector", &guarded<make_vector>, "(...: lapwing.value): lapwing.vector",
        "a vector of these numbers"}};
   lua_getglobal(state, "lapwing");

@@ -92,8 +92,8 @@ ParameterTable way_table() {
   ParameterTable table;
   table.required_numbers("from", 3, "m", "world")
       .required_numbers("to", 3, "m", "world")
-      .number("more", 0, "m", "kept beside the margin", at_least(0))
-      .integer("tries", PassageSearch{}.tries, "of the planner, where ways are excluded",
+      .number("more", 0, "m", "distance in addition to the margin", at_least(0))
+      .integer("tries", PassageSearch{}.tries, "attempts of the planner, if paths are excluded",
                between(1, 1000));
   return table;
 }

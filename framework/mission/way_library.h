@@ -8,8 +8,8 @@ namespace lapwing {
 
 ParameterTable way_table();
 inline constexpr BoundField kWayObjects[] = {
-    {"planner", "lapwing.path_planner", "that looks for it"},
-    {"excluded?", "number[][][]", "ways whose passages are not taken"}};
+    {"planner", "lapwing.path_planner", "path planner"},
+    {"excluded?", "number[][][]", "paths whose passages are not taken"}};
 inline constexpr BoundField kCorridorWay[] = {{"way", "number[][]", "places, m, world"}};
 
 // problem:plan_way{from =, to =, planner =, more =, excluded = {way, ...}, tries =}: {{x, y, z},

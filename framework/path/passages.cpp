@@ -183,7 +183,7 @@ PassageResult find_passage(const PathPlanner& planner, const PathProblem& proble
   if (last.status == PathStatus::found) result.path.report.status = PathStatus::iteration_limit;
   result.path.report.message = "no other passage in " + std::to_string(result.tries) +
                                " tries, of which " + std::to_string(known) +
-                               " found one that had failed";
+                               " found a failed one again";
   return result;
 }
 

@@ -23,7 +23,7 @@ std::string text_of(const Vector3d& p) {
 
 // What is wrong with the problem itself; empty when nothing is.
 std::string problem_of(const PathProblem& problem) {
-  if (!problem.space) return "there is no space to plan in";
+  if (!problem.space) return "there is no space";
   if (!problem.start.allFinite() || !problem.goal.allFinite()) {
     return "start and goal must be finite";
   }

@@ -136,9 +136,9 @@ const PluginLibrary& Registry::Impl::open(const PluginEntry& entry) const {
   const fs::path& file = sidecar_of.at(entry.library);
   const Value written = from_json(read_file(file), file.string());
   if (!(from_json(to_json(describe_as_value(entry.library)), "") == written)) {
-    throw InputError("plugin sidecar '" + file.string() + "' does not describe '" +
-                     entry.library.string() +
-                     "' as it is now; rebuild the plugin, or run lapwing_sidecar on both");
+    throw InputError(
+        "plugin sidecar '" + file.string() + "' does not describe '" + entry.library.string() +
+        "' in its present version; rebuild the plugin, or run lapwing_sidecar on both");
   }
   compared.insert(entry.library);
   return library;
@@ -206,8 +206,7 @@ const PluginEntry& Registry::find(std::string_view kind, std::string_view name,
     message += "; no plugin of that kind was found in";
     for (const fs::path& folder : impl_->folders) message += " " + in_quotes(folder.string());
   } else {
-    message +=
-        "; known: " + list + "; those of a folder of your own are found with --plugin-path FOLDER";
+    message += "; known: " + list + "; --plugin-path FOLDER adds a folder of your plugins";
   }
   throw InputError(origin, message);
 }

@@ -64,7 +64,7 @@ BoundFunction::BoundFunction(std::string name, StageFunction& function, const St
     const BlockSpec& spec = columns.layout.block(block);
     if (sampled_ && spec.topology == Topology::quaternion && spec.role != BlockRole::state)
       throw Error(name_ + ": '" + spec.name +
-                  "' is an orientation of its own, which is not read between two stages");
+                  "' is a free orientation, which cannot be read between two stages");
   }
   list_columns(columns);
 
@@ -94,7 +94,7 @@ int BoundFunction::end_of_leg(const Horizon& horizon, double time) const {
     const int stage = horizon.end_of_leg(leg);
     if (std::abs(horizon.time(stage) - time) <= kOnLeg) return stage;
   }
-  throw InputError(name_ + ": given times need a fixed step, or to be the end of a leg; " +
+  throw InputError(name_ + ": given times need a fixed step, or must be the ends of legs; " +
                    seconds_text(time) + " is neither");
 }
 

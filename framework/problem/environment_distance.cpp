@@ -29,13 +29,13 @@ int nearest_distance(ExpressionGraph& graph, const Environment& environment,
       throw InputError("'" + obstacle.name + "' has no distances: its shape was not opened");
     if (!obstacle.still())
       throw InputError("'" + obstacle.name +
-                       "' moves: a distance can be stated to obstacles that stand still");
+                       "' moves: only distances to obstacles that stand still are possible");
     const int field = graph.add_field(obstacle.shape, static_cast<int>(i));
     nearest = minimum(graph, nearest,
                       graph.apply(TapeOp::distance, point[0], point[1], point[2], 0, field), width);
   }
   if (nearest >= 0) return nearest;
-  if (name.empty()) throw InputError("the environment has no obstacle to be distant from");
+  if (name.empty()) throw InputError("the environment has no obstacle");
   std::string message = "no obstacle '" + name + "' in the environment";
   for (std::size_t k = 0; k < known.size(); ++k)
     message += (k ? ", '" : known.size() == 1 ? "; there is '" : "; there are '") + known[k] + "'";

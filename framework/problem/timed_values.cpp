@@ -7,7 +7,7 @@ namespace lapwing {
 
 ParameterTable TimedValues::entry() {
   return ParameterTable{}
-      .required_number("time", "s", "time from the start; need not be on a stage", at_least(0))
+      .required_number("time", "s", "time from the start, also between stages", at_least(0))
       .required_numbers("value", 0, "", "value, in the block's unit");
 }
 

@@ -152,7 +152,7 @@ void TrajectoryProblem::set_block_guess(const std::string& block, std::vector<do
 void TrajectoryProblem::set_motion_guess(Trajectory motion, Horizon legs) {
   if (legs.leg_count() != impl_->columns.horizon.leg_count() ||
       static_cast<int>(motion.samples.size()) != legs.stages)
-    throw Error("the motion to begin from has other legs");
+    throw Error("the motion of the guess has other legs");
   impl_->motion = std::move(motion);
   impl_->motion_legs = std::move(legs);
 }

@@ -81,7 +81,7 @@ double worst_row_violation(const LocalModel& model, const Eigen::VectorXd& value
 
 std::string say_missed(const std::vector<Violation>& violations) {
   if (violations.empty() || !(violations.front().amount > 0)) return "";
-  return violations.front().row + " is missed by " + number(violations.front().amount);
+  return violations.front().row + " is violated by " + number(violations.front().amount);
 }
 
 std::string say_crossed(const TrajectoryProblem& problem, const LocalModel& model) {

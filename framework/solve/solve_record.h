@@ -41,7 +41,7 @@ class SolveRecord {
 // Largest violation of a row at its values, in the row's own unit.
 double worst_row_violation(const LocalModel& model, const Eigen::VectorXd& values);
 
-// "hard_keyframe.x at 5 s is missed by 2.3": the largest violation, "" when there is none.
+// "hard_keyframe.x at 5 s is violated by 2.3": the largest violation, "" when there is none.
 std::string say_missed(const std::vector<Violation>& violations);
 
 // The first bound or row whose lower limit exceeds its upper one, "" when there is none:

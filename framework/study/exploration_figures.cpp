@@ -54,7 +54,7 @@ Flown flown(const Trial& trial, const fs::path& folder, int steps) {
           object.at("episode").as_integer()};
   } catch (const InputError& error) {
     throw InputError("'" + path.string() +
-                     "' is not a whole episode: delete it, and --resume flies " + "it again (" +
+                     "' is not a complete episode: delete it, and --resume flies " + "it again (" +
                      error.what() + ")");
   }
   // "a b.obj" and "a_b.obj" have the same files.

@@ -50,19 +50,20 @@ class StudyRun {
     const fs::path file = folder_ / "study.json";
     if (!fs::exists(file)) {
       if (fs::exists(folder_ / "rows")) {
-        throw InputError("'" + folder_.string() + "' holds rows of no study");
+        throw InputError("'" + folder_.string() + "' has rows, but no study");
       }
       write_file_atomically(file, stated);
       return;
     }
     if (!resume) {
-      throw InputError("'" + folder_.string() +
-                       "' holds a study: go on with --resume, or name another folder with --out");
+      throw InputError(
+          "'" + folder_.string() +
+          "' contains a study: continue it with --resume, or name another folder with --out");
     }
     if (read_file(file) != stated) {
       throw InputError("'" + file.string() +
                        "' states another study (missions, methods, seeds, budgets, options or "
-                       "scripts differ): --resume goes on with the same one only");
+                       "scripts differ): --resume continues the same one only");
     }
   }
 
@@ -146,7 +147,7 @@ class StudyRun {
     }
     say_(name + ": " + std::to_string(scan.viewpoints.size()) + " candidates, " +
          std::to_string(problems.back().reachable().size()) +
-         " of them joined to the start within the budget; " + std::to_string(missing.size()) +
+         " of them connected to the start within the budget; " + std::to_string(missing.size()) +
          " rows");
     parallel_for(missing.size(), study_.threads, [&](std::size_t i) {
       if (cancellation_ && cancellation_->cancelled()) throw Cancelled();

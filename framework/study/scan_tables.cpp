@@ -267,7 +267,7 @@ void add_curves(const std::vector<ScanSummary>& summaries, const std::string& mi
 
 Report study_report(const std::vector<ScanSummary>& summaries, const std::vector<ScanRow>& rows) {
   Report report;
-  report.title = "Scan tours against their rivals";
+  report.title = "Comparison of scan tours";
   report.subtitle = std::to_string(rows.size()) + " tours";
   std::vector<std::string> missions;
   for (const ScanSummary& s : summaries) {
@@ -285,8 +285,8 @@ Report study_report(const std::vector<ScanSummary>& summaries, const std::vector
         summaries, mission, "What a budget brings: score", "of all that candidates show",
         [](const ScanSummary& s) { return s.score_share.mean; }, section);
     add_curves(
-        summaries, mission, "What a budget brings: the model", "F",
-        [](const ScanSummary& s) { return s.f.mean; }, section);
+        summaries, mission, "Model by budget", "F", [](const ScanSummary& s) { return s.f.mean; },
+        section);
     report.sections.push_back(std::move(section));
   }
   TextBlock words;
@@ -294,12 +294,14 @@ Report study_report(const std::vector<ScanSummary>& summaries, const std::vector
       "Every method has the same budget and one thread; all but the patterns at a safe height have "
       "the same candidates and motions. Precision, recall and "
       "F: points that at least three images agree on, within 0.1 m of the true surface, with the "
-      "images of the first flight and alone; patterns at a safe height (circle, ellipse, meander) "
-      "need no first flight: they are flown freely, straight from view to view, and judged alone. "
+      "images of the first flight, and without them; patterns at a safe height (circle, ellipse, "
+      "meander) "
+      "need no first flight: they are flown straight from view to view, and evaluated without it. "
       "Score: of what all candidates together show. "
-      "Gap: to what no tour can exceed. A row of milp counts where its tour is at least as good as "
+      "Gap: to the upper bound of any tour. A row of milp counts if its tour is at least as good "
+      "as "
       "greedy's for the sum of rewards that it maximises.";
-  report.sections.push_back({"What is measured", {words}});
+  report.sections.push_back({"Measured quantities", {words}});
   TextBlock all;
   all.text = rows_csv(rows);
   all.preformatted = true;

@@ -34,7 +34,7 @@ std::string settings_text(const Value& settings) {
 }
 
 std::string settings_difference(const Value& there, const Value& here) {
-  if (!there.is_map()) return "nothing there says how";
+  if (!there.is_map()) return "its settings are not stated";
   for (const Value* one : {&here, &there})
     for (const auto& [key, ignored] : one->as_map()) {
       if (key == "files" || key == "world_moves") continue;

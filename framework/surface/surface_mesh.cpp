@@ -72,7 +72,7 @@ std::vector<std::int64_t> cells_near(const std::vector<FusedPoint>& points, cons
       std::sort(cells.begin(), cells.end());
       cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
       if (static_cast<double>(cells.size()) > kMostCells) {
-        throw InputError("surface from points: more than 20 million cells; choose larger ones");
+        throw InputError("surface from points: more than 20 million cells; choose larger cells");
       }
     }
   }
@@ -225,7 +225,7 @@ TriangleMesh surface_from_points(const std::vector<FusedPoint>& points,
                                  const SurfaceOptions& options) {
   check(points, options);
   if (!span_a_volume(points)) {
-    throw InputError("surface from points: all of them lie in one plane, or nearly");
+    throw InputError("surface from points: all points lie nearly in one plane");
   }
   Eigen::AlignedBox3d box;
   for (const FusedPoint& p : points) box.extend(p.position);

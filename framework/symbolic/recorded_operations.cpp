@@ -54,7 +54,7 @@ ConstraintOp stated_op(TapeOp op) {
     case TapeOp::distance:
       return ConstraintOp::distance;
   }
-  throw Error("an operation that no plan knows");
+  throw Error("an operation that plans do not have");
 }
 
 // What the results need, operands before what uses them.

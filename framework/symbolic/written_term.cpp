@@ -49,9 +49,8 @@ void state_constraint(WrittenTerm& term, const std::vector<double>& lower,
         "it takes more than " + std::to_string(StatedConstraint::kMostOperations) + " operations";
   for (const ConstraintStep& step : term.recorded.operations) {
     if (step.op == ConstraintOp::input && !is_in_plans(step.name))
-      stated.unjudged = "it reads '" + step.name + "', which plans do not hold";
-    if (!std::isfinite(step.number))
-      stated.unjudged = "it computes with a number that is not finite";
+      stated.unjudged = "it reads '" + step.name + "', which plans do not have";
+    if (!std::isfinite(step.number)) stated.unjudged = "it uses a number that is not finite";
   }
   if (!stated.unjudged.empty()) return;
   stated.times = term.shape.times;

@@ -60,7 +60,7 @@ KeyframeTimes cheapest_times(std::span<const TimeWish> wishes, std::span<const d
   const std::size_t count = wishes.size();
   if (times.size() > kMostEntries / count)
     throw InputError("keyframe times: " + std::to_string(count) + " keyframes over " +
-                     std::to_string(times.size()) + " times are too many to weigh; expected " +
+                     std::to_string(times.size()) + " times are too many; expected " +
                      std::to_string(kMostEntries) + " pairs at most");
   // least[j]: the least cost of all keyframes so far, the last of them at times[j]. came[k - 1][j]:
   // the time of the keyframe before on the way to it.

@@ -91,7 +91,7 @@ Trajectory motion_from(Fields fields) {
     trajectory.motion = {.name = name};
     if (fields.has("model") && !fields.has("columns"))
       fields.add_error("model", "'" + name +
-                                    "' is none of force, rotors, path: another motion states its "
+                                    "' is not force, rotors or path: another motion states its "
                                     "columns");
     else
       columns_from(fields, trajectory.motion);

@@ -70,7 +70,7 @@ class RecordCheck {
               ", which is not before it");
       if (!std::isfinite(step.number)) add(what + "holds a number that is not finite");
       if (step.op == ConstraintOp::subject || step.op == ConstraintOp::distance)
-        add(what + "reads the environment, on which no motion depends");
+        add(what + "reads the environment, which a motion cannot");
       if (step.op != ConstraintOp::input) continue;
       if (size_of(step.name) == 0)
         add(what + "reads '" + step.name + "', which the motion does not have");
@@ -93,12 +93,12 @@ class RecordCheck {
       const auto found = wanted.find({rate.name, rate.component});
       if (found == wanted.end())
         add(what +
-            " is of nothing that changes: expected acceleration, yaw_rate and the columns "
+            " is not of a quantity that changes: expected acceleration, yaw_rate and the columns "
             "that are states");
       else if (found->second++ > 0)
         add(what + " stands there twice");
       if (rate.operation < 0 || rate.operation >= count)
-        add(what + " is of operation " + std::to_string(rate.operation) + ", which there is not");
+        add(what + " is of operation " + std::to_string(rate.operation) + ", which does not exist");
     }
     for (const auto& [key, times] : wanted)
       if (times == 0)

@@ -218,10 +218,10 @@ class Plausibility {
            shown(c.focal_x, "px") + " for an image " + std::to_string(c.width) +
                " px wide: expected " + shown(kFocal.low * c.width) + " to " +
                shown(kFocal.high * c.width, "px") +
-               (c.focal_x < c.width ? "; is it mm? Then multiply it by the pixels to a mm" : ""));
+               (c.focal_x < c.width ? "; is it mm? Then multiply it by the pixels per mm" : ""));
     } else if (!kSquareness.holds(c.focal_x / c.focal_y)) {
       add_("camera.focal_length", shown(c.focal_x, "px") + " across and " + shown(c.focal_y, "px") +
-                                      " down: no camera's pixels are that far from square");
+                                      " vertically: the pixels of a camera are nearly square");
     }
   }
 

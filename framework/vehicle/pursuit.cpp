@@ -29,7 +29,7 @@ void check(const Points& path, std::span<const PursuitView> views, const Vehicle
   for (const Vector3d& p : path)
     if (!p.allFinite()) refuse("a point of the path is not finite");
   if (!(length_of(path) > 0) && (views.size() < 2 || !s.stop))
-    refuse("the path has no length, and there are no views to turn to");
+    refuse("the path has no length, and there are no views");
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!(views[i].least >= 0 && views[i].least <= 3600))
       refuse("view " + std::to_string(i + 1) + " must be reached after 0 to 3600 s");

@@ -61,8 +61,8 @@ namespace {
 std::optional<Trajectory> as_forces(const Trajectory& trajectory, const Vehicle& vehicle) {
   if (!vehicle.has_rotors)
     throw InputError({}, "vehicle '" + vehicle.name +
-                             "' states no rotors: there is no simulated vehicle to fly this plan "
-                             "with. A vehicle file with inertia and rotors has one");
+                             "' states no rotors: no simulated vehicle can fly this plan"
+                             "; a vehicle file with inertia and rotors is needed");
   switch (trajectory.motion.tracked) {
     case Tracking::force:
       return std::nullopt;
@@ -74,12 +74,13 @@ std::optional<Trajectory> as_forces(const Trajectory& trajectory, const Vehicle&
       break;
   }
   if (!trajectory.motion.moves)
-    throw InputError({},
-                     "this plan is an exploration: straight lines without forces that a controller "
-                     "could follow. Films, races, light paintings and scans can be flown; a scan "
-                     "may begin with an exploration (examples/explore/explore_then_scan.lua)");
+    throw InputError(
+        {},
+        "this plan is an exploration: straight lines without forces, which a controller "
+        "cannot track. Films, races, light paintings and scans can be simulated; a scan "
+        "may begin with an exploration (examples/explore/explore_then_scan.lua)");
   throw InputError({}, "the motion '" + trajectory.motion.name +
-                           "' says nothing that a simulated quadrotor could follow");
+                           "' has no inputs that a simulated quadrotor can track");
 }
 
 }  // namespace

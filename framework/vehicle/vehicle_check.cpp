@@ -53,7 +53,7 @@ class Checker {
     require(i.allFinite() && (i.array() > 0).all(), "inertia", "each entry must be above 0");
     // A body's moments of inertia obey the triangle inequality; equality is a flat plate.
     require(2 * i.maxCoeff() <= i.sum() * (1 + 1e-9), "inertia",
-            "no body has a moment of inertia larger than the sum of the other two");
+            "a moment of inertia cannot exceed the sum of the other two");
     positive(v_.rotors.thrust_max, "rotors.thrust");
     require(v_.rotors.thrust_min >= 0 && v_.rotors.thrust_min < v_.rotors.thrust_max,
             "rotors.thrust",
@@ -74,7 +74,7 @@ class Checker {
                                text_of(v_.thrust_max(), "N") + " with yaw_share " +
                                text_of(v_.yaw_share, "");
     require(v_.thrust_min() < v_.thrust_max(), "yaw_share",
-            "leaves no thrust to choose from: the bounds are " + bounds);
+            "leaves no range of thrust: the bounds are " + bounds);
     require(v_.thrust_min() < weight && weight < v_.thrust_max(), "mass",
             "the vehicle cannot hover: its weight is " + text_of(weight, "N") +
                 ", its usable thrust " + bounds + lighter(weight));
@@ -95,9 +95,9 @@ class Checker {
     if (v_.acceleration_down_max) positive(*v_.acceleration_down_max, "limits.acceleration_down");
     // Without rotors nothing else says how fast it climbs.
     require(v_.has_rotors || v_.acceleration_up_max, "limits.acceleration_up",
-            "missing: a vehicle without rotors in its file states it");
+            "missing: required for a vehicle without rotors");
     require(v_.has_rotors || v_.acceleration_down_max, "limits.acceleration_down",
-            "missing: a vehicle without rotors in its file states it");
+            "missing: required for a vehicle without rotors");
     if (v_.jerk_max) positive(*v_.jerk_max, "limits.jerk");
     positive(v_.yaw_rate_max, "limits.yaw_rate_deg");
     if (v_.tilt_rate_max) positive(*v_.tilt_rate_max, "limits.tilt_rate_deg");
@@ -110,11 +110,10 @@ class Checker {
     require(w.bank_max > 0 && w.bank_max < radians(80), "wing.bank_deg",
             "must lie between 0 and 80 degrees, both excluded, is " +
                 text_of(degrees(w.bank_max), "degrees"));
-    require(
-        w.excess_thrust_min < 0 && w.excess_thrust_max > 0, "wing.excess_thrust",
-        "expected a negative number, of the wing that slows down without thrust, and a positive "
-        "one; are " +
-            text_of(w.excess_thrust_min, "") + " and " + text_of(w.excess_thrust_max, "m/s^2"));
+    require(w.excess_thrust_min < 0 && w.excess_thrust_max > 0, "wing.excess_thrust",
+            "expected a negative number (deceleration without thrust) and a positive "
+            "one; are " +
+                text_of(w.excess_thrust_min, "") + " and " + text_of(w.excess_thrust_max, "m/s^2"));
     require(w.stall_speed < v_.speed_across_max, "wing.stall_speed",
             text_of(w.stall_speed, "m/s") + " is not below the largest speed of " +
                 text_of(v_.speed_across_max, "m/s"));
@@ -141,7 +140,7 @@ class Checker {
     require(std::isfinite(rate) && rate >= 0, "gimbal." + name + "_rate_deg",
             "must be at least 0, is " + text_of(degrees(rate), ""));
     require(low >= high || rate > 0, "gimbal." + name + "_rate_deg",
-            "the gimbal has a range of " + range + " but no rate to turn with");
+            "the gimbal has a range of " + range + " but a rate of 0");
   }
 
   void camera() {

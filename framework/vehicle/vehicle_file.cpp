@@ -10,12 +10,13 @@ namespace {
 ParameterTable rotors_table() {
   ParameterTable table;
   table.optional_numbers("thrust", 2, "N", "smallest and largest thrust of one rotor", at_least(0))
-      .optional_number("torque_coefficient", "m", "drag torque of a rotor over its thrust",
+      .optional_number("torque_coefficient", "m", "ratio of drag torque and thrust of a rotor",
                        above(0))
-      .optional_number("arm_length", "m", "from a rotor's axis to the centre of mass", above(0))
-      .number("lag", 0, "s", "time constant of the thrust after its command", between(0, 1))
+      .optional_number("arm_length", "m", "distance from the axis of a rotor to the centre of mass",
+                       above(0))
+      .number("lag", 0, "s", "time constant of the thrust", between(0, 1))
       .choice("layout", "diagonal", {"diagonal", "along_axes"},
-              "arms at 45 degrees to the body's axes, or along them");
+              "arms at 45 degrees to the body axes, or along them");
   return table;
 }
 
@@ -25,12 +26,12 @@ ParameterTable limits_table() {
       .required_number("climb_speed", "m/s", "largest speed upwards", above(0))
       .required_number("descent_speed", "m/s", "largest speed downwards", above(0))
       .required_number("acceleration_across", "m/s^2", "largest horizontal acceleration", above(0))
-      .optional_number("acceleration_up", "m/s^2", "absent: the rotors alone limit it", above(0))
-      .optional_number("acceleration_down", "m/s^2", "absent: the rotors alone limit it", above(0))
-      .optional_number("jerk", "m/s^3", "largest; absent: nothing limits it", above(0))
+      .optional_number("acceleration_up", "m/s^2", "absent: limited by the rotors only", above(0))
+      .optional_number("acceleration_down", "m/s^2", "absent: limited by the rotors only", above(0))
+      .optional_number("jerk", "m/s^3", "largest jerk; absent: no limit", above(0))
       .required_number("yaw_rate_deg", "deg/s", "largest yaw rate", above(0))
       .optional_number("tilt_rate_deg", "deg/s",
-                       "largest body rate about x and about y; absent: the rotors alone limit it",
+                       "largest body rate about x and about y; absent: limited by the rotors only",
                        above(0));
   return table;
 }
@@ -38,7 +39,7 @@ ParameterTable limits_table() {
 ParameterTable gimbal_table() {
   ParameterTable table;
   table
-      .optional_numbers("yaw_deg", 2, "deg", "range against the body; equal ends: it cannot turn",
+      .optional_numbers("yaw_deg", 2, "deg", "yaw range relative to the body; equal ends: fixed",
                         between(-180, 180))
       .optional_number("yaw_rate_deg", "deg/s", "largest rate of the gimbal's yaw", at_least(0))
       .optional_numbers("pitch_deg", 2, "deg", "range, positive up", between(-90, 90))
@@ -49,9 +50,7 @@ ParameterTable gimbal_table() {
 
 ParameterTable wing_table() {
   ParameterTable table;
-  table
-      .optional_number("stall_speed", "m/s", "airspeed in straight flight below which it stalls",
-                       above(0))
+  table.optional_number("stall_speed", "m/s", "stall airspeed in straight flight", above(0))
       .optional_number("bank_deg", "deg", "largest bank angle", {.minimum = 0, .maximum = 80})
       .optional_number("bank_rate_deg", "deg/s", "largest rate of the bank angle", above(0))
       .optional_numbers("excess_thrust", 2, "m/s^2",
@@ -72,7 +71,7 @@ bool is_whole(const Parameters& table, const ParameterTable& known, const std::s
 }
 
 std::optional<Wing> wing_from(const Parameters& table, Diagnostics& errors) {
-  if (!is_whole(table, wing_table(), "wing", "a wing needs all of its figures", errors))
+  if (!is_whole(table, wing_table(), "wing", "a wing needs all of its values", errors))
     return std::nullopt;
   const auto thrust = table.numbers("excess_thrust");
   return Wing{.stall_speed = table.number("stall_speed"),
@@ -92,12 +91,11 @@ void read_rotors(const Parameters& vehicle, Vehicle& result, Diagnostics& errors
   bool whole = vehicle.has("inertia");
   if (!whole)
     errors.add(vehicle.origin(), "inertia",
-               "missing; expected 3 numbers in kg m^2: a vehicle with rotors states both");
+               "missing; expected 3 numbers in kg m^2: required for a vehicle with rotors");
   for (const std::string& key : needed) {
     if (rotors.has(key)) continue;
     whole = false;
-    errors.add(rotors.origin(), "rotors." + key,
-               "missing: a vehicle with an inertia states its rotors as well");
+    errors.add(rotors.origin(), "rotors." + key, "missing: required for a vehicle with an inertia");
   }
   if (!whole) return;
   const auto inertia = vehicle.numbers("inertia");
@@ -172,17 +170,16 @@ ParameterTable vehicle_table() {
   ParameterTable table;
   table.required_number("mass", "kg", "take-off mass, camera included", above(0))
       .optional_numbers("inertia", 3, "kg m^2",
-                        "moments of inertia about the body's axes; absent: no rotors are known",
-                        above(0))
+                        "moments of inertia about the body axes; absent: not known", above(0))
       .number("drag", 0, "N s/m", "linear drag against the air; needed to fly in wind",
               between(0, 100))
-      .table("rotors", rotors_table(), "four equal rotors; absent: none are known")
+      .table("rotors", rotors_table(), "four equal rotors; absent: not known")
       .number("yaw_share", 0.2, "",
               "share of the largest yaw moment that stays usable at every thrust (beta of 3.8.3)",
               {.minimum = 0, .maximum = 1, .minimum_excluded = true})
-      .table("limits", limits_table(), "what the vehicle may do, whatever a problem asks for")
-      .required_number("flight_time", "s", "time in the air on one battery", above(0))
-      .table("wing", wing_table(), "of a fixed-wing aircraft; absent: it has none")
+      .table("limits", limits_table(), "limits of the vehicle, for every problem")
+      .required_number("flight_time", "s", "flight time of one battery", above(0))
+      .table("wing", wing_table(), "wing of a fixed-wing aircraft; absent: none")
       .table("gimbal", gimbal_table(), "absent: the camera is fixed to the body")
       .required_text("camera", "the camera file, such as cameras/action");
   return table;
@@ -192,7 +189,8 @@ ParameterTable camera_table() {
   ParameterTable table;
   table.required_numbers("image_size", 2, "px", "width and height", between(1, 1 << 20))
       .required_numbers("focal_length", 2, "px", "along the image's x and y", above(0))
-      .required_numbers("principal_point", 2, "px", "from the centre of the upper left pixel");
+      .required_numbers("principal_point", 2, "px",
+                        "offset from the centre of the upper left pixel");
   return table;
 }
 

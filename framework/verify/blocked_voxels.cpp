@@ -10,7 +10,8 @@ namespace lapwing {
 BlockedVoxels::BlockedVoxels(const MapFile& file, const Eigen::AlignedBox3d& box)
     : grid_(file.resolution) {
   if (file.two_states)
-    throw InputError("a map of two states (.bt) cannot say what it does not know; write an .ot");
+    throw InputError(
+        "a map with two states (.bt) does not distinguish unknown voxels; write an .ot file");
   constexpr double kFreeBelow = 0.25;  // map/map.h
   const float free_below = log_odds_of(kFreeBelow);
   double voxels = 1;

@@ -10,12 +10,12 @@ std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& ce
   const Trajectory& trajectory = flight.plan.trajectory;
   std::string reason;
   if (!trajectory.motion.moves)
-    reason = "a path has no inputs that the controller could follow";
+    reason = "a path has no inputs that a controller can track";
   else if (trajectory.motion.tracked == Tracking::none)
     reason = "the motion '" + trajectory.motion.name +
-             "' says nothing that a simulated quadrotor could follow";
+             "' has no inputs that a simulated quadrotor can track";
   else if (!flight.vehicle.has_rotors)
-    reason = "the vehicle states no rotors: there is no simulated vehicle to fly this plan";
+    reason = "the vehicle states no rotors: no simulated vehicle can fly this plan";
   else if (trajectory.samples.size() < 2)
     reason = "a single sample is not a flight";
   if (!reason.empty()) {
@@ -28,7 +28,7 @@ std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& ce
   Check tracking =
       judged(make_check("closed_loop"), path.lost ? infinite : path.position_error_worst,
              tolerances::kTracking, 0, path.position_error_at);
-  if (path.lost) tracking.detail = "the vehicle is lost: it turns over or strays beyond 100 m";
+  if (path.lost) tracking.detail = "the vehicle turns over, or is more than 100 m from the plan";
   Check yaw = judged(make_check("closed_loop_yaw"), path.yaw_error_worst, tolerances::kTrackingYaw,
                      0, path.yaw_error_at);
   tracking.required = yaw.required = flight.plan.task.closed_loop_required;

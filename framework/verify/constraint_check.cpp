@@ -66,9 +66,9 @@ class ConstraintJudge {
     if (const auto outside = time_outside()) {
       Check check = named_check(constraint_);
       check.at = *outside;
-      check.detail = "it is asked at " + plain_number(*outside) + " s, and the flight lasts from " +
-                     plain_number(points_.front().motion.time) + " to " +
-                     plain_number(points_.back().motion.time) + " s";
+      check.detail = "it is evaluated at " + plain_number(*outside) +
+                     " s, and the flight lasts from " + plain_number(points_.front().motion.time) +
+                     " to " + plain_number(points_.back().motion.time) + " s";
       return check;  // with nothing to report, and failed
     }
     if (constraint_.times.empty())
@@ -77,7 +77,7 @@ class ConstraintJudge {
       judge_times();
     Check check = named_check(constraint_);
     if (!seen_) {
-      check.skipped = "the flight has no sample at which it is asked";
+      check.skipped = "the flight has no sample at which it is evaluated";
       return check;
     }
     check = judged(std::move(check), worst_.value, worst_.limit, worst_.tolerance, worst_.time,

@@ -203,7 +203,7 @@ const BlockedVoxels& map_of_scan(const Flight& flight) {
   for (std::size_t i = 0; i < obstacles.size(); ++i)
     if (obstacles[i].type == "map" && obstacles[i].name == flight.plan.task.scan->map)
       return *flight.shapes[i]->voxels();
-  throw Error("a scan without its map was let through");
+  throw Error("a scan without its map passed the checks of the document");
 }
 
 // The motion at a time within the flight, straight between integrated points.
@@ -243,12 +243,12 @@ void list_scan_problems(const Plan& plan, std::vector<std::string>& problems) {
       !sound(camera.principal_y))
     add("must have a camera with pixels and focal lengths");
   if (!(scan.range > 0 && scan.range <= tolerances::kLongestRay))
-    add("must have rays longer than 0 m and of 1000 m at most");
+    add("must have rays longer than 0 m and at most 1000 m");
   if (!(scan.tolerance > 0 && sound(scan.tolerance)) ||
       !(scan.angle_tolerance > 0 && sound(scan.angle_tolerance)))
     add("needs tolerances above 0");
   if (!(scan.seen_share > 0 && scan.seen_share <= 1) || scan.seen < 1)
-    add("must say how many voxels are seen, and which share of them again");
+    add("must state the number of seen voxels, and the share that must be seen again");
   if (scan.views.empty()) add("must have a view");
   if (static_cast<double>(camera.width) * camera.height * static_cast<double>(scan.views.size()) >
       tolerances::kMostRays)
@@ -306,8 +306,9 @@ void check_coverage(const Flight& flight, Certificate& certificate) {
   Check check =
       judged(make_check("coverage"), static_cast<double>(count) / static_cast<double>(scan->seen),
              scan->seen_share, 0, scan->views.back().time, true);
-  const std::string said = std::to_string(count) + " of the " + std::to_string(scan->seen) +
-                           " voxels that the plan says its views see (no share of the region)";
+  const std::string said =
+      std::to_string(count) + " of the " + std::to_string(scan->seen) +
+      " voxels that the plan states as seen by its views (not a share of the region)";
   check.detail = check.detail.empty() ? said : check.detail + "; " + said;
   certificate.checks.push_back(check);
 }

@@ -201,14 +201,14 @@ class Reader {
       work += total * static_cast<double>(constraint.operations.size());
     if (work > tolerances::kMostConstraintWork) {
       std::snprintf(text, sizeof text,
-                    "evaluating the constraints of the script would take %.3g operations, more "
+                    "evaluating the constraints of the script takes %.3g operations, more "
                     "than %.0g",
                     work, tolerances::kMostConstraintWork);
       add(text);
     }
     if (total <= tolerances::kLargestSteps) return;
     std::snprintf(text, sizeof text,
-                  "following the motion would take %.3g steps, more than %.0g: the samples are too "
+                  "integrating the motion takes %.3g steps, more than %.0g: the samples are too "
                   "coarse for their inputs",
                   total, tolerances::kLargestSteps);
     add(text);

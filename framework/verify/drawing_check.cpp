@@ -91,9 +91,8 @@ void check_drawing(const Flight& flight, const std::optional<FlownPath>& flown,
     return;
   }
   checks.push_back(drawn("drawing", lit_paths(flight), flight.plan.task));
-  checks.push_back(flown
-                       ? drawn("drawing_flown", lit_paths(flight.plan, *flown), flight.plan.task)
-                       : skipped_check("drawing_flown", "the plan is not flown by the controller"));
+  checks.push_back(flown ? drawn("drawing_flown", lit_paths(flight.plan, *flown), flight.plan.task)
+                         : skipped_check("drawing_flown", "the plan is not simulated"));
 }
 
 }  // namespace lapwing

@@ -26,7 +26,7 @@ std::string problem_of(const Subject& subject) {
     return " must have a height and a width of at least 0";
   }
   if (!(subject.distance >= 0) || !sound(subject.distance)) {
-    return " must ask for a distance of at least 0";
+    return " must have a distance of at least 0";
   }
   return "";
 }

@@ -165,7 +165,7 @@ void skip(const char* reason, Certificate& certificate) {
 
 void check_framing(const Flight& flight, Certificate& certificate) {
   const Task& task = flight.plan.task;
-  if (task.framing.empty()) return skip("the task asks for no framing", certificate);
+  if (task.framing.empty()) return skip("the task has no framing", certificate);
   if (!flight.plan.trajectory.has_gimbal) {
     return skip("the plan moves no gimbal, so the camera's direction is not known", certificate);
   }
@@ -177,7 +177,7 @@ void check_framing(const Flight& flight, Certificate& certificate) {
     }
   }
   if (!(framing.asked_seconds() > 0)) {
-    return skip("all the time that is asked for lies in cuts", certificate);
+    return skip("all required time lies in cuts", certificate);
   }
   for (std::size_t k = 0; k < kFramingNames.size(); ++k) {
     const Lasting& lasting = framing.lasting(k);

@@ -347,7 +347,7 @@ std::string problem_of_file(const Obstacle& obstacle) {
 
 std::string problem_of_triangles(const Obstacle& obstacle) {
   if (!obstacle.triangles)
-    return " is of a type that this verifier has no distance of, and the plan records no "
+    return " has a type whose distance this verifier cannot compute, and the plan records no "
            "triangles of it";
   if (!(obstacle.tolerance >= 0) || !in_range(obstacle.tolerance))
     return " must have triangles with a tolerance of at least 0";

@@ -102,7 +102,7 @@ std::string recorded_file(const Obstacle& obstacle, const std::filesystem::path&
   name = obstacle.parameters.at("file").as_text();
   std::string bytes = read_file(file, std::size_t{1} << 30);
   if (!hash || !hash->is_text() || sha256(bytes) != hash->as_text())
-    throw InputError("'" + name + "' has changed since the plan was made");
+    throw InputError("'" + name + "' has changed since planning");
   return bytes;
 }
 
@@ -132,8 +132,8 @@ std::string open_edges(const TriangleMesh& mesh) {
   std::size_t open = 0;
   for (const auto& [edge, count] : balance) open += count != 0;
   if (open == 0) return "";
-  return " has triangles that bound no solid: " + std::to_string(open) +
-         " edges lack a neighbour that turns the same way";
+  return " has triangles that do not bound a solid: " + std::to_string(open) +
+         " edges have no neighbour with the same orientation";
 }
 
 std::unique_ptr<JudgedShape> judged_shape(const Obstacle& obstacle,

@@ -70,13 +70,13 @@ class Limits {
     if (path_) return append_speeds_to(checks);
     if (rotors_) {
       for (const char* name : {"thrust_max", "thrust_min", "force_up", "yaw_torque"})
-        checks.push_back(skipped_check(name, "for the model 'rotors' each rotor is judged"));
+        checks.push_back(skipped_check(name, "for the model 'rotors' each rotor is checked"));
       checks.push_back(nearer(rotor_low_, rotor_high_));
     } else if (!force_) {
       for (const char* name :
            {"thrust_max", "thrust_min", "force_up", "yaw_torque", "rotor_thrust"})
         checks.push_back(
-            skipped_check(name, "nothing is known of thrust in the motion '" + motion_.name + "'"));
+            skipped_check(name, "the thrust is not known in the motion '" + motion_.name + "'"));
     } else {
       for (const Worst* worst : {&thrust_max_, &thrust_min_, &force_up_, &yaw_torque_})
         checks.push_back(worst->check());

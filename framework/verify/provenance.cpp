@@ -49,12 +49,12 @@ std::vector<std::string> changes_since(const Value& stored, const Certificate& n
     const Check* old = before.find(check.name);
     if (!old || check.name == kProvenance) continue;
     if (outcome_of(*old) != outcome_of(check)) {
-      changes.push_back(check.name + " " + outcome_of(*old) + " when it was planned, and is now " +
+      changes.push_back(check.name + " " + outcome_of(*old) + " at planning, and is now " +
                         outcome_of(check));
     } else if (old->skipped.empty() &&
                !(alike(old->limit, check.limit) && alike(old->tolerance, check.tolerance))) {
       changes.push_back(check.name + " was judged by a limit of " + plain_number(old->limit) +
-                        " when it was planned, and is now by " + plain_number(check.limit) +
+                        " at planning, and is now by " + plain_number(check.limit) +
                         (check.unit.empty() ? "" : " " + check.unit));
     }
   }

@@ -46,7 +46,7 @@ class Nearness {
   // "bystander 'bob' 8.2 m at 3.1 s, asks for 5 m"
   std::string in_words() const {
     char text[96];
-    std::snprintf(text, sizeof text, " %.4g m at %.4g s, asks for %.4g m", distance_, at_,
+    std::snprintf(text, sizeof text, " %.4g m at %.4g s, requires %.4g m", distance_, at_,
                   subject_.distance);
     return named(subject_) + text;
   }
@@ -92,7 +92,7 @@ void check_subject_distance(const Flight& flight, Certificate& certificate) {
     if (subject.distance > 0) asking.emplace_back(subject);
   if (asking.empty()) {
     certificate.checks.push_back(
-        skipped_check("subject_distance", "no subject asks for a distance"));
+        skipped_check("subject_distance", "no subject requires a distance"));
     return;
   }
   Motion& motion = flight.motion;

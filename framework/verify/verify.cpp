@@ -85,7 +85,7 @@ Certificate verify(const Plan& plan, const VerifyRequest& request) {
   const Document document = check_document(plan, request, watch);
   certificate.checks.push_back(document.check);
   if (!document.check.pass) return unreadable(plan, std::move(certificate));
-  certificate.checks.push_back(skipped_check("provenance", "the numbers alone do not tell"));
+  certificate.checks.push_back(skipped_check("provenance", "the numbers do not determine it"));
   Motion motion(plan.trajectory, document.vehicle);
   watch.expect(parts_of(plan, motion.total_steps(), read));
   watch.begin();  // the document, which was read

@@ -25,15 +25,15 @@ constexpr double kOneStep = 1 - 1e-9;  // times a step: neighbours of a lattice 
 void check(const CandidateSettings& s) {
   const auto refuse = [](const std::string& why) { throw InputError("candidates: " + why); };
   if (s.region.isEmpty()) refuse("the region of interest is empty");
-  if (s.allowed.isEmpty()) refuse("there is no room that is allowed");
+  if (s.allowed.isEmpty()) refuse("the box for the vehicle is empty");
   if (!(s.half.minCoeff() >= 0)) refuse("the vehicle's box must have edges of at least 0 m");
   if (!(s.step > 0) || !(s.step_growth >= 0)) refuse("the step must be above 0 m and grow");
   if (!(s.distance_apart > 0) || !(s.angle_apart >= 0))
-    refuse("candidates must be apart by more than 0 m");
+    refuse("candidates must be more than 0 m apart");
   if (!(s.pitch_min < s.pitch_max)) refuse("the camera's pitch has no range");
   if (s.directions < 1) refuse("a place must have at least 1 direction");
   if (s.most < 1 || s.least < 0 || s.least > s.most)
-    refuse("their number must be at least 1, and the least no more than the most");
+    refuse("the largest number must be at least 1 and not below the smallest");
 }
 
 // Points by place, so that near ones are found without looking at all.
@@ -87,7 +87,7 @@ class Generator {
 
  private:
   void give(const std::vector<Viewpoint>& given) {
-    if (given.empty()) throw InputError("candidates: no viewpoint to begin with");
+    if (given.empty()) throw InputError("candidates: no start");
     for (std::size_t k = 0; k < given.size(); ++k) {
       const Vector3d& p = given[k].position;
       const auto refuse = [&](const std::string& why) {

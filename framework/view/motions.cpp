@@ -64,7 +64,7 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
                          const CancellationToken* cancellation,
                          const std::function<void(std::size_t, std::size_t)>& report) {
   if (settings.alpha > 0 && seen.size() != viewpoints.size())
-    throw Error("find_motions: what is seen belongs to other viewpoints");
+    throw Error("find_motions: the seen voxels belong to other viewpoints");
   if (settings.neighbours < 1 || settings.among < settings.neighbours)
     throw InputError("motions: neighbours must be at least 1 and among no fewer, not " +
                      std::to_string(settings.neighbours) + " among " +

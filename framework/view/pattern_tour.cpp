@@ -267,14 +267,15 @@ FreePattern fly_freely(const std::vector<Viewpoint>& pattern, double budget,
   }
   char text[160];
   if (best.views.empty())
-    std::snprintf(text, sizeof text,
-                  "not two of the pattern's %zu viewpoints fit into the budget of %.6g s",
-                  pattern.size(), budget);
+    std::snprintf(
+        text, sizeof text,
+        "fewer than two of the %zu viewpoints of the pattern fit into the budget of %.6g s",
+        pattern.size(), budget);
   else if (best.views.size() == pattern.size())
     std::snprintf(text, sizeof text, "the whole pattern, %zu viewpoints", pattern.size());
   else
     std::snprintf(text, sizeof text,
-                  "%zu of the pattern's %zu viewpoints: all would take %.6g s of %.6g s",
+                  "%zu of the %zu viewpoints of the pattern: all take %.6g s of %.6g s",
                   best.views.size(), pattern.size(), whole, budget);
   best.message = text;
   return best;
@@ -324,13 +325,13 @@ PatternTour fly_pattern(const TourProblem& problem, const std::vector<Viewpoint>
   std::snprintf(laid, sizeof laid, "%d viewpoints take %d different candidates, %.3g m off",
                 tour.asked, tour.wanted, tour.moved);
   if (tour.walk.empty()) {
-    std::snprintf(text, sizeof text, "%s, of which not one fits into the budget of %.6g s", laid,
+    std::snprintf(text, sizeof text, "%s, none of which fits into the budget of %.6g s", laid,
                   problem.budget());
   } else if (tour.flown == tour.wanted) {
     std::snprintf(text, sizeof text, "the whole pattern: %s", laid);
   } else {
-    std::snprintf(text, sizeof text, "%s; %d of them: all would take %.6g s of %.6g s", laid,
-                  tour.flown, tour.whole_seconds, problem.budget());
+    std::snprintf(text, sizeof text, "%s; %d of them: all take %.6g s of %.6g s", laid, tour.flown,
+                  tour.whole_seconds, problem.budget());
   }
   tour.message = text;
   return tour;

@@ -121,7 +121,7 @@ std::shared_ptr<const ViewScore> score_views(const VisibleVoxels& visible,
   graph.voxels = numbers.take();
   if (graph.voxels.empty())
     throw InputError("none of " + std::to_string(views.size()) +
-                     " candidates sees anything of the region of interest: it holds no surface, or "
+                     " candidates sees the region of interest: it has no surface, or "
                      "lies beyond the range of the rays");
   return std::make_shared<const ViewScore>(std::move(builder).take());
 }

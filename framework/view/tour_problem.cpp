@@ -42,7 +42,7 @@ void check_view(int view, int views, const std::string& what, Diagnostics& error
 }
 
 void check_legs(const TourDefinition& d, std::size_t n, Diagnostics& errors) {
-  if (!d.motions.empty()) errors.add({}, "legs", "either legs or motions, not both");
+  if (!d.motions.empty()) errors.add({}, "legs", "give legs or motions, not both");
   if (d.legs.size() != n * n) {
     errors.add({}, "legs",
                std::to_string(n) + " views need " + std::to_string(n * n) + " legs, not " +
@@ -56,7 +56,7 @@ void check_legs(const TourDefinition& d, std::size_t n, Diagnostics& errors) {
       if (sound(there) && sound(back) && symmetric) continue;
       errors.add({}, "legs",
                  "from " + std::to_string(a) + " to " + std::to_string(b) +
-                     " must be finite, at least 0 s and the same there and back");
+                     " must be finite, at least 0 s and the same in both directions");
       return;
     }
   }
@@ -322,13 +322,13 @@ std::string TourProblem::why_infeasible() const {
   const double least = fixed_seconds_ + out[end_];
   if (least > budget_ + tolerance()) {
     return "a budget of " + text_of(budget_) + " is too small: " +
-           (loop() ? "the view at the start alone" : "the way from start to end alone") +
+           (loop() ? "the view at the start alone" : "the shortest path from start to end") +
            " takes " + text_of(least);
   }
   std::vector<int> way{start_};
   append_way(start_, end_, way);
   if (image_limit_ && images_of(way) > *image_limit_) {
-    return "the way from start to end passes " + std::to_string(images_of(way)) +
+    return "the shortest path from start to end passes " + std::to_string(images_of(way)) +
            " views, more images than the " + std::to_string(*image_limit_) + " allowed";
   }
   return "";

@@ -119,12 +119,13 @@ TourResult TourSolver::solve(const TourProblem& problem, const TourRequest& requ
     report.reachable_score = problem.score_of(reachable);
     if (report.reachable_score <= 0) {
       return finish(TourStatus::infeasible, "none of the " + std::to_string(reachable.size()) +
-                                                " views within the budget brings any information");
+                                                " views within the budget adds information");
     }
     if (request.initial) {
       const std::string wrong = problem.problem_of(*request.initial);
       if (!wrong.empty()) {
-        return finish(TourStatus::failed, "the initial tour is none of this problem: " + wrong);
+        return finish(TourStatus::failed,
+                      "the initial tour is not a tour of this problem: " + wrong);
       }
     }
     work.ended(0);  // cancelled or out of time before it began: the search says what it has
@@ -135,7 +136,7 @@ TourResult TourSolver::solve(const TourProblem& problem, const TourRequest& requ
     report.iterations = searched.iterations;
     if (!searched.walk.empty()) {
       const std::string wrong = problem.problem_of(searched.walk);
-      if (!wrong.empty()) return broken("the solver's tour is none: " + wrong);
+      if (!wrong.empty()) return broken("the result of the solver is not a tour: " + wrong);
     }
     result.walk = std::move(searched.walk);
     const bool begun_better =
@@ -143,7 +144,7 @@ TourResult TourSolver::solve(const TourProblem& problem, const TourRequest& requ
         (result.walk.empty() || problem.score_of(result.walk) < problem.score_of(*request.initial));
     if (begun_better) {
       result.walk = *request.initial;
-      searched.message += "; the initial tour is better and stays";
+      searched.message += "; the initial tour is better and is kept";
     }
     if (result.walk.empty()) {
       const bool claims = searched.status == TourStatus::feasible;
@@ -156,7 +157,7 @@ TourResult TourSolver::solve(const TourProblem& problem, const TourRequest& requ
     if (report.score <= 0 && searched.status == TourStatus::feasible) {
       result.walk.clear();
       return finish(TourStatus::infeasible,
-                    "no view that brings information fits into the budget: " + searched.message);
+                    "no view with information fits into the budget: " + searched.message);
     }
     if (request.bound) report.upper_bound = tour_upper_bound(problem, result.walk);
     if (searched.upper_bound) {

@@ -31,8 +31,7 @@ int ViewIslands::joined(int view) const {
 }
 
 int ViewIslands::best_start(int given) const {
-  if (given < 1 || given > static_cast<int>(island_.size()))
-    throw Error("a tour has no view to start at");
+  if (given < 1 || given > static_cast<int>(island_.size())) throw Error("a tour has no start");
   int best = 0;
   for (int v = 1; v < given; ++v)
     if (joined(v) > joined(best)) best = v;

@@ -47,7 +47,7 @@ std::size_t ViewScore::bytes() const {
 
 ViewScoreBuilder::ViewScoreBuilder(std::size_t voxels, std::span<const double> weights) {
   if (voxels > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError("a view score holds fewer than 2^32 voxels, not " + std::to_string(voxels));
+    throw InputError("a view score has fewer than 2^32 voxels, not " + std::to_string(voxels));
   }
   if (!weights.empty() && weights.size() != voxels) {
     throw InputError("a view score of " + std::to_string(voxels) +
@@ -73,7 +73,7 @@ ViewScoreBuilder::ViewScoreBuilder(std::size_t voxels, std::span<const double> w
 void ViewScoreBuilder::add_voxels(std::size_t count) {
   const std::size_t voxels = score_.voxels() + count;
   if (voxels > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError("a view score holds fewer than 2^32 voxels, not " + std::to_string(voxels));
+    throw InputError("a view score has fewer than 2^32 voxels, not " + std::to_string(voxels));
   }
   score_.capacities_.resize(voxels, static_cast<Amount>(std::lround(1 / score_.unit_)));
   sums_.resize(voxels);
@@ -101,7 +101,7 @@ void ViewScoreBuilder::add_view(std::span<const ViewScore::Contribution> contrib
     if (amount == 0) continue;
     sums_[c.voxel] += amount;
     if (sums_[c.voxel] > std::numeric_limits<Amount>::max()) {
-      refuse(c, "more than 2,000 views see it fully; leave some of them out");
+      refuse(c, "more than 2,000 views see it fully; remove some of them");
     }
     score_.voxels_.push_back(c.voxel);
     score_.amounts_.push_back(amount);

@@ -54,7 +54,8 @@ VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<con
   const Vector3d reach = Vector3d::Constant(settings_.range);
   if (!map_->grid().contains(settings_.region.min() - reach) ||
       !map_->grid().contains(settings_.region.max() + reach))
-    throw InputError("the region of interest lies too far out for a map of this resolution");
+    throw InputError(
+        "the region of interest is too far from the origin for a map of this resolution");
   region_ = voxels_within(settings_.region, map_->grid());
   // Wider by a voxel: rays are only to be spared what cannot count.
   const Vector3d margin = Vector3d::Constant(map_->grid().resolution());

@@ -1,12 +1,12 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What is drawn: strokes from a text, an SVG picture or points, placed in the world and joined.
+-- The strokes of a drawing, from a text, an SVG picture or points: placed in the world and joined.
 local fonts = require "mission.stroke_font"
 local paths = require "mission.paths"
 local svg = require "mission.svg"
 
 local M = {}
 
--- Strokes of the SVG file that the option names, y up, and notes of what of it is not drawn.
+-- Strokes of the SVG file of the option, y up, and notes on the parts that are not drawn.
 local function picture(run, option)
   local name = run.options[option]
   local function fail(text) run:fail(option, name .. ": " .. text) end
@@ -36,7 +36,7 @@ function M.read(run)
     if o[source] and #o[source] > 0 then given = given + 1 end
   end
   if given ~= 1 then
-    lapwing.fail("a drawing comes from one of: text, svg, strokes, --set input=PICTURE.svg")
+    lapwing.fail("give one of text, svg, strokes and --set input=PICTURE.svg")
   end
   if o.text then
     local strokes, missing
@@ -51,7 +51,7 @@ function M.read(run)
     end
     if #strokes == 0 then run:fail("text", "there is nothing to draw") end
     local lower = not o.font and o.text:find("%l")
-    return strokes, 1, lower and { "lower case letters are painted as capitals" } or nil
+    return strokes, 1, lower and { "lower case letters are drawn as capitals" } or nil
   elseif o.strokes and #o.strokes > 0 then
     local strokes = {}
     for i, stroke in ipairs(o.strokes) do

@@ -1,14 +1,14 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Exploration: an agent that knows nothing looks, maps what it sees, scores the views that it could
--- reach, goes to the best one, looks again (thesis chapter 5).
+-- Exploration of an unknown space (thesis chapter 5). In each step the vehicle takes a depth image,
+-- updates its map, scores the reachable views and moves to the best one.
 --
 --   local explore = require "mission.explore"
 --   return explore.of_scene { name = "city", scene = "downtown" }
 --   return explore.of_mesh { name = "my mesh" }           -- --set input=FILE
 --
--- `utility` says what a good view is: frontier, average_entropy, proximity_count, learned, or the
--- oracle, who knows the surface. `map` is the backend alone; what every backend takes is settled
--- here, since a learned utility is good for one mapping only.
+-- `utility` is the value of a view: frontier, average_entropy, proximity_count, learned, or oracle,
+-- which knows the surface. `map` selects the map plugin only. The parameters that all map plugins
+-- share are options of the mission, because a learned utility is valid for one set of values only.
 local named_scene = require "mission.named_scene"
 
 local M = {}
@@ -55,7 +55,7 @@ local MOVES = {
     summary = "pause for an image" },
 }
 
-local SETTLED = "it is the exploration's: set "
+local SETTLED = "the exploration sets it: set "
 local OPTIONS = {
   { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "vehicle" },
   { name = "model", type = "text", refused = "an exploration plans a path from view to view, "
@@ -133,8 +133,7 @@ function M.explore(run, surface)
   local m, note = moves_of(run, surface)
   local margin = o.margin or MARGIN * m.body
   if margin > m.body / 2 then
-    run:fail("margin", string.format("at most half of moves.body, %.4g m: a ball within the box "
-                                     .. "that is kept free", m.body / 2))
+    run:fail("margin", string.format("at most half of moves.body, %.4g m", m.body / 2))
   end
   if (o.lower == nil) ~= (o.upper == nil) then
     run:fail(o.lower and "lower" or "upper", "lower and upper belong together")
@@ -201,7 +200,7 @@ function M.of_mesh(given)
         summary = "add a ground plane and explore above it; false: explore inside the mesh" },
     }, function(run)
       if not run.options.input then
-        lapwing.fail("a mesh: say which with --set input=PATH (.obj, .dae, .ply, ...)")
+        lapwing.fail("name a mesh file: --set input=PATH (.obj, .dae, .ply, ...)")
       end
       local o = run.options
       local surface = run:read_surface { file = o.input, unit = o.unit, up = o.up }

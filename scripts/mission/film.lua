@@ -1,15 +1,15 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Films: fly through keyframes with the camera on a subject, smoothly, within what the vehicle can
--- do and clear of obstacles (thesis 3.5, 3.6).
+-- Films: a smooth flight through keyframes with the camera on a subject, within the limits of the
+-- vehicle and clear of obstacles (thesis 3.5, 3.6).
 --
 --   local film = require "mission.film"
 --   return film.shot { subject = { position = {4, 6, 1} },
 --                      keyframes = { { position = {0, 0, 2} } , { position = {8, 0, 5} } } }
 --
 -- Minimised: the distance from keyframes and from the subject, the fourth derivative of position
--- (snap), derivatives of yaw, target and gimbal, the angle between camera and target, effort. Held:
--- the limits of vehicle and gimbal, obstacles, how the flight begins and ends, with `hard` the
--- keyframes.
+-- (snap), derivatives of yaw, target and gimbal, the angle between camera and target, effort.
+-- Constraints: the limits of vehicle and gimbal, obstacles, the state at start and end, and with
+-- `hard` the keyframes.
 local input = require "mission.film_input"
 local own = require "mission.own_terms"
 local search = require "mission.film_search"

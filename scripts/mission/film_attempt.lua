@@ -29,9 +29,9 @@ function M.attempt(run, request)
                             fault = tostring(result) }
 end
 
--- Attempts what `strategy` asks for until it asks for no more, or the user ends it. A strategy
--- takes an outcome and gives the next request, or nil; and what is to be told if the search ends
--- here. Gives the last outcome, and what is told of it.
+-- Runs attempts until `strategy` gives no further request, or the user cancels. A strategy takes an
+-- outcome and returns the next request, or nil, and notes in case the search ends here. Returns the
+-- last outcome and its notes.
 function M.follow(run, outcome, strategy)
   local request, told = strategy(run, outcome)
   while request and not run:cancelled() do

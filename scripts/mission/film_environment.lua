@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What surrounds a film: obstacles, flight zones and the tracking volume, as a problem wants them.
+-- The environment of a film as a problem needs it: obstacles, flight zones, the tracking volume.
 local tracks = require "mission.tracks"
 
 local M = {}
@@ -45,7 +45,7 @@ end
 -- run:problem takes them, and the rest of its environment.
 function M.of(run, options, keyframes)
   if #options.obstacles > MOST_OBSTACLES then
-    run:fail("obstacles", string.format("%d are more than the %d that a film can keep clear of",
+    run:fail("obstacles", string.format("%d are more than %d, the limit of a film",
                                         #options.obstacles, MOST_OBSTACLES))
   end
   local obstacles = {}
@@ -91,7 +91,7 @@ function M.state(run, request, camera)
   return environment, bystanders
 end
 
--- Whether obstacles stand between the camera and what it films, as far as it can see round them.
+-- Whether any obstacle can hide a subject.
 function M.hides(environment)
   for _, obstacle in ipairs(environment.obstacles) do
     if obstacle.opaque ~= false and obstacle.side ~= "keep_inside" then return true end

@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Why a film came to nothing, in words: the leg that is too fast, the limit that the vehicle lacks,
--- the subject that the gimbal cannot see, the script's constraint that is in the way. What the
--- failing film alone does not tell is asked of the same film with less held.
+-- The reason why a film failed, as a sentence: a leg that is too fast, a limit of the vehicle, a
+-- subject that the gimbal cannot see, a constraint of the script. If the failed film does not show
+-- the reason, the same film is solved with fewer constraints.
 local attempts = require "mission.film_attempt"
 local checks = require "mission.checks"
 local own = require "mission.own_terms"
@@ -36,7 +36,7 @@ function M.broken_limit(run, failing, legs)
   local free = attempts.attempt(run, requests.with(failing.request,
                                                    { scope = "unlimited", legs = legs }))
   local limit = free.solution.status == "optimal" and free.verdict.failures[1]
-  if limit then return "flown as if the vehicle had no limits: " .. limit end
+  if limit then return "in a flight without the limits of the vehicle: " .. limit end
   return attempts.complaint(failing)
 end
 
@@ -44,11 +44,11 @@ end
 function M.tolerance(outcome, hard)
   if not attempts.failed_checks(outcome).keyframe_miss then return "" end
   return string.format("; keyframes may be missed by %g m: hard = METRES %s", hard or problem.MISS,
-                       hard and "sets that" or "holds them within another distance")
+                       hard and "sets that" or "sets another distance")
 end
 
--- The first of the script's own constraints that an outcome breaks, as a sentence; and whether it
--- breaks nothing else.
+-- The first constraint of the script that an outcome violates, as a sentence; and whether no other
+-- check fails.
 local function broken_constraint(options, outcome)
   local owned, sentence, alone = own.checks(options), nil, true
   if options.speed_limit then owned[own.check("speed_limit")] = true end
@@ -60,8 +60,8 @@ local function broken_constraint(options, outcome)
   return sentence, alone
 end
 
--- Whether the script's own constraints are what is in the way of a film, in words: the same film,
--- at the same times, flown without holding them.
+-- Whether the constraints of the script make a film fail, as a sentence. The same film is solved at
+-- the same times without them.
 function M.in_the_way(run, failing)
   local constraints = run.options.constraints
   if #constraints == 0 or run:cancelled() then return nil end
@@ -78,7 +78,7 @@ function M.in_the_way(run, failing)
     end
     return nil
   end
-  if sentence then return "in the way, as the film shows without it: " .. sentence end
+  if sentence then return "the film is certified without it: " .. sentence end
   local names = {}
   for i, entry in ipairs(constraints) do names[i] = '"' .. (entry.name or entry.type) .. '"' end
   return "certified without the constraints of the script, " .. table.concat(names, ", ")

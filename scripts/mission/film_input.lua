@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What a film's script may give: the short forms written out, and the options declared.
+-- The options of a film: their declarations, and the expansion of short forms.
 local input = {}
 
 local GRID = 0.1         -- s, between the samples of a track that is a function
@@ -29,7 +29,7 @@ local function sampled(track, duration, what)
       local middle = (lapwing.vector(before.position) + list[i + 1].position) / 2
       local off = lapwing.norm(lapwing.vector(at((before.time + time) / 2)) - middle)
       if off > OFF_TRACK then
-        lapwing.fail(string.format("%s: leaves the straight way between %.4g and %.4g s by %.3g m; "
+        lapwing.fail(string.format("%s: between %.4g and %.4g s it is %.3g m off a straight line; "
           .. "give a list of times and positions", what, before.time, time, off))
       end
     end

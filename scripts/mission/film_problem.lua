@@ -24,7 +24,7 @@ local function boundary(run, p, stretch, free_yaw)
   for _, name in ipairs { "start", "finish" } do
     state[name] = options[name]
     if options[name] == "rest" then
-      point_mass.must_rest(run, p, name, "'rest' is asked for: give free or moving")
+      point_mass.must_rest(run, p, name, "give free or moving, not rest")
     end
     local velocity = options[name .. "_velocity"]
     if velocity then state[name .. "_velocity"] = lapwing.vector(velocity) / stretch end
@@ -71,7 +71,7 @@ local function check_keyframes(run, p, request, camera, bystanders)
         local away = lapwing.norm(lapwing.vector(k.position) - at)
         if person.distance and away + reach < person.distance then
           run:fail("keyframes[" .. i .. "].position", string.format(
-            "%.3g m from %s '%s', and %g m are to be kept", away, what, person.name,
+            "%.3g m from %s '%s', and %g m are required", away, what, person.name,
             person.distance))
         end
       end
@@ -81,13 +81,13 @@ local function check_keyframes(run, p, request, camera, bystanders)
     local outside, zone = p:flight_zone_distance(k.position, time)
     if outside + reach < options.margin then
       run:fail("keyframes[" .. i .. "].position", string.format(
-        "%s flight zone '%s': %.3g m %s its edge, and %g m are to be kept",
+        "%s flight zone '%s': %.3g m %s its edge, and %g m are required",
         outside < 0 and "outside" or "too near the edge of", zone, math.abs(outside),
         outside < 0 and "beyond" or "from", options.margin))
     end
     if distance + reach < options.margin then
       run:fail("keyframes[" .. i .. "].position", string.format(
-        "%s obstacle '%s': %.3g m from its surface, and %g m are to be kept",
+        "%s obstacle '%s': %.3g m from its surface, and %g m are required",
         distance < 0 and "inside" or "too near", name, distance, options.margin))
     end
   end
@@ -167,7 +167,7 @@ local function check_yaws(run, p, request)
   for i, k in ipairs(request.keyframes) do
     if k.yaw then
       point_mass.must_rest(run, p, "keyframes[" .. i .. "].yaw_deg",
-                           "a heading is asked for, which is that of the flight")
+                           "the heading is that of the flight and cannot be set")
     end
   end
 end

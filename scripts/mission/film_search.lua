@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- From what a film's script asks for to its plan: the first request, the strategy that its timing
--- asks for, and what to do where the film comes to nothing.
+-- From the options of a film to its plan: the first request, the strategy of its timing, and the
+-- strategies for a failed film.
 local attempts = require "mission.film_attempt"
 local failure = require "mission.film_failure"
 local passages = require "mission.passages"
@@ -39,12 +39,12 @@ end
 -- Subjects and looks ask for a camera that turns by itself.
 local function check_gimbal(run, film)
   if film.vehicle.gimbal then return end
-  local message = "vehicle '" .. film.vehicle.name .. "' has no gimbal to look at it with"
+  local message = "vehicle '" .. film.vehicle.name .. "' has no gimbal, which subjects need"
   if #film.subjects > 0 then run:fail("subjects[1]", message) end
   for i, k in ipairs(film.keyframes) do
     if k.look_at or k.subject then run:fail("keyframes[" .. i .. "].look_at", message) end
   end
-  if #film.cuts > 0 then run:fail("cuts", "there is nothing to cut between: no subject") end
+  if #film.cuts > 0 then run:fail("cuts", "a cut needs a subject, and there is none") end
 end
 
 -- The film at the times that its keyframes have, and why a leg is too fast for the vehicle at any
@@ -101,7 +101,7 @@ local function seen_or_not(run, outcome)
   if not hidden then return outcome end
   local again = attempts.attempt(run, requests.with(outcome.request, { looks_round = false }))
   if #again.verdict.failures >= #outcome.verdict.failures then return outcome end
-  return again, { "planned without the cost occlusion, with which the solver came to no end: "
+  return again, { "planned without the cost occlusion, with which the solver did not converge: "
                   .. "obstacles hide the subject" }
 end
 
@@ -152,7 +152,7 @@ local function at_given_times(run, film)
   return stretched(run, first, again, why, least, told)
 end
 
--- What a film asks for: as scripts give it.
+-- The fields of the first request, from the script.
 local function asked(run, shot, terms)
   return { keyframes = shot.keyframes, duration = shot.duration, subjects = shot.subjects or {},
            origin = shot.origin, terms = terms, cuts = run.options.cuts,

@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
--- The smallest stretch at which a film is certified, to 1 %: a strategy for a film that asks for
--- more than the vehicle can do. The flight alone is what takes time, so that is looked for first,
--- by doubling steps and then by halving; it is stretched further only where the camera needs more.
+-- A strategy for a film that exceeds the limits of the vehicle: it finds the smallest certified
+-- stretch, to 1 %. The search first solves the flight without the camera, in doubling steps and
+-- then by bisection. It stretches further only if the camera needs more time.
 local requests = require "mission.film_request"
 
 local M = {}
@@ -58,12 +58,12 @@ end
 -- Where nothing was tried, a stretch of more than `least` is needed.
 function M.in_vain(request, least, first, last)
   if not first then
-    return string.format("it would take a stretch of more than %.4g, and none beyond %.4g is tried",
+    return string.format("it needs a stretch above %.4g; the largest that is tried is %.4g",
                          least, M.LARGEST * request.stretch)
   end
   local from, to = first.stretch, last and last.request.stretch or first.stretch
   if to <= from then return string.format("a stretch of %.3g is not certified either", from) end
-  return string.format("of the stretches that were tried, from %.3g to %.3g, none is certified",
+  return string.format("no stretch from %.3g to %.3g is certified",
                        from, to)
 end
 

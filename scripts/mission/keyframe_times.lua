@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- When keyframes are flown through, and with which turn of yaw. Lists of keyframes are never
--- changed; others are returned.
+-- Times and unwrapped yaw angles of keyframes. Functions return new lists of keyframes and do not
+-- change their arguments.
 local times = {}
 
 local SHORTEST_LEG = 1  -- s, between keyframes without times
@@ -39,11 +39,11 @@ function times.check_speed(run, film)
     if not k.time and i > 1 then untimed = untimed or i end
     if k.time and untimed and (own or o.speed) then
       run:fail(what .. ".time", string.format(
-        "keyframe %d is timed by its speed: give this one no time, or that one a time", untimed))
+        "keyframe %d is timed by its speed: remove this time, or give that one a time", untimed))
     end
     if i > 1 and (k.speed or o.speed) and not k.time
        and lapwing.norm(lapwing.vector(k.position) - list[i - 1].position) == 0 then
-      run:fail(what, "at the place of the one before: no speed says how long it takes; give a time")
+      run:fail(what, "at the place of the keyframe before: a speed gives no time; give a time")
     end
   end
   if not (own or o.speed) then return end
@@ -55,7 +55,7 @@ function times.check_speed(run, film)
     run:fail(what, "every keyframe has a time; give times or a speed")
   end
   if film.duration then
-    run:fail(what, "the duration says how long the film takes; give a duration or a speed")
+    run:fail(what, "the duration determines the time of the film; give a duration or a speed")
   end
   if o.speed and o.speed_limit and o.speed > o.speed_limit then
     run:fail("speed", string.format("above the speed_limit of %g m/s", o.speed_limit))
@@ -119,7 +119,8 @@ function times.check(run, keyframes, duration)
     local before = keyframes[i - 1]
     local problem
     if before and k.time == before.time then
-      problem = string.format("%g s is keyframe %d's time as well; times must rise", k.time, i - 1)
+      problem = string.format("%g s is also the time of keyframe %d; times must rise", k.time,
+                              i - 1)
     elseif before and k.time < before.time then
       problem = string.format("%g s comes before keyframe %d at %g s; times must rise", k.time,
                               i - 1, before.time)
@@ -168,13 +169,13 @@ function times.fastest_leg(keyframes, vehicle, miss, late, speed_limit)
   return least, sentence
 end
 
--- A flight of `duration` seconds that is longer than the battery lasts is none.
+-- Refuses a flight of `duration` seconds that is longer than the battery lasts.
 function times.check_battery(run, vehicle, duration)
   local battery = run.options.battery or vehicle.flight_time
   if duration <= battery then return end
   run:fail("duration", string.format("%.4g s of flight are more than the %g s that %s", duration,
     battery, run.options.battery and "`battery` allows"
-    or "vehicle '" .. vehicle.name .. "' flies on one battery"))
+    or "vehicle '" .. vehicle.name .. "' has in one battery"))
 end
 
 return times

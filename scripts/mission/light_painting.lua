@@ -4,8 +4,8 @@
 --   local light_painting = require "mission.light_painting"
 --   return light_painting.text { name = "hello", text = "HELLO", height = 2 }
 --
--- Drawings come from a text in a font of strokes, an SVG picture, or points. They stand upright at
--- `origin`, the middle of their lower edge; spectators look along `view_yaw_deg`.
+-- A drawing is a text in a font of strokes, an SVG picture, or points. It is vertical. `origin` is
+-- the centre of its lower edge. Spectators look along `view_yaw_deg`.
 local drawings = require "mission.drawings"
 local order = require "mission.stroke_order"
 local paths = require "mission.paths"
@@ -146,8 +146,8 @@ local function notes_of(best, o, undrawn)
   end
   if not best.kept then
     notes[#notes + 1] = string.format(
-      "no flight down to %.2g of the speed keeps all strokes within %.3g m; draw larger or allow "
-      .. "more (tolerance), or weigh the drawing more (weights.drawing)", best.share,
+      "no flight down to %.2g of the speed keeps all strokes within %.3g m; draw larger, allow "
+      .. "more (tolerance), or raise weights.drawing", best.share,
       tolerance_of(o))
   end
   return notes
@@ -159,7 +159,7 @@ local function painted(run)
   local drawn, unit, undrawn = drawings.read(run)
   drawn = drawings.without_repeats(drawn)
   if #drawn == 0 then
-    lapwing.fail("the drawing has no line of any length"
+    lapwing.fail("the drawing has no line"
                  .. (undrawn and #undrawn > 0 and ": " .. table.concat(undrawn, "; ") or ""))
   end
   if o.reorder then drawn = order.short(drawn) end

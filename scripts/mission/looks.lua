@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Which look follows which: what keyframes look at, cuts between looks, and when each subject is to
--- be in the image.
+-- The sequence of looks: the subject of each keyframe, the cuts between looks, and the spans in
+-- which each subject must be in the image.
 local tracks = require "mission.tracks"
 
 local looks = {}
@@ -29,7 +29,7 @@ function looks.of(run, keyframes, list, by_name)
   if not any then
     if #list == 0 then return nil end
     if #list > 1 then
-      run:fail("subjects", string.format("with several, keyframes say which: look_at = \"%s\"",
+      run:fail("subjects", string.format("with several, keyframes select one: look_at = \"%s\"",
                                          list[1].name))
     end
     for i, k in ipairs(keyframes) do found[i] = { time = k.time, subject = list[1] } end
@@ -73,7 +73,7 @@ function looks.schedule(list, duration, cuts)
       spans[#spans + 1] = { subject = subject, start = start, finish = finish }
     end
   end
-  -- When the look before is left, and the look after reached.
+  -- The times at which the change from one look to the next begins and ends.
   local function change(before, after)
     if before.subject and before.subject == after.subject then return after.time, before.time end
     local cut = cut_within(cuts, before.time, after.time)
@@ -119,7 +119,7 @@ function looks.cuts(run, given, stretch, duration, vehicle, path, list)
       run:fail(what, string.format("ends at %.3g s, after the film's %.3g s", finish, duration))
     end
     if cuts[i - 1] and start <= cuts[i - 1].finish then
-      run:fail(what .. ".start", "cuts stand in order and apart from each other")
+      run:fail(what .. ".start", "cuts must be in order and must not overlap")
     end
     cuts[i] = { start = start, finish = math.min(finish, duration) }
   end

@@ -6,9 +6,9 @@
 --   return map.of_folder { name = "my depth" }       -- --set input=FOLDER
 --   return map.of_file { name = "my map" }           -- --set input=FILE
 --
--- Missions of kind `map` return a map instead of a plan. What every backend takes is an option of
--- the mission (`resolution`, `mode`, `pixel_step`, `observations`); `map` is the backend alone, so
--- that `--set map=octomap` changes nothing but speed and memory.
+-- Missions of kind `map` return a map instead of a plan. The parameters that all map plugins share
+-- are options of the mission (`resolution`, `mode`, `pixel_step`, `observations`). `map` selects
+-- the plugin only: `--set map=octomap` changes speed and memory, not the map.
 local named_scene = require "mission.named_scene"
 local views = require "mission.views"
 
@@ -27,10 +27,10 @@ local SHARED = {  -- as the backends' own defaults
     summary = "count the measurements of each voxel, for its uncertainty" },
 }
 -- Options of the mission that are parameters of every backend: `map.resolution` is an error.
-local SCANS = { resolution = "every map takes it: set resolution instead",
-                mode = "every map takes it: set mode instead",
-                pixel_step = "every map takes it: set pixel_step instead",
-                observations = "every map takes it: set observations instead" }
+local SCANS = { resolution = "it is an option of the mission: set resolution instead",
+                mode = "it is an option of the mission: set mode instead",
+                pixel_step = "it is an option of the mission: set pixel_step instead",
+                observations = "it is an option of the mission: set observations instead" }
 
 local function settled_with(list, key, why)
   local all = { [key] = why }
@@ -83,7 +83,7 @@ local function new_map(run, known)
 end
 
 local function missing_input(what, example)
-  return string.format("%s: say which with --set input=PATH (%s)", what, example)
+  return string.format("%s is missing: --set input=PATH (%s)", what, example)
 end
 
 -- Views of a scene that scripts/scene makes, from a flight over and through it.
@@ -104,7 +104,7 @@ function M.of_scene(given)
     kind = "map", name = name,
     options = lapwing.options(declarations(
       map_with(settled_with(SCANS, "maximum_range",
-                            "it is the sensor's: set sensor.range instead")), SHARED, own), given),
+                            "the sensor has it: set sensor.range instead")), SHARED, own), given),
     plan = function(run)
       local o = run.options
       local scene = named_scene(run)
@@ -154,7 +154,7 @@ function M.of_file(given)
   return {
     kind = "map", name = name,
     options = lapwing.options(declarations(map_with {
-      resolution = "it is the file's",
+      resolution = "the file determines it",
       mode = "a file is read, not scanned", pixel_step = "a file is read, not scanned",
       maximum_range = "a file is read, not scanned" }, { INPUT }), given),
     plan = function(run)

@@ -1,10 +1,10 @@
 -- SPDX-License-Identifier: Apache-2.0
--- The scene that a mission's options `scene` and `scene_seed` name, made (scripts/scene).
+-- Makes the scene of the options `scene` and `scene_seed` (scripts/scene).
 local SCENES = "arcade, church, courtyard, district, downtown, office, street, suburb or towers"
 
 return function(run)
   local o = run.options
-  if not o.scene then run:fail("scene", "say which: " .. SCENES) end
+  if not o.scene then run:fail("scene", "missing; expected " .. SCENES) end
   local module = "scene." .. o.scene
   local found, near = lapwing.has_module(module)
   if not found then
@@ -13,7 +13,7 @@ return function(run)
   end
   local make = require(module)
   if type(make) ~= "function" then
-    run:fail("scene", string.format("'%s' is a part of scenes, no scene: expected %s", o.scene,
+    run:fail("scene", string.format("'%s' is a part of scenes, not a scene: expected %s", o.scene,
                                     SCENES))
   end
   return make { seed = o.scene_seed }

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Cost terms and constraints that a script brings along, beside those of its kind of mission: a
--- function of a stage, or a plugin by name.
+-- Cost terms and constraints that a script adds to those of its mission kind: functions of a stage,
+-- or plugins by name.
 --
 --   costs = { { name = "keep_low", weight = 5,
 --               residual = function(s) return lapwing.max(s.position.z - 10, 0) end },
@@ -9,8 +9,7 @@
 --
 -- All parameters of a plugin are options, and so are the name and the weight of a function, and the
 -- bounds and the certificate of a constraint (`--set costs[1].weight=2`, `--set costs[2].height=6`,
--- `--set constraints[1].upper=5`); the rest of a function is handed on to the problem, which checks
--- it.
+-- `--set constraints[1].upper=5`). The problem receives and checks the other fields of a function.
 local own = {}
 
 local name = { name = "name", type = "text", summary = "name in messages and reports" }
@@ -31,7 +30,7 @@ own.declared = {
           summary = "of a function: effect of a violation on the certificate" } } },
 }
 
--- What of a function is an option. Lists of bounds are the script's alone.
+-- Whether a field of a function is an option. Lists of bounds can only be stated in the script.
 local function settled(list, key, value)
   if key == "lower" or key == "upper" then
     return list == "constraints" and type(value) == "number" and math.abs(value) < math.huge

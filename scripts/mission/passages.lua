@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Passage after passage (thesis 6.1): a strategy for a film that came to nothing where something
--- stands in the way. The passage of the leg that fails is tried again within a corridor of free
--- boxes; if that fails as well, another passage is planned for the leg.
+-- A strategy for a film that fails beside obstacles (thesis 6.1). The passage of the failing leg is
+-- tried again within a corridor of free boxes. If that fails too, another passage is planned for
+-- the leg.
 local attempts = require "mission.film_attempt"
 local paths = require "mission.paths"
 local requests = require "mission.film_request"
@@ -66,7 +66,7 @@ local function open_passage(run, outcome, memory)
   local why, time = reason(outcome)
   local leg = leg_at(outcome, time)
   local found = outcome.legs[leg]
-  if not found.way then why = why .. "; no way was planned, " .. (found.why or "") end
+  if not found.way then why = why .. "; no path was planned, " .. (found.why or "") end
   local told = with_entry(memory, outcome, leg, (memory.number[leg] or 0) + 1, why)
   told.count = memory.count + 1
   if not found.way then return nil, told end

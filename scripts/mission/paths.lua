@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Paths as the calls of the kernel have them: x, y, z of each point in turn.
+-- Paths in the format of the kernel: a flat list of x, y, z of each point.
 local M = {}
 
 -- Of a list of points, which are lists of numbers or vectors.

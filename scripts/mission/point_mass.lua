@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
--- How the vehicle of a film, a race, a light painting or a scan moves: the vehicle model, what its
--- motion costs, and its limits. The model says by its blocks which of them there are: the point
--- mass (`quadrotor`, thesis 3.1 and 3.2) has a force, others have an acceleration, or a wing.
+-- The motion of the vehicle in films, races, light paintings and scans: the vehicle model, the
+-- costs of its motion, and its limits. They depend on the blocks of the model: the point mass
+-- (`quadrotor`, thesis 3.1 and 3.2) has a force, others have an acceleration, or a wing.
 local M = {}
 
 M.GRAVITY = 9.80665  -- m/s^2
@@ -12,21 +12,21 @@ local function chosen(model)
   return model or { type = "quadrotor" }
 end
 
--- What films, light paintings and scans read of a vehicle, beside what terms ask for by themselves.
+-- Blocks that films, light paintings and scans read, in addition to those that terms read.
 function M.check(p, model)
   for _, block in ipairs { "position", "velocity", "yaw" } do
     if not p:has_block(block) then
       lapwing.fail(string.format(
-        "model: '%s' has no block '%s', which this mission reads: choose a model of the whole "
-        .. "vehicle with a yaw, such as quadrotor, velocity or fixed_wing", model.type, block))
+        "model: '%s' has no block '%s', which this mission reads: choose a vehicle model "
+        .. "with a yaw, such as quadrotor, velocity or fixed_wing", model.type, block))
     end
   end
 end
 
--- The derivative of a position that is kept small, from the third order on taken from what the
--- model moves by: the force over the mass, or the acceleration. It is the same figure, while the
--- fourth difference of positions has rounding errors 1 / step^2 larger. A wing moves by its
--- accelerations along, across and up. Differences of positions do not see those that alternate.
+-- The penalised derivative of the position. From the third order on it is a derivative of force
+-- over mass, or of the acceleration. The value is the same, but the fourth difference of positions
+-- has rounding errors that are larger by 1 / step^2. The model of a wing has accelerations along,
+-- across and up; differences of positions do not see accelerations that alternate.
 local function smoothness_of(p, vehicle, smooth)
   if smooth.order > 2 and p:has_block("force") then
     return { block = "force", order = smooth.order - 2, weight = smooth.weight / vehicle.mass ^ 2 }
@@ -39,9 +39,9 @@ local function smoothness_of(p, vehicle, smooth)
   return { order = smooth.order, weight = smooth.weight }
 end
 
--- Adds the model, what its motion costs, and its limits to a problem:
+-- Adds the model, the costs of its motion, and its limits to a problem:
 --   model       name or table of a vehicle model; absent: quadrotor
---   smoothness  {order, weight, name}  the derivative of the position that is kept small, per
+--   smoothness  {order, weight, name}  the penalised derivative of the position, per
 --               (m/s^order)^2 s
 --   force       {order, weight}        in place of it: a derivative of the force itself
 --   yaw         {weight, order}        the derivative of the heading; the second unless said
@@ -79,11 +79,11 @@ function M.add(p, vehicle, motion)
   p:add_constraint { type = "state_limits", lower = motion.lower }
 end
 
--- A vehicle that cannot stand still heads where it flies. What a mission asks of it that it cannot
--- do: `what` is the option, `why` the sentence.
+-- Refuses what a vehicle that cannot stand still cannot do: `what` is the option, `why` the
+-- sentence behind this reason.
 function M.must_rest(run, p, what, why)
   if p:rests() then return end
-  run:fail(what, why .. ", and the model of this vehicle cannot stand still")
+  run:fail(what, "the model of this vehicle cannot stand still; " .. why)
 end
 
 -- The headings along a list of places, each on the turn nearest to the one before.

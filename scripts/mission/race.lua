@@ -1,13 +1,13 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Races (thesis 3.7.2): gates flown through in order, in their direction, as fast as the vehicle
--- can; or in a given time, as smoothly as that allows.
+-- Races (thesis 3.7.2): a flight through gates, in order and in their direction, in the shortest
+-- time, or in a given time and as smooth as possible.
 --
 --   local race = require "mission.race"
 --   return race.course { start = {0, 0, 1}, finish = {12, 0, 1},
 --                        gates = { { shape = "ball", position = {6, 3, 2}, radius = 0.3 } } }
 --
--- Every leg from gate to gate has a step of its own, which is a variable. Where the steps of a
--- leg are too coarse for the motion they stand for, it gets twice as many and is solved again.
+-- Every leg from gate to gate has its own step, which is a variable. If the steps of a leg are too
+-- coarse, their number is doubled, and the problem is solved again.
 local courses = require "mission.race_course"
 local flights = require "mission.race_flight"
 local search = require "mission.race_search"
@@ -101,8 +101,8 @@ local function check_options(run, vehicle)
     run:fail("timing", "'profile' is for the model 'quadrotor'; 'quadrotor_full' needs 'optimal'")
   end
   if o.thrust <= search.least(vehicle, o) then
-    run:fail("thrust", string.format("%.3g of the thrust does not carry vehicle '%s'", o.thrust,
-                                     vehicle.name))
+    run:fail("thrust", string.format("%.3g of the thrust is less than the weight of vehicle '%s'",
+                                     o.thrust, vehicle.name))
   end
   run:expect_players("players")  -- before anything is computed
 end
@@ -132,7 +132,7 @@ end
 function M.course(given)
   local name = given.name
   given.name = nil
-  -- From a good first guess the barrier had better not rise again.
+  -- The first guess is good, so that the barrier should decrease monotonically.
   given.solver = given.solver or { type = "ipopt", mu_strategy = "monotone" }
   return { kind = "race", name = name, options = lapwing.options(DECLARATIONS, given),
            plan = flown }

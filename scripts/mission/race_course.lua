@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- A course: the gates in the order of flight, laps written out, with everything checked that can be
--- checked before a flight is planned.
+-- A course: the gates in the order of flight, lap by lap, and all checks that are possible before
+-- planning.
 local files = require "mission.race_file"
 local paths = require "mission.paths"
 
@@ -85,7 +85,7 @@ local function end_of(fail, given, path)
   point(fail, path .. ".position", given.position)
   if given.velocity ~= nil then point(fail, path .. ".velocity", given.velocity) end
   for _, v in ipairs(given.velocity or {}) do
-    if v ~= 0 then fail(path .. ".velocity", "a course begins and ends at rest, or freely") end
+    if v ~= 0 then fail(path .. ".velocity", "a course begins and ends at rest or free") end
   end
   return given.position
 end
@@ -96,7 +96,7 @@ local function check_apart(fail, gates, each)
     local a, b = gates[i - 1], gates[i]
     if a.direction and b.direction and paths.distance(a.position, b.position) < SAME then
       fail(string.format("gates[%d]", (i - 1) % each + 1), string.format(
-        "gates '%s' and '%s' stand inside each other, at %g %g %g", a.name, b.name,
+        "gates '%s' and '%s' overlap at %g %g %g", a.name, b.name,
         a.position[1], a.position[2], a.position[3]))
     end
   end
@@ -149,10 +149,10 @@ local function read(run)
   end
   if o.free_form.length then ways[#ways + 1] = "free_form" end
   if #ways > 1 then
-    run:fail(ways[2], "a course is given in one way; there are " .. table.concat(ways, " and "))
+    run:fail(ways[2], "give one course; there are " .. table.concat(ways, " and "))
   end
   if o.laps > 1 and not o.closed then
-    run:fail("laps", "laps are flown on a closed course: set closed = true")
+    run:fail("laps", "laps need a closed course: set closed = true")
   end
   if not o.input then return o, function(path, text) run:fail(path, text) end end
   local made, fail = files.read(o.input)
@@ -186,7 +186,7 @@ function course.read(run)
   end
   if made.closed and (made.start or made.finish) then
     fail(made.start and "start" or "finish",
-         "a closed course has neither start nor end: it is flown round and round")
+         "a closed course has neither start nor finish")
   end
   if #list * o.laps > MOST then
     run:fail("laps", string.format("more than %d gates in all laps", MOST))

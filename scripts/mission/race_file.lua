@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Courses in files, and what a gate has, in a script or in a file.
+-- Course files, and the declaration of gates in scripts and files.
 local M = {}
 
 local function number(name, unit, summary)
@@ -35,7 +35,7 @@ local function gate_of_file(file, path)
   local gate = file:check(path, FILE_GATE)
   for published, name in pairs(PUBLISHED) do
     if gate[published] and gate[name] then
-      file:fail(path .. "." .. published, "states the same as " .. name .. ": give one of them")
+      file:fail(path .. "." .. published, "has the meaning of " .. name .. ": give one of them")
     end
     gate[published], gate[name] = nil, gate[name] or gate[published]
   end

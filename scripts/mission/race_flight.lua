@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- The flight of a course: planned in rounds until it is certified, each with more stages where
--- those of a leg are too coarse, and with slower forces where the controller strays.
+-- The flight of a course. It is planned in rounds until it is certified. A new round has more
+-- stages in legs whose steps are too coarse, and slower forces if the controller deviates too much.
 local checks = require "mission.checks"
 local paths = require "mission.paths"
 local problem = require "mission.race_problem"
@@ -85,10 +85,10 @@ local function finishing(solver)
   return copy
 end
 
--- A flight of the course as these options ask for it, refined until it is certified: {plan =,
--- solution = the last one, certificate = of the plan where there is a solution, softer = times the
--- weight of smoothness}. `say(round)` is told before each round; a flight that strays at `softest`
--- times that weight stays as it is.
+-- A flight of the course with these options, refined until it is certified: {plan =, solution = the
+-- last one, certificate = of the plan if there is a solution, softer = factor on the weight of
+-- smoothness}. `say(round)` is called before each round. `softest` is the largest factor: a flight
+-- that deviates too much with it is returned as it is.
 local function rounds(run, course, vehicle, o, say, softest)
   local made = problem.legs(course, vehicle, o)
   check_battery(run, made, vehicle)
@@ -119,8 +119,8 @@ local function rounds(run, course, vehicle, o, say, softest)
   return { plan = plan, solution = solution, certificate = certificate, softer = made.softer }
 end
 
--- The flight of these options, or a faster one with less thrust where the controller follows only
--- forces that change slowly. `say(words)` is told before each round.
+-- The flight of these options, or a faster one with less thrust if the controller can track only
+-- slowly changing forces. `say(words)` is called before each round.
 function M.flight(run, course, vehicle, o, say)
   local function fly(options, words, softest)
     return rounds(run, course, vehicle, options, function(round)

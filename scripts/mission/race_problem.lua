@@ -77,7 +77,7 @@ local function stations(course)
     go(course.start)
   elseif not course.closed then
     if first.direction then
-      lapwing.fail("a course that begins with a gate of a direction needs a start, or to be closed")
+      lapwing.fail("a course whose first gate has a direction needs a start, or closed = true")
     end
     go(first.position)
   end

@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What would fly, where the controller cannot follow the fastest flight: the largest share of the
--- thrust at which the whole quadrotor stays on the course, found by trying. Every try is the flight
--- that a run with the printed settings makes.
+-- Advice if the controller cannot track the fastest flight: the largest share of the thrust with
+-- which the simulated quadrotor stays on the course. It is found by tries. Each try is the flight
+-- of a run with the printed settings.
 local point_mass = require "mission.point_mass"
 
 local M = {}
@@ -54,7 +54,7 @@ function M.spared(run, vehicle, o, softened, fly)
     if made.certificate and made.certificate.feasible then
       if made.solution.duration >= before then break end
       made.note = string.format("the plan uses %.3g of the thrust and leaves the rest to the "
-        .. "controller: with %.3g it follows nothing faster than %.3g s", share, o.thrust, before)
+        .. "controller: with %.3g the fastest tracked flight takes %.3g s", share, o.thrust, before)
       return made
     end
   end
@@ -89,23 +89,23 @@ function M.advice(run, vehicle, before, follows)
     turns = string.format(" --set rate_share=%g", SLOW_TURNS)
   end
   if share then
-    notes[1] = string.format("the closed loop follows this course at thrust = %.2f%s: "
+    notes[1] = string.format("the closed loop tracks this course at thrust = %.2f%s: "
                              .. "--set thrust=%.2f%s", share, seconds_text(o, time, before), share,
                              turns)
   end
   if o.model == "quadrotor_full" and not run:cancelled() then
     local followed, seconds = try({ model = "quadrotor" }, "model = quadrotor")
     if followed then
-      notes[#notes + 1] = string.format("the closed loop follows the course as a point mass flies "
-        .. "it%s: --set model=quadrotor", seconds_text(o, seconds, before))
+      notes[#notes + 1] = string.format("the closed loop tracks the course with the point mass%s: "
+        .. "--set model=quadrotor", seconds_text(o, seconds, before))
     end
   end
   if run:cancelled() and #notes == 0 then
-    notes[1] = "interrupted before a thrust was found at which the closed loop follows this course"
+    notes[1] = "interrupted before a thrust was found at which the closed loop tracks this course"
   elseif #notes == 0 then
     notes[1] = string.format(
-      "no thrust tried from %.2f to %.2f gives a flight that the closed loop follows: gates ask "
-      .. "for turns that vehicle '%s' cannot make; give it wider gates (tolerance of keyframes), "
+      "no tried thrust from %.2f to %.2f gives a flight that the closed loop tracks: gates need "
+      .. "turns that vehicle '%s' cannot fly; use wider gates (tolerance of keyframes), "
       .. "more time (time) or weights.smoothness, or set closed_loop=reported", low, o.thrust,
       vehicle.name)
   end

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Records: tables with declared fields that are never changed after they were made. A field that is
--- not declared can be neither given nor read, so that a slip of the pen is an error.
+-- Records: immutable tables with declared fields. Setting or reading a field that is not declared
+-- is an error, so that a misspelt name is found.
 --
 --   local shots = record.type("shot", { length = "s", name = "for messages" })
 --   local shot = shots.new { length = 2 }
@@ -21,7 +21,7 @@ function record.type(what, declared)
         return fields[name]
       end,
       __newindex = function(_, name)
-        error(article .. what .. " is never changed; make another one with another '"
+        error(article .. what .. " cannot be changed; make a copy with another '"
               .. tostring(name) .. "'", 2)
       end,
     })

@@ -1,14 +1,14 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Scans (thesis chapter 4): which images to take of a region, and in which order, so that one
--- battery gives the best model.
+-- Scans (thesis chapter 4): selection of images of a region and of their order, so that one battery
+-- gives the best model.
 --
 --   local scan = require "mission.scan"
 --   return scan.of_scene { name = "church", scene = "church", tour = { budget = 300 } }
 --
--- A first flight at a safe height gives depth images; from these come a map and a mesh, and nothing
--- else is known to what follows (reading 4.9). Views that lie in free space are tried out on the
--- map, ways between those whose images match are searched, and a tour through them is found within
--- the budget and flown from view to view. A vehicle that cannot stand still takes them in passing
+-- A first flight at a safe height gives depth images, and these give a map and a mesh. The planner
+-- knows nothing else (reading 4.9). Candidate views in free space are evaluated in the map. Paths
+-- are planned between views whose images match. A tour solver selects a tour within the budget,
+-- which is flown from view to view. A vehicle that cannot stand still takes images in passing
 -- (scan_passing.lua).
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
@@ -49,15 +49,18 @@ local function check(run)
       "budget is %.6g s and budget_metres %.6g m, which is %.6g s: give one of them",
       tour.budget, tour.budget_metres, tour.budget_metres / METRES_A_SECOND))
   end
-  if tour.images == 1 then run:fail("tour.images", "a tour has two at least; 0 is any number") end
+  if tour.images == 1 then
+    run:fail("tour.images", "a tour has at least two images; 0: any number")
+  end
   if tour.begin ~= "none" then run:expect_plugin("tour.begin", "tour_solver") end
   if tour.begin and tour.begin ~= "none" and tour.solver ~= "local_search" then
-    run:fail("tour.begin", string.format("'%s' does not begin with another solver's tour, only "
-                                         .. "local_search does", tour.solver))
+    run:fail("tour.begin", string.format("'%s' cannot begin with the tour of another solver, only "
+                                         .. "local_search can", tour.solver))
   end
   if o.rounds > 1 and not (o.scene or o.input) then
-    run:fail("rounds", "a round after the first sees what the one before flew over in simulation: "
-                       .. "name a scene or an input, or plan each round on the files of the last")
+    run:fail("rounds", "rounds after the first need a simulation: "
+                       .. "name a scene or an input, or plan each round from the files of the "
+                       .. "round before")
   end
   for axis = 1, 3 do
     if not (o.body[axis] > 0) then run:fail("body", "half edges must be above 0 m") end
@@ -90,7 +93,7 @@ end
 -- What the mission was asked for, and what could have been had.
 local function refuse(run, graph, tour, budget)
   local found = tour.status == "optimal" or tour.status == "feasible"
-  local why = found and "no further view brings anything that could be seen in that time"
+  local why = found and "no further view adds information within that time"
     or tour.message ~= "" and tour.message or tour.status
   run:fail("tour", string.format(
     "no tour of %.4g s: %s. From the start (one of %d candidates) %s; %d views lie within "
@@ -119,18 +122,18 @@ local function solved(run, graph, finish, budget)
   return tour, spent + tour.evaluations
 end
 
--- By pure pursuit, or by the solver, leg by leg; what of it is to be said.
+-- Solutions of the legs with `flight.smooth`, else nil for pure pursuit. Adds a note.
 local function flown(run, vehicle, tour, notes, begin)
   if not run.options.flight.smooth then return nil end
   begin("smooth legs")
   local legs, stray = smooth.legs(run, vehicle, tour)
   notes[#notes + 1] = legs
-    and string.format("smooth legs by %s, at most %.2g m from their ways", legs[1].solver, stray)
+    and string.format("smooth legs by %s, at most %.2g m from their paths", legs[1].solver, stray)
     or "cancelled before all legs were smooth: flown by pure pursuit"
   return legs
 end
 
--- `begin` tells which phase begins.
+-- `begin(phase)` reports the phase that begins.
 local function plan_of(run, graph, vehicle, finish, known, explored, begin)
   local o = run.options
   local asked = budget_of(run)
@@ -208,7 +211,7 @@ local function mission(given)
            plan = planned }
 end
 
--- A scene of scripts/scene, a mesh of the user's (`--set input=PATH`), or files of a real flight
+-- A scene of scripts/scene, a mesh file of the user (`--set input=PATH`), or files of a real flight
 -- (`prior`).
 ---@type fun(given: lapwing.scan.of_scene): lapwing.mission
 M.of_scene = mission

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- An exploration in place of a scan's first flight (thesis 6.1): a drone that knows nothing maps
--- the place, then scans with the map and the mesh that it made, in one visit.
+-- An exploration in place of the first flight of a scan (thesis 6.1): the drone maps an unknown
+-- place, and then scans with this map and its mesh, in one visit.
 local patterns = require "mission.scan_patterns"
 
 local M = {}
@@ -42,22 +42,22 @@ function M.check(run)
     for _, option in ipairs { "exploration.budget", "exploration.range", "exploration.speed",
                               "exploration.clear", "exploration.start", "utility" } do
       if run:stated(option) then
-        run:fail(option, "without images there is no exploration: set exploration.images")
+        run:fail(option, "needs an exploration: set exploration.images")
       end
     end
     return
   end
-  if e.images == 1 then run:fail("exploration.images", "2 at least, or 0 for no exploration") end
+  if e.images == 1 then run:fail("exploration.images", "at least 2, or 0 for no exploration") end
   for _, option in ipairs { "map.hit", "map.miss" } do
     if run:stated(option) then
-      run:fail(option, string.format("an exploration's map has hit %g and miss %g: leave it out",
+      run:fail(option, string.format("the map of an exploration has hit %g and miss %g: remove it",
                                      HIT, MISS))
     end
   end
   for option, given in pairs { ["prior.map"] = o.prior.map, flights = o.flights[1] } do
     if given then
-      run:fail(option, "an exploration takes the place of flights and of files of an earlier "
-                       .. "flight: leave them out")
+      run:fail(option, "an exploration replaces flights and files of an earlier "
+                       .. "flight: remove them")
     end
   end
 end
@@ -76,7 +76,7 @@ function M.seconds(run, vehicle, tour)
       .. "exploration.budget or tour.budget", budget, tour, vehicle.flight_time))
   end
   if M.wanted(run) and left == 0 then
-    run:fail("exploration", string.format("a tour of %.6g s leaves it nothing of one battery",
+    run:fail("exploration", string.format("a tour of %.6g s uses the whole battery",
                                           tour))
   end
   return budget or left
@@ -92,8 +92,8 @@ local function map_of(o, range)
   return map
 end
 
--- What is known of a surface after an exploration of so many seconds at most that stays in the box
--- `room`: a prior with its mesh, and the views, the last one first. `region` is to be scanned.
+-- The prior with its mesh after an exploration of at most `seconds` within the box `room`, and the
+-- views, the last one first. `region` is the region of the scan.
 function M.knowledge(run, surface, region, room, seconds, vehicle)
   local o = run.options
   local e = o.exploration
@@ -115,7 +115,7 @@ function M.knowledge(run, surface, region, room, seconds, vehicle)
   -- The tour's certificate begins where this flight ends.
   local judged = run:certify(done:plan { vehicle = vehicle, margin = math.min(o.margin, body / 2) })
   if not judged.feasible then
-    run:fail("exploration", "the flight that explores is not certified: " .. judged.failures[1])
+    run:fail("exploration", "the exploration is not certified: " .. judged.failures[1])
   end
   local known = run:prior { map = map_of(o, e.range), spacing = o.surface.spacing,
                             range = e.range, stride = o.surface.stride }

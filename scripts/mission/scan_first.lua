@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- The first flight of a scan, and what is known after it (thesis 4.3): a map, a mesh, places that
--- are free. What was flown in is asked by the simulator alone.
+-- The first flight of a scan and its results (thesis 4.3): a map, a mesh, free places. Only the
+-- simulator uses the scene itself.
 local exploration = require "mission.scan_exploration"
 local patterns = require "mission.scan_patterns"
 local space = require "mission.scan_space"
@@ -17,17 +17,17 @@ local function check_prior(run)
   local flown_in = o.scene or o.input
   local lacks, give = {}, {}
   if not (o.start or flown_in and #o.flights > 0) then
-    lacks[1], give[1] = "where the tour begins", "start = {x, y, z}"
+    lacks[1], give[1] = "the start of the tour", "start = {x, y, z}"
   end
   if not (flown_in or o.region.lower and o.region.upper) then
-    lacks[#lacks + 1] = "which region is of interest"
+    lacks[#lacks + 1] = "the region of interest"
     give[#give + 1] = "region = { lower = {x, y, z}, upper = {x, y, z} }"
   end
   if #lacks == 0 then return end
   local mesh = run:read_surface { file = files.mesh }
   local from, to = mesh.lower, mesh.upper
   run:fail("prior", string.format(
-    "files of an earlier flight do not say %s: give %s. The mesh '%s' lies between "
+    "files of an earlier flight do not state %s: give %s. The mesh '%s' lies between "
     .. "{%.4g, %.4g, %.4g} and {%.4g, %.4g, %.4g}", table.concat(lacks, " and "),
     table.concat(give, " and "), files.mesh, from[1], from[2], from[3], to[1], to[2], to[3]))
 end
@@ -41,8 +41,8 @@ function M.check(run)
   end
   if not o.input and (o.ground or o.unit or o.up ~= "file") then
     run:fail(o.ground and "ground" or o.unit and "unit" or "up",
-             "is of an input, a mesh file to be flown over, and there is none (a prior's mesh is "
-             .. "in its map's frame)")
+             "is for the mesh file of input, which is not set (the mesh of a prior "
+             .. "is in the frame of its map)")
   end
   check_prior(run)
   local region = o.region
@@ -57,9 +57,8 @@ function M.check(run)
   end
 end
 
--- How far the ground may be seen: some first flight must see the region's upper side at the
--- steepest of its images; where none sees the floor that is said, for nothing down there will be
--- known.
+-- Checks `range`: at least one first flight must see the upper side of the region in its steepest
+-- images. A warning states if none sees the floor, because the space near it then stays unknown.
 local function check_range(run)
   local o, region, range = run.options, space.region_of(run), space.range(run)
   local half = math.atan(o.camera.height / 2, o.camera.focal)
@@ -77,13 +76,13 @@ local function check_range(run)
   local floor, upper = nearest(region.lower[3]), nearest(region.upper[3])
   if upper > range then
     run:fail("range", string.format(
-      "no first flight would see anything of the region: to its upper side the shortest ray is "
-      .. "%.4g m long, and depth is measured to %g m; %s would help", upper, range, cure))
+      "no first flight sees the region: the shortest ray to its upper side is "
+      .. "%.4g m long, and depth is measured up to %g m; use %s", upper, range, cure))
   end
   if floor <= range then return nil end
   local warning = string.format(
-    "no first flight sees the region's floor: the shortest ray is %.4g m long, and depth is "
-    .. "measured to %g m; %s would show it", floor, range, cure)
+    "no first flight sees the floor of the region: the shortest ray is %.4g m long, and depth is "
+    .. "measured up to %g m; use %s", floor, range, cure)
   print("warning: " .. warning)
   return warning
 end
@@ -141,14 +140,14 @@ local function open_air(run, known, surface, poses, air)
   known:open_air { lower = lower, upper = upper, surface = surface }
 end
 
--- What is known (a prior with its mesh), the poses of the first flights, what they were flown in,
--- if anything, and the vehicle's exploration, if there was one, which has so many seconds. `air`: a
--- box that is free above the safe height as well.
+-- The prior with its mesh, the poses of the first flights, the simulated surface or nil, and the
+-- exploration or nil, which has at most `seconds`. `air` is a box that is free above the safe
+-- height as well.
 function M.knowledge(run, seconds, vehicle, air)
   local o = run.options
   local files, surface = space.prior_files(run), space.surface_of(run)
   if not surface and not files then
-    lapwing.fail("nothing to scan: name a scene, a mesh with --set input=PATH (.obj, .ply, .dae, "
+    lapwing.fail("no scene: name a scene, a mesh with --set input=PATH (.obj, .ply, .dae, "
                  .. "...), or the files of an earlier flight with prior = { map =, mesh = }")
   end
   if exploration.wanted(run) then

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- The options of scans (readings 4.3, 4.6, 4.11 for defaults that the thesis never gives).
+-- The options of scans. Readings 4.3, 4.6 and 4.11 explain defaults that the thesis does not give.
 local exploration = require "mission.scan_exploration"
 local passes = require "mission.scan_passes"
 

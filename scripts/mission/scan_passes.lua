@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Where a vehicle that cannot stand still takes the images of a scan: straight, level passes along
--- the region's axes, and the air that it needs for them and for its turns.
+-- The passes of a vehicle that cannot stand still: straight, level, along the axes of the region,
+-- with images at even distances; and the free space that passes and turns need.
 local point_mass = require "mission.point_mass"
 local space = require "mission.scan_space"
 
@@ -20,14 +20,14 @@ local COARSER = 1.05       -- times, where views are too many
 M.DECLARATION = { name = "passing", type = "table",
   summary = "images in passing, by a model that cannot stand still", table = {
     { name = "height", type = "number", unit = "m", minimum = -1e5, maximum = 1e5,
-      summary = "of all passes, world; absent: 5 m above safe_height" },
+      summary = "height of all passes, world; absent: 5 m above safe_height" },
     { name = "speed", type = "number", unit = "m/s", above = 0, maximum = 1e3,
-      summary = "of the flight; absent: 1.2 times the stall speed" },
+      summary = "speed of the flight; absent: 1.2 times the stall speed" },
     { name = "apart", type = "number", unit = "m", above = 0, maximum = 1e5,
-      summary = "between images of a pass; absent: a quarter of the height over the region's "
-      .. "floor" },
+      summary = "distance between images of a pass; absent: a quarter of the height above the "
+      .. "floor of the region" },
     { name = "spacing", type = "number", unit = "m", above = 0, maximum = 1e5,
-      summary = "between neighbouring passes; absent: half of that height" },
+      summary = "distance between neighbouring passes; absent: half of that height" },
     { name = "interval", type = "number", unit = "s", default = 1, minimum = 0, maximum = 60,
       summary = "shortest time between two images" },
     { name = "down_deg", type = "number", unit = "deg", default = -80, minimum = -90, maximum = -20,
@@ -39,7 +39,7 @@ M.DECLARATION = { name = "passing", type = "table",
     { name = "bank_deg", type = "number", unit = "deg", default = 5, above = 0, maximum = 90,
       summary = "largest bank at an image" },
     { name = "iterations", type = "integer", default = 200, minimum = 0, maximum = 1000000,
-      summary = "of the search for passes and their order" } } }
+      summary = "iterations of the search for passes and their order" } } }
 
 function M.height(run)
   return run.options.passing.height or space.safe_height(run) + ABOVE

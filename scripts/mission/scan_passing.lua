@@ -1,9 +1,9 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Scans by a vehicle that cannot stand still, as surveyors fly them: straight and level passes over
--- the region with images at even distances, and turns beside it. A pass flies along the region's
--- axes, above the safe height, and its camera looks one way. Which passes are flown, which way and
--- in which order is searched within the budget; one trajectory problem then goes through all images
--- at their times. The plan's views are the poses that this trajectory has there.
+-- the region with images at even distances, and turns beside it. A pass is parallel to an axis of
+-- the region and above the safe height. Its camera has one direction. A search within the budget
+-- selects the passes, their directions and their order. One trajectory problem then passes all
+-- images at their times. The views of the plan are the poses of this trajectory at these times.
 local passes = require "mission.scan_passes"
 local point_mass = require "mission.point_mass"
 local space = require "mission.scan_space"
@@ -20,9 +20,9 @@ local MISS_WEIGHT, JERK = 1, 1e-3
 local WITHOUT = {
   start = "the flight begins at its first pass", finish = "the flight ends at its last pass",
   ["flight.smooth"] = "the flight is one trajectory, without legs between rests",
-  ["flight.pause"] = "nothing rests in a view", ["flight.speed"] = "set passing.speed",
+  ["flight.pause"] = "the vehicle does not stop at a view", ["flight.speed"] = "set passing.speed",
   ["flight.view_speed"] = "set passing.speed", ["flight.stray"] = "set passing.miss",
-  ["tour.begin"] = "passes are ordered by a search of their own",
+  ["tour.begin"] = "a separate search orders the passes",
   ["exploration.images"] = "an exploration stops for its images",
 }
 
@@ -34,29 +34,29 @@ function M.check(run, vehicle, in_passing)
       if run:stated("passing." .. key) then
         run:fail("passing." .. key, string.format(
           "the model '%s' takes its images at rest: choose a model that cannot stand still, such "
-          .. "as fixed_wing, or leave it out", o.model.type))
+          .. "as fixed_wing, or remove it", o.model.type))
       end
     end
     return
   end
   for name, why in pairs(WITHOUT) do
     if run:stated(name) then
-      run:fail(name, string.format("the model '%s' takes images in passing, and %s: leave it out",
+      run:fail(name, string.format("the model '%s' takes images in passing, and %s: remove it",
                                    o.model.type, why))
     end
   end
   if o.tour.solver ~= "local_search" then
-    run:fail("tour.solver", string.format("the model '%s' takes images in passing, and %s: leave "
-                                          .. "it out", o.model.type, WITHOUT["tour.begin"]))
+    run:fail("tour.solver", string.format("the model '%s' takes images in passing, and %s: "
+                                          .. "remove it", o.model.type, WITHOUT["tour.begin"]))
   end
   if not vehicle.wing then
     run:fail("model", string.format(
       "'%s' takes images in passing, and the file of vehicle '%s' has no table 'wing', which "
-      .. "says how it turns", o.model.type, vehicle.name))
+      .. "limits its turns", o.model.type, vehicle.name))
   end
   if not vehicle.gimbal then
-    run:fail("vehicle", string.format("'%s' has no gimbal, and images that are taken in passing "
-                                      .. "look down or aside", vehicle.name))
+    run:fail("vehicle", string.format("'%s' has no gimbal, and images in passing need a "
+                                      .. "camera that looks down or sideways", vehicle.name))
   end
   local bank, speed = passes.BANK_SHARE * vehicle.wing.bank, passes.speed(run, vehicle)
   local slowest = RESERVE * vehicle.wing.stall_speed / math.sqrt(math.cos(bank))
@@ -141,7 +141,7 @@ local function flown(run, vehicle, graph, air, budget, begin)
   end
 end
 
--- The passes of the budget (s) as a plan; `begin` tells which phase begins.
+-- The passes of the budget (s) as a plan; `begin(phase)` reports the phase.
 function M.plan(run, vehicle, known, budget, begin)
   local o = run.options
   local air = passes.air(run, vehicle)

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Where a first flight takes its images: patterns at one height over a region (thesis 4.5.4).
+-- The places of the images of a first flight: patterns at one height over a region (thesis 4.5.4).
 local M = {}
 
 -- From `position` the camera looks at the middle of the box `region`, no higher than `pitch` (rad).
@@ -120,8 +120,8 @@ local function oblique_grid(box, along, height, spacing, pitch, reach, poses)
 end
 
 local OVERLAP = 0.75  -- heights over the region's floor, between stops of a crosshatch
-local WIDER = 1.05    -- times, where they are too many
-local NEAR = 4        -- times the views that are asked for: so many are worth trying out
+local WIDER = 1.05    -- factor on the spacing while there are too many
+local NEAR = 4        -- largest number of tried poses, as a factor on the requested views
 
 -- The first spacing to be tried out: as overlap wants, or as wide as a number of poses that can be
 -- held asks for, however large the box is.
@@ -150,8 +150,8 @@ end
 
 -- Poses of `pattern` (circle, crosshatch, ellipse, meander) over the box `region` at `height` (m,
 -- world), the camera at `pitch` (rad, a circle's and an ellipse's at most), `reach` metres beyond
--- the region. A crosshatch has at most so many `views`; how many times farther apart they are than
--- overlap wants comes second.
+-- the region. A crosshatch has at most `views` poses. The second result is the ratio of their
+-- spacing and the spacing that overlap needs.
 function M.over(region, pattern, height, views, pitch, reach)
   if pattern == "crosshatch" then return crosshatch(region, height, views, pitch, reach) end
   if pattern == "meander" then return meander(region, height, views, pitch, reach), 1 end

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What a scan consists of, for whoever waits: each phase with what it takes in s, as measured on
--- one machine. Only their shares count, and what a run measures itself corrects them.
+-- The phases of a scan, for the progress line. Each has a duration in s, measured on one machine.
+-- Only the ratios matter, and the measurements of the run correct them.
 local exploration = require "mission.scan_exploration"
 local space = require "mission.scan_space"
 

@@ -1,7 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Legs of a tour by a trajectory solver, in place of pure pursuit: from rest to rest, with little
--- jerk, past the corners of ways round obstacles instead of stopping at them. Each leg is a problem
--- of its own.
+-- Legs of a tour by a trajectory solver instead of pure pursuit: from rest to rest, with little
+-- jerk, and without stops at the corners of paths around obstacles. Each leg is a separate problem.
 local paths = require "mission.paths"
 local point_mass = require "mission.point_mass"
 
@@ -99,7 +98,7 @@ function M.legs(run, vehicle, tour)
       if duration > SLOWEST * leg.seconds then
         run:fail("flight.smooth", string.format(
           "no smooth flight of leg %d of %d (%.3g s): %s", i, #legs, leg.seconds,
-          found and string.format("it strays %.3g m from its way, and %.3g m are allowed "
+          found and string.format("it is %.3g m from its path, and %.3g m are allowed "
                                   .. "(flight.stray)", stray, run.options.flight.stray)
           or solution.solver .. " ended " .. solution.status .. ": " .. solution.message))
       end

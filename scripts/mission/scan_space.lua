@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Where a scan goes on: the surface that is flown in, the region of interest, and the heights and
--- places of its first flights.
+-- The space of a scan: the simulated surface, the region of interest, and the heights and places of
+-- its first flights.
 local exploration = require "mission.scan_exploration"
 local named_scene = require "mission.named_scene"
 local patterns = require "mission.scan_patterns"
@@ -67,8 +67,8 @@ end
 -- How far the map and the reconstruction may move a surface up or down.
 local function moved(run) return M.resolution(run) + run.options.surface.cell end
 
--- Round the bounds of a mesh of the user's, so that its outermost walls belong to it and are seen
--- from outside, and roof and ground as they are reconstructed belong to it too.
+-- The default region of a mesh: larger than its bounds, so that its outermost walls belong to the
+-- region and are seen from outside, and so do the reconstructed roof and ground.
 local function around(run, bounds)
   local o, lower, upper = run.options, {}, {}
   for axis = 1, 3 do
@@ -141,12 +141,12 @@ function M.poses_of(run, flight)
                                      math.rad(M.pitch_of(flight)), reach)
   if #poses == 0 then
     run:fail("flights", string.format(
-      "no image of the %s would hold anything of the region: at a pitch of %.4g degrees and %.4g m "
-      .. "over its floor it needs more reach", flight.pattern, M.pitch_of(flight),
+      "no image of the %s shows the region: at a pitch of %.4g degrees and %.4g m "
+      .. "above its floor it needs a larger reach", flight.pattern, M.pitch_of(flight),
       height - region.lower[3]))
   end
   if hatched and #poses > views then
-    run:fail("flights", string.format("a crosshatch here has %d views at least, and %d are asked "
+    run:fail("flights", string.format("a crosshatch needs at least %d views here, and %d are given"
                                       .. "for", #poses, views))
   end
   return poses, times
@@ -175,7 +175,7 @@ function M.range(run)
       end
     end
     if range > RANGE then
-      print(string.format("note: range is %g m, for a first flight over such heights sees no floor "
+      print(string.format("note: range is %g m, because the first flight sees no floor "
                           .. "within %g m", range, RANGE))
     end
     range = math.max(range, wanted[run] or 0)
@@ -184,8 +184,8 @@ function M.range(run)
   return range
 end
 
--- What is said where a large region has fewer images than overlap wants, or nothing: only of
--- flights whose number of images the user did not choose.
+-- The note for a large region with fewer images than overlap needs, or nil. It covers only flights
+-- whose number of images the user did not set.
 function M.sparse(run)
   local parts = {}
   for _, flight in ipairs(M.flights_of(run)) do
@@ -193,7 +193,7 @@ function M.sparse(run)
       local poses, times = M.poses_of(run, flight)
       if times > 1.01 then
         parts[#parts + 1] = string.format(
-          "the crosshatch has %d images, %.2g times as far apart as overlap wants", #poses, times)
+          "the crosshatch has %d images, %.2g times as far apart as overlap needs", #poses, times)
       end
     end
   end
@@ -206,7 +206,7 @@ function M.sparse(run)
   end
   if #parts == 0 then return nil end
   return "the region is large: " .. table.concat(parts, "; ")
-         .. ". Flights with more views, or a smaller region, would see more of it"
+         .. ". Flights with more views, or a smaller region, show more of it"
 end
 
 -- The highest that anything flies.
@@ -240,7 +240,7 @@ function M.room(run, poses)
   end
   lower[3], upper[3] = lowest(run) + o.floor, M.ceiling_of(run)
   if lower[3] >= upper[3] then
-    run:fail("region", string.format("the tour would have to fly over %.4g m (region and floor) "
+    run:fail("region", string.format("the tour must fly above %.4g m (region and floor) "
                                      .. "and below %.4g m (ceiling)", lower[3], upper[3]))
   end
   return { lower = lower, upper = upper }

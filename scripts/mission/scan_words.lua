@@ -1,12 +1,12 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What a scan tells its user beside the plan: what was known, and where the tour shows little.
+-- Notes and warnings of a scan: the prior knowledge, and tours that use little of it.
 local first = require "mission.scan_first"
 
 local M = {}
 
-local LITTLE = 0.5         -- share of the budget; whatever leaves more than the rest is told so
+local LITTLE = 0.5         -- share of the budget or of the candidates below which a note is given
 
--- What is said of what came before the tour; `views` says what the tour chose among.
+-- Notes on the flight before the tour; `views` describes the candidates of the tour.
 function M.notes(run, known, explored, views)
   local notes
   if explored then
@@ -24,15 +24,15 @@ function M.notes(run, known, explored, views)
   return notes
 end
 
--- What is said where the start leads to few of the views, however much of the battery is used.
+-- The note for a start that is connected to few candidates, or nil.
 function M.cut_off(graph)
   if graph.joined >= LITTLE * graph.candidates then return nil end
-  return graph.reach .. ". What the others would show is not seen. More candidates "
-         .. "(candidates.most), first flights nearer to the region or a lower motions.alpha "
-         .. "would join more"
+  return graph.reach .. ". The content of the others is not seen. More candidates "
+         .. "(candidates.most), first flights closer to the region or a lower motions.alpha "
+         .. "connect more of them"
 end
 
--- What is said of a tour that leaves most of the battery although it may have more images.
+-- The note for a tour that uses little of the budget although it may have more images, or nil.
 function M.little_used(run, tour, budget)
   local most = run.options.tour.images
   if run:cancelled() or tour.seconds >= LITTLE * budget or (most > 0 and tour.images >= most) then

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Camera shots as designers draw them: JSON with a camera pose and a point looked at per keyframe.
+-- Camera shots of designers: JSON with a camera pose and a target point per keyframe.
 --
 -- lookFromNED and lookAtNED are metres north, east and down of refLLH; a shot without them carries
 -- latitude, longitude and altitude, taken from refLLH or else from its first keyframe. The flight
@@ -18,7 +18,7 @@ end
 
 -- `path`: of the value, or of what it should be in.
 local function table_of(file, value, path, what)
-  if type(value) ~= "table" then file:fail(path, what .. " is missing, or no table") end
+  if type(value) ~= "table" then file:fail(path, what .. " is missing, or not a table") end
   return value
 end
 
@@ -61,7 +61,7 @@ end
 -- {keyframes, origin, subjects} of the file that the option `input` names.
 function shot_file.read(run)
   local name = run.options.input
-  if not name then lapwing.fail("give the shot to fly: --set input=PATH") end
+  if not name then lapwing.fail("no shot: --set input=PATH") end
   local shot, file = lapwing.read_json(name, "shots")
   file:expect_keys("", { "keyFrameList", "keyframeTimes", "refLLH" }, true)
   local list = table_of(file, shot.keyFrameList, "", "keyFrameList")

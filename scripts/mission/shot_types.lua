@@ -1,10 +1,10 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Named shots as keyframes: how a film crew asks for a camera move.
+-- Named shots: the camera moves of film crews, as keyframes.
 --
 -- Each takes a table and gives keyframes for film.shot, in time from `start` (0) over `duration`
 -- seconds; several can be joined with shots.sequence. Places are in m, world; angles in degrees, 0
--- east, counter-clockwise. What each takes is declared below, as options of missions are; the
--- README's table and the annotations for editors are written from it.
+-- east, counter-clockwise. The arguments are declared below, like options of missions. The table of
+-- the README and the annotations for editors are generated from these declarations.
 --
 --   keyframes = shots.orbit { center = {0, 0, 2}, radius = 12, height = 6, duration = 20 }
 ---@type lapwing.film.shots
@@ -24,10 +24,10 @@ local function look(name, required, summary)
 end
 local common = {
   { name = "duration", type = "number", unit = "s", required = true, above = 0, maximum = 1e5,
-    summary = "of the shot" },
+    summary = "duration of the shot" },
   { name = "start", type = "number", unit = "s", default = 0, minimum = 0, maximum = 1e5,
-    summary = "of the shot" },
-  look("look_at", false, "what is looked at: a point, or a subject's name"),
+    summary = "start of the shot" },
+  look("look_at", false, "target of the camera: a point, or the name of a subject"),
 }
 local function described(name, summary, own)
   return { name = name, summary = summary, gives = "lapwing.film.shot.keyframes[]",
@@ -35,18 +35,19 @@ local function described(name, summary, own)
 end
 
 shots.described = {
-  described("static", "The camera stands still.", { place("position", "of the camera") }),
-  described("pan", "The camera stands still and turns from one look to another.",
-            { place("position", "of the camera"), look("look_from", true, "at the start"),
-              look("look_to", true, "at the end") }),
+  described("static", "The camera stands still.", { place("position", "position of the camera") }),
+  described("pan", "The camera stands still and turns from one point to another.",
+            { place("position", "position of the camera"),
+              look("look_from", true, "target at the start"),
+              look("look_to", true, "target at the end") }),
   described("dolly", "A straight line, as on rails.",
-            { place("from_position", "at the start"), place("to_position", "at the end") }),
-  described("orbit", "Around a center, at a constant rate but for the ramps.", {
-    place("center", "of the circle; its height does not matter"),
+            { place("from_position", "start position"), place("to_position", "end position") }),
+  described("orbit", "A circle around a center, at a constant rate except in the ramps.", {
+    place("center", "centre of the circle; its height is ignored"),
     { name = "radius", type = "number", unit = "m", required = true, above = 0, maximum = 1e5,
-      summary = "of the circle" },
+      summary = "radius of the circle" },
     { name = "height", type = "number", unit = "m", required = true, minimum = -1e6,
-      maximum = 1e6, summary = "of the camera, in the world" },
+      maximum = 1e6, summary = "height of the camera, in the world" },
     { name = "angle", type = "number", unit = "deg", default = 360, minimum = -36000,
       maximum = 36000, summary = "angle of the orbit; negative is clockwise" },
     { name = "from", type = "number", unit = "deg", default = 0, minimum = -36000,
@@ -54,14 +55,15 @@ shots.described = {
     { name = "ramp", type = "number", unit = "s", default = 2, minimum = 0, maximum = 1e5,
       summary = "duration in which the rate rises at the start and falls at the end; 0: constant "
         .. "throughout, for a film that starts and finishes `free`" } }),
-  described("crane", "Straight up, or down, as on a crane's arm.",
-            { place("position", "at the start"),
+  described("crane", "Straight up or down, as on a crane.",
+            { place("position", "start position"),
               { name = "by", type = "number", unit = "m", required = true, minimum = -1e5,
                 maximum = 1e5, summary = "height difference; negative is downwards" } }),
-  described("flyover", "Over something, and down on its far side.",
-            { place("from_position", "at the start"), place("to_position", "at the end"),
+  described("flyover", "An arc over an object, down to its far side.",
+            { place("from_position", "start position"), place("to_position", "end position"),
               { name = "height", type = "number", unit = "m", required = true, minimum = -1e5,
-                maximum = 1e5, summary = "above the line between the ends, at half-time" } }),
+                maximum = 1e5,
+                summary = "height above the line between the ends, at half-time" } }),
 }
 local declared = {}
 for _, shot in ipairs(shots.described) do declared[shot.name] = shot end

@@ -115,7 +115,7 @@ local function line_of(text, height, gap, space, glyph_of)
 end
 
 -- What can be written, for messages.
-M.CHARACTERS = "A to Z (lower case is painted as capitals), 0 to 9, blank and - . ! ?"
+M.CHARACTERS = "A to Z (lower case is drawn as capitals), 0 to 9, blank and - . ! ?"
 
 -- Strokes of a text, its capitals 1 high, on a line that begins at 0, 0. Nothing and the characters
 -- that have no glyph, as a text, where there are any.

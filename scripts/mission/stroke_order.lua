@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- In which order, and from which end, to draw strokes so that little is flown between them.
+-- Orders and reverses strokes so that the flight between them is short.
 local M = {}
 
 local MOST_ROUNDS = 50

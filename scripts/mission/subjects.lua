@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What a film looks at, and when: subjects and their tracks, looks, cuts, and a first guess of
--- where the camera points.
+-- The subjects of a film over time: tracks, looks, cuts, and the initial guess of the target of the
+-- camera.
 local looks = require "mission.looks"
 local tracks = require "mission.tracks"
 
@@ -30,7 +30,7 @@ function subjects.plan(run, request, duration)
   end
   local order = looks.of(run, keyframes, list, by_name)
   if not order then
-    if #request.cuts > 0 then run:fail("cuts", "there is nothing to cut between: no subject") end
+    if #request.cuts > 0 then run:fail("cuts", "a cut needs a subject, and there is none") end
     return nil
   end
   local cuts = looks.cuts(run, request.cuts, stretch, duration, request.vehicle, keyframes, order)
@@ -65,7 +65,7 @@ function subjects.plan(run, request, duration)
     pulls[#pulls + 1] = { time = p.time, value = p.position, weight = 1 }
   end
   table.sort(pulls, function(a, b) return a.time < b.time end)
-  if #pulls == 0 then run:fail("cuts", "nothing of what is looked at is left to be seen") end
+  if #pulls == 0 then run:fail("cuts", "no part of the subject is in the image") end
 
   local guess = { times = {}, yaws = {}, pitches = {}, targets = {} }
   local yaw, pitch

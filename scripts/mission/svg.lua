@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- An SVG picture as strokes: lists of {x, y}, y down as in the file, curves as short straight
--- pieces. What a light cannot draw, or what is not read, is said; nothing is left out in silence.
+-- pieces. A note lists everything that cannot be drawn or is not read.
 local frames = require "mission.svg_frame"
 local path = require "mission.svg_path"
 local shapes = require "mission.svg_shapes"
@@ -21,7 +21,8 @@ local DEFINITIONS = { defs = true, symbol = true, clipPath = true, mask = true, 
 local CURES = { text = "convert text to paths", image = "trace it to paths",
                 foreignObject = "convert it to paths" }
 -- Attributes that change a picture and are not honoured.
-local UNREAD = { ["clip-path"] = "what it cuts off is drawn", mask = "what it hides is drawn",
+local UNREAD = { ["clip-path"] = "the parts that it hides are drawn",
+                 mask = "the parts that it hides are drawn",
                  filter = "shapes are drawn without it",
                  ["stroke-dasharray"] = "lines are drawn without gaps",
                  ["transform-origin"] = "transforms turn about 0, 0",
@@ -29,7 +30,7 @@ local UNREAD = { ["clip-path"] = "what it cuts off is drawn", mask = "what it hi
                  ["marker-mid"] = "arrow heads are not drawn",
                  ["marker-end"] = "arrow heads are not drawn" }
 
--- Notes in the order of their first line: what is said, and the lines that it holds for.
+-- Notes in the order of their first line: the text, and the lines to which it applies.
 local function note_book()
   local book, order = {}, {}
   local function note(line, what)
@@ -88,7 +89,7 @@ local function drawing(root)
     return strokes
   end
 
-  -- What of them the picture shows; half of a line is as good as all of it.
+  -- The parts of the strokes inside the picture, up to half of the line width outside of its edge.
   local function within_frame(strokes, element, style, matrix, seen)
     if not D.frame then return strokes end
     local scale = math.sqrt(math.abs(matrix[1] * matrix[4] - matrix[2] * matrix[3]))
@@ -97,7 +98,7 @@ local function drawing(root)
     if seen == "stroke" then margin = math.max(margin, styles.line_width(style) * scale / 2) end
     local kept, cut = frames.cut(strokes, D.frame, margin)
     local what = #kept == 0 and "<%s> lies outside the picture and is not drawn"
-                 or "what of <%s> lies outside the picture is cut off"
+                 or "the parts of <%s> outside the picture are cut off"
     if cut then note(D.use_line or element.line, what:format(element.name)) end
     return kept
   end
@@ -113,7 +114,7 @@ local function drawing(root)
            ("url(%s) names no gradient or pattern of this file"):format(reference))
     end)
     if not seen then
-      note(element.line, "a shape that is not seen (neither line nor face) is not drawn")
+      note(element.line, "an invisible shape (neither line nor fill) is not drawn")
     end
     return seen
   end
@@ -122,7 +123,7 @@ local function drawing(root)
     local seen = how_seen(element, style)
     if not seen then return end
     local strokes = strokes_of(element, matrix)
-    if #strokes == 0 then return note(element.line, "a shape of no size is not drawn") end
+    if #strokes == 0 then return note(element.line, "a shape of size 0 is not drawn") end
     strokes = within_frame(strokes, element, style, matrix, seen)
     if #strokes == 0 then return end
     if seen == "fill" then
@@ -131,10 +132,10 @@ local function drawing(root)
     local colour = seen == "stroke" and styles.colour(style)
     if colour then
       note(style.stroke_from or element.line,
-           ("the colour %s is drawn in the light's one colour"):format(colour))
+           ("the colour %s is drawn in the colour of the light"):format(colour))
     end
     if style["stroke-dasharray"] and style["stroke-dasharray"] ~= "none" then
-      note(element.line, "stroke-dasharray is not honoured: " .. UNREAD["stroke-dasharray"])
+      note(element.line, "stroke-dasharray is ignored: " .. UNREAD["stroke-dasharray"])
     end
     table.move(strokes, 1, #strokes, #D.strokes + 1, D.strokes)
   end
@@ -147,7 +148,7 @@ local function drawing(root)
     local a = element.attributes
     local reference = a.href or a["xlink:href"] or ""
     local target = D.named[reference:match("^#(.+)$") or ""]
-    if not target then error(("'%s' names no element of this file"):format(reference), 0) end
+    if not target then error(("'%s' is not an element of this file"):format(reference), 0) end
     D.uses = D.uses + 1
     if D.open[target] or D.uses > MOST_USES then
       error(D.open[target] and "it uses itself" or "more than 10000 uses of elements", 0)
@@ -178,7 +179,7 @@ local function drawing(root)
     end
     for key, effect in pairs(UNREAD) do
       if style[key] and style[key] ~= "none" and key ~= "stroke-dasharray" then
-        note(element.line, key .. " is not honoured: " .. effect)
+        note(element.line, key .. " is ignored: " .. effect)
       end
     end
     if style.transform and style.transform ~= a.transform then
@@ -189,7 +190,7 @@ local function drawing(root)
     if name == "use" then return D.use(element, style, matrix) end
     if name == "svg" then
       if (a.preserveAspectRatio or "xMidYMid"):gsub("^%s*defer%s+", ""):sub(1, 8) ~= "xMidYMid" then
-        note(element.line, "preserveAspectRatio is not honoured: the picture is fitted in")
+        note(element.line, "preserveAspectRatio is ignored: the picture is fitted in")
       end
       local inner = parent.inner and a or { viewBox = nil }
       if not parent.inner then D.frame = style.overflow ~= "visible" and shapes.frame(a) or nil end

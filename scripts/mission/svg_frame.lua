@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What of strokes lies within a rectangle.
+-- Clips strokes to a rectangle.
 local M = {}
 
 -- The shares of a piece from p to q between which it lies within; nil where none of it does.

@@ -69,7 +69,7 @@ function M.length(a, key, default)
   local value = tonumber(number)
   if value and UNITS[unit] then return value * UNITS[unit] end
   if a[key]:find("%", 1, true) then
-    error(("%s is '%s': shares of the picture are not read; write a number"):format(key, a[key]), 0)
+    error(("%s is '%s': percentages are not read; write a number"):format(key, a[key]), 0)
   end
   error(("%s is '%s': expected a number, or one with px, in, cm, mm, pt or pc")
         :format(key, a[key]), 0)

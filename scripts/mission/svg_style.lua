@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What of an SVG file's styles matters to a light: whether a shape is seen, and in what colour.
--- Read from attributes, `style` and rules for one tag, class or id; the rest is said.
+-- The styles of an SVG file, as far as a light can show them: visibility and colour of a shape.
+-- They are read from attributes, `style` and rules for one tag, class or id. Notes list the rest.
 local M = {}
 
 local INHERITED = { "stroke", "fill", "visibility", "color", "stroke-dasharray", "stroke-width",

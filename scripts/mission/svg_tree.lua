@@ -97,7 +97,7 @@ function M.read(text)
       local plain = name:gsub("^svg:", "")
       if closing then
         if #open_elements == 1 or parent.name ~= plain then
-          error(("line %d: </%s> closes nothing that is open"):format(line, name), 0)
+          error(("line %d: </%s> has no opening tag"):format(line, name), 0)
         end
         table.remove(open_elements)
       else

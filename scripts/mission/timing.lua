@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
--- path_first: the fastest timing along a path that is kept. A strategy: the film at its own pace
--- gives the path; then it is flown as fast as the vehicle allows, with the times of keyframes as
--- wishes, and slower until the vehicle follows within the tolerance.
+-- The strategy path_first: the fastest timing along a fixed path. A film at default times gives the
+-- path. It is then flown as fast as the limits of the vehicle allow, with the times of keyframes as
+-- wishes, and slower until the vehicle keeps the tolerance.
 local attempts = require "mission.film_attempt"
 local requests = require "mission.film_request"
 local paths = require "mission.paths"
@@ -40,13 +40,13 @@ end
 function M.wishes(run, film, way)
   local list = {}
   if run.options.stretch ~= 1 then run:fail("stretch", way .. " finds the times itself") end
-  if #film.keyframes < 2 then run:fail("keyframes", way .. " needs two at least") end
+  if #film.keyframes < 2 then run:fail("keyframes", way .. " needs at least two") end
   for i, k in ipairs(film.keyframes) do
     list[i] = { time = k.time, time_weight = k.time_weight, earliest = k.earliest,
                 latest = k.latest }
   end
   if (list[1].time or list[1].earliest or 0) > 0 then
-    run:fail("keyframes[1]", way .. " starts in the first keyframe, at 0 s")
+    run:fail("keyframes[1]", way .. " starts at the first keyframe, at 0 s")
   end
   local last = list[#list]
   if film.duration and not (last.time or wishes(last)) then last.time = film.duration end
@@ -93,8 +93,8 @@ local function at_share(run, request, memory)
     local least = 0
     for i = 1, refused - 1 do least = least + legs[i] end
     run:fail("keyframes[" .. refused .. "]", string.format(
-      "cannot be passed when it asks to be: from the one before it the path takes %.3g s at "
-      .. "least, from the start %.3g s", legs[refused - 1] or 0, least))
+      "cannot be passed at its time: from the keyframe before, the path takes at least %.3g s, "
+      .. "from the start %.3g s", legs[refused - 1] or 0, least))
   end
   local keyframes = {}
   for i, k in ipairs(request.keyframes) do
@@ -127,7 +127,7 @@ function M.next(run, outcome)
   local request, memory = outcome.request, outcome.request.memory
   if not memory.path then
     if not outcome.holds then
-      return nil, { notes = { "the path at its own pace is not certified: "
+      return nil, { notes = { "the path at its fastest times is not certified: "
                               .. attempts.complaint(outcome) } }
     end
     local timed = { wishes = memory.wishes, path = outcome.solution.path, share = 1 }
@@ -143,7 +143,7 @@ function M.next(run, outcome)
   end
   local share = memory.share * SLOWER
   local told = { figures = figures, notes = { string.format(
-    "no timing down to %.2g of what the vehicle can do keeps the path within %.3g m", share,
+    "no timing down to %.2g of the limits of the vehicle keeps the path within %.3g m", share,
     run.options.path_tolerance) } }
   if share <= SLOWEST or run:cancelled() then return nil, told end
   local slower = { wishes = memory.wishes, path = memory.path, share = share }

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Where a depth camera looks from to see a whole scene.
+-- Poses from which a depth camera sees a whole scene.
 local M = {}
 
 local PASSES = {  -- m over the region's floor, rad
@@ -36,7 +36,7 @@ function M.over(surface, count)
     end
   end
   if #poses < count then
-    error(string.format("only %d of %d places in the region are free to look from", #poses, count))
+    error(string.format("only %d of %d places in the region are free", #poses, count))
   end
   return poses
 end

@@ -1,12 +1,12 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Global before local (thesis 2.1, 6.1): ways between keyframes, straight or round what stands
--- between them, at which solvers begin; and corridors of free boxes about them.
+-- Global before local planning (thesis 2.1, 6.1): paths between keyframes, straight or around
+-- obstacles, as the initial guess of solvers; and corridors of free boxes around them.
 --
 -- legs[i] leads from keyframe i to i + 1:
---   way       places {x, y, z} from end to end, or nil
---   why       there is none: the planner's answer
---   failed    ways through passages that came to nothing, which this one avoids
---   corridor  boxes about the way, once a corridor was asked for
+--   way       path: places {x, y, z} from end to end, or nil
+--   why       message of the planner if there is no path
+--   failed    paths through failed passages, which this path avoids
+--   corridor  boxes around the path, if a corridor was requested
 local paths = require "mission.paths"
 
 local M = {}
@@ -33,7 +33,7 @@ local function obstructed(environment)
   return count > 0
 end
 
--- The leg with a way, or with why there is none.
+-- The leg with its path, or with the reason why there is none.
 local function planned_leg(p, leg, from, to, planner)
   local way, why, status
   for _, more in ipairs(MORE) do

@@ -1,9 +1,8 @@
 -- SPDX-License-Identifier: Apache-2.0
--- timing = "free": the times of keyframes are found together with the flight, where no path is
--- kept. Every leg between two keyframes has a step of its own; a keyframe's time is exact,
--- preferred with a weight, within a window or free, and each second of flight costs `weights.time`.
--- A strategy: the film at the times found; where it does not hold, at those found with more thrust
--- to spare.
+-- The strategy of timing = "free": times and flight are optimised together. Every leg between two
+-- keyframes has its own step. The time of a keyframe is exact, preferred with a weight, within a
+-- window, or free. Each second of flight costs `weights.time`. The film is then planned at the
+-- times found. If it fails, times are searched again with a larger reserve of thrust.
 local attempts = require "mission.film_attempt"
 local film_problem = require "mission.film_problem"
 local point_mass = require "mission.point_mass"
@@ -37,7 +36,7 @@ local function paced(own, fixed)
   return list
 end
 
--- A first guess of the times that grants what is asked for: times first, then windows.
+-- An initial guess of the times that meets the wishes: times first, then windows.
 local function guessed(keyframes, wishes, vehicle)
   local untimed, own, fixed = {}, {}, {}
   for i, k in ipairs(keyframes) do untimed[i] = { position = k.position } end
@@ -112,7 +111,7 @@ local function problem_of(run, request, memory)
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
                  weight = o.weights.keyframe, keyframes = keyframes.yaws }
   end
-  point_mass.must_rest(run, p, "timing", "times are sought by 'free' for a flight that may stop")
+  point_mass.must_rest(run, p, "timing", "set another timing than free")
   p:add_constraint(film_problem.parts.boundary(run, p, 1, #keyframes.yaws == 0))
   surroundings.add(p, environment, nil, nil)
   surroundings.add_speed_limit(p, o, true)
@@ -122,8 +121,8 @@ local function problem_of(run, request, memory)
   return p, way.legs
 end
 
--- The film of a request at the times found with the share of the thrust that `memory` names; nil
--- where there are none, but were with more thrust.
+-- The film of a request at the times found with the share of the thrust in `memory`; nil if there
+-- are no such times, but were with more thrust.
 local function at_share(run, request, memory)
   local stated, ways_of_legs = problem_of(run, request, memory)
   local solution = run:solve(stated, run.options.solver)
@@ -131,7 +130,7 @@ local function at_share(run, request, memory)
   if solution.status ~= "optimal" and solution.status ~= "feasible" then
     if memory.number > 1 then return nil end
     run:fail("keyframes", string.format(
-      "no times grant every wish within the vehicle's limits: %s: %s", solution.status,
+      "no times meet every wish within the limits of the vehicle: %s: %s", solution.status,
       solution.message))
   end
   local keyframes, clock, legs = {}, 0, solution.legs

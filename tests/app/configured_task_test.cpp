@@ -88,7 +88,7 @@ TEST_F(ConfiguredTask, OfAFilmIsHeldToItsConfiguration) {
       {"subject 'anna' need not be in the image",
        [](Value& d) { entry(d, "task", "framing").set("finish", 0.5); }},
       {"the share of framing is 0.1", [](Value& d) { d.find("task")->set("framing_share", 0.1); }},
-      {"subject 'anna' is elsewhere",
+      {"subject 'anna' has another position",
        [](Value& d) {
          entry(d, "environment", "subjects").find("positions")->as_list()[0].as_list()[1] = 12.0;
        }},
@@ -116,7 +116,7 @@ TEST_F(ConfiguredTask, OfAFilmIsHeldToItsConfiguration) {
        [](Value& d) { entry(d, "task", "keyframes").set("yaw_tolerance", 3.0); }},
       {"the time of keyframe 2 is 5 s in the plan and 6 s",
        [](Value& d) { entry(d, "task", "keyframes", 1).set("time", 5.0); }},
-      {"keyframe 2 is elsewhere",
+      {"keyframe 2 has another position",
        [](Value& d) { entry(d, "task", "keyframes", 1).find("position")->as_list()[0] = 5.5; }},
       {"the budget is 600 s", [](Value& d) { d.set("budget", 600.0); }},
       {"constraint 'west' is a function in its configuration, and in the plan it is not judged",
@@ -161,7 +161,7 @@ TEST_F(ConfiguredTask, OfARaceIsHeldToItsConfiguration) {
   expect_told({
       {"gate 1 ('gates[1]') is of another radius in the plan",
        [](Value& d) { entry(d, "task", "gates").set("radius", 3.0); }},
-      {"gate 1 ('gates[1]') is elsewhere in the plan",
+      {"gate 1 ('gates[1]') has another position in the plan",
        [](Value& d) { entry(d, "task", "gates").find("position")->as_list()[1] = 0.5; }},
       {"gate 2 ('gates[2]') is of another size in the plan",
        [](Value& d) {

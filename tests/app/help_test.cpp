@@ -93,7 +93,7 @@ TEST_F(Helping, AFailureIsPrintedOnce) {
   };
   const Finished finished = run({"run", "shot.lua"});
   EXPECT_EQ(finished.status, 1);
-  EXPECT_NE(finished.out.find("flown as if the vehicle had no limits: keyframe_miss"),
+  EXPECT_NE(finished.out.find("in a flight without the limits of the vehicle: keyframe_miss"),
             std::string::npos)
       << finished.out;
   EXPECT_EQ(count(finished.out, "keyframe_miss"), 1) << finished.out;

@@ -59,7 +59,7 @@ TEST_F(MemoryLimits, HoldForManyValues) {
 
 TEST_F(MemoryLimits, HoldForFilesThatAScriptReads) {
   write("wide.json", "[" + repeated("1,", 16u << 20) + "1]");
-  within_limit("return lapwing.read_json('wide.json')", "shot.lua:1: the script wants more than");
+  within_limit("return lapwing.read_json('wide.json')", "shot.lua:1: the script needs more than");
   write("long.txt", repeated("x", 60u << 20));
   within_limit("local t = {} for i = 1, 9 do t[i] = lapwing.read_text('long.txt') .. i end",
                "sandbox.memory");
@@ -79,7 +79,7 @@ TEST_F(MemoryLimits, TextsWithNulAreWhole) {
   write("shot.lua", "lapwing.fail('a\\0b')");
   refused({"run", "shot.lua"}, {"shot.lua:1: a\\0b"});
   write("shot.lua", "return { kind = 'k', name = 'a\\0b', options = {}, plan = function() end }");
-  refused({"run", "shot.lua"}, {"mission.name: a text with a NUL character cannot stand here"});
+  refused({"run", "shot.lua"}, {"mission.name: a text with a NUL character is not allowed here"});
 }
 
 }  // namespace

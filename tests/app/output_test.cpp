@@ -129,7 +129,8 @@ TEST_F(OutputTest, NamesThatMakeOneFolderDoNotShareItInSilence) {
   write("a.lua", film("name = 'a/b'"));
   write("b.lua", film("name = 'a_b'"));
   ASSERT_EQ(run({"run", "a.lua"}).status, 0);
-  refused({"run", "b.lua"}, {"'out/a_b' holds the run of mission 'a/b'", "'a_b'", "--out"}, true);
+  refused({"run", "b.lua"}, {"'out/a_b' contains the run of mission 'a/b'", "'a_b'", "--out"},
+          true);
   EXPECT_EQ(mission_of("out/a_b"), "a/b");
   const Finished named = run({"run", "b.lua", "-o", "out/a_b"});
   EXPECT_EQ(named.status, 0);
@@ -137,7 +138,7 @@ TEST_F(OutputTest, NamesThatMakeOneFolderDoNotShareItInSilence) {
   write("a.lua", film("name = '.'"));
   write("b.lua", film("name = '~'"));
   ASSERT_EQ(run({"run", "a.lua"}).status, 0);
-  refused({"run", "b.lua"}, {"holds the run of mission '.'"}, true);
+  refused({"run", "b.lua"}, {"contains the run of mission '.'"}, true);
 }
 
 TEST_F(OutputTest, ARunSaysWhatItReplacesOrKeepsIt) {

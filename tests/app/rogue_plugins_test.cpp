@@ -257,8 +257,8 @@ TEST(RoguePlugins, AnswersThatAreNoneAreNamed) {
             "plugin 'rogue_planner' failed in search: segment 1 of the planner's path is blocked" +
                 cure("rogue_planner"));
   EXPECT_NE(tour_with(Value::map())
-                .message.find("plugin 'rogue_tours' failed in search: the "
-                              "solver's tour is none"),
+                .message.find("plugin 'rogue_tours' failed in search: the result of the "
+                              "solver is not a tour"),
             std::string::npos);
 }
 
@@ -333,7 +333,7 @@ return scan.of_mesh {
     return std::vector<std::string>{"run", "hut.lua", "--quiet", "--set", option};
   };
   ends(with("tour.solver=rogue_tours"),
-       "plugin 'rogue_tours' failed in search: the solver's tour is none: view ");
+       "plugin 'rogue_tours' failed in search: the result of the solver is not a tour: view ");
   std::vector<std::string> maps = with("map.type=rogue_map");
   maps.insert(maps.end(), {"--set", "map.where=insert", "--set", "map.how=exits"});
   ends(maps, "plugin 'rogue_map' ended the program in insert" + cure("rogue_map"));

@@ -44,11 +44,11 @@ TEST_F(Svg, WhatIsNotDrawnIsSaidWithItsLines) {
       "line 4: <image> is not drawn: trace it to paths\n"
       "line 4: <odd> is not drawn: only paths, basic shapes and their groups are");
   gives("<path d='M0,0 L1,0' stroke='red'/>\n<path d='M0,0 L2,0' style='stroke:#00F'/>",
-        "0,0 to 1,0\n0,0 to 2,0\nline 2: the colour red is drawn in the light's one colour\n"
-        "line 3: the colour #00F is drawn in the light's one colour");
+        "0,0 to 1,0\n0,0 to 2,0\nline 2: the colour red is drawn in the colour of the light\n"
+        "line 3: the colour #00F is drawn in the colour of the light");
   gives("<path d='M0,0 L1,0'/><path fill='none' d='M0,0 L2,0'/>",
         "0,0 to 1,0\nline 2: a filled shape without a line is drawn by its outline\n"
-        "line 2: a shape that is not seen (neither line nor face) is not drawn");
+        "line 2: an invisible shape (neither line nor fill) is not drawn");
   gives(
       "<g stroke='black'><g style='display : none'><path d='M0,0 L1,0'/></g>\n"
       "<path opacity='0' d='M0,0 L1,0'/><path visibility='hidden' d='M0,0 L1,0'/></g>",
@@ -56,20 +56,20 @@ TEST_F(Svg, WhatIsNotDrawnIsSaidWithItsLines) {
   gives(
       "<path stroke='black' d='M0,0 L1,0' clip-path='url(#c)' stroke-dasharray='3' "
       "marker-end='url(#m)'/>",
-      "0,0 to 1,0\nline 2: clip-path is not honoured: what it cuts off is drawn\n"
-      "line 2: marker-end is not honoured: arrow heads are not drawn\n"
-      "line 2: stroke-dasharray is not honoured: lines are drawn without gaps");
+      "0,0 to 1,0\nline 2: clip-path is ignored: the parts that it hides are drawn\n"
+      "line 2: marker-end is ignored: arrow heads are not drawn\n"
+      "line 2: stroke-dasharray is ignored: lines are drawn without gaps");
 }
 
 TEST_F(Svg, ShapesOfNoSizeAreSaid) {
-  gives("<circle r='0'/><rect width='3' height='0'/>", "line 2: a shape of no size is not drawn");
+  gives("<circle r='0'/><rect width='3' height='0'/>", "line 2: a shape of size 0 is not drawn");
 }
 
 TEST_F(Svg, WhatLiesOutsideThePictureIsLeftOutOrCutOff) {
   const std::string inside =
       "<rect fill='none' stroke='black' x='10' y='10' width='80' height='80'/>\n"
       "<path stroke='black' d='M500 500 l9 0'/>\n<path stroke='black' d='M50,50 h100 v9 h-90'/>";
-  const std::string cut = "line 4: what of <path> lies outside the picture is cut off";
+  const std::string cut = "line 4: the parts of <path> outside the picture are cut off";
   const std::string left_out = "line 3: <path> lies outside the picture and is not drawn\n";
   root_ = " viewBox='0 0 100 100'";
   gives(inside, "10,10 to 10,10\n50,50 to 100,50\n100,59 to 60,59\n" + left_out + cut);
@@ -97,13 +97,12 @@ TEST_F(Svg, AtTheEdgeHalfOfALineIsEnough) {
       "<g transform='scale(10)'><path stroke='black' d='M0,5 L20,5 M-5,-5 L15,15'/></g>\n"
       "<defs><path id='p' stroke='black' d='M0,0 H1'/></defs>\n<use href='#p' x='-90'/>",
       "0,50 to 105,50\n-5,-5 to 105,105\n"
-      "line 2: what of <path> lies outside the picture is cut off\n"
+      "line 2: the parts of <path> outside the picture are cut off\n"
       "line 4: <path> lies outside the picture and is not drawn");
 }
 
 TEST_F(Svg, InvisibleColoursAreNotDrawn) {
-  const std::string unseen =
-      "line 2: a shape that is not seen (neither line nor face) is not drawn";
+  const std::string unseen = "line 2: an invisible shape (neither line nor fill) is not drawn";
   for (const char* clear : {"#00000000", "#0000", "#FFF0", "rgba(0,0,0,0)", "rgba(9, 9, 9, 0%)",
                             "rgb(0 0 0 / 0)", "hsla(9,9%,9%,0.0)", "Transparent", "NONE"}) {
     gives("<path fill='none' stroke='" + std::string(clear) + "' d='M0,0 L1,0'/>", unseen);
@@ -119,22 +118,22 @@ TEST_F(Svg, InvisibleColoursAreNotDrawn) {
         "line 2: url(#missing) names no gradient or pattern of this file\n" + unseen);
   gives("<path fill='none' stroke='url(#missing) #000' d='M0,0 L1,0'/>",
         "0,0 to 1,0\nline 2: url(#missing) names no gradient or pattern of this file\n"
-        "line 2: the colour url(#missing)#000 is drawn in the light's one colour");
+        "line 2: the colour url(#missing)#000 is drawn in the colour of the light");
   gives("<linearGradient id='grad'/><path fill='none' stroke='url(#grad)' d='M0,0 L1,0'/>",
-        "0,0 to 1,0\nline 2: the colour url(#grad) is drawn in the light's one colour");
+        "0,0 to 1,0\nline 2: the colour url(#grad) is drawn in the colour of the light");
 }
 
 TEST_F(Svg, NotesNameWhatAUserWouldChange) {
   gives(
       "<defs><path id='p' d='M0,0 L1,0'/></defs>\n\n<use href='#p' stroke='green'/>\n"
       "<use href='#p' visibility='hidden'/>",
-      "0,0 to 1,0\nline 4: the colour green is drawn in the light's one colour\n"
+      "0,0 to 1,0\nline 4: the colour green is drawn in the colour of the light\n"
       "line 5: <path> is hidden and not drawn");
   gives("<path visibility='hidden' d='M0,0 L1,0'/>", "line 2: <path> is hidden and not drawn");
   gives(
       "<path d=''/>\n<path d='M 5 5'/>\n<polyline points=''/>\n<polygon points='1,1'/>\n"
       "<path stroke='red' d='M5 5 l0 0'/>\n<line x1='3' x2='3'/>",
-      "lines 2, 3, 4, 5, 6 and 1 more: a shape of no size is not drawn");
+      "lines 2, 3, 4, 5, 6 and 1 more: a shape of size 0 is not drawn");
 }
 
 TEST_F(Svg, RulesForAScreenHoldAndOthersAreSaid) {
@@ -154,7 +153,7 @@ TEST_F(Svg, ADrawingOfNothingGivesTheNotesAsItsReason) {
   write("paint.lua", "return require('mission.light_painting').picture { svg = 'p.svg' }");
   const Finished finished = run({"run", "paint.lua"});
   EXPECT_EQ(finished.status, 2);
-  EXPECT_NE(finished.err.find("the drawing has no line of any length: p.svg, line 2: <path> is "
+  EXPECT_NE(finished.err.find("the drawing has no line: p.svg, line 2: <path> is "
                               "hidden and not drawn"),
             std::string::npos)
       << finished.err;
@@ -188,12 +187,12 @@ TEST_F(Svg, UsesSymbolsAndNestedPicturesAreDrawnWhereTheyStand) {
 TEST_F(Svg, WhatCannotBeReadIsRefusedWithItsLine) {
   refuses("\n<rect width='50%' height='3'/>", "line 3: <rect>: width is '50%': shares of");
   refuses("<circle r='-1'/>", "line 2: <circle>: its radius must not be below 0");
-  refuses("<use href='#nothing'/>", "line 2: <use>: '#nothing' names no element");
+  refuses("<use href='#nothing'/>", "line 2: <use>: '#nothing' is not an element");
   refuses("<g id='a'>\n<use href='#a'/></g>", "line 3: <use>: it uses itself");
   refuses("<path d='M0,0 L x'/>", "line 2: <path>: path data: expected a number");
   refuses("<path style='transform: scale(2)' d='M0,0 L1,0'/>", "a transform in a style");
-  refuses("<g>\n</h>", "line 3: </h> closes nothing that is open");
-  refuses("<g>", "closes nothing that is open");
+  refuses("<g>\n</h>", "line 3: </h> has no opening tag");
+  refuses("<g>", "has no opening tag");
   refuses(
       std::string("<a>") +
           [] {
@@ -209,7 +208,7 @@ TEST_F(Svg, TextsOfOtherCharactersAreRefusedWithAllOfThem) {
   const Finished finished = run({"run", "paint.lua"});
   EXPECT_EQ(finished.status, 2);
   EXPECT_NE(finished.err.find("no glyph for '#', U+000A, '\u00e9'; it has A to Z (lower case is "
-                              "painted as capitals), 0 to 9, blank and - . ! ?"),
+                              "drawn as capitals), 0 to 9, blank and - . ! ?"),
             std::string::npos)
       << finished.err;
 }
@@ -217,7 +216,7 @@ TEST_F(Svg, TextsOfOtherCharactersAreRefusedWithAllOfThem) {
 TEST_F(Svg, LowerCaseIsSaidToBePaintedAsCapitals) {
   write("paint.lua", "return require('mission.light_painting').text { text = 'l', height = 1 }");
   const Finished finished = run({"run", "paint.lua"});
-  EXPECT_NE((finished.out + finished.err).find("lower case letters are painted as capitals"),
+  EXPECT_NE((finished.out + finished.err).find("lower case letters are drawn as capitals"),
             std::string::npos)
       << finished.out << finished.err;
 }

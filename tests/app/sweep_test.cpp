@@ -193,7 +193,7 @@ TEST_F(Sweeping, GoesOnWithWhatIsMissing) {
   // Of something else it is another sweep.
   Finished other = run(with({"--resume", "--seed", "2"}));
   EXPECT_EQ(other.status, 2);
-  EXPECT_NE(other.err.find("was made of something else: seed"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("has other inputs: seed"), std::string::npos) << other.err;
   other = run(with({"--resume", "--set", "hard=0.1"}));
   EXPECT_NE(other.err.find("something else: set"), std::string::npos) << other.err;
   write("shot.lua", film("name = 'hop', hard = 0.3,"));
@@ -240,7 +240,8 @@ TEST_F(Sweeping, ReplacesNothingElse) {
   const std::string table = read_file(folder_ / "out/sweep/table.csv");
   finished = run({"sweep", "other.lua", "--vary", "duration=4"});
   EXPECT_EQ(finished.status, 2);
-  EXPECT_NE(finished.err.find("holds the sweep of 'shot.lua'"), std::string::npos) << finished.err;
+  EXPECT_NE(finished.err.find("contains the sweep of 'shot.lua'"), std::string::npos)
+      << finished.err;
   EXPECT_EQ(read_file(folder_ / "out/sweep/table.csv"), table);
   EXPECT_EQ(run({"sweep", "other.lua", "--vary", "duration=4", "-o", "out/sweep"}).status, 0);
 }

@@ -36,7 +36,7 @@ TEST(OwnProcess, ACrashIsAnError) {
               std::raise(SIGSEGV);
               return "";
             }),
-            "reading 'x': the reader crashed on it (Segmentation fault)");
+            "reading 'x': reading it crashed (Segmentation fault)");
   EXPECT_NE(refusal([]() -> std::string { std::abort(); }).find("Aborted"), std::string::npos);
   EXPECT_NE(refusal([]() -> std::string { ::_exit(3); }).find("without an answer"),
             std::string::npos);

@@ -380,7 +380,7 @@ TEST(RandomStart, LiesWhereTheBoxIsFree) {
   bounds.translate(Eigen::Vector3d(500, 0, 0));
   EXPECT_NE(refusal([&] {
               random_start(world.truth, 6, 10, world.pitch, random, bounds);
-            }).find("nothing of the region"),
+            }).find("do not overlap the region"),
             std::string::npos);
 }
 

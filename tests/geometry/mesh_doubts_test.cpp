@@ -119,14 +119,14 @@ TEST_F(MeshDoubts, CoordinatesOfAGridOfTheLandAreToldOrRefused) {
   // UTM: beyond what single precision keeps.
   const std::string utm = refusal(write(house(), 1, {465000, 5247000, 410}));
   EXPECT_THAT(utm, HasSubstr("mesh.obj': it lies between (464994, 524699"));
-  EXPECT_THAT(utm, HasSubstr("a grid of the land (UTM and the like)"));
-  EXPECT_THAT(utm, HasSubstr("single precision keeps them to 0.63 m. Subtract a corner"));
+  EXPECT_THAT(utm, HasSubstr("a map grid (such as UTM)"));
+  EXPECT_THAT(utm, HasSubstr("single precision resolves them to 0.63 m. Subtract a corner"));
   // Nearer, it can be read: 5 mm are lost.
   const MeshFile near = read_mesh(write(house(), 1, {85000, 40000, 0}));
-  EXPECT_THAT(near.doubt, HasSubstr("keeps them to 0.01 m. Subtract a corner"));
+  EXPECT_THAT(near.doubt, HasSubstr("resolves them to 0.01 m. Subtract a corner"));
   // Too large, not too far: another unit.
   const std::string large = refusal(write(house(), 20000));
-  EXPECT_THAT(large, HasSubstr("1 m are taken for one unit of the file; if it is in millimetres"));
+  EXPECT_THAT(large, HasSubstr("one unit of the file is read as 1 m; if it is in millimetres"));
   EXPECT_EQ(large.find("UTM"), std::string::npos) << large;
 }
 

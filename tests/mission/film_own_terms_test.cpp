@@ -215,7 +215,7 @@ TEST_F(FilmOwnTerms, ASpeedTimesTheKeyframes) {
   const double to_middle = result.plan.task.keyframes[1].time;
   EXPECT_GT(result.plan.task.keyframes[2].time - to_middle, 10);
   expect(shot("speed = 3"), "speed: every keyframe has a time; give times or a speed");
-  expect(shot("speed = 3, duration = 8", "yaw_deg = 0"), "speed: the duration says");
+  expect(shot("speed = 3, duration = 8", "yaw_deg = 0"), "speed: the duration determines");
   expect(shot("speed = 3, speed_limit = 2", "yaw_deg = 0"), "speed: above the speed_limit");
   expect(shot("", "time = 4, speed = 3"), "keyframes[2].speed: give a time or a speed");
   expect(shot("speed = 3, timing = 'free'", "yaw_deg = 0"), "there is speed_limit");
@@ -245,7 +245,7 @@ TEST_F(FilmOwnTerms, BystandersAreKeptAwayFrom) {
   EXPECT_FALSE(result.plan.environment.subjects[0].filmed);
   EXPECT_TRUE(result.plan.task.framing.empty());
   expect(shot("keep_away = { { position = {8, 0, 4}, distance = 3 } }"),
-         "keyframes[2].position: 1 m from bystander 'bystander', and 3 m are to be kept");
+         "keyframes[2].position: 1 m from bystander 'bystander', and 3 m are required");
   expect(shot("keep_away = { { position = {8, 0, 4} } }"), "keep_away[1].distance: missing");
   expect(shot("keep_away = { { distance = 4 } }"), "keep_away[1]: expected a position");
 }

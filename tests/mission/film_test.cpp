@@ -146,12 +146,12 @@ TEST_F(FilmTest, WhatTheVehicleCannotFilmIsRefused) {
   expect(shot("vehicle = 'vehicles/racer',", ", look_at = {0, 0, 1}"),
          "keyframes[2].look_at: vehicle 'vehicles/racer' has no gimbal");
   expect(shot("subject = { position = {5, -6, 4}, distance = 6 },"),
-         "keyframes[2].position: 1 m from subject 'subject', and 6 m are to be kept");
+         "keyframes[2].position: 1 m from subject 'subject', and 6 m are required");
   expect(shot("subject = { position = {0, 0, 1} }, cuts = { { start = 0, finish = 8 } },"),
-         "cuts: nothing of what is looked at is left to be seen");
+         "cuts: no part of the subject is in the image");
   expect(shot("subject = { track = function(t) return {3 * math.sin(t * 20 * math.pi + 1), 0, 1} "
               "end },"),
-         "leaves the straight way between 0 and 0.1 s");
+         "between 0 and 0.1 s it is");
 }
 
 // A subject on ground that must not be flown over is filmed from outside it.
@@ -186,7 +186,7 @@ TEST_F(FilmTest, WrongSubjectsAreNamed) {
   expect(shot("subject = { position = {0, 0, 1} }, subjects = {},"), "subject or subjects");
   const std::string two =
       "subjects = { { name = 'a', position = {0, 0, 1} }, { name = 'b', position = {1, 0, 1} } },";
-  expect(shot(two), "with several, keyframes say which: look_at = \"a\"");
+  expect(shot(two), "with several, keyframes select one: look_at = \"a\"");
   expect(shot(two, ", look_at = 'c'"), "keyframes[2].look_at: there is no subject named 'c'");
   expect(shot("subjects = { { name = 'a', position = {0, 0, 1} }, "
               "{ name = 'a', position = {1, 0, 1} } },"),
@@ -201,7 +201,7 @@ TEST_F(FilmTest, WrongCutsAreNamed) {
   expect(cut("{ start = 5, finish = 9 }"), "cuts[1]: ends at 9 s, after the film's 8 s");
   expect(cut("{ start = 5, finish = 6 }, { start = 5.5, finish = 7 }"), "cuts[2].start");
   expect(cut("{ finish = 6 }"), "cuts[1].start: missing");
-  expect(shot("cuts = { { start = 1, finish = 2 } },"), "cuts: there is nothing to cut between");
+  expect(shot("cuts = { { start = 1, finish = 2 } },"), "cuts: a cut needs a subject");
 }
 
 TEST_F(FilmTest, WrongObstaclesAreNamed) {
@@ -291,8 +291,8 @@ TEST_F(FilmTest, WishesForTimesMustMakeSense) {
            " keyframes = { { position = {0, 0, 3} }, { position = {9, 0, 3}, " + second +
            " }, { position = {20, 5, 3} } } }";
   };
-  expect(timed("time = 0.5"), "keyframes[2]: cannot be passed when it asks to be: from the one");
-  expect(timed("latest = 1"), "keyframes[2]: cannot be passed when it asks to be");
+  expect(timed("time = 0.5"), "keyframes[2]: cannot be passed at its time: from the keyframe");
+  expect(timed("latest = 1"), "keyframes[2]: cannot be passed at its time");
   expect(timed("earliest = 9, latest = 5"), "keyframes[2].latest: comes before earliest");
   expect(timed("time = 9, latest = 12"), "keyframes[2].time: give a time, or earliest and latest");
   expect(timed("time_weight = 1"), "keyframes[2].time_weight: needs a time");

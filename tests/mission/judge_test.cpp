@@ -46,7 +46,7 @@ TEST_F(Judging, ReadsTheFilesOfAMission) {
   EXPECT_NE(judged(film("obstacles = { { type = 'mesh', file = 'house.obj' } },")), "right");
   write_file_atomically(folder_ / "a.svg", "<svg");
   EXPECT_NE(judged("return require('mission.light_painting').picture { svg = 'a.svg' }"), "right");
-  EXPECT_NE(judged("return require('mission.scan').of_mesh {}").find("nothing to scan"),
+  EXPECT_NE(judged("return require('mission.scan').of_mesh {}").find("no scene: name a scene"),
             std::string::npos);
 }
 

@@ -50,14 +50,14 @@ TEST(LuaValue, RefusesWhatNoTreeHolds) {
   expect("{x = {0 / 0}}", "shot.lua:4: given.x[1]: expected a finite number, got NaN");
   expect("{x = {y = 1 / 0}}", "given.x.y: expected a finite number, got an infinity");
   expect("{s = '\\xff'}", "given.s: expected text in UTF-8");
-  expect("{f = print}", "given.f: a function cannot stand here");
+  expect("{f = print}", "given.f: a function is not allowed here");
   expect("{1, 2, x = 3}", "given: a table with both numbered and named entries ('x')");
   expect("{[1] = 1, [3] = 3}", "given: a list with gaps");
   expect("{[0] = 1}", "given: a list with gaps");
   expect("{[1.5] = 1}", "keys must be texts");
   expect("{[true] = 1}", "not a boolean");
   expect("(function() local t = {} t.a = {t} return t end)()",
-         "given.a[1]: a table that holds itself");
+         "given.a[1]: a table that contains itself");
   expect("(function() local t = {} for i = 1, 40 do t = {t} end return t end)()",
          "tables nested more than 32 deep");
   // Twice the same table is no circle.

@@ -73,7 +73,7 @@ TEST_F(MissionTest, WrongKeyframesAreNamed) {
   expect(shot("{time=0, position={0,0,1}}, {time=5, position={1,0,1}}, {time=3, position={2,0,1}}"),
          "shot.lua:3: keyframes[3].time: 3 s comes before keyframe 2 at 5 s");
   expect(shot("{time=1, position={0,0,1}}, {time=1, position={1,0,1}}"),
-         "shot.lua:3: keyframes[2].time: 1 s is keyframe 1's time as well");
+         "shot.lua:3: keyframes[2].time: 1 s is also the time of keyframe 1");
   expect(shot("{time=0, position={0,0,1}}, {time=25, position={1,0,1}}", "duration = 20, "),
          "shot.lua:3: keyframes[2].time: 25 s is outside the duration of 20 s");
   expect(shot("{time=-1, position={0,0,1}}"), "keyframes[1].time: expected at least 0 s");
@@ -87,7 +87,7 @@ TEST_F(MissionTest, WrongKeyframesAreNamed) {
   expect("return require('mission.film').shot { name = 'x' }", "keyframes: missing");
   expect("return require('mission.film').shot(3)", "film.shot: expected a table, got number");
   expect("return require('mission.film').from_file { name = 'x' }",
-         "shot.lua:1: give the shot to fly: --set input=PATH");
+         "shot.lua:1: no shot: --set input=PATH");
   expect("return require('mission.film').from_file { file = 'none.json' }",
          "data file 'none.json' not found in ");
   expect(shot("{time=0, position={0,0,1}}, {time=5, position={1,0,1}}", "start = 'moving', "),

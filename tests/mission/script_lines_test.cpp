@@ -91,7 +91,7 @@ TEST_F(ScriptLinesOfErrors, NameTheFieldAndNotTheCall) {
   expect(
       "return require('mission.race').course {\n laps = 3,\n gates = {\n { shape = 'ball', "
       "position = {0, 0, 2}, radius = -1 } } }",
-      "shot.lua:2: laps: laps are flown on a closed course");
+      "shot.lua:2: laps: laps need a closed course");
   expect(
       "return require('mission.race').course {\n start = {0, 0, 2},\n gates = {\n { shape = "
       "'ball', position = {0, 0, 2},\n radius = -1 } } }",

@@ -185,7 +185,7 @@ TEST_F(TermTest, WrongTablesAreNamed) {
   refuses("p:add_cost { name = 'mine', wieght = 2, residual = function(s) return s.yaw end }",
           "add_cost 'mine'.wieght: unknown key; did you mean 'weight'?");
   refuses("p:add_cost { name = 'mine', type = 'keyframe', residual = function(s) return 1 end }",
-          "add_cost: give a plugin's `type` or a `residual` of your own, not both");
+          "add_cost: give a plugin's `type` or a `residual`, not both");
   refuses("p:add_constraint { name = 'mine', value = function(s) return s.yaw end }",
           "add_constraint 'mine': give `lower`, `upper` or both");
   refuses(

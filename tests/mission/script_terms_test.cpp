@@ -227,7 +227,7 @@ TEST_F(TermTest, ParametersChangeBetweenSolves) {
   refuses(std::string(kTerm) +
               " after = function() p:set_parameter { term = 'stya', name = "
               "'height', value = 5 } end",
-          "no term 'stya' of the script's own; there is 'stay'");
+          "no term 'stya' of the script; there is 'stay'");
   refuses(std::string(kTerm) +
               " after = function() p:set_parameter { term = 'stay', name = "
               "'side', value = 5 } end",

@@ -57,7 +57,7 @@ TEST_F(ShotFiles, BrokenFilesAreRefusedWithLineAndKey) {
            {with(good, "[0, 1]"), "1 keyframes, but 2 times"},
            {with("", "[]"), "0 keyframes, but 0 times"},
            {with(good, "[\"now\"]"), "keyframeTimes[1]: expected a number"},
-           {with("5", "[0]"), "keyframe 1 is missing, or no table"},
+           {with("5", "[0]"), "keyframe 1 is missing, or not a table"},
            {with(R"({"lookAtNED": {"n": 1, "e": 2, "d": 3}})", "[0]"),
             "keyFrameList[1].lookFromNED: missing; expected {n, e, d}, or cameraPose"},
            {with(keyframe(R"({"n": 1, "e": 2})", R"({"n": 9, "e": 2, "d": 0})"), "[0]"),

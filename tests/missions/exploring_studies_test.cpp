@@ -115,7 +115,7 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   refused("--utility learned", folder_ / "twice", "--utility learned: is named twice");
   refused("--resume --seed 5", broken, "seed is 1 there, 5 here");
   refused("--resume --moves clear=3", broken, "\"clear\":6.0} there, {\"step\":2.5,");
-  refused("", broken, "go on with --resume");
+  refused("", broken, "continue it with --resume");
   // Another mesh of the name, and a folder that is none of ours.
   const std::string mesh = read_file(folder_ / "yard.obj");
   write_file_atomically(folder_ / "yard.obj", mesh + "# moved\n");
@@ -124,7 +124,7 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   fs::create_directories(folder_ / "elsewhere");
   write_file_atomically(folder_ / "elsewhere" / "yard.obj", mesh);
   refused("--world '" + (folder_ / "elsewhere/yard.obj").string() + "'", folder_ / "twice",
-          "would both be called 'yard.obj'");
+          "would both have the name 'yard.obj'");
   // Names that make the same names of files.
   const auto blank = [&](const char* name) {
     fs::copy_file(folder_ / "yard.obj", folder_ / name);
@@ -208,7 +208,7 @@ TEST_F(Exploring, AnEvaluationIsComparedWithAnother) {
   const char* usual = "--episodes 2 --steps 3";
   for (const auto& [size, more, expected] :
        std::vector<std::tuple<const char*, std::string, const char*>>{
-           {usual, "--seed 2" + against, "its starts are not these: seed is 1 there, 2 here"},
+           {usual, "--seed 2" + against, "its starts differ: seed is 1 there, 2 here"},
            {"--episodes 2 --steps 4", against, "steps is 3 there, 4 here"},
            {"--episodes 3 --steps 3", against, "frontier's episode 3 in yard.obj is not there"},
            {usual, "--utility learned" + against, "learned's episode 1 in yard.obj is not there"},
@@ -218,7 +218,7 @@ TEST_F(Exploring, AnEvaluationIsComparedWithAnother) {
     EXPECT_FALSE(fs::exists(folder_ / "other")) << more;
   }
   EXPECT_EQ(evaluate("--resume" + against, "clear"), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("is this evaluation's own folder"));
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("is the folder of this evaluation"));
 }
 
 // Inside a closed box without a floor laid under it, and only what is a place or an axis.
@@ -350,7 +350,7 @@ TEST_F(Exploring, AModelIsTrainedForAnotherMapping) {
   damaged[damaged.size() - 9] ^= 1;
   write_file_atomically(sample, damaged);
   EXPECT_EQ(run("train score", others + "--model " + model), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("is not what its checksum is of"));
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("does not match its checksum"));
   EXPECT_EQ(run("train dataset", world + "--set epochs=3 -o " + samples), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("epochs: unknown key"));
   // A grid that no network takes is refused before anything is flown.

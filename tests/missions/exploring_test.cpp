@@ -88,9 +88,10 @@ TEST_F(Exploring, DamagedModelsAndEmptyScenesAreNamed) {
 // A budget that is too short for the first image: no plan, and it says why.
 TEST_F(Exploring, WithoutAnImageThereIsNoPlan) {
   const std::string said = (folder_ / "said.txt").string();
-  for (const auto& [ends, expected] : {std::pair{"--set budget=0.1", "the next view lies beyond"},
-                                       {"--set wall_clock_guard=1e-9", "stopped by the wall"},
-                                       {"--quiet --set budget=0.1", "the next view lies beyond"}}) {
+  for (const auto& [ends, expected] :
+       {std::pair{"--set budget=0.1", "the next view is beyond"},
+        {"--set wall_clock_guard=1e-9", "stopped by wall_clock_guard"},
+        {"--quiet --set budget=0.1", "the next view is beyond"}}) {
     const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing run '" +
                              (kExamples / "../explore/own_mesh.lua").string() + "' --out '" +
                              (folder_ / "short").string() + "' " + few(ends) + " > '" + said +

@@ -107,7 +107,7 @@ TEST_F(LightPainting, SvgIsReadWhole) {
 TEST_F(LightPainting, WhatCannotBeDrawnIsRefused) {
   EXPECT_NE(refused("text = 'a#b'").find("no glyph for '#'"), std::string::npos);
   EXPECT_NE(refused("text = '  '").find("nothing to draw"), std::string::npos);
-  EXPECT_NE(refused("height = 2").find("a drawing comes from one of"), std::string::npos);
+  EXPECT_NE(refused("height = 2").find("give one of text, svg"), std::string::npos);
   EXPECT_NE(refused("text = 'A', svg = 'b.svg'").find("one of"), std::string::npos);
   EXPECT_NE(refused("svg = 'absent.svg'").find("absent.svg"), std::string::npos);
   write_file_atomically(folder_ / "none.svg", "<svg><text>A</text></svg>");

@@ -84,15 +84,16 @@ TEST_F(Mapping, WhatIsMissingOrBrokenIsSaid) {
   // What the mission settles cannot be set in the backend, not even to the same value.
   for (const char* value : {"0.1", "0.2"}) {
     EXPECT_EQ(command("run " + examples + "street.lua --set map.resolution=" + value), 2);
-    EXPECT_NE(error().find("map.resolution: every map takes it: set resolution instead"),
-              std::string::npos)
+    EXPECT_NE(
+        error().find("map.resolution: it is an option of the mission: set resolution instead"),
+        std::string::npos)
         << error();
   }
   EXPECT_EQ(command("run " + examples + "street.lua --set map.maximum_range=3"), 2);
   EXPECT_NE(error().find("set sensor.range instead"), std::string::npos) << error();
   EXPECT_EQ(command("run " + examples + "own_map.lua --set input=x.bt --set map.resolution=0.5"),
             2);
-  EXPECT_NE(error().find("map.resolution: it is the file's"), std::string::npos) << error();
+  EXPECT_NE(error().find("map.resolution: the file determines it"), std::string::npos) << error();
   EXPECT_EQ(command("run " + examples + "street.lua --set scene=walls"), 2);
   EXPECT_NE(error().find("'walls' is a part of scenes"), std::string::npos) << error();
   for (const auto& entry : std::filesystem::directory_iterator(

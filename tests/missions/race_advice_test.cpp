@@ -27,7 +27,7 @@ TEST_F(RaceAdvice, WhatNoThrustMendsIsSaid) {
       "radius = 0.3 } }");
   ASSERT_EQ(flown.status, 1);
   ASSERT_EQ(notes(flown).size(), 1u);
-  EXPECT_THAT(notes(flown)[0], HasSubstr("no thrust tried from "));
+  EXPECT_THAT(notes(flown)[0], HasSubstr("no tried thrust from "));
 }
 
 TEST_F(RaceAdvice, PlansOfRotorsAreFlownAndRaced) {

@@ -52,8 +52,8 @@ TEST_F(Covering, TheTerminalThePlanAndTheReportSayTheSame) {
     if (note.as_text().starts_with("surface: the tour sees")) sentence = note.as_text();
   ASSERT_FALSE(sentence.empty());
   // Only candidates were asked, not every free place.
-  const std::string considered = std::to_string(answer.at("tour").at("candidates").as_integer()) +
-                                 " views that were considered";
+  const std::string considered =
+      std::to_string(answer.at("tour").at("candidates").as_integer()) + " candidate views";
   for (const std::string& said :
        {"visible from any of the " + considered, std::string("unknown and not counted: ")})
     EXPECT_THAT(sentence, HasSubstr(said));

@@ -30,11 +30,11 @@ TEST_F(Scanning, AHutIsScannedAndCertified) {
   EXPECT_LE(read.trajectory.duration(), 70);
   // Legs, one by one, take what the whole flight takes, turns on the spot included.
   EXPECT_NEAR(read.trajectory.duration(), tour.at("seconds").as_number(), 1);
-  EXPECT_EQ(plan().find("sees the region's floor"), std::string::npos);
+  EXPECT_EQ(plan().find("sees the floor of the region"), std::string::npos);
   EXPECT_EQ(read.environment.obstacles.at(1).parameters.at("file").as_text(), "map.ot");
   EXPECT_EQ(read.environment.obstacles.at(0).parameters.at("file").as_text(), "prior.ply");
   const std::string report = read_file(folder_ / "out/report.html");
-  for (const char* section : {"What the first flight knew", "Candidates", "One view",
+  for (const char* section : {"Knowledge of the first flight", "Candidates", "One view",
                               "Information over the budget", "Coverage"})
     EXPECT_THAT(report, HasSubstr(section));
 }
@@ -118,11 +118,11 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
               HasSubstr("holds no surface"));
   EXPECT_THAT(refused("--set region.lower=[-6,-5,30] --set region.upper=[6,5,33] "
                       "--set safe_height=9"),
-              HasSubstr("would have to fly over 32 m"));
-  EXPECT_THAT(refused("--set motions.alpha=1"), HasSubstr("joined to the start"));
+              HasSubstr("must fly above 32 m"));
+  EXPECT_THAT(refused("--set motions.alpha=1"), HasSubstr("connected to the start"));
   // The roof is seen and the ground is not: the plan says so.
   ASSERT_EQ(run("--set range=13", "hut.lua", "short"), 0) << error();
-  EXPECT_THAT(plan("short"), HasSubstr("no first flight sees the region's floor"));
+  EXPECT_THAT(plan("short"), HasSubstr("no first flight sees the floor of the region"));
   // Most of the battery is left over.
   ASSERT_EQ(run("--set candidates.most=12 --set tour.budget=900", "hut.lua", "little"), 0);
   EXPECT_THAT(plan("little"), testing::ContainsRegex("the tour takes 1[0-9]+ of 900 s"));
@@ -138,14 +138,14 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set prior.map=a.ot"), HasSubstr("both a map and a mesh"));
   // What contradicts is said before anything is flown.
   EXPECT_THAT(refused("--set tour.budget_metres=300"), HasSubstr("give one of them"));
-  EXPECT_THAT(refused("--set tour.images=1"), HasSubstr("two at least"));
+  EXPECT_THAT(refused("--set tour.images=1"), HasSubstr("at least two"));
   EXPECT_THAT(refused("--set 'tour={solver: greedy, begin: cost_benefit}'"), HasSubstr("begin"));
   EXPECT_THAT(refused("--set input=hut.obj"), HasSubstr("in place of the scene 'hut'"));
   EXPECT_THAT(refused("--set ground=true"), HasSubstr("ground: is of an input"));
   EXPECT_THAT(refused("--set region.lower=[6,-5,0] --set region.upper=[-6,5,7]"),
               HasSubstr("lower must be below upper: 6 and -6 along x"));
   EXPECT_THAT(refused("--set ceiling=3"), HasSubstr("3 m is below safe_height, 9 m"));
-  EXPECT_THAT(refused("--set range=3"), HasSubstr("no first flight would see anything"));
+  EXPECT_THAT(refused("--set range=3"), HasSubstr("no first flight sees the region"));
   EXPECT_THAT(refused("--set resolution=0.01"), HasSubstr("choose a coarser resolution"));
   EXPECT_THAT(refused("--set body=[1,0,1]"), HasSubstr("half edges must be above 0"));
   write_file_atomically(folder_ / "none.lua",

@@ -42,8 +42,9 @@ class SceneMoves : public Exploring {
 TEST_F(SceneMoves, AreAppliedAndNamedWhereTheUserSaysNothing) {
   const Said said = evaluate("--world '" + room() + "'" + in("own"));
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_THAT(said.out, HasSubstr("room.lua 1 was explored by the moves that its scene recommends: "
-                                  "step 0.8"));
+  EXPECT_THAT(said.out,
+              HasSubstr("room.lua 1 was explored with the moves that its scene recommends: "
+                        "step 0.8"));
   const Value settings = from_json(read_file(folder_ / "own/settings.json"), "settings");
   EXPECT_EQ(settings.at("moves").at("step").as_number(), 2.5);
   EXPECT_EQ(settings.at("world_moves").at("room.lua 1").at("clear").as_number(), 1.5);
@@ -80,9 +81,9 @@ TEST_F(SceneMoves, AFolderOfOtherMovesIsNotGoneOnWith) {
 TEST_F(SceneMoves, WithoutThemTheHintNamesTheOptions) {
   const Said said = evaluate("--world '" + room("") + "'" + in("none"));
   EXPECT_EQ(said.status, 2);
-  EXPECT_THAT(said.err, HasSubstr("world 'room.lua 1': found no place to start from"));
+  EXPECT_THAT(said.err, HasSubstr("world 'room.lua 1': found no start"));
   EXPECT_THAT(said.err, HasSubstr("--moves clear=3 --moves step=1.25"));
-  EXPECT_THAT(said.err, HasSubstr("the box of 6 m that is cleared"));
+  EXPECT_THAT(said.err, HasSubstr("the box of 6 m that must be free"));
 }
 
 TEST_F(SceneMoves, AMissionInAShippedSceneKnowsThem) {

@@ -66,7 +66,8 @@ TEST_F(Simulation, WhatWasSimulatedIsSaid) {
   EXPECT_NEAR(degrees(conditions.at("wind_yaw").as_number()), 90, 1e-9);
   EXPECT_NEAR(conditions.at("mass_error").as_number(), 0.1, 1e-12);
   EXPECT_EQ(conditions.at("seed").as_number(), 7);
-  for (const char* text : {"it blows to", "gusts", "seed of the gusts", "mass above the plan"})
+  for (const char* text :
+       {"wind blows towards", "gusts", "seed of the gusts", "mass above that of the plan"})
     EXPECT_NE(read_file(page).find(text), std::string::npos) << text;
 }
 

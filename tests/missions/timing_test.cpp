@@ -115,7 +115,7 @@ TEST_F(FreeFilms, ADashTakesWhatTheAccelerationAllows) {
 TEST_F(FreeFilms, WhatCannotBeGrantedIsNamed) {
   const Flown early = timed(", latest = 1.5", "", "", "", 2);
   EXPECT_EQ(early.status, 2);
-  EXPECT_NE(to_json(early.result).find("no times grant every wish"), std::string::npos)
+  EXPECT_NE(to_json(early.result).find("no times meet every wish"), std::string::npos)
       << to_json(early.result);
   const Flown fixed = timed("", "", "stretch = 2,", "", 2);
   EXPECT_EQ(fixed.status, 2);

@@ -56,9 +56,9 @@ TEST_F(Vehicles, AFixedWingFilmsInTurnsThatItCanFly) {
 }
 
 TEST_F(Vehicles, WhatAModelLacksIsNamed) {
-  EXPECT_THAT(said("fixed_wing.lua", "--set start=rest"),
-              HasSubstr("start: 'rest' is asked for: give free or moving, and the model of this "
-                        "vehicle cannot stand still"));
+  EXPECT_THAT(
+      said("fixed_wing.lua", "--set start=rest"),
+      HasSubstr("start: the model of this vehicle cannot stand still; give free or moving"));
   EXPECT_THAT(said("fixed_wing.lua", "--set keyframes[2].yaw_deg=20"), HasSubstr("yaw_deg"));
   EXPECT_THAT(said("hello.lua", "--set model=fixed_wing"), HasSubstr("has no wing"));
   EXPECT_THAT(said("hello.lua", "--set model=gimbal"), HasSubstr("has no block 'position'"));

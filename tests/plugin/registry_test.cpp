@@ -115,8 +115,8 @@ TEST_F(RegistryTest, NamesTheNearestOfUnknownNames) {
   });
   EXPECT_EQ(message,
             "shot.lua:3: unknown fixture 'goood'; did you mean 'good'?; "
-            "known: doubled, good, throwing; those of a folder of your own are found with "
-            "--plugin-path FOLDER");
+            "known: doubled, good, throwing; --plugin-path FOLDER adds a folder of your "
+            "plugins");
   EXPECT_SAYS(refusal([&] { plugins.find("cost_term", "good"); }), "its kind is fixture");
   EXPECT_SAYS(refusal([&] { plugins.find("cost_term", "x"); }), folder_.string());
   fs::remove(folder_ / "throwing.json");

@@ -125,7 +125,7 @@ TEST(SolveRecord, SaysWhatIsMissed) {
   EXPECT_EQ(say_missed({}), "");
   EXPECT_EQ(say_missed({{"near", "near.x at 1 s", 0.0, 1}}), "");
   EXPECT_EQ(say_missed({{"near", "near.x at 1 s", 2.34567, 1}, {"far", "far", 1, 1}}),
-            "near.x at 1 s is missed by 2.346");
+            "near.x at 1 s is violated by 2.346");
   EXPECT_EQ(say_missed({{"near", "near.x at 1 s", std::nan(""), 1}}), "");
 }
 

@@ -247,7 +247,7 @@ TEST_F(ExplorationFiles, TheTableSaysWhatItsRowsSay) {
 
 TEST_F(ExplorationFiles, EpisodesOfOthersAreRefused) {
   const ExplorationFigures figures = asked({"office"}, {"count"}, 1, 2);
-  EXPECT_NE(refusal(figures).find("office_count_1.json' is not a whole episode: delete it"),
+  EXPECT_NE(refusal(figures).find("office_count_1.json' is not a complete episode: delete it"),
             std::string::npos);
   const fs::path file = base_ / "now/episodes/office_count_1.json";
   for (const char* text : {"", "{}", "[]", R"({"world": "office", "observed": [1)",
@@ -256,7 +256,7 @@ TEST_F(ExplorationFiles, EpisodesOfOthersAreRefused) {
                            R"({"world": "office", "utility": "count", "episode": 1,
                                "end": "", "observed": [1]})"}) {
     write_file_atomically(file, text);
-    EXPECT_NE(refusal(figures).find("is not a whole episode"), std::string::npos) << text;
+    EXPECT_NE(refusal(figures).find("is not a complete episode"), std::string::npos) << text;
   }
   // "a b" and "a_b" have the same files.
   flown({"a b", "count", 1}, {1}, 1);

@@ -300,7 +300,7 @@ TEST(ScanTables, ThePageHasCurvesWhereThereAreBudgets) {
     }
   }
   EXPECT_EQ(charts, 2);
-  EXPECT_NE(render_html(report).find("Scan tours against their rivals"), std::string::npos);
+  EXPECT_NE(render_html(report).find("Comparison of scan tours"), std::string::npos);
   const std::vector<ScanRow> one{row_of("ours", 1, 0.5)};
   for (const Block& block : study_report(summarise(one), one).sections.front().blocks) {
     EXPECT_EQ(std::get_if<Chart>(&block), nullptr);

@@ -40,8 +40,8 @@ TEST(StudySettings, TheFirstDifferenceIsNamed) {
             "seed is not said there, 1 here");
   EXPECT_EQ(differs(R"({"seed": [1], "files": {}})", R"({"files": {}})"),
             "seed is [1] there, not said here");
-  EXPECT_EQ(differs("3", same), "nothing there says how");
-  EXPECT_EQ(differs("null", same), "nothing there says how");
+  EXPECT_EQ(differs("3", same), "its settings are not stated");
+  EXPECT_EQ(differs("null", same), "its settings are not stated");
 }
 
 // A folder that is joined by other worlds and utilities still agrees on those of both.

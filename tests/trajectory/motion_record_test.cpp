@@ -55,9 +55,9 @@ TEST(MotionRecord, NamesWhatDoesNot) {
   EXPECT_THAT(problem_with([](auto& m) {
                 m.table->rates.push_back({"pull", 0, 0});
               }),
-              HasSubstr("is of nothing that changes"));
+              HasSubstr("is not of a quantity that changes"));
   EXPECT_THAT(problem_with([](auto& m) { m.table->rates[0].operation = 999; }),
-              HasSubstr("is of operation 999, which there is not"));
+              HasSubstr("is of operation 999, which does not exist"));
   EXPECT_THAT(problem_with([](auto& m) { m.table->operations[0].name = "wind"; }),
               HasSubstr("reads 'wind', which the motion does not have"));
   EXPECT_THAT(problem_with([](auto& m) { m.table->operations[2].operands[0] = 7; }),
@@ -102,7 +102,7 @@ TEST(MotionRecord, PlanCarriesColumnsAndDerivatives) {
     plan_from_value(nameless);
     ADD_FAILURE() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("'glide' is none of force, rotors, path"));
+    EXPECT_THAT(error.what(), HasSubstr("'glide' is not force, rotors or path"));
   }
 }
 

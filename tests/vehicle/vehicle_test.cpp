@@ -96,7 +96,7 @@ TEST(Vehicle, RefusesLimitsThatContradict) {
   EXPECT_THAT(error_of(with("rotors", "thrust", pair_of(8, 0.2))), HasSubstr("below the largest"));
   EXPECT_THAT(error_of(with("gimbal", "pitch_deg", pair_of(0, -90))),
               HasSubstr("the range 0 to -90 degrees is empty"));
-  EXPECT_THAT(error_of(with("gimbal", "pitch_rate_deg", 0)), HasSubstr("no rate to turn with"));
+  EXPECT_THAT(error_of(with("gimbal", "pitch_rate_deg", 0)), HasSubstr("but a rate of 0"));
   EXPECT_THAT(error_of(with("", "yaw_share", 1.0)), HasSubstr("yaw_share"));
   EXPECT_THAT(error_of(with("", "inertia", Value(Value::List{0.01, 0.01, 0.03}))),
               HasSubstr("moment of inertia"));

@@ -203,7 +203,7 @@ TEST(HostilePlans, MotionsThatNobodyCanIntegrate) {
     return refusal_after([&](Plan& p) { p.trajectory.motion = motion; });
   };
   EXPECT_THAT(refusal({.name = "submarine"}),
-              HasSubstr("the motion 'submarine' has no integrator in this version, which knows "
+              HasSubstr("the motion 'submarine' has no integrator in this version, which has "
                         "force, rotors, path, velocity, coordinated_turn"));
   EXPECT_THAT(
       refusal({.name = "velocity"}),

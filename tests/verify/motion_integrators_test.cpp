@@ -188,7 +188,7 @@ TEST(VelocityIntegrator, FollowsAJerkLimitedRamp) {
   const Certificate certificate = verify(plan_of(vehicle, trajectory));
   EXPECT_TRUE(certificate.find("jerk")->pass);
   EXPECT_TRUE(certificate.find("defect_state")->pass);
-  EXPECT_THAT(certificate.find("thrust_max")->skipped, HasSubstr("nothing is known of thrust"));
+  EXPECT_THAT(certificate.find("thrust_max")->skipped, HasSubstr("the thrust is not known"));
 
   Plan jumps = plan_of(vehicle, trajectory);
   jumps.trajectory.samples[1].acceleration.x() += 0.05;

@@ -36,11 +36,10 @@ TEST(ProvenanceCheck, ChangesAgainstAnOlderCertificateAreNamed) {
   EXPECT_TRUE(changes_since(stored, verify(plan)).empty());
   plan.vehicle.find("limits")->set("speed_across", 20.0);
   plan.budget = 7.9;
-  EXPECT_EQ(
-      changes_since(stored, verify(plan)),
-      (std::vector<std::string>{
-          "speed_across was judged by a limit of 10 when it was planned, and is now by 20 m/s",
-          "budget passed when it was planned, and is now failed"}));
+  EXPECT_EQ(changes_since(stored, verify(plan)),
+            (std::vector<std::string>{
+                "speed_across was judged by a limit of 10 at planning, and is now by 20 m/s",
+                "budget passed at planning, and is now failed"}));
   EXPECT_TRUE(changes_since(Value(), verify(plan)).empty());
 }
 

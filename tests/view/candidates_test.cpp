@@ -166,7 +166,7 @@ std::string refusal(const std::vector<Viewpoint>& given, const CandidateSettings
 
 TEST(Candidates, NoFreeStartIsSaid) {
   using testing::HasSubstr;
-  EXPECT_THAT(refusal({}, candidate_settings()), HasSubstr("no viewpoint to begin with"));
+  EXPECT_THAT(refusal({}, candidate_settings()), HasSubstr("no start"));
   EXPECT_THAT(refusal({kStart[0], {{5.2, 0, 5}, 0, 0}}, candidate_settings()),
               HasSubstr("viewpoint 2 to begin with is not in free space"));
   EXPECT_THAT(refusal({{{0, 0, 50}, 0, 0}}, candidate_settings()), HasSubstr("outside the room"));

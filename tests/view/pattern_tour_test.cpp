@@ -116,7 +116,7 @@ TEST(FreePatterns, TakeAsManyViewpointsAsTheBudgetAllowsEvenly) {
   ASSERT_EQ(fewer.views.size(), 5u);  // 0, 2, 4, 6, 8: 4 legs of 3 s; six views: 9 m and 5 s
   for (std::size_t i = 0; i < 5; ++i)
     EXPECT_EQ(fewer.views[i].position.x(), 2.0 * static_cast<double>(i)) << i;
-  EXPECT_NE(fewer.message.find("5 of the pattern's 11"), std::string::npos) << fewer.message;
+  EXPECT_NE(fewer.message.find("5 of the 11"), std::string::npos) << fewer.message;
   EXPECT_NE(fewer.message.find("20 s of 12.5 s"), std::string::npos) << fewer.message;
   const FreePattern none = fly_freely(line, 1, leg);
   EXPECT_TRUE(none.views.empty());
@@ -177,7 +177,7 @@ TEST(PatternTours, TakeFewerWhereTheBudgetIsSmall) {
     last = tour.flown;
   }
   EXPECT_NE(fly_pattern(TourProblem(Grid(0.3 * needed).definition), whole.viewpoints, pattern)
-                .message.find("all would take"),
+                .message.find("all take"),
             std::string::npos);
 }
 

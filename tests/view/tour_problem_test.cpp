@@ -116,7 +116,7 @@ TEST(TourProblems, RefuseWhatIsNoProblem) {
   EXPECT_TRUE(has(refusal(d), "not both"));
   d.motions.clear();
   d.legs[1] = 4;
-  EXPECT_TRUE(has(refusal(d), "the same there and back"));
+  EXPECT_TRUE(has(refusal(d), "the same in both directions"));
   d.image_limit = 0;
   EXPECT_TRUE(has(refusal(d), "at least 1"));
 }

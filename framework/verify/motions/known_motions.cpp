@@ -68,7 +68,7 @@ std::vector<std::string> motion_faults(const MotionRecord& motion) {
   const KnownMotion* known = known_motion(motion.name);
   if (!known && !motion.table)
     problems.push_back("the motion '" + motion.name +
-                       "' has no integrator in this version, which knows " + known_motion_names() +
+                       "' has no integrator in this version, which has " + known_motion_names() +
                        "; a plan of another motion states its derivatives");
   if (!known) return problems;
   if (motion.table)

@@ -45,7 +45,7 @@ class BoundaryState final : public DifferentiableConstraint<BoundaryState> {
                                     : layout.indices({"position", "yaw", "velocity"});
     for (const End& end : ends_)
       if (whole && !end.yaw.empty())
-        throw InputError(end.name + "_yaw: this model has an orientation, no yaw");
+        throw InputError(end.name + "_yaw: this model has an orientation instead of a yaw");
     for (const char* name : {"yaw_rate", "force", "yaw_torque", "body_rates", "acceleration"})
       if (layout.find(name) >= 0 && (whole || std::string(name) != "body_rates"))
         blocks.push_back(layout.find(name));
@@ -126,7 +126,7 @@ class BoundaryState final : public DifferentiableConstraint<BoundaryState> {
     const auto& v = end.velocity;
     if (std::hypot(v[0], v[1]) > vehicle.speed_across_max || v[2] > vehicle.climb_speed_max ||
         -v[2] > vehicle.descent_speed_max)
-      throw InputError(end.name + "_velocity is beyond the vehicle's limits of " +
+      throw InputError(end.name + "_velocity exceeds the limits of the vehicle, " +
                        std::to_string(vehicle.speed_across_max) + " m/s across, " +
                        std::to_string(vehicle.climb_speed_max) + " m/s up and " +
                        std::to_string(vehicle.descent_speed_max) + " m/s down");

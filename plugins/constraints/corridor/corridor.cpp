@@ -146,7 +146,7 @@ class Corridor final : public DifferentiableConstraint<Corridor, 4> {
         if (a.normal != -b.normal || a.offset + b.offset >= 2 * bulge) continue;
         char text[120];
         std::snprintf(text, sizeof text,
-                      "corridor: the regions at %.4g s have no place in common; let them overlap",
+                      "corridor: the regions at %.4g s have no common point; they must overlap",
                       time);
         throw InputError(text);
       }

@@ -34,12 +34,12 @@ class Gate final : public DifferentiableConstraint<Gate> {
         .numbers("position", {0, 0, 0}, "m", "centre of the opening, world")
         .numbers("direction", {1, 0, 0}, "", "flight direction, world; not used for a ball")
         .numbers("up", {0, 0, 1}, "", "upward direction of the opening, world")
-        .optional_number("width", "m", "of a rectangle or a triangle", above(0))
-        .optional_number("height", "m", "of a rectangle or a triangle", above(0))
+        .optional_number("width", "m", "width of a rectangle or a triangle", above(0))
+        .optional_number("height", "m", "height of a rectangle or a triangle", above(0))
         .number("radius", 0.5, "m",
-                "of a ball; of a pentagon or a hexagon to the corners, if `side` is absent",
+                "radius of a ball; circumradius of a pentagon or a hexagon, if `side` is absent",
                 above(0))
-        .optional_number("side", "m", "of a pentagon or a hexagon", above(0))
+        .optional_number("side", "m", "side of a pentagon or a hexagon", above(0))
         .number("tunnel_length", 0, "m", "length, half before and half behind the opening",
                 at_least(0))
         .number("margin", 0, "m", "distance from the rim", at_least(0))
@@ -68,7 +68,7 @@ class Gate final : public DifferentiableConstraint<Gate> {
       if (gate_.tunnel_length > 0)
         throw InputError(given.origin("tunnel_length"), "tunnel_length: a ball has no tunnel");
       if (!(margin_ < gate_.radius))
-        throw InputError(given.origin("margin"), "margin: nothing of the ball is left");
+        throw InputError(given.origin("margin"), "margin: no part of the ball remains");
       return;
     }
     set_direction(gate_, vector("direction"), vector("up"));
@@ -143,7 +143,7 @@ class Gate final : public DifferentiableConstraint<Gate> {
       const Eigen::Vector2d out = Eigen::Vector2d(b.y() - a.y(), a.x() - b.x()).normalized();
       sides_.push_back({out.x() * gate_.left() + out.y() * gate_.up, out.dot(a)});
       if (!(margin_ < 0.99 * sides_.back().distance))
-        throw InputError(given.origin("margin"), "margin: nothing of the opening is left");
+        throw InputError(given.origin("margin"), "margin: no part of the opening remains");
     }
   }
 

@@ -90,7 +90,7 @@ class InputLimits final : public DifferentiableConstraint<InputLimits, 4> {
     if (!(vehicle.thrust_min() < hover && hover < vehicle.thrust_max()))
       throw InputError("the vehicle's rotors.thrust and yaw_share allow forces between " +
                        text(vehicle.thrust_min()) + " and " + text(vehicle.thrust_max()) +
-                       ", which leaves nothing around hovering: mass " +
+                       ", which leaves no range around hovering: mass " +
                        std::to_string(vehicle.mass) + " kg needs " + text(hover));
     norm_max_ = toward(vehicle.thrust_max());
     across_max_ = share_ * vehicle.mass * vehicle.acceleration_across_max;

@@ -134,7 +134,7 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
     const double given = given_.number(name);
     if (given <= of_vehicle) return given;
     throw InputError(given_.origin(name), std::string(name) + ": " + std::to_string(given) +
-                                              " is beyond the vehicle's own limit of " +
+                                              " exceeds the limit of the vehicle, " +
                                               std::to_string(of_vehicle));
   }
   void row(std::string name, double low, double high) {
@@ -152,7 +152,7 @@ class StateLimits final : public DifferentiableConstraint<StateLimits, 10> {
       const char axis[] = {static_cast<char>('x' + i), '\0'};
       if (low > high)
         throw InputError(given_.origin("lower"),
-                         std::string("lower and upper: nothing lies between them in ") + axis);
+                         std::string("lower and upper: no position lies between them in ") + axis);
       row(std::string("position.") + axis, low, high);
     }
   }

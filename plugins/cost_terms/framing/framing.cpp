@@ -22,7 +22,7 @@ class Framing final : public DifferentiableCost<Framing, 9> {
  public:
   static constexpr PluginText kText{"framing", "1.0.0",
                                     "penalises wrong place and size of a subject in the image",
-                                    "thesis 3.5.3, (3.7), for other places than the middle"};
+                                    "thesis 3.5.3, (3.7), for any place in the image"};
   static ParameterTable parameters() {
     return FilmedPoint::table(FilmedPoint::Has::place_and_height)
         .number("horizontal", 0.5, "",

@@ -41,7 +41,7 @@ class Colmap final : public Exporter {
   NamedContents write_folder(const Plan& plan) const override {
     if (!plan.task.scan) {
       throw InputError("colmap: '" + plan.mission + "' is a plan of kind " + plan.kind +
-                       " without views; only a scan takes images");
+                       " without views; only scans have images");
     }
     const ScanTask& scan = *plan.task.scan;
     return {{"cameras.txt", cameras(scan.camera)},

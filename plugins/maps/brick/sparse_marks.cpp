@@ -15,7 +15,7 @@ BrickMarks& SparseMarks::brick(const int cell[3]) {
   for (int i = 0; i < 3; ++i) marks.cell[i] = cell[i] & ~15;
   if (bricks_.size() * (sizeof(BrickMarks) + 32) > limit_)
     throw InputError(
-        "the rays of one scan alone pass so many voxels that the map would take more "
+        "the rays of one scan pass so many voxels that the map would take more "
         "than its memory_limit of " +
         std::to_string(limit_ >> 20) +
         " MiB: raise it, take larger voxels or a shorter maximum_range");

@@ -16,12 +16,13 @@ using Eigen::Vector3d;
 
 class CapsuleForm final : public DifferentiableShape<CapsuleForm> {
  public:
-  static constexpr PluginText kText{"capsule", "1.0.0", "all within a radius of a line", "own"};
+  static constexpr PluginText kText{"capsule", "1.0.0",
+                                    "all points within a radius of a line segment", "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
         .required_numbers("from", 3, "m", "one end of the line, world", between(-1e6, 1e6))
-        .required_numbers("to", 3, "m", "its other end", between(-1e6, 1e6))
-        .required_number("radius", "m", "about the line", {0, 1e6, true});
+        .required_numbers("to", 3, "m", "other end of the line, world", between(-1e6, 1e6))
+        .required_number("radius", "m", "radius", {0, 1e6, true});
   }
   explicit CapsuleForm(const Parameters& parameters)
       : from_(parameters.numbers("from").data()),

@@ -16,9 +16,9 @@ class CylinderForm final : public DifferentiableShape<CylinderForm> {
   static constexpr PluginText kText{"cylinder", "1.0.0", "an upright cylinder", "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .required_numbers("base", 3, "m", "middle of its base, world", between(-1e6, 1e6))
-        .required_number("radius", "m", "of its base", {0, 1e6, true})
-        .required_number("height", "m", "from base to top", {0, 1e6, true});
+        .required_numbers("base", 3, "m", "centre of its base, world", between(-1e6, 1e6))
+        .required_number("radius", "m", "radius of its base", {0, 1e6, true})
+        .required_number("height", "m", "height from base to top", {0, 1e6, true});
   }
   explicit CylinderForm(const Parameters& parameters)
       : base_(parameters.numbers("base").data()),

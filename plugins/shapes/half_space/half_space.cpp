@@ -13,11 +13,12 @@ using Eigen::Vector3d;
 
 class HalfSpaceForm final : public DifferentiableShape<HalfSpaceForm> {
  public:
-  static constexpr PluginText kText{"half_space", "1.0.0", "all that lies behind a plane", "own"};
+  static constexpr PluginText kText{"half_space", "1.0.0", "all points behind a plane", "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .required_numbers("point", 3, "m", "of the plane, world", between(-1e6, 1e6))
-        .required_numbers("normal", 3, "", "out of the plane, of any length", between(-1e6, 1e6));
+        .required_numbers("point", 3, "m", "point on the plane, world", between(-1e6, 1e6))
+        .required_numbers("normal", 3, "", "normal that points out, of any length",
+                          between(-1e6, 1e6));
   }
   explicit HalfSpaceForm(const Parameters& parameters)
       : point_(parameters.numbers("point").data()), normal_(parameters.numbers("normal").data()) {

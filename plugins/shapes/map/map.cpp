@@ -18,16 +18,16 @@ using Eigen::Vector3d;
 
 class MapForm final : public Shape {
  public:
-  static constexpr PluginText kText{"map", "1.0.0", "what a map does not know to be free",
+  static constexpr PluginText kText{"map", "1.0.0", "the occupied and unknown voxels of a map",
                                     "thesis 2.1"};
   static ParameterTable parameters() {
     const Range far = between(-1e6, 1e6);
     return ParameterTable{}
-        .required_text("file", "a map, .ot or .bt")
-        .optional_numbers("lower", 3, "m", "lowest corner of where it is looked at, world", far)
+        .required_text("file", "map file, .ot or .bt")
+        .optional_numbers("lower", 3, "m", "lowest corner of the used part, world", far)
         .optional_numbers("upper", 3, "m", "highest corner", far)
         .text("voxels", "brick", "plugin of kind map that holds it")
-        .optional_text("sha256", "of the copy beside a plan; documents state it");
+        .optional_text("sha256", "checksum of the copy beside a plan; stated by plans");
   }
   explicit MapForm(const Parameters& parameters)
       : name_(parameters.text("file")), plugin_(parameters.text("voxels")) {
@@ -47,7 +47,7 @@ class MapForm final : public Shape {
     map->import(given.leaves);
     kept_ = setting.keep(map_file_bytes(".ot", *map), ".ot");
     if (!stated_.empty() && kept_.sha256 != stated_)
-      throw InputError("'" + name_ + "' has changed since its plan was made");
+      throw InputError("'" + name_ + "' has changed since planning");
     const VoxelGrid& grid = map->grid();
     resolution_ = grid.resolution();
     if (const auto known = map->bounds())
@@ -58,7 +58,7 @@ class MapForm final : public Shape {
     else if (!setting.region.isEmpty())
       bounds_ = bounds_.intersection(setting.region);
     if (bounds_.isEmpty() || !(bounds_.sizes().minCoeff() > 0))
-      throw InputError("'" + name_ + "' knows nothing of the place where the flight is to be");
+      throw InputError("'" + name_ + "' has no known voxel near the flight");
     // Between the middles of voxels the true distance may be exceeded: its second derivatives at d
     // sum to 2 / d, so by r^2 / (4 d) at most, which is r / 4 from a voxel away on.
     const double reach =

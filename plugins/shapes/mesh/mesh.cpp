@@ -12,12 +12,12 @@ namespace {
 
 class MeshForm final : public Shape {
  public:
-  static constexpr PluginText kText{"mesh", "1.0.0", "the triangles of a file",
+  static constexpr PluginText kText{"mesh", "1.0.0", "the triangles of a mesh file",
                                     "thesis 2.1, Collision"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .required_text("file", "a mesh, in metres with z up")
-        .optional_text("sha256", "of the copy beside a plan; documents state it");
+        .required_text("file", "mesh file, in metres with z up")
+        .optional_text("sha256", "checksum of the copy beside a plan; stated by plans");
   }
   explicit MeshForm(const Parameters& parameters) : name_(parameters.text("file")) {
     if (parameters.has("sha256")) stated_ = parameters.text("sha256");
@@ -31,7 +31,7 @@ class MeshForm final : public Shape {
     if (!given.doubt.empty()) setting.tell("warning: " + file + ": " + given.doubt);
     kept_ = setting.keep(ply_bytes(given.mesh), ".ply");
     if (!stated_.empty() && kept_.sha256 != stated_)
-      throw InputError("'" + name_ + "' has changed since its plan was made");
+      throw InputError("'" + name_ + "' has changed since planning");
     // As the verifier will read it, rounded to single precision.
     scene_ = std::make_shared<MeshScene>(read_mesh(setting.kept(kept_.file)).mesh, name_);
     field_ = std::make_unique<MeshDistance>(scene_, setting.margin + kBeyond);

@@ -25,24 +25,23 @@ std::vector<Vector2d> corners_of(const Parameters& parameters) {
     corners.emplace_back(numbers[i], numbers[i + 1]);
   if (!is_simple_polygon(corners))
     throw InputError(parameters.origin("corners"),
-                     "its edges cross or touch, or corners coincide; list them in turn");
+                     "its edges cross or touch, or corners coincide; list the corners in order");
   return corners;
 }
 
 class PrismForm final : public DifferentiableShape<PrismForm> {
  public:
-  static constexpr PluginText kText{"prism", "1.0.0", "what lies above a polygon on the ground",
+  static constexpr PluginText kText{"prism", "1.0.0", "the prism over a polygon on the ground",
                                     "own"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .required_numbers("corners", 0, "m", "x and y of each corner in turn, world",
+        .required_numbers("corners", 0, "m", "x and y of each corner, in order, world",
                           between(-1e6, 1e6))
-        .optional_number("floor", "m", "lowest height; absent: the ground and below")
-        .optional_number("ceiling", "m", "highest height; absent: all above");
+        .optional_number("floor", "m", "lower end; absent: none")
+        .optional_number("ceiling", "m", "upper end; absent: none");
   }
   static std::vector<Preset> presets() {
-    return {
-        {"no_fly_zone", "a zone that is closed to flight: another name for prism", Value::map()}};
+    return {{"no_fly_zone", "a zone closed to flight: another name for prism", Value::map()}};
   }
   explicit PrismForm(const Parameters& parameters)
       : corners_(corners_of(parameters)),

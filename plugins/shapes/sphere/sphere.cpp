@@ -19,7 +19,7 @@ class SphereForm final : public DifferentiableShape<SphereForm> {
   static ParameterTable parameters() {
     return ParameterTable{}
         .required_numbers("center", 3, "m", "world", between(-1e6, 1e6))
-        .required_number("radius", "m", "of the ball", {0, 1e6, true});
+        .required_number("radius", "m", "radius", {0, 1e6, true});
   }
   explicit SphereForm(const Parameters& parameters)
       : center_(parameters.numbers("center").data()), radius_(parameters.number("radius")) {}

@@ -32,7 +32,7 @@ class Greedy final : public TourSolver {
     Search result;
     result.walk = tour.finished();
     result.status = work.ending().value_or(TourStatus::feasible);
-    result.message = "no further view fits into the budget and brings anything";
+    result.message = "no further view with a gain fits into the budget";
     if (work.ending()) result.message = "ended early, the best so far";
     result.evaluations = tour.state().evaluations();
     result.iterations = tour.images();

@@ -43,8 +43,8 @@ class RecursiveGreedy final : public TourSolver {
       share = random.uniform(kLeastShare, kLargestShare);
     }
     result.status = work.ending().value_or(TourStatus::feasible);
-    result.message = work.ending() ? "ended early, the best so far"
-                                   : "no view that brings anything fits into any part";
+    result.message =
+        work.ending() ? "ended early, the best so far" : "no view with a gain fits into any part";
     return result;
   }
 

@@ -173,7 +173,7 @@ SolveStatus Solve::iterate() {
     if (step.status == QuadraticStatus::cancelled) return SolveStatus::cancelled;
     if (step.status != QuadraticStatus::optimal) {
       report_.message = step.status == QuadraticStatus::unbounded
-                            ? "the cost falls for ever: a term or a bound is missing"
+                            ? "the cost is unbounded: a term or a bound is missing"
                             : "the quadratic program could not be solved to its tolerance";
       return SolveStatus::numerical_error;
     }
@@ -308,7 +308,7 @@ void Solve::record(double step) {
   report_.history.push_back(std::move(entry));
 }
 
-// "hard_keyframe.position.x at 5 s is missed by 2.3; in the way: state_limits.speed_across.0 at 4
+// "hard_keyframe.position.x at 5 s is violated by 2.3; limited by state_limits.speed_across.0 at 4
 // s". A limit stands in the way when it is active and not an equation: what fixes the ends of a
 // flight binds always and explains nothing. Of these the one whose loosening by a share of itself
 // would help most is named: multiplier times limit, comparable across units.
@@ -317,7 +317,7 @@ std::string Solve::explain(const Step& step) const {
   if (violations.empty()) return "the constraints contradict each other";
   char amount[32];
   std::snprintf(amount, sizeof amount, "%.3g", violations.front().amount);
-  std::string text = violations.front().row + " is missed by " + amount;
+  std::string text = violations.front().row + " is violated by " + amount;
   double most = 0;
   std::string name;
   const auto consider = [&](double multiplier, double lower, double upper, auto name_of) {
@@ -338,7 +338,7 @@ std::string Solve::explain(const Step& step) const {
   for (int r = problem_.dynamics_rows(); r < step.rows.size(); ++r)
     consider(step.rows(r), model_.row_lower(r), model_.row_upper(r),
              [&] { return problem_.row_name(r); });
-  return name.empty() ? text : text + "; in the way: " + name;
+  return name.empty() ? text : text + "; limited by " + name;
 }
 
 SolveResult Iqp::solve(const TrajectoryProblem& problem, const SolveRequest& request) const {
@@ -347,8 +347,8 @@ SolveResult Iqp::solve(const TrajectoryProblem& problem, const SolveRequest& req
     if (layout.block(b).topology == Topology::line) continue;
     const SolveRecord record(problem, request);
     return record.finish(SolveStatus::unsupported,
-                         "iqp does not take orientations, such as block '" + layout.block(b).name +
-                             "': take the solver ipopt",
+                         "iqp does not support orientations, such as block '" +
+                             layout.block(b).name + "': use the solver ipopt",
                          0, {record.start(), {}, {}});
   }
   return Solve(problem, request, iterations_, tolerance_, feasibility_).run();

@@ -118,7 +118,7 @@ void require_apart(const FitRequest& request, const Samples& training, const Sam
     if (const auto found = trained.find(digest_of(validation.sets[k])); found != trained.end())
       throw InputError("'" + request.validation[k].string() + "' holds the same samples as '" +
                        request.training[found->second].string() +
-                       "': training and validation must be apart");
+                       "': training and validation must differ");
 }
 
 struct Judged {
@@ -214,7 +214,7 @@ void Training::begin() {
   model_.target_mean = sum / count;
   model_.target_deviation = std::sqrt(squares / count);
   if (!(model_.target_deviation > 0))
-    throw InputError("every sample of training has the same target: there is nothing to learn");
+    throw InputError("all training samples have the same target: nothing can be learned");
   model_.state = initial_state(layout_, Random(request_.seed));
   if (!from_.empty()) {
     Model other = read_model(from_);
@@ -321,20 +321,20 @@ Value Training::run() {
   else
     begin();
   char line[160];
-  std::snprintf(line, sizeof line, "%zu samples of training, %zu of validation, %zu parameters",
+  std::snprintf(line, sizeof line, "%zu training samples, %zu validation samples, %zu parameters",
                 training_.size(), validation_.size(), layout_.parameters);
   request_.log(line);
   for (std::int64_t number = first_; number <= std::min(epochs_, until_); ++number) {
     if (number - 1 - best_epoch_ >= patience_ && best_epoch_ > 0) {
-      request_.log("stopped: no better for " + std::to_string(patience_) + " epochs");
+      request_.log("stopped: no improvement for " + std::to_string(patience_) + " epochs");
       break;
     }
     const auto begin_time = std::chrono::steady_clock::now();
     const double loss = epoch(number);
     const Judged judged = judge(validation_, model_, request_.threads);
     if (!std::isfinite(loss) || !std::isfinite(judged.loss))
-      throw InputError("the training came to no finite loss in epoch " + std::to_string(number) +
-                       ": a rate lower than " + plain_number(asked_.at("rate").as_number()) +
+      throw InputError("the training has no finite loss in epoch " + std::to_string(number) +
+                       ": use a rate lower than " + plain_number(asked_.at("rate").as_number()) +
                        " may help");
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_time).count();
@@ -387,33 +387,33 @@ ParameterTable sample_parameters() {
       .integer("ahead", 16, "points ahead and behind", points)
       .integer("up", 8, "points up and down", points)
       .integer("levels", 3, "scales", between(1, MapMeans::kMostLevels));
-  return ParameterTable().table("grid", grid, "what the network sees of the map");
+  return ParameterTable().table("grid", grid, "levels of the map that the network reads");
 }
 
 ParameterTable fit_parameters() {
   const Range widths = between(kLanes, NetworkShape::kMostWidth);
   return sample_parameters()
       .integer("blocks", 2, "N_c", between(1, NetworkShape::kMostBlocks))
-      .integer("units", 4, "N_u, convolutions of each block", between(1, NetworkShape::kMostUnits))
-      .integer("growth", 8, "N_f, maps that every convolution adds", widths)
+      .integer("units", 4, "N_u, convolutions per block", between(1, NetworkShape::kMostUnits))
+      .integer("growth", 8, "N_f, feature maps that every convolution adds", widths)
       .integer("hidden1", 128, "N_h1", widths)
       .integer("hidden2", 32, "N_h2", widths)
-      .integer("batch", 128, "samples of a step", between(8, 4096))
+      .integer("batch", 128, "samples per step", between(8, 4096))
       .integer("epochs", 30, "passes over the samples", between(1, 100000))
-      .integer("until", 0, "the last epoch of this run, though epochs are more; 0: all of them",
-               between(0, 100000))
-      .integer("patience", 10, "epochs without a better validation, then it stops",
+      .integer("until", 0, "last epoch of this run; 0: all epochs", between(0, 100000))
+      .integer("patience", 10, "epochs without improvement after which training stops",
                between(1, 100000))
       .number("rate", 1e-4, "", "of Adam", above(0))
       .choice("schedule", "constant", {"constant", "cosine"},
-              "the rate stays, or falls to 0 with the last epoch")
+              "constant rate, or falling to 0 at the last epoch")
       .choice("targets", "plain", {"plain", "root"},
-              "what is learned: the oracle's values, or their square roots")
-      .number("dropout", 0.5, "", "share of hidden numbers left out", between(0, 0.95))
+              "target: values of the oracle, or their square roots")
+      .number("dropout", 0.5, "", "dropout: share of hidden units left out", between(0, 0.95))
       .number("regularisation", 1e-4, "", "lambda of (5.4)", between(0, 1))
-      .boolean("mirror", true, "exchange right and left in half of the samples")
-      .text("begin", "", "a model whose weights are begun with; empty: none")
-      .integer("validation_samples", 20000, "at most, evenly over all", between(2, 10000000));
+      .boolean("mirror", true, "mirror half of the samples")
+      .text("begin", "", "model with the initial weights; empty: none")
+      .integer("validation_samples", 20000, "largest number of samples, evenly over all",
+               between(2, 10000000));
 }
 
 GridShape sample_shape(const Parameters& parameters) {

@@ -102,9 +102,10 @@ class Learned final : public ViewUtility {
   void require_fit(const EpisodeView& known) const override {
     const std::string difference = mapping_difference(mapping_of(known), model_.mapping);
     if (!difference.empty())
-      throw InputError("utility 'learned' was trained with another mapping: " + difference +
-                       "; give the mission the model's value, or take a utility without a model "
-                       "(frontier)");
+      throw InputError(
+          "utility 'learned' was trained with another mapping: " + difference +
+          "; set the value of the model in the mission, or use a utility without a model "
+          "(frontier)");
   }
 
  protected:

@@ -109,7 +109,7 @@ Model read_model(const std::filesystem::path& path) {
   model.state.statistics = take(layout.statistics);
   for (const std::vector<float>* values : {&model.state.parameters, &model.state.statistics})
     for (const float value : *values)
-      if (!std::isfinite(value)) throw refuse("its network holds what is not a finite number");
+      if (!std::isfinite(value)) throw refuse("its network has a number that is not finite");
   if (checkpoint) {
     model.adam.emplace(0);
     model.adam->first = take(layout.parameters);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a view would really add: asks the true surface, which only a simulation has.
+// What a view would really add: needs the true surface, which only a simulation has.
 //
 //   utility: oracle
 #include "framework/core/error.h"
@@ -25,7 +25,7 @@ class Oracle final : public ViewUtility {
   void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
                  std::span<double> values) const override {
     if (!known.truth)
-      throw InputError("utility 'oracle' asks the true surface, which only a simulation has");
+      throw InputError("utility 'oracle' needs the true surface, which only a simulation has");
     parallel_for(views.size(), known.threads,
                  [&](std::size_t i) { values[i] = known.truth->gain(views[i]); });
   }

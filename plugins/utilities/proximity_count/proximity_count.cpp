@@ -20,7 +20,7 @@ class ProximityCount final : public ViewUtility {
       "Isler et al. 2016; Delmerico et al. 2018, proximity count"};
   static ParameterTable parameters() {
     return ParameterTable()
-        .integer("pixel_step", 2, "one ray per so many columns and rows", between(1, 64))
+        .integer("pixel_step", 2, "a ray for every n-th column and row", between(1, 64))
         .number("maximum_distance", 4, "m", "distance behind the surface at which the weight is 0",
                 between(0.1, 20));
   }
@@ -45,7 +45,7 @@ class ProximityCount final : public ViewUtility {
   static const HiddenVoxels& behind(const EpisodeView& known) {
     if (!known.hidden)
       throw InputError(
-          "utility 'proximity_count' asks what lies behind the surfaces that images "
+          "utility 'proximity_count' needs the space behind the surfaces that images "
           "saw, and there are no images");
     return *known.hidden;
   }

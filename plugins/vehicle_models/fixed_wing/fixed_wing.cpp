@@ -153,7 +153,7 @@ class FixedWing final : public DifferentiableModel<FixedWing, 8, 3> {
   void bind(const Vehicle& vehicle) override {
     if (!vehicle.wing)
       throw InputError("vehicle '" + vehicle.name +
-                       "' has no wing: its file needs a table 'wing' for the model 'fixed_wing'");
+                       "' has no wing: the model 'fixed_wing' needs a table 'wing' in its file");
     const Wing& wing = *vehicle.wing;
     limits_.stall_speed = reserve_ * wing.stall_speed;
     limits_.fastest = vehicle.speed_across_max;

@@ -22,10 +22,9 @@ class Quadrotor final : public DifferentiableModel<Quadrotor, 8, 4> {
 
   void bind(const Vehicle& vehicle) override {
     if (!vehicle.has_rotors)
-      throw InputError(
-          "vehicle '" + vehicle.name +
-          "' states no rotors, whose thrust moves the model 'quadrotor': its file "
-          "needs inertia and rotors, or another model must fly it, such as 'velocity'");
+      throw InputError("vehicle '" + vehicle.name +
+                       "' states no rotors, which the model 'quadrotor' needs: its file "
+                       "needs inertia and rotors, or use another model, such as 'velocity'");
     mass_ = vehicle.mass;
     yaw_inertia_ = vehicle.inertia.z();
   }

@@ -40,8 +40,8 @@ class QuadrotorFull final : public VehicleModel {
   void bind(const Vehicle& vehicle) override {
     if (!vehicle.has_rotors)
       throw InputError("vehicle '" + vehicle.name +
-                       "' states no rotors, which move the model 'quadrotor_full': its file needs "
-                       "inertia and rotors, or another model must fly it, such as 'velocity'");
+                       "' states no rotors, which the model 'quadrotor_full' needs: its file needs "
+                       "inertia and rotors, or use another model, such as 'velocity'");
     step_.mass_ = vehicle.mass;
     step_.drag_ = vehicle.drag / vehicle.mass;
     for (int i = 0; i < 3; ++i) step_.inertia_[i] = vehicle.inertia[i];

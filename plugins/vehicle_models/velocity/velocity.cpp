@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class Velocity final : public DifferentiableModel<Velocity, 10, 4> {
  public:
   static constexpr PluginText kText{
-      "velocity", "1.0.0", "position and yaw commanded, limits as makers state them", "own"};
+      "velocity", "1.0.0", "position and yaw commanded, limits as manufacturers state them", "own"};
   static ParameterTable parameters() {
     return ParameterTable{}.number("share", 0.98, "", "share of jerk and yaw rate that is used",
                                    {.minimum = 0, .maximum = 1, .minimum_excluded = true});

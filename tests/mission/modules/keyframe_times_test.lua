@@ -112,7 +112,7 @@ function T.contradicted_speeds_are_named()
   refused("keyframes[2].speed: times keyframes", { timing = "path_first" },
           { a, at(9, 0, 0, { speed = 1 }) })
   refused("speed: every keyframe has a time", { speed = 3 }, { a, at(9, 0, 0, { time = 3 }) })
-  refused("speed: the duration says how long", { speed = 3 }, { a, b }, 20)
+  refused("speed: the duration determines the time", { speed = 3 }, { a, b }, 20)
   times.check_speed(check.run { speed = 3, speed_limit = 3, timing = "given" },
                     { keyframes = { a, b } })
   times.check_speed(check.run { timing = "free" }, { keyframes = { a, a } })
@@ -126,7 +126,7 @@ function T.times_must_rise_and_end_in_time()
   end
   judged({ 0, 1, 2 }, 2)
   judged({ 3 }, nil)
-  check.fails("keyframes[3].time: 1 s is keyframe 2's time as well", judged, { 0, 1, 1 })
+  check.fails("keyframes[3].time: 1 s is also the time of keyframe 2", judged, { 0, 1, 1 })
   check.fails("keyframes[2].time: 1 s comes before keyframe 1 at 2 s", judged, { 2, 1 })
   check.fails("keyframes[2].time: 9.5 s is outside the duration of 9 s", judged, { 2, 9.5 }, 9)
 end

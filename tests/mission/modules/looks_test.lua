@@ -47,7 +47,7 @@ function T.wrong_looks_are_named()
   check.fails("keyframes[2].look_at: give a subject or a point", of,
               { k(0), k(1, "a", { 1, 2, 3 }) })
   check.fails("keyframes[1].look_at: there is no subject named 'c'", of, { k(0, "c") })
-  check.fails("subjects: with several, keyframes say which: look_at = \"a\"", of, { k(0) })
+  check.fails("subjects: with several, keyframes select one: look_at = \"a\"", of, { k(0) })
 end
 
 local function schedule(list, duration, cuts)
@@ -111,9 +111,9 @@ end
 function T.wrong_cuts_are_named()
   check.fails("cuts[1].finish: a cut ends after it starts", cuts, { { start = 2, finish = 2 } })
   check.fails("cuts[1]: ends at 21 s, after the film's 20 s", cuts, { { start = 2, finish = 21 } })
-  check.fails("cuts[2].start: cuts stand in order and apart", cuts,
+  check.fails("cuts[2].start: cuts must be in order and must not overlap", cuts,
               { { start = 2, finish = 3 }, { start = 3, finish = 4 } })
-  check.fails("cuts[2].start: cuts stand in order", cuts,
+  check.fails("cuts[2].start: cuts must be in order", cuts,
               { { start = 5, finish = 6 }, { start = 2, finish = 3 } })
 end
 
@@ -169,9 +169,9 @@ function T.nothing_is_pulled_within_a_cut()
   for _, pull in ipairs(camera.pulls) do check.yes(pull.time < 4 or pull.time > 6, "outside") end
   check.equal(camera.cuts, { { start = 4, finish = 6 } })
   check.equal(plan({ subjects = {}, keyframes = { k(0), k(10) } }, 10), nil)
-  check.fails("cuts: there is nothing to cut between", plan,
+  check.fails("cuts: a cut needs a subject", plan,
               { subjects = {}, keyframes = { k(0) }, cuts = { { start = 1 } } }, 10)
-  check.fails("nothing of what is looked at is left", plan,
+  check.fails("no part of the subject is in the image", plan,
               { subjects = { { position = { 0, 10, 0 } } }, keyframes = { k(0) },
                 cuts = { { start = 0, finish = 10 } } }, 10)
 end

@@ -79,7 +79,7 @@ function T.laps_are_written_out()
   check.equal(#made.gates, 12)
   for i = 1, 12 do check.equal(made.gates[i].position, { 5 * ((i - 1) % 3 + 1), 0, 3 }) end
   check.equal(#read { gates = balls(3) }.gates, 3)
-  check.fails("laps: laps are flown on a closed course", read, { gates = balls(3), laps = 2 })
+  check.fails("laps: laps need a closed course", read, { gates = balls(3), laps = 2 })
   check.fails("laps: more than 10000 gates in all laps", read,
               { gates = balls(3), laps = 3334, closed = true })
   check.equal(#read { gates = balls(2), laps = 5000, closed = true }.gates, 10000)
@@ -95,11 +95,11 @@ function T.keyframes_are_balls_of_the_tolerance()
 end
 
 function T.a_course_is_given_in_one_way()
-  check.fails("keyframes: a course is given in one way; there are gates and keyframes", read,
+  check.fails("keyframes: give one course; there are gates and keyframes", read,
               { gates = balls(1), keyframes = { { 1, 2, 3 } } })
   check.fails("gates: a course needs gates, keyframes", read, {})
   check.fails("gates: a course needs gates", read, { gates = {}, keyframes = {} })
-  check.fails("free_form: a course is given in one way", read,
+  check.fails("free_form: give one course", read,
               { gates = balls(1), free_form = { length = 9 } })
 end
 
@@ -112,7 +112,7 @@ function T.start_and_finish()
   check.fails("start: expected {x, y, z}, or a position and a velocity, got 5", read,
               { gates = balls(1), start = 5 })
   check.fails("start.position: expected three", read, { gates = balls(1), start = {} })
-  check.fails("start: a closed course has neither start nor end", read,
+  check.fails("start: a closed course has neither start nor finish", read,
               { gates = balls(2), closed = true, start = { 1, 2, 3 } })
   check.fails("finish: a closed course has neither", read,
               { gates = balls(2), closed = true, finish = { 1, 2, 3 } })
@@ -120,9 +120,9 @@ end
 
 -- Two gates with a direction at one place could only be flown through at once; balls may be there.
 function T.gates_stand_apart()
-  check.fails("gates[2]: gates 'gates[1]' and 'gates[2]' stand inside each other, at 0 0 3", read,
+  check.fails("gates[2]: gates 'gates[1]' and 'gates[2]' overlap at 0 0 3", read,
               { gates = { gate {}, gate { normal_yaw_deg = 90 } } })
-  check.fails("gates[1]: gates 'a' and 'a' stand inside each other", read,
+  check.fails("gates[1]: gates 'a' and 'a' overlap at", read,
               { gates = { gate { name = "a" } }, laps = 2, closed = true })
   read { gates = { gate {}, gate { position = { 0, 0, 3.001 } } } }
   read { gates = { gate {}, { shape = "ball", radius = 1, position = { 0, 0, 3 } } } }

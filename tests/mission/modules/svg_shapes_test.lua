@@ -66,7 +66,7 @@ function T.lengths_have_units()
   end
   check.equal(shapes.length({}, "w", 7), 7)
   check.equal(shapes.length({}, "w"), nil)
-  check.fails("w is '50%': shares of the picture are not read", shapes.length, { w = "50%" }, "w")
+  check.fails("w is '50%': percentages are not read", shapes.length, { w = "50%" }, "w")
   for _, text in ipairs { "", "px", "1em", "2 3", "1e", "5+3", "1..2", "four", "1 px px" } do
     check.fails("w is '" .. text .. "': expected a number", shapes.length, { w = text }, "w")
   end

@@ -46,8 +46,8 @@ function T.definitions_are_drawn_where_they_are_used()
 end
 
 function T.uses_that_end_nowhere_are_refused()
-  check.fails("line 1: <use>: '#b' names no element", svg.strokes, "<svg><use href='#b'/></svg>")
-  check.fails("line 2: <use>: '' names no element", svg.strokes, "<svg>\n<use/></svg>")
+  check.fails("line 1: <use>: '#b' is not an element", svg.strokes, "<svg><use href='#b'/></svg>")
+  check.fails("line 2: <use>: '' is not an element", svg.strokes, "<svg>\n<use/></svg>")
   check.fails("it uses itself", svg.strokes, "<svg><g id='a'>\n<use href='#a'/></g></svg>")
   check.fails("it uses itself", svg.strokes,
               "<svg><g id='a'><use href='#b'/></g><g id='b'><use href='#a'/></g></svg>")
@@ -68,7 +68,7 @@ function T.what_is_outside_the_picture_is_cut_off_and_said()
   end
   draws(picture "M1,1 L9,9", { { 1, 1, 9, 9 } })
   draws(picture "M5,5 L15,5", { { 5, 5, 10.005, 5 } },
-        { "line 1: what of <path> lies outside the picture is cut off" })
+        { "line 1: the parts of <path> outside the picture are cut off" })
   draws(picture "M11,5 L15,5", {}, { "line 1: <path> lies outside the picture and is not drawn" })
   -- Half of a wide line still shows where its middle is outside.
   draws("<svg viewBox='0 0 10 10'>"
@@ -114,7 +114,7 @@ end
 -- The colour that is named is that of the use where the use gives it.
 function T.colours_are_said_where_they_are_given()
   draws("<svg><defs><path id='a' d='M0,0 L3,4'/></defs>\n<use href='#a' stroke='red'/></svg>",
-        { { 0, 0, 3, 4 } }, { "line 2: the colour red is drawn in the light's one colour" })
+        { { 0, 0, 3, 4 } }, { "line 2: the colour red is drawn in the colour of the light" })
 end
 
 function T.notes_name_lines_and_reasons()
@@ -125,17 +125,17 @@ function T.notes_name_lines_and_reasons()
   draws("<svg>\n<g display='none'>" .. LINE .. "</g></svg>", {},
         { "line 2: <g> is hidden and not drawn" })
   draws("<svg><path d='M0,0 L1,1' fill='none'/></svg>", {},
-        { "line 1: a shape that is not seen (neither line nor face) is not drawn" })
+        { "line 1: an invisible shape (neither line nor fill) is not drawn" })
   draws("<svg><path d='M0,0 L1,1'/></svg>", { { 0, 0, 1, 1 } },
         { "line 1: a filled shape without a line is drawn by its outline" })
   draws("<svg><path stroke='red' d='M0,0 L1,1'/></svg>", { { 0, 0, 1, 1 } },
-        { "line 1: the colour red is drawn in the light's one colour" })
+        { "line 1: the colour red is drawn in the colour of the light" })
   draws("<svg><path stroke='black' d='M1,1'/><rect stroke='black' width='3'/></svg>", {},
-        { "line 1: a shape of no size is not drawn" })
+        { "line 1: a shape of size 0 is not drawn" })
   draws("<svg>" .. LINE:gsub("/>", " clip-path='url(#c)'/>") .. "</svg>", { { 0, 0, 3, 4 } },
-        { "line 1: clip-path is not honoured: what it cuts off is drawn" })
+        { "line 1: clip-path is ignored: the parts that it hides are drawn" })
   draws("<svg><g stroke-dasharray='1 2'>" .. LINE .. "</g></svg>", { { 0, 0, 3, 4 } },
-        { "line 1: stroke-dasharray is not honoured: lines are drawn without gaps" })
+        { "line 1: stroke-dasharray is ignored: lines are drawn without gaps" })
   draws("<svg xmlns:i='x'><i:view/><title>t</title>" .. LINE .. "</svg>", { { 0, 0, 3, 4 } })
 end
 

@@ -87,7 +87,7 @@ end
 function T.where_nothing_is_free_it_says_so()
   local full = scene {}
   function full:clearance() return 0 end
-  check.fails("only 0 of 5 places in the region are free to look from", views.over, full, 5)
+  check.fails("only 0 of 5 places in the region are free", views.over, full, 5)
 end
 
 return check.all(T)

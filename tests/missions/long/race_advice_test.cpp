@@ -12,7 +12,7 @@ TEST_F(RaceAdvice, TheThrustThatIsNamedIsFollowed) {
   ASSERT_EQ(flown.status, 1) << to_json(flown.result);
   const std::vector<std::string> said = notes(flown);
   ASSERT_FALSE(said.empty());
-  EXPECT_THAT(said[0], HasSubstr("the closed loop follows this course at thrust = 0."));
+  EXPECT_THAT(said[0], HasSubstr("the closed loop tracks this course at thrust = 0."));
   EXPECT_THAT(said[0], HasSubstr(" s instead of "));
   const Flown followed = race(turns(""), settings(said[0]));
   expect_certified(followed);

@@ -18,7 +18,7 @@ TEST_F(Covering, ACrosshatchLooksFourWaysAndTakesNoMoreThanIsAsked) {
                     "' --set 'flights=[{pattern: crosshatch, views: 2}]'",
                 "house.lua", "two"),
             2);
-  EXPECT_THAT(error(), HasSubstr("a crosshatch here has"));
+  EXPECT_THAT(error(), HasSubstr("a crosshatch needs at least"));
 }
 
 // The images that are planned are those of the camera, whatever effort is made.

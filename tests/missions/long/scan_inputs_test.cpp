@@ -30,14 +30,14 @@ TEST_F(ScanInputs, FilesOfAnEarlierFlightAreLookedAtQuickly) {
     return error();
   };
   const std::string all = refused_with("");
-  EXPECT_THAT(all, HasSubstr("where the tour begins and which region is of interest"));
+  EXPECT_THAT(all, HasSubstr("the start of the tour and the region of interest"));
   EXPECT_THAT(all, HasSubstr("give start = {x, y, z} and region = { lower = {x, y, z}"));
   EXPECT_THAT(all, HasSubstr("The mesh 'out/prior.ply' lies between {"));
   const std::string no_start =
       refused_with("region = { lower = {-6, -5, -0.4}, upper = {6, 5, 7} }");
-  EXPECT_THAT(no_start, HasSubstr("do not say where the tour begins: give start = {x, y, z}."));
+  EXPECT_THAT(no_start, HasSubstr("do not state the start of the tour: give start = {x, y, z}."));
   const std::string no_region = refused_with("start = {0, 0, 13}");
-  EXPECT_THAT(no_region, HasSubstr("do not say which region is of interest: give region"));
+  EXPECT_THAT(no_region, HasSubstr("do not state the region of interest: give region"));
 
   write_file_atomically(folder_ / "again.lua", R"(
 return require("mission.scan").of_prior {

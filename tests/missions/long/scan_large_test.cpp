@@ -48,7 +48,7 @@ TEST_F(LargeScans, TheDefaultFirstFlightIsBoundedAndSaysSo) {
   EXPECT_LE(std::stoi(notes()), 600);
   EXPECT_GE(std::stoi(notes()), 400);
   EXPECT_THAT(notes(), HasSubstr("the region is large: the crosshatch has"));
-  EXPECT_THAT(notes(), HasSubstr("times as far apart as overlap wants; 200 images look down"));
+  EXPECT_THAT(notes(), HasSubstr("times as far apart as overlap needs; 200 images look down"));
 }
 
 // Its images begin the tour's views, and leave most of them to be grown.

@@ -234,7 +234,7 @@ TEST(Corridor, BadRegionsAreRefused) {
         BoundRows("corridor", regions({region(0, 0.5, {0, 0, 0}, {1, 1, 1}),
                                        region(0.5, 1, {5, 0, 0}, {1, 1, 1})}));
       },
-      {"corridor", "no place in common", "0.5 s"});
+      {"corridor", "no common point", "0.5 s"});
   expect_message(
       [] {
         BoundRows("corridor", regions({region(0, 1, {0, 0, 0}, {1, 0, 1})}));

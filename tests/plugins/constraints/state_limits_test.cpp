@@ -70,7 +70,7 @@ TEST(StateLimits, ParametersTightenAndNeverLoosen) {
         [&] {
           BoundConstraint("state_limits", map_of({{name, 20.0}}), camera_drone());
         },
-        {name, "20", "beyond the vehicle's own limit"});
+        {name, "20", "exceeds the limit of the vehicle"});
   const Value in_other_units = map_of({{"speed_across", "18 km/h"}});
   const BoundConstraint kilometres("state_limits", in_other_units, camera_drone());
   EXPECT_NEAR(kilometres.upper[0], 5 * std::cos(M_PI / 16), 1e-12);

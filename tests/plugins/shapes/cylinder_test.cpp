@@ -58,7 +58,7 @@ TEST(Cylinder, TheDocumentKeepsItAndHolesAreFound) {
   auto open = std::make_shared<TriangleMesh>(*plan.environment.obstacles[0].triangles);
   open->triangles.pop_back();
   plan.environment.obstacles[0].triangles = open;
-  EXPECT_NE(verify(plan).find("document")->detail.find("bound no solid: 3 edges"),
+  EXPECT_NE(verify(plan).find("document")->detail.find("do not bound a solid: 3 edges"),
             std::string::npos);
   plan.environment.obstacles[0].triangles = nullptr;
   EXPECT_NE(verify(plan).find("document")->detail.find("records no triangles"), std::string::npos);

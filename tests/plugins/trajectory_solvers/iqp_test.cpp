@@ -92,7 +92,7 @@ TEST(Iqp, NamesWhatAnImpossibleFilmMissesAndWhatStandsInTheWay) {
   EXPECT_EQ(result.report.status, SolveStatus::infeasible);
   EXPECT_NE(result.report.message.find("hard_keyframe"), std::string::npos)
       << result.report.message;
-  EXPECT_NE(result.report.message.find("in the way: "), std::string::npos) << result.report.message;
+  EXPECT_NE(result.report.message.find("limited by "), std::string::npos) << result.report.message;
   EXPECT_EQ(result.report.violations.front().name, "hard_keyframe");
   EXPECT_NEAR(result.report.violations.front().time, 3.33, 1e-9);
   // The trajectory is as near as the limits allow: all else holds.
