@@ -6,12 +6,9 @@
 #include <lua.hpp>
 
 #include "framework/core/number_text.h"
-#include "framework/core/phases.h"
 #include "framework/core/units.h"
-#include "framework/explore/episode.h"
-#include "framework/export/exploration_report.h"
-#include "framework/export/map_pictures.h"
 #include "framework/map/map_file.h"
+#include "framework/mission/exploration.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
@@ -63,17 +60,6 @@ ParameterTable explore_table() {
 namespace {
 
 constexpr const char* kExplorationType = "exploration";
-constexpr int kMomentPixels = 480;
-
-struct Exploration {
-  EpisodeSettings settings;
-  EpisodeResult result;
-  std::shared_ptr<Map> map;
-  Viewpoint start;
-  ExplorationRecord record;
-  double seconds = 0;  // wall clock of choosing and mapping
-};
-
 struct ExplorationObject {
   std::shared_ptr<Exploration> exploration;
 };
@@ -118,103 +104,7 @@ EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   return s;
 }
 
-// Whether the map is shown after this many images of so many that are asked for.
-bool is_moment(int images, int steps) {
-  return images == std::max(1, steps / 10) || images == std::max(1, steps / 4) ||
-         images == std::max(1, steps / 2);
-}
-
-// How the map grew, in four pictures whenever it ends: after shares of the images that were asked
-// for, or, where it ended before them, after as many as the last powers of two. All are drawn in
-// the last one's frame.
-class Moments {
- public:
-  static constexpr std::size_t kShown = 4;
-
-  // What is above `below` (m) is left out.
-  Moments(int steps, double below) : steps_(steps), below_(below) {}
-  void look(int images, const Map& map) {
-    if (is_moment(images, steps_) || std::has_single_bit(static_cast<unsigned>(images)))
-      all_.push_back({images, map_columns(map, below_)});
-  }
-  std::vector<ExplorationMoment> shown(int images, const Map& map) && {
-    const bool whole = images == steps_;
-    std::erase_if(all_, [&](const Moment& moment) {
-      return whole ? !is_moment(moment.images, steps_)
-                   : !std::has_single_bit(static_cast<unsigned>(moment.images));
-    });
-    if (images > 0 && (all_.empty() || all_.back().images < images))
-      all_.push_back({images, map_columns(map, below_)});
-    if (all_.size() > kShown)
-      all_.erase(all_.begin(), all_.end() - static_cast<std::ptrdiff_t>(kShown));
-    std::vector<ExplorationMoment> drawn;
-    for (const Moment& moment : all_) {
-      MapPicture made = height_picture(moment.columns, all_.back().columns, kMomentPixels);
-      drawn.push_back({moment.images, std::move(made.picture), made.lowest, made.highest});
-    }
-    return drawn;
-  }
-
- private:
-  struct Moment {
-    int images;
-    MapColumns columns;
-  };
-  int steps_;
-  double below_;
-  std::vector<Moment> all_;
-};
-
-// Under a roof the picture from above is of what lies below the start: a room without its ceiling.
-std::optional<double> cut_height(const MeshScene& scene, const Viewpoint& start) {
-  const bool roofed = scene.blocked({start.position, Eigen::Vector3d::UnitZ()});
-  return roofed ? std::optional(start.position.z()) : std::nullopt;
-}
-
-void record_path(Exploration& e) {
-  ExplorationRecord& record = e.record;
-  record.path = {e.start.position};
-  record.path_images = {0};
-  for (std::size_t k = 0; k < e.result.steps.size(); ++k)
-    for (const Viewpoint& view : e.result.steps[k].way) {
-      if (view.position == record.path.back()) continue;
-      record.path.push_back(view.position);
-      record.path_images.push_back(static_cast<double>(k));
-    }
-  for (const ScoredView& view : e.result.candidates)
-    record.candidates.push_back({view.view.position, view.view.direction(), view.value});
-}
-
 // -- exploration:plan ----------------------------------------------------------------------------
-
-Trajectory trajectory_of(const Exploration& e, bool gimbal) {
-  Trajectory trajectory;
-  trajectory.motion = path_motion();
-  trajectory.has_gimbal = gimbal;
-  const MoveTimes times{e.settings.speed, e.settings.turn_rate};
-  const auto add = [&](const Viewpoint& view, double time) {
-    Sample sample;
-    sample.time = time;
-    sample.position = view.position;
-    const double before = trajectory.samples.empty() ? view.yaw : trajectory.samples.back().yaw;
-    sample.yaw = before + std::remainder(view.yaw - before, 2 * EIGEN_PI);
-    sample.gimbal_pitch = view.pitch;
-    trajectory.samples.push_back(sample);
-  };
-  Viewpoint at = e.start;
-  double time = 0;
-  add(at, 0);
-  for (const EpisodeStep& step : e.result.steps) {
-    for (const Viewpoint& next : step.way) {
-      time += times.of(at, next);
-      add(next, time);
-      at = next;
-    }
-    time += e.settings.pause;
-    if (e.settings.pause > 0) add(at, time);
-  }
-  return trajectory;
-}
 
 ParameterTable explored_plan_table() {
   ParameterTable table;
@@ -336,36 +226,6 @@ int exploration_field(lua_State* state) {
   return push_field(state, "an exploration", field, fields, kExplorationFields);
 }
 
-// A noisy camera is judged by the same views with true depth, as table 5.4 does: noise would be
-// taken for surface.
-void observe_truly(EpisodeResult& flown, const EpisodeSettings& settings, const GroundTruth& truth,
-                   const ObservedSurface::NewMap& new_map) {
-  if (!settings.sensor.noise && !settings.sensor.stereo) return;
-  ObservedSurface observed(truth, settings.sensor, new_map);
-  const auto map = new_map();
-  const std::vector<double> curve = replay(settings, flown, truth, observed, *map);
-  for (std::size_t k = 0; k < curve.size(); ++k) flown.steps[k].observed = curve[k];
-}
-
-// What an oracle would have seen from the same start.
-void compare_with_oracle(Exploration& e, const GroundTruth& truth,
-                         const ObservedSurface::NewMap& new_map, const Registry& registry) {
-  EpisodeSettings settings = e.settings;
-  settings.show_truth = true;
-  settings.list_candidates = false;
-  settings.wall_clock_guard.reset();  // of the mission's own exploration
-  begin_phase(settings.progress, "oracle");
-  const auto oracle = registry.create<ViewUtility>("oracle");
-  ObservedSurface observed(truth, settings.sensor, new_map);
-  const auto map = new_map();
-  EpisodeResult best = explore(settings, e.start, truth, observed, *oracle, *map);
-  if (best.end == EpisodeEnd::cancelled) return;
-  observe_truly(best, settings, truth, new_map);
-  e.record.oracle_efficiency = best.efficiency(settings.steps);
-  if (best.end != EpisodeEnd::steps) e.record.oracle_end = explain(best.end);
-  for (const EpisodeStep& step : best.steps) e.record.oracle.push_back(step.observed);
-}
-
 // The world that is explored, and the region of interest in it.
 GroundTruth truth_for(const SurfaceObject& surface, const Parameters& given, double resolution) {
   std::shared_ptr<const MeshScene> scene = surface.scene;
@@ -398,19 +258,6 @@ Viewpoint start_in(const GroundTruth& truth, const Parameters& given,
   throw InputError(std::string(error.what()) + "; smaller moves may help: " +
                    (scan ? "--set exploration.clear=METRES"
                          : "--set moves.clear=METRES --set moves.step=METRES"));
-}
-
-void record_flight(Exploration& e) {
-  ExplorationRecord& record = e.record;
-  for (const EpisodeStep& step : e.result.steps) {
-    record.observed.push_back(step.observed);
-    e.seconds += step.seconds;
-  }
-  record.end = explain(e.result.end);
-  record.surface = e.result.surface;
-  record.length = e.result.length();
-  record.efficiency = e.result.efficiency(e.settings.steps);
-  record_path(e);
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ void open_script_libraries(lua_State* state, MissionRun& run) {
   open_symbolic_functions(state);
   open_stage_values(state);
   open_problem_library(state);
+  open_solve_library(state);
   open_plan_library(state);
   open_run_library(state);
   open_map_library(state);

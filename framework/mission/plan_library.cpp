@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solving and planning: methods of `run`, solutions, vehicles and plans.
-#include <algorithm>
-#include <cmath>
-
+// Plans: what a mission returns, and what the verifier says of it.
 #include <lua.hpp>
 
 #include "framework/core/files.h"
-#include "framework/core/log.h"
 #include "framework/export/report_value.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
@@ -15,7 +11,6 @@
 #include "framework/mission/players.h"
 #include "framework/mission/run.h"
 #include "framework/mission/scan_objects.h"
-#include "framework/mission/script_terms.h"
 #include "framework/mission/vectors.h"
 #include "framework/verify/verify.h"
 
@@ -48,215 +43,6 @@ std::vector<Section> stated_sections(lua_State* state, int index, const std::str
 }
 
 namespace {
-
-// -- run:solve
-// -------------------------------------------------------------------------------------
-
-constexpr BoundField kWarmStart[] = {{"warm_start?", "lapwing.solution",
-                                      "solution of a problem of the same size, for a warm start"}};
-
-std::optional<WarmStart> warm_start_argument(lua_State* state, int index,
-                                             const TrajectoryProblem& problem) {
-  if (lua_isnoneornil(state, index)) return std::nullopt;
-  table_argument(state, index, {}, "solve", kWarmStart);
-  if (lua_getfield(state, index, "warm_start") == LUA_TNIL) return std::nullopt;
-  const WarmStart& point = object_argument<SolutionObject>(state, -1, kSolutionType).result.point;
-  if (point.stages.rows() != problem.layout().size() ||
-      point.stages.cols() != problem.horizon().stages) {
-    throw InputError("solve: the warm start belongs to a problem of another size");
-  }
-  WarmStart start = point;
-  if (start.row_multipliers.size() != problem.rows()) start.row_multipliers.resize(0);
-  if (start.bound_multipliers.size() != problem.columns()) start.bound_multipliers.resize(0);
-  return start;
-}
-
-// What a plan says of the problem's constraints; those of plugins may share a name.
-std::vector<StatedConstraint> constraints_of(const ProblemObject& object) {
-  std::vector<StatedConstraint> all;
-  if (object.terms) all = stated_constraints(*object.terms);
-  for (StatedConstraint listed : object.listed) {
-    const std::string name = listed.name;
-    const auto taken = [&](const StatedConstraint& other) { return other.name == listed.name; };
-    for (int k = 2; std::any_of(all.begin(), all.end(), taken); ++k)
-      listed.name = name + " " + std::to_string(k);
-    all.push_back(std::move(listed));
-  }
-  return all;
-}
-
-// run:solve(problem, solver [, {warm_start = solution}]): a solution; its `status` states the
-// outcome.
-int solve(lua_State* state) {
-  MissionRun& run = run_of(state);
-  const ProblemObject& object = object_argument<ProblemObject>(state, 2, kProblemType);
-  if (!object.finished)
-    throw InputError("solve: the problem is not finished; call problem:finish()");
-  const PluginChoice argument = plugin_choice(state, 3, "solver");
-  SolveRequest request;
-  request.warm_start = warm_start_argument(state, 4, *object.problem);
-  request.cancellation = run.settings.cancellation;
-  request.progress = run.settings.progress;
-  const auto solver =
-      run.settings.registry->create<TrajectorySolver>(argument.type, argument.parameters, "solver");
-  begin_planning(run);
-  if (run.settings.observe_problem) run.settings.observe_problem(object.problem);
-  SolutionObject solution;
-  solution.problem = object.problem;
-  solution.solver = argument.type;
-  solution.constraints = constraints_of(object);
-  {
-    const Sandbox::ClockPause pause(Sandbox::of(state));
-    solution.result = solve_by(*solver, *object.problem, request);
-  }
-  const SolveReport& report = solution.result.report;
-  if (report.status == SolveStatus::numerical_error && solution.result.point.stages.size() > 0) {
-    const std::string fault = object.problem->script_fault(solution.result.point.stages);
-    if (!fault.empty()) throw InputError(fault);
-  }
-  run.solve_seconds += report.seconds;
-  logging::info(argument.type + ": " + to_string(report.status) + " after " +
-                std::to_string(report.iterations) + " iterations" +
-                (report.message.empty() ? "" : "; " + report.message));
-  new_object(state, kSolutionType, std::move(solution));
-  return 1;
-}
-
-// x, y, z of every stage in turn.
-Value positions_of(const SolutionObject& solution) {
-  Value list = Value::list();
-  for (const Sample& s : solution.problem->trajectory(solution.result.point.stages).samples)
-    for (int axis = 0; axis < 3; ++axis) list.push_back(s.position(axis));
-  return list;
-}
-
-constexpr BoundField kSolutionFields[] = {
-    {"status", "string",
-     "optimal, feasible, infeasible, iteration_limit, time_limit, cancelled, ..."},
-    {"message", "string", "message of the solver"},
-    {"solver", "string", "its name"},
-    {"cost", "number", "sum of all weighted terms"},
-    {"iterations", "integer", "iterations of the solver"},
-    {"violations", "table[]", "the worst of each constraint: {name, row, amount, time}"},
-    {"legs", "number[]", "durations of the legs, s"},
-    {"duration", "number", "s"},
-    {"defects", "number[]", "defect of each leg, as a share of the limit of the certificate"},
-    {"path", "number[]", "x, y, z of every stage in turn, m, world"}};
-
-int solution_field(lua_State* state) {
-  const SolutionObject& solution = object_argument<SolutionObject>(state, 1, kSolutionType);
-  const SolveReport& report = solution.result.report;
-  const std::string field = text_argument(state, 2, "solution");
-  Value violations = Value::list();
-  for (const Violation& violation : report.violations) {
-    Value entry = Value::map();
-    entry.set("name", violation.name);
-    entry.set("row", violation.row);
-    entry.set("amount", violation.amount);
-    entry.set("time", violation.time);
-    violations.push_back(std::move(entry));
-  }
-  Value fields = Value::map();
-  fields.set("status", to_string(report.status));
-  fields.set("message", report.message);
-  fields.set("solver", solution.solver);
-  fields.set("cost", report.cost);
-  fields.set("iterations", report.iterations);
-  fields.set("violations", std::move(violations));
-  const Horizon& horizon = solution.problem->horizon();
-  Value legs = Value::list();
-  const Stages& at = solution.result.point.stages;
-  for (int leg = 0; leg < horizon.leg_count(); ++leg)
-    legs.push_back(solution.problem->time(at, horizon.end_of_leg(leg + 1)) -
-                   solution.problem->time(at, horizon.end_of_leg(leg)));
-  fields.set("legs", std::move(legs));
-  if (field == "defects") {
-    const std::vector<double> defects = solution.problem->leg_defects(at);
-    fields.set("defects", Value(Value::List(defects.begin(), defects.end())));
-  }
-  fields.set("duration", solution.problem->time(at, horizon.stages - 1));
-  fields.set("path", Value());
-  if (field == "path") fields.set("path", positions_of(solution));
-  return push_field(state, "a solution", field, fields, kSolutionFields);
-}
-
-// Angles and rates, or false without a gimbal.
-Value gimbal_value(const Vehicle& vehicle) {
-  if (!vehicle.gimbal) return Value(false);
-  Value gimbal = Value::map();
-  gimbal.set("yaw_min", vehicle.gimbal->yaw_min);
-  gimbal.set("yaw_max", vehicle.gimbal->yaw_max);
-  gimbal.set("pitch_min", vehicle.gimbal->pitch_min);
-  gimbal.set("pitch_max", vehicle.gimbal->pitch_max);
-  gimbal.set("yaw_rate", vehicle.gimbal->yaw_rate_max);
-  gimbal.set("pitch_rate", vehicle.gimbal->pitch_rate_max);
-  return gimbal;
-}
-
-// Half the angle that the camera sees, across and up, of the narrower side.
-Value half_view_value(const Camera& camera) {
-  const double left = camera.principal_x + 0.5, top = camera.principal_y + 0.5;
-  Value view = Value::map();
-  view.set("across", std::atan(std::min(left, camera.width - left) / camera.focal_x));
-  view.set("up", std::atan(std::min(top, camera.height - top) / camera.focal_y));
-  return view;
-}
-
-Value wing_value(const Vehicle& vehicle) {
-  if (!vehicle.wing) return false;
-  Value wing = Value::map();
-  wing.set("stall_speed", vehicle.wing->stall_speed);
-  wing.set("bank", vehicle.wing->bank_max);
-  wing.set("bank_rate", vehicle.wing->bank_rate_max);
-  return wing;
-}
-
-// Its name and the limits that a mission may plan with.
-constexpr BoundField kVehicleFields[] = {
-    {"name", "string", "name of the vehicle"},
-    {"mass", "number", "kg"},
-    {"speed_across", "number", "largest, m/s"},
-    {"climb_speed", "number", "largest, m/s"},
-    {"descent_speed", "number", "largest, m/s"},
-    {"acceleration_across", "number", "largest, m/s^2"},
-    {"acceleration_up", "number", "largest, m/s^2; math.huge where the file states none"},
-    {"acceleration_down", "number", "largest, m/s^2; math.huge where the file states none"},
-    {"yaw_rate", "number", "largest, rad/s"},
-    {"thrust_max", "number", "largest used thrust of all rotors, N"},
-    {"rotor_thrust_max", "number", "largest thrust of one rotor, N"},
-    {"flight_time", "number", "flight time of one battery, s"},
-    {"flies", "boolean", "whether its rotors are known, so that its flight can be simulated"},
-    {"gimbal", "table|false",
-     "{yaw_min, yaw_max, pitch_min, pitch_max, yaw_rate, pitch_rate}, rad and rad/s; false: none"},
-    {"wing", "table|false", "{stall_speed, bank, bank_rate}, m/s, rad and rad/s; false: none"},
-    {"half_view", "table", "{across, up}: half the angle that the camera sees, rad"}};
-
-int vehicle_field(lua_State* state) {
-  const Vehicle& vehicle = object_argument<Vehicle>(state, 1, kVehicleType);
-  const std::string field = text_argument(state, 2, "vehicle");
-  Value fields = Value::map();
-  fields.set("name", vehicle.name);
-  fields.set("mass", vehicle.mass);
-  fields.set("speed_across", vehicle.speed_across_max);
-  fields.set("climb_speed", vehicle.climb_speed_max);
-  fields.set("descent_speed", vehicle.descent_speed_max);
-  fields.set("acceleration_across", vehicle.acceleration_across_max);
-  fields.set("yaw_rate", vehicle.yaw_rate_max);
-  fields.set("thrust_max", vehicle.thrust_max());
-  fields.set("rotor_thrust_max", vehicle.rotors.thrust_max);
-  fields.set("flight_time", vehicle.flight_time);
-  const double infinite = std::numeric_limits<double>::infinity();
-  fields.set("acceleration_up", vehicle.acceleration_up_max.value_or(infinite));
-  fields.set("acceleration_down", vehicle.acceleration_down_max.value_or(infinite));
-  fields.set("flies", vehicle.has_rotors);
-  fields.set("gimbal", gimbal_value(vehicle));
-  fields.set("wing", wing_value(vehicle));
-  fields.set("half_view", half_view_value(vehicle.camera));
-  return push_field(state, "a vehicle", field, fields, kVehicleFields);
-}
-
-// -- run:plan
-// --------------------------------------------------------------------------------------
 
 ParameterTable span_table() {
   ParameterTable table;
@@ -480,12 +266,8 @@ int certify(lua_State* state) {
 
 }  // namespace
 
-std::span<const Binding> solving_methods_of_run() {
+std::span<const Binding> planning_methods_of_run() {
   static const Binding methods[] = {
-      {"solve", &guarded<solve>,
-       "(problem: lapwing.problem, solver: lapwing.trajectory_solver, options?: @): "
-       "lapwing.solution",
-       "a solution; its `status` states the outcome", nullptr, kWarmStart},
       {"plan", &guarded<plan>, "(made: @): lapwing.plan",
        "the plan that `plan` of a mission returns", &plan_table, kPlanObjects},
       {"certify", &guarded<certify>, "(plan: lapwing.plan): table",
@@ -497,10 +279,6 @@ std::span<const Binding> solving_methods_of_run() {
 }
 
 void open_plan_library(lua_State* state) {
-  define_type<Vehicle>(state, kVehicleType, {}, &guarded<vehicle_field>);
-  note_fields(state, kVehicleType, kVehicleFields);
-  define_type<SolutionObject>(state, kSolutionType, {}, &guarded<solution_field>);
-  note_fields(state, kSolutionType, kSolutionFields);
   static const Binding of_plan[] = {
       {"add_sections", &guarded<add_sections>, "(sections: table[])",
        "more sections of its report: text, facts, tables, charts, drawings, images"}};

@@ -135,13 +135,15 @@ void open_script_libraries(lua_State* state, MissionRun& run);
 void open_lapwing_library(lua_State* state, MissionRun& run);  // calls the next one
 void open_data_library(lua_State* state);
 void open_problem_library(lua_State* state);
+void open_solve_library(lua_State* state);
 void open_plan_library(lua_State* state);
 void open_run_library(lua_State* state);
 // Pushes the object `run` that the plan function receives.
 void push_run(lua_State* state);
 // The methods of `run`, for the type's table.
-std::span<const Binding> problem_methods_of_run();  // vehicle, problem
-std::span<const Binding> solving_methods_of_run();  // solve, plan, certify
+std::span<const Binding> problem_methods_of_run();   // vehicle, problem
+std::span<const Binding> solving_methods_of_run();   // solve
+std::span<const Binding> planning_methods_of_run();  // plan, certify
 
 // Sections of a report from the key `sections` of the table at `index`; none where it lacks.
 // InputError naming what is wrong in them, beginning with `what`.

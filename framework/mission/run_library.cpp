@@ -125,8 +125,9 @@ std::span<const Binding> told_methods() {
 
 // All that `run` can be asked, by library.
 BindingLists all_methods() {
-  return {problem_methods_of_run(), solving_methods_of_run(), told_methods(),
-          flight_methods_of_run(),  map_methods_of_run(),     scan_methods_of_run()};
+  return {problem_methods_of_run(), solving_methods_of_run(), planning_methods_of_run(),
+          told_methods(),           flight_methods_of_run(),  map_methods_of_run(),
+          scan_methods_of_run()};
 }
 
 int run_field(lua_State* state) {

@@ -97,10 +97,15 @@ void open_scan_library(lua_State* state);
 std::span<const Binding> scan_methods_of_run();
 
 // The parts of that list.
+std::span<const Binding> graph_methods_of_run();
 std::span<const Binding> prior_methods_of_run();
 std::span<const Binding> scan_plan_methods_of_run();
 std::span<const Binding> pass_methods_of_run();
 void open_prior_type(lua_State* state);
+void open_graph_type(lua_State* state);
+
+// The plugin that a field of the table names.
+PluginChoice choice_at(lua_State* state, int table, const char* key);
 
 // Arguments that several of them take: {position =, yaw =, pitch =}; {lower =, upper =};
 // {width =, height =, focal =}.

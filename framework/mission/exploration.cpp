@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/mission/exploration.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "framework/core/phases.h"
+
+namespace lapwing {
+
+namespace {
+
+constexpr std::size_t kShownMoments = 4;
+constexpr int kMomentPixels = 480;
+
+// Whether the map is shown after this many images of so many that are asked for.
+bool is_moment(int images, int steps) {
+  return images == std::max(1, steps / 10) || images == std::max(1, steps / 4) ||
+         images == std::max(1, steps / 2);
+}
+
+void record_path(Exploration& e) {
+  ExplorationRecord& record = e.record;
+  record.path = {e.start.position};
+  record.path_images = {0};
+  for (std::size_t k = 0; k < e.result.steps.size(); ++k)
+    for (const Viewpoint& view : e.result.steps[k].way) {
+      if (view.position == record.path.back()) continue;
+      record.path.push_back(view.position);
+      record.path_images.push_back(static_cast<double>(k));
+    }
+  for (const ScoredView& view : e.result.candidates)
+    record.candidates.push_back({view.view.position, view.view.direction(), view.value});
+}
+
+}  // namespace
+
+void Moments::look(int images, const Map& map) {
+  if (is_moment(images, steps_) || std::has_single_bit(static_cast<unsigned>(images)))
+    all_.push_back({images, map_columns(map, below_)});
+}
+
+std::vector<ExplorationMoment> Moments::shown(int images, const Map& map) && {
+  const bool whole = images == steps_;
+  std::erase_if(all_, [&](const Moment& moment) {
+    return whole ? !is_moment(moment.images, steps_)
+                 : !std::has_single_bit(static_cast<unsigned>(moment.images));
+  });
+  if (images > 0 && (all_.empty() || all_.back().images < images))
+    all_.push_back({images, map_columns(map, below_)});
+  if (all_.size() > kShownMoments)
+    all_.erase(all_.begin(), all_.end() - static_cast<std::ptrdiff_t>(kShownMoments));
+  std::vector<ExplorationMoment> drawn;
+  for (const Moment& moment : all_) {
+    MapPicture made = height_picture(moment.columns, all_.back().columns, kMomentPixels);
+    drawn.push_back({moment.images, std::move(made.picture), made.lowest, made.highest});
+  }
+  return drawn;
+}
+
+std::optional<double> cut_height(const MeshScene& scene, const Viewpoint& start) {
+  const bool roofed = scene.blocked({start.position, Eigen::Vector3d::UnitZ()});
+  return roofed ? std::optional(start.position.z()) : std::nullopt;
+}
+
+Trajectory trajectory_of(const Exploration& e, bool gimbal) {
+  Trajectory trajectory;
+  trajectory.motion = path_motion();
+  trajectory.has_gimbal = gimbal;
+  const MoveTimes times{e.settings.speed, e.settings.turn_rate};
+  const auto add = [&](const Viewpoint& view, double time) {
+    Sample sample;
+    sample.time = time;
+    sample.position = view.position;
+    const double before = trajectory.samples.empty() ? view.yaw : trajectory.samples.back().yaw;
+    sample.yaw = before + std::remainder(view.yaw - before, 2 * EIGEN_PI);
+    sample.gimbal_pitch = view.pitch;
+    trajectory.samples.push_back(sample);
+  };
+  Viewpoint at = e.start;
+  double time = 0;
+  add(at, 0);
+  for (const EpisodeStep& step : e.result.steps) {
+    for (const Viewpoint& next : step.way) {
+      time += times.of(at, next);
+      add(next, time);
+      at = next;
+    }
+    time += e.settings.pause;
+    if (e.settings.pause > 0) add(at, time);
+  }
+  return trajectory;
+}
+
+void observe_truly(EpisodeResult& flown, const EpisodeSettings& settings, const GroundTruth& truth,
+                   const ObservedSurface::NewMap& new_map) {
+  if (!settings.sensor.noise && !settings.sensor.stereo) return;
+  ObservedSurface observed(truth, settings.sensor, new_map);
+  const auto map = new_map();
+  const std::vector<double> curve = replay(settings, flown, truth, observed, *map);
+  for (std::size_t k = 0; k < curve.size(); ++k) flown.steps[k].observed = curve[k];
+}
+
+void compare_with_oracle(Exploration& e, const GroundTruth& truth,
+                         const ObservedSurface::NewMap& new_map, const Registry& registry) {
+  EpisodeSettings settings = e.settings;
+  settings.show_truth = true;
+  settings.list_candidates = false;
+  settings.wall_clock_guard.reset();  // of the mission's own exploration
+  begin_phase(settings.progress, "oracle");
+  const auto oracle = registry.create<ViewUtility>("oracle");
+  ObservedSurface observed(truth, settings.sensor, new_map);
+  const auto map = new_map();
+  EpisodeResult best = explore(settings, e.start, truth, observed, *oracle, *map);
+  if (best.end == EpisodeEnd::cancelled) return;
+  observe_truly(best, settings, truth, new_map);
+  e.record.oracle_efficiency = best.efficiency(settings.steps);
+  if (best.end != EpisodeEnd::steps) e.record.oracle_end = explain(best.end);
+  for (const EpisodeStep& step : best.steps) e.record.oracle.push_back(step.observed);
+}
+
+void record_flight(Exploration& e) {
+  ExplorationRecord& record = e.record;
+  for (const EpisodeStep& step : e.result.steps) {
+    record.observed.push_back(step.observed);
+    e.seconds += step.seconds;
+  }
+  record.end = explain(e.result.end);
+  record.surface = e.result.surface;
+  record.length = e.result.length();
+  record.efficiency = e.result.efficiency(e.settings.steps);
+  record_path(e);
+}
+
+}  // namespace lapwing

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+// The graph of views that tours are planned on.
+#include <algorithm>
+#include <cmath>
+
+#include <lua.hpp>
+
+#include "framework/core/log.h"
+#include "framework/core/parallel.h"
+#include "framework/core/units.h"
+#include "framework/mission/guard.h"
+#include "framework/mission/lua_value.h"
+#include "framework/mission/scan_objects.h"
+
+namespace lapwing {
+
+std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, const Viewpoint& from,
+                                  const Viewpoint& to, const Vehicle& vehicle) {
+  constexpr double kTiltShare = 0.9;  // of the gimbal's rate
+  const double turn = std::remainder(to.yaw - from.yaw, 2 * EIGEN_PI);
+  const double tilt_seconds = vehicle.gimbal ? std::abs(to.pitch - from.pitch) /
+                                                   (kTiltShare * vehicle.gimbal->pitch_rate_max)
+                                             : 0;
+  const double length = path_length(points);
+  std::vector<PursuitView> stops;
+  double along = 0, before = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0) along += (points[i] - points[i - 1]).norm();
+    const double share = length > 0 ? along / length : i > 0;
+    stops.push_back({i, from.yaw + share * turn, (share - before) * tilt_seconds});
+    before = share;
+  }
+  return stops;
+}
+
+std::size_t ScanWork::motion_between(int a, int b) const {
+  const auto& motions = graph.motions.motions;  // by a, then b
+  const std::pair<int, int> wanted = std::minmax(a, b);
+  const auto found = std::lower_bound(motions.begin(), motions.end(), wanted,
+                                      [](const ViewMotion& m, const std::pair<int, int>& pair) {
+                                        return std::pair(m.a, m.b) < pair;
+                                      });
+  if (found == motions.end() || std::pair(found->a, found->b) != wanted)
+    throw Error("a tour passes from view to view without a motion");
+  return static_cast<std::size_t>(found - motions.begin());
+}
+
+std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {
+  std::shared_ptr<const Map> map = prior.mapping.map;
+  return free_in_both(free_space_of(map), with_room(free_space_of(prior.mesh), mesh_room));
+}
+
+std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun& run,
+                                                const Parameters& given,
+                                                const PluginChoice& information) {
+  work.information = run.settings.registry->create<ViewInformation>(
+      information.type, information.parameters, "information");
+  SightSettings sight;
+  sight.pinhole = pinhole_of(given.table("camera"));
+  sight.range = given.number("range");
+  sight.region = box_of(given.table("region"), "the region of interest");
+  work.prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
+  work.visible = std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
+  const TriangleMesh& known = work.prior->mesh->mesh();
+  if (std::none_of(known.vertices.begin(), known.vertices.end(),
+                   [&](const Eigen::Vector3d& p) { return sight.region.contains(p); }))
+    throw InputError(
+        given.origin("region"),
+        "the region of interest has no surface: the prior mesh does not reach into it");
+  sight.across = static_cast<int>(given.integer("across"));
+  if (sight.across == 0) return work.visible;
+  return std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
+}
+
+namespace {
+
+ParameterTable candidates_table() {
+  const CandidateSettings standard;
+  ParameterTable table;
+  table.integer("most", standard.most, "views", between(1, 100000))
+      .integer("least", standard.least, "number below which random free places are added",
+               between(0, 100000))
+      .integer("directions", standard.directions,
+               "viewing directions per place, if there are many places", between(1, 1000))
+      .number("step", standard.step, "m", "distance of neighbouring places at the region", above(0))
+      .number("step_growth", standard.step_growth, "",
+              "growth of that distance, per metre from the region", at_least(0))
+      .number("distance_apart", standard.distance_apart, "m",
+              "smallest distance of two candidates, unless their angle differs", above(0))
+      .number("angle_apart_deg", 15, "deg",
+              "smallest angle of two candidates, unless their place differs", between(0, 180))
+      .number("pitch_min_deg", -90, "deg", "lowest pitch of the camera", between(-90, 0))
+      .number("pitch_max_deg", 0, "deg", "highest", between(-90, 90));
+  return table;
+}
+
+ParameterTable motions_table() {
+  const MotionSettings standard;
+  ParameterTable table;
+  table
+      .integer("neighbours", standard.neighbours,
+               "number of matching views to which a view is connected", between(1, 1000))
+      .integer("among", standard.among, "number of nearest views among which they are searched",
+               between(1, 100000))
+      .number("alpha", standard.alpha, "", "common content that connected views need, of (4.8)",
+              between(0, 1))
+      .number("longest_detour", standard.longest_detour, "",
+              "longest path of a motion, in straight lines", at_least(1))
+      .integer("coarse", ScanGraphSettings{}.coarse_across, "pixels per row of compared views",
+               between(1, 10000));
+  return table;
+}
+
+ParameterTable flight_table() {
+  const PursuitSettings standard;
+  ParameterTable table;
+  table.number("speed", standard.speed, "m/s", "speed between views", above(0))
+      .number("view_speed", standard.view_speed, "m/s", "near a view", above(0))
+      .number("slow_within", standard.slow_within, "m",
+              "distance from a view within which view_speed holds", above(0))
+      .number("lookahead", standard.lookahead, "m", "distance of the pursued point", above(0))
+      .number("acceleration", standard.acceleration, "m/s^2", "largest", above(0))
+      .number("pause", 0.5, "s", "rest at a view, for the image", between(0, 60))
+      .number("view_seconds", 3, "s", "time added to a leg for the view at its end", at_least(0))
+      .boolean("smooth", false, "legs by a trajectory solver, instead of pure pursuit")
+      .number("stray", SmoothLegSettings{}.stray, "m",
+              "largest distance of a smooth leg from its path", above(0));
+  return table;
+}
+
+ParameterTable graph_table() {
+  ParameterTable table;
+  table.table("region", box_table(), "region of interest")
+      .table("allowed", box_table(), "box for the centre of the vehicle")
+      .tables("starts", viewpoint_table(), "places from which candidates grow, if they are free",
+              true)
+      .boolean("fixed", true,
+               "tours begin at the first of the starts; false: at the first of those "
+               "that are connected to most views")
+      .integer("needed", 1, "number of starts, the first ones, that must be free", between(1, 2))
+      .numbers("body", {1, 1, 0.5}, "m", "half edges of the vehicle's box")
+      .number("mesh_room", 1, "m", "additional distance from the prior mesh", at_least(0))
+      .table("candidates", candidates_table(), "candidate views")
+      .table("motions", motions_table(), "motions between views")
+      .table("camera", pinhole_table(), "camera of the images")
+      .integer("across", 0, "pixels per row in the evaluation of candidates; 0: all",
+               between(0, 10000))
+      .number("range", 60, "m", "length of a ray", above(0))
+      .table("flight", flight_table(), "speeds along a tour");
+  return table;
+}
+
+Eigen::Vector3d vector3_of(std::span<const double> numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run) {
+  ScanGraphSettings s;
+  const Parameters& candidates = given.table("candidates");
+  s.candidates.region = box_of(given.table("region"), "the region of interest");
+  s.candidates.allowed = box_of(given.table("allowed"), "the box for the vehicle");
+  s.candidates.half = vector3_of(given.numbers("body"));
+  s.candidates.step = candidates.number("step");
+  s.candidates.step_growth = candidates.number("step_growth");
+  s.candidates.distance_apart = candidates.number("distance_apart");
+  s.candidates.angle_apart = radians(candidates.number("angle_apart_deg"));
+  s.candidates.pitch_min = radians(candidates.number("pitch_min_deg"));
+  s.candidates.pitch_max = radians(candidates.number("pitch_max_deg"));
+  s.candidates.most = static_cast<int>(candidates.integer("most"));
+  s.candidates.least = static_cast<int>(candidates.integer("least"));
+  s.candidates.directions = static_cast<int>(candidates.integer("directions"));
+  const Parameters& motions = given.table("motions");
+  s.motions.allowed = s.candidates.allowed;
+  s.motions.half = s.candidates.half;
+  s.motions.neighbours = static_cast<int>(motions.integer("neighbours"));
+  s.motions.among = static_cast<int>(motions.integer("among"));
+  s.motions.alpha = motions.number("alpha");
+  s.motions.longest_detour = motions.number("longest_detour");
+  s.coarse_across = static_cast<int>(motions.integer("coarse"));
+  s.seed = run.settings.seed;
+  s.threads = run.settings.threads;
+  return s;
+}
+
+// The first `needed` must be free; of the others those count that are.
+std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::size_t needed,
+                                   const FreeSpace& space, const CandidateSettings& settings) {
+  std::vector<Viewpoint> starts;
+  for (const Parameters& entry : given) {
+    const Viewpoint view = viewpoint_of(entry);
+    const Eigen::Vector3d& p = view.position;
+    const bool free = settings.allowed.contains(p) && space.swept_box_free(p, p, settings.half);
+    if (free) starts.push_back(view);
+    if (free || starts.size() >= needed) continue;
+    char text[300];
+    std::snprintf(
+        text, sizeof text,
+        "no free %s: at (%.4g, %.4g, %.4g) the map does not show free space "
+        "for a box of %.3g x %.3g x %.3g m%s",
+        starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
+        2 * settings.half.y(), 2 * settings.half.z(),
+        settings.allowed.contains(p) ? "" : ", and it lies outside the space of the tour");
+    throw InputError(entry.origin(), text);
+  }
+  if (starts.empty()) throw InputError("no free start: none is given");
+  return starts;
+}
+
+// What each motion takes.
+std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
+                                       const CancellationToken* cancellation) {
+  const auto& motions = work.graph.motions.motions;
+  const auto& views = work.graph.candidates.viewpoints;
+  std::vector<double> seconds(motions.size(), 0);
+  parallel_for(motions.size(), threads, [&](std::size_t k) {
+    if (cancellation && cancellation->cancelled()) return;
+    const ViewMotion& motion = motions[k];
+    seconds[k] = work.LegFlight::seconds(motion.points, views[static_cast<std::size_t>(motion.a)],
+                                         views[static_cast<std::size_t>(motion.b)]);
+  });
+  if (cancellation && cancellation->cancelled()) throw Cancelled();
+  return seconds;
+}
+
+const Vehicle& vehicle_argument(lua_State* state, int table) {
+  lua_getfield(state, table, "vehicle");
+  return object_argument<Vehicle>(state, -1, kVehicleType);
+}
+
+constexpr BoundField kGraphObjects[] = {
+    {"prior", "lapwing.prior", "known map and mesh"},
+    {"vehicle", "lapwing.vehicle", "vehicle"},
+    {"information", "lapwing.information", "information of a view about a voxel"},
+    {"planner", "lapwing.path_planner", "planner of paths around obstacles"}};
+
+// run:scan_graph{prior =, vehicle =, region =, allowed =, starts =, ...}
+int scan_graph_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, graph_table(), "scan_graph", kGraphObjects);
+  lua_getfield(state, 2, "prior");
+  auto work = std::make_shared<ScanWork>();
+  work->prior = object_argument<PriorObject>(state, -1, kPriorType).prior;
+  if (!work->prior->mesh) throw InputError("scan_graph: the prior has no mesh; reconstruct it");
+  work->vehicle = vehicle_argument(state, 2);
+  const Registry& registry = *run.settings.registry;
+  const PluginChoice information = choice_at(state, 2, "information");
+  const PluginChoice planner = choice_at(state, 2, "planner");
+  ScanGraphSettings settings = graph_settings(given, run);
+  const auto path_planner =
+      registry.create<PathPlanner>(planner.type, planner.parameters, "planner");
+  settings.motions.planner = path_planner.get();
+  const Parameters& flight = given.table("flight");
+  work->flight = {.speed = flight.number("speed"),
+                  .view_speed = flight.number("view_speed"),
+                  .slow_within = flight.number("slow_within"),
+                  .lookahead = flight.number("lookahead"),
+                  .acceleration = flight.number("acceleration"),
+                  .stop = true,
+                  .pause = flight.number("pause")};
+  work->view_seconds = flight.number("view_seconds");
+  if (flight.boolean("smooth"))
+    work->smooth = {work->flight.speed, work->flight.acceleration, flight.number("stray")};
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  const auto coarser = make_sight(*work, run, given, information);
+  const auto space = space_of(*work->prior, given.number("mesh_room"));
+  const std::vector<Viewpoint> starts =
+      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")), *space,
+                  settings.candidates);
+  begin_planning(run);
+  work->allowed = settings.candidates.allowed;
+  work->body = settings.candidates.half;
+  work->graph = make_scan_graph(*space, *coarser, *work->information, starts, settings,
+                                run.settings.cancellation, run.settings.progress);
+  work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
+  const ScanGraph& graph = work->graph;
+  work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);
+  if (!given.boolean("fixed")) work->home = work->islands.best_start(graph.candidates.given);
+  logging::info("candidates: " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
+                std::to_string(graph.candidates.blocked) + " places blocked, " +
+                std::to_string(graph.candidates.crowded) +
+                " too near to others); motions: " + std::to_string(graph.motions.motions.size()) +
+                " of " + std::to_string(graph.motions.tried) + " (" +
+                std::to_string(graph.motions.unmatched) + " unmatched, " +
+                std::to_string(graph.motions.blocked) + " blocked, " +
+                std::to_string(graph.motions.planned) +
+                " around obstacles); voxels: " + std::to_string(graph.voxels.size()) +
+                "; score: " + std::to_string(graph.score->bytes() >> 20) + " MiB");
+  new_object(state, kGraphType, GraphObject{std::move(work)});
+  return 1;
+}
+
+// "12 of 300 candidates are connected to the start by motions; 200 are connected to a start near
+// (1.5, 20, 8)": the last where they are more.
+std::string reach_in_words(const ScanWork& work, int start) {
+  std::string text = std::to_string(work.islands.joined(start)) + " of " +
+                     std::to_string(work.graph.candidates.viewpoints.size()) +
+                     " candidates are connected to the start by motions";
+  const auto& views = work.graph.candidates.viewpoints;
+  const auto other = work.islands.largest_beside(start, views);
+  if (other && other->views > work.islands.joined(start)) {
+    const Eigen::Vector3d& p = views[static_cast<std::size_t>(other->middle)].position;
+    char place[100];
+    std::snprintf(place, sizeof place, " are connected to a start near (%.4g, %.4g, %.4g)", p.x(),
+                  p.y(), p.z());
+    text += "; " + std::to_string(other->views) + place;
+  }
+  return text;
+}
+
+constexpr BoundField kGraphFields[] = {
+    {"candidates", "integer", "views"},
+    {"motions", "integer", "number of motions between two views"},
+    {"planned", "integer", "number of motions around obstacles"},
+    {"unmatched", "integer", "pairs whose images do not match"},
+    {"blocked", "integer", "pairs without a free path"},
+    {"voxels", "integer", "number of scored voxels"},
+    {"total", "number", "score of full information about all of them"},
+    {"home", "integer", "candidate at which tours begin, from 1"},
+    {"joined", "integer", "number of views connected to it, itself included"},
+    {"reach", "string", "sentence with the number of views connected to the start"}};
+
+int graph_field(lua_State* state) {
+  const ScanWork& work = *object_argument<GraphObject>(state, 1, kGraphType).work;
+  const ScanGraph& graph = work.graph;
+  Value fields = Value::map();
+  fields.set("candidates", static_cast<std::int64_t>(graph.candidates.viewpoints.size()));
+  fields.set("motions", static_cast<std::int64_t>(graph.motions.motions.size()));
+  fields.set("planned", graph.motions.planned);
+  fields.set("unmatched", graph.motions.unmatched);
+  fields.set("blocked", graph.motions.blocked);
+  fields.set("voxels", static_cast<std::int64_t>(graph.voxels.size()));
+  fields.set("total", graph.score->total());
+  fields.set("home", static_cast<std::int64_t>(work.home + 1));
+  fields.set("joined", work.islands.joined(work.home));
+  fields.set("reach", reach_in_words(work, work.home));
+  const std::string field = text_argument(state, 2, "scan graph");
+  return push_field(state, "a scan graph", field, fields, kGraphFields);
+}
+
+}  // namespace
+
+void open_graph_type(lua_State* state) {
+  define_type<GraphObject>(state, kGraphType, {}, &guarded<graph_field>);
+  note_fields(state, kGraphType, kGraphFields);
+}
+
+std::span<const Binding> graph_methods_of_run() {
+  static const Binding methods[] = {
+      {"scan_graph", &guarded<scan_graph_of_run>, "(settings: @): lapwing.scan_graph",
+       "candidate views of a region, and motions between them", &graph_table, kGraphObjects}};
+  return methods;
+}
+
+}  // namespace lapwing
