@@ -31,9 +31,9 @@ local function mown(o, out, along, rows, top)
         at[i] = o.wall.corner[i] + o.stand_off * out[i] + side * o.wall.width * along[i]
       end
       at[3] = o.wall.corner[3] + up
-      local before, squares = stops[#stops] and stops[#stops].position or at, 0
-      for i = 1, 3 do squares = squares + (at[i] - before[i]) ^ 2 end
-      time = time + math.sqrt(squares) / o.speed + (#stops > 0 and 2 or 0)  -- 2 s for the turn
+      local before = stops[#stops] and stops[#stops].position or at
+      local apart = lapwing.norm(lapwing.vector(at) - lapwing.vector(before))
+      time = time + apart / o.speed + (#stops > 0 and 2 or 0)  -- 2 s for the turn
       stops[#stops + 1] = { time = time, position = at }
     end
   end

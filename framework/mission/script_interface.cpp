@@ -16,13 +16,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Modules that declare options.
+// Modules that declare options, by themselves or through mission/mission_of.lua.
 std::vector<std::string> mission_modules(const fs::path& scripts) {
   std::vector<std::string> names;
-  for (const auto& item : fs::directory_iterator(scripts / "mission"))
-    if (item.path().extension() == ".lua" &&
-        read_file(item.path()).find("lapwing.options(") != std::string::npos)
+  for (const auto& item : fs::directory_iterator(scripts / "mission")) {
+    if (item.path().extension() != ".lua") continue;
+    const std::string text = read_file(item.path());
+    if (text.find("lapwing.options(") != std::string::npos ||
+        text.find("require "mission.mission_of"") != std::string::npos)
       names.push_back(item.path().stem().string());
+  }
   std::sort(names.begin(), names.end());
   return names;
 }

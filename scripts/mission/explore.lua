@@ -9,25 +9,19 @@
 -- `utility` is the value of a view: frontier, average_entropy, proximity_count, learned, or oracle,
 -- which knows the surface. `map` selects the map plugin only. The parameters that all map plugins
 -- share are options of the mission, because a learned utility is valid for one set of values only.
+local depth_sensor = require "mission.depth_sensor"
+local mission_of = require "mission.mission_of"
 local named_scene = require "mission.named_scene"
 
 local M = {}
 
+local width, height, view_deg = depth_sensor.image(2000)
+local range, dropped, sigma = depth_sensor.depth(0.1)
 local CAMERA = {
-  { name = "width", type = "integer", default = 160, minimum = 1, maximum = 2000,
-    summary = "width of the image in pixels" },
-  { name = "height", type = "integer", default = 120, minimum = 1, maximum = 2000,
-    summary = "height of the image in pixels" },
-  { name = "view_deg", type = "number", unit = "deg", default = 90, minimum = 1, maximum = 170,
-    summary = "horizontal angle of view" },
+  width, height, view_deg,
   { name = "pitch_deg", type = "number", unit = "deg", default = -10, minimum = -89, maximum = 89,
     summary = "pitch of every view, positive upwards" },
-  { name = "range", type = "number", unit = "m", default = 20, minimum = 0.1, maximum = 1000,
-    summary = "largest depth" },
-  { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
-    summary = "share of pixels without a measurement" },
-  { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
-    summary = "standard deviation of the depth" },
+  range, dropped, sigma,
   { name = "stereo_baseline", type = "number", unit = "m", above = 0,
     summary = "baseline of a stereo pair; absent: a depth camera" },
 }
@@ -166,13 +160,8 @@ function M.explore(run, surface)
 end
 
 local function mission(given, more, surface_of)
-  local name = given.name
-  given.name = nil
-  return {
-    kind = "explore", name = name,
-    options = lapwing.options(options_with(more), given),
-    plan = function(run) return M.explore(run, surface_of(run)) end,
-  }
+  return mission_of("explore", options_with(more), given,
+                    function(run) return M.explore(run, surface_of(run)) end)
 end
 
 -- A scene that scripts/scene makes.

@@ -10,6 +10,7 @@
 -- (snap), derivatives of yaw, target and gimbal, the angle between camera and target, effort.
 -- Constraints: the limits of vehicle and gimbal, obstacles, the state at start and end, and with
 -- `hard` the keyframes.
+local mission_of = require "mission.mission_of"
 local input = require "mission.film_input"
 local own = require "mission.own_terms"
 local search = require "mission.film_search"
@@ -108,14 +109,10 @@ local of_file = { { name = "input", type = "text", summary = "JSON file of a des
 local function mission(what, given, declared, shot_of)
   if type(given) ~= "table" then lapwing.fail(what .. ": expected a table, got " .. type(given)) end
   local options = input.written_out(given)
-  local name = options.name
-  options.name = nil
   local terms = own.taken(options)
   local all = table.move(common, 1, #common, #declared + 1, { table.unpack(declared) })
-  return { kind = "film", name = name, options = lapwing.options(all, options),
-           plan = function(run)
-             return search.fly(run, shot_of(run), terms)
-           end }
+  return mission_of("film", all, options,
+                    function(run) return search.fly(run, shot_of(run), terms) end)
 end
 
 ---@class lapwing.film.shot

@@ -6,6 +6,7 @@
 --
 -- A drawing is a text in a font of strokes, an SVG picture, or points. It is vertical. `origin` is
 -- the centre of its lower edge. Spectators look along `view_yaw_deg`.
+local mission_of = require "mission.mission_of"
 local drawings = require "mission.drawings"
 local order = require "mission.stroke_order"
 local paths = require "mission.paths"
@@ -204,12 +205,7 @@ local function painted(run)
   end
 end
 
-local function mission(given)
-  local name = given.name
-  given.name = nil
-  return { kind = "light_painting", name = name, options = lapwing.options(DECLARATIONS, given),
-           plan = painted }
-end
+local function mission(given) return mission_of("light_painting", DECLARATIONS, given, painted) end
 
 ---@type fun(given: lapwing.light_painting.text): lapwing.mission
 M.text = mission

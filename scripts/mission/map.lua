@@ -9,6 +9,8 @@
 -- Missions of kind `map` return a map instead of a plan. The parameters that all map plugins share
 -- are options of the mission (`resolution`, `mode`, `pixel_step`, `observations`). `map` selects
 -- the plugin only: `--set map=octomap` changes speed and memory, not the map.
+local depth_sensor = require "mission.depth_sensor"
+local mission_of = require "mission.mission_of"
 local named_scene = require "mission.named_scene"
 local views = require "mission.views"
 
@@ -48,20 +50,8 @@ local FOLDER = { INPUT, {
   name = "range", type = "number", unit = "m", minimum = 0.01, maximum = 1000,
   summary = "range beyond which a ray clears voxels and adds no hit; absent: none" } }
 
-local SENSOR = {
-  { name = "width", type = "integer", default = 160, minimum = 1, maximum = 10000,
-    summary = "width of the image in pixels" },
-  { name = "height", type = "integer", default = 120, minimum = 1, maximum = 10000,
-    summary = "height of the image in pixels" },
-  { name = "view_deg", type = "number", unit = "deg", default = 90, minimum = 1, maximum = 170,
-    summary = "horizontal angle of view" },
-  { name = "range", type = "number", unit = "m", default = 20, minimum = 0.01, maximum = 1000,
-    summary = "largest depth" },
-  { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
-    summary = "share of pixels without a measurement" },
-  { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
-    summary = "standard deviation of the depth" },
-}
+local width, height, view_deg = depth_sensor.image(10000)
+local SENSOR = { width, height, view_deg, depth_sensor.depth(0.01) }
 
 local function declarations(map, ...)
   local all = { map, MODEL }
@@ -98,73 +88,58 @@ function M.of_scene(given)
     { name = "views", type = "integer", default = 400, minimum = 1, maximum = 100000,
       summary = "number of images" },
   }
-  local name = given.name
-  given.name = nil
-  return {
-    kind = "map", name = name,
-    options = lapwing.options(declarations(
-      map_with(settled_with(SCANS, "maximum_range",
-                            "the sensor has it: set sensor.range instead")), SHARED, own), given),
-    plan = function(run)
-      local o = run.options
-      local scene = named_scene(run)
-      local surface = run:surface(scene)
-      local made = new_map(run, { maximum_range = o.sensor.range })
-      made:scan {
-        surface = surface,
-        poses = views.over(surface, o.views),
-        range = o.sensor.range,
-        camera = { width = o.sensor.width, height = o.sensor.height,
-                   view_deg = o.sensor.view_deg },
-        noise = { dropped = o.sensor.dropped, sigma = o.sensor.sigma },
-      }
-      return made
-    end,
-  }
+  local declared = declarations(
+    map_with(settled_with(SCANS, "maximum_range",
+                          "the sensor has it: set sensor.range instead")), SHARED, own)
+  return mission_of("map", declared, given, function(run)
+    local o = run.options
+    local scene = named_scene(run)
+    local surface = run:surface(scene)
+    local made = new_map(run, { maximum_range = o.sensor.range })
+    made:scan {
+      surface = surface,
+      poses = views.over(surface, o.views),
+      range = o.sensor.range,
+      camera = { width = o.sensor.width, height = o.sensor.height,
+                 view_deg = o.sensor.view_deg },
+      noise = { dropped = o.sensor.dropped, sigma = o.sensor.sigma },
+    }
+    return made
+  end)
 end
 
 -- Depth images with poses: a folder of NAME.depth.png, NAME.pose.txt and camera-intrinsics.txt.
 ---@param given lapwing.map.of_folder
 ---@return lapwing.mission
 function M.of_folder(given)
-  local name = given.name
-  given.name = nil
-  return {
-    kind = "map", name = name,
-    options = lapwing.options(declarations(
-      map_with(settled_with(SCANS, "maximum_range", "set range instead")), SHARED, FOLDER), given),
-    plan = function(run)
-      local o = run.options
-      if not o.input then
-        lapwing.fail(missing_input("a folder of depth images", "NAME.depth.png, NAME.pose.txt"))
-      end
-      local made = new_map(run, { maximum_range = o.range })
-      made:scan_folder(o.input)
-      return made
-    end,
-  }
+  local declared = declarations(
+    map_with(settled_with(SCANS, "maximum_range", "set range instead")), SHARED, FOLDER)
+  return mission_of("map", declared, given, function(run)
+    local o = run.options
+    if not o.input then
+      lapwing.fail(missing_input("a folder of depth images", "NAME.depth.png, NAME.pose.txt"))
+    end
+    local made = new_map(run, { maximum_range = o.range })
+    made:scan_folder(o.input)
+    return made
+  end)
 end
 
 -- A map file: .bt or .ot. The edge of its voxels is the file's.
 ---@param given lapwing.map.of_file
 ---@return lapwing.mission
 function M.of_file(given)
-  local name = given.name
-  given.name = nil
-  return {
-    kind = "map", name = name,
-    options = lapwing.options(declarations(map_with {
-      resolution = "the file determines it",
-      mode = "a file is read, not scanned", pixel_step = "a file is read, not scanned",
-      maximum_range = "a file is read, not scanned" }, { INPUT }), given),
-    plan = function(run)
-      local o = run.options
-      if not o.input then lapwing.fail(missing_input("a map", ".bt or .ot")) end
-      local made = new_map(run, { resolution = run:map_resolution(o.input) })
-      made:load(o.input)
-      return made
-    end,
-  }
+  local declared = declarations(map_with {
+    resolution = "the file determines it",
+    mode = "a file is read, not scanned", pixel_step = "a file is read, not scanned",
+    maximum_range = "a file is read, not scanned" }, { INPUT })
+  return mission_of("map", declared, given, function(run)
+    local o = run.options
+    if not o.input then lapwing.fail(missing_input("a map", ".bt or .ot")) end
+    local made = new_map(run, { resolution = run:map_resolution(o.input) })
+    made:load(o.input)
+    return made
+  end)
 end
 
 return M

@@ -8,6 +8,7 @@
 --
 -- Every leg from gate to gate has its own step, which is a variable. If the steps of a leg are too
 -- coarse, their number is doubled, and the problem is solved again.
+local mission_of = require "mission.mission_of"
 local courses = require "mission.race_course"
 local flights = require "mission.race_flight"
 local search = require "mission.race_search"
@@ -130,12 +131,9 @@ end
 ---@param given lapwing.race.course
 ---@return lapwing.mission
 function M.course(given)
-  local name = given.name
-  given.name = nil
   -- The first guess is good, so that the barrier should decrease monotonically.
   given.solver = given.solver or { type = "ipopt", mu_strategy = "monotone" }
-  return { kind = "race", name = name, options = lapwing.options(DECLARATIONS, given),
-           plan = flown }
+  return mission_of("race", DECLARATIONS, given, flown)
 end
 
 return M

@@ -10,6 +10,7 @@
 -- are planned between views whose images match. A tour solver selects a tour within the budget,
 -- which is flown from view to view. A vehicle that cannot stand still takes images in passing
 -- (scan_passing.lua).
+local mission_of = require "mission.mission_of"
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
 local passing = require "mission.scan_passing"
@@ -204,12 +205,7 @@ local function planned(run)
   return plan
 end
 
-local function mission(given)
-  local name = given.name
-  given.name = nil
-  return { kind = "scan", name = name, options = lapwing.options(DECLARATIONS, given),
-           plan = planned }
-end
+local function mission(given) return mission_of("scan", DECLARATIONS, given, planned) end
 
 -- A scene of scripts/scene, a mesh file of the user (`--set input=PATH`), or files of a real flight
 -- (`prior`).
