@@ -99,32 +99,23 @@ TrajectoryProblem pendulum_problem(bool step_free, bool times) {
   return problem;
 }
 
-void expect_all(const TrajectoryProblem& problem, double size) {
-  for (std::uint64_t seed : {1, 2}) {
-    const Stages at = random_point(problem, seed, size);
-    expect_gradient(problem, at);
-    expect_row_jacobian(problem, at);
-    expect_exact_hessian(problem, at, random_multipliers(problem, seed + 10));
-  }
-}
-
 TEST(Derivatives, OfANonlinearProblemWithWindows) {
   TrajectoryProblem problem = pendulum_problem(false, false);
   problem.finish();
   EXPECT_FALSE(problem.quadratic());
-  expect_all(problem, 0.4);
+  expect_derivatives(problem, 0.4);
 }
 
 TEST(Derivatives, BetweenStagesThroughTheFlow) {
   TrajectoryProblem problem = pendulum_problem(false, true);
   problem.finish();
-  expect_all(problem, 0.4);
+  expect_derivatives(problem, 0.4);
 }
 
 TEST(Derivatives, WithFreeStepAndIntegrals) {
   TrajectoryProblem problem = pendulum_problem(true, false);
   problem.finish();
-  expect_all(problem, 0.15);
+  expect_derivatives(problem, 0.15);
 }
 
 TrajectoryProblem tumbler_problem(bool step_free, bool times) {
@@ -150,19 +141,19 @@ TrajectoryProblem tumbler_problem(bool step_free, bool times) {
 TEST(Derivatives, WithOrientations) {
   TrajectoryProblem problem = tumbler_problem(false, false);
   problem.finish();
-  expect_all(problem, 0.6);
+  expect_derivatives(problem, 0.6);
 }
 
 TEST(Derivatives, WithOrientationsAndFreeStep) {
   TrajectoryProblem problem = tumbler_problem(true, false);
   problem.finish();
-  expect_all(problem, 0.15);
+  expect_derivatives(problem, 0.15);
 }
 
 TEST(Derivatives, WithOrientationsBetweenStages) {
   TrajectoryProblem problem = tumbler_problem(false, true);
   problem.finish();
-  expect_all(problem, 0.6);
+  expect_derivatives(problem, 0.6);
 }
 
 TEST(Derivatives, GaussNewtonIsTwiceTheWeightedSquareOfTheJacobian) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "framework/problem/trajectory_problem.h"
+#include "tests/problem/laboratory.h"
 
 namespace lapwing::laboratory {
 
@@ -81,6 +82,16 @@ inline void expect_exact_hessian(const TrajectoryProblem& problem, const Stages&
   expect_close(hessian, expected, 1e-7, "Hessian", [&](int r, int c) {
     return problem.column_name(r) + " by " + problem.column_name(c);
   });
+}
+
+// All of the above at two seeded points.
+inline void expect_derivatives(const TrajectoryProblem& problem, double size) {
+  for (std::uint64_t seed : {1, 2}) {
+    const Stages at = random_point(problem, seed, size);
+    expect_gradient(problem, at);
+    expect_row_jacobian(problem, at);
+    expect_exact_hessian(problem, at, random_multipliers(problem, seed + 10));
+  }
 }
 
 }  // namespace lapwing::laboratory

@@ -40,15 +40,6 @@ TrajectoryProblem quadrotor(const Horizon& horizon) {
   return problem;
 }
 
-void expect_derivatives(const TrajectoryProblem& problem, double size) {
-  for (std::uint64_t seed : {1, 2}) {
-    const Stages at = random_point(problem, seed, size);
-    expect_gradient(problem, at);
-    expect_row_jacobian(problem, at);
-    expect_exact_hessian(problem, at, random_multipliers(problem, seed + 10));
-  }
-}
-
 TEST(Legs, AHorizonKnowsItsTimes) {
   const Horizon horizon = Horizon::of_legs(kThree);
   EXPECT_EQ(horizon.stages, 8);
