@@ -150,6 +150,24 @@ bool memory(const Medians& medians, const char* ours, const char* opponent, doub
   return verdict(mine <= at_most * other);
 }
 
+// Terms read blocks through named handles: the ratio to the same term that reads them by number.
+bool names_hold(const Medians& medians) {
+  constexpr double kMost = 1.05;
+  bool held = true;
+  for (const char* name : {"reading/camera_angle", "reading/skewness", "reading/input_effort"}) {
+    const Medians::Entry* a = medians.find(name);
+    if (!a) {
+      held &= unmeasured(medians, {name});
+      continue;
+    }
+    const double times = a->counters.at("ratio");
+    std::printf("%s: %.1f us by name, %.1f us by number: %.3f times (claimed: at most %g)", name,
+                a->counters.at("named_us"), a->counters.at("numbered_us"), times, kMost);
+    held &= verdict(times <= kMost);
+  }
+  return held;
+}
+
 bool maps_hold(const Medians& medians) {
   bool held = true;
   for (const char* mode : {"discretised", "exact"}) {
@@ -195,6 +213,7 @@ int main(int argc, char** argv) {
       faster(medians, "to_the_end/moved_warm", "to_the_end/moved_cold", 1.6) &
       fewer_programs(medians, "to_the_end/moved_warm", "to_the_end/moved_cold", 0.55) &
       growth(medians, "interior_point/flight_30s", "interior_point/flight_300s", 15) &
-      growth(medians, "film_terms/plugins", "film_terms/lua", 1.3) & maps_hold(medians);
+      growth(medians, "film_terms/plugins", "film_terms/lua", 1.3) & names_hold(medians) &
+      maps_hold(medians);
   return held && !medians.failed() ? 0 : 1;
 }
