@@ -23,7 +23,7 @@ std::vector<std::string> mission_modules(const fs::path& scripts) {
     if (item.path().extension() != ".lua") continue;
     const std::string text = read_file(item.path());
     if (text.find("lapwing.options(") != std::string::npos ||
-        text.find("require "mission.mission_of"") != std::string::npos)
+        text.find("require \"mission.mission_of\"") != std::string::npos)
       names.push_back(item.path().stem().string());
   }
   std::sort(names.begin(), names.end());
