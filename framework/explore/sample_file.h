@@ -2,7 +2,7 @@
 // Training samples of one episode: what the map looked like around viewpoints, and what the oracle
 // said of them (thesis 5.4.5).
 //
-// A file is a line "lapwing samples 2", a line of JSON, then the targets (32-bit floats, little
+// A file is a line "lapwing samples 3", a line of JSON, then the targets (32-bit floats, little
 // endian) and the grids (a byte each, 255 times the value). Files are whole or not there.
 #pragma once
 
