@@ -85,14 +85,31 @@ void weld(TriangleMesh& mesh, double tolerance) {
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<Rgb> colors;
   std::vector<std::int32_t> renamed(mesh.vertices.size(), -1);
+  // Two that agree may lie on both sides of a border of cells. The first of them in the mesh.
+  const auto beside = [&](const Cell& cell, const Eigen::Vector3d& p) {
+    std::int32_t first = -1;
+    for (int k = 0; k < 27; ++k) {
+      const Cell next{{cell.at[0] + k % 3 - 1, cell.at[1] + k / 3 % 3 - 1, cell.at[2] + k / 9 - 1}};
+      const auto it = places.find(next);
+      if (it == places.end() || (first >= 0 && it->second > first)) continue;
+      const Eigen::Vector3d off = vertices[static_cast<std::size_t>(it->second)] - p;
+      if (off.cwiseAbs().maxCoeff() <= tolerance) first = it->second;
+    }
+    return first;
+  };
   const auto place = [&](std::int32_t old) {
     std::int32_t& known = renamed[static_cast<std::size_t>(old)];
     if (known >= 0) return known;
     const Eigen::Vector3d& p = mesh.vertices[static_cast<std::size_t>(old)];
-    const auto [it, fresh] =
-        places.emplace(cell_of(p, tolerance), static_cast<std::int32_t>(vertices.size()));
-    if (fresh) vertices.push_back(p);
-    return known = it->second;
+    const Cell cell = cell_of(p, tolerance);
+    const auto it = places.find(cell);
+    if (it != places.end()) return known = it->second;
+    known = tolerance > 0 ? beside(cell, p) : -1;
+    if (known >= 0) return known;
+    known = static_cast<std::int32_t>(vertices.size());
+    places.emplace(cell, known);
+    vertices.push_back(p);
+    return known;
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (!(mesh.cross(i).norm() > 0)) continue;
