@@ -9,10 +9,39 @@ namespace lapwing {
 
 using Eigen::Vector3d;
 
+namespace {
+
+Vector3d nearest_on(const Vector3d& from, const Vector3d& to, const Vector3d& p) {
+  const Vector3d way = to - from;
+  const double squared = way.squaredNorm();
+  return squared > 0 ? Vector3d(from + std::clamp((p - from).dot(way) / squared, 0.0, 1.0) * way)
+                     : from;
+}
+
+// Of a triangle as narrow as a hair the signs of areas are rounding. What is nearest of its edges
+// and of the place in it that p stands over, as far as that is known.
+Vector3d nearest_of_narrow(const Triangle& t, const Vector3d& p) {
+  const Vector3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, n = ab.cross(ac);
+  Vector3d best = nearest_on(t.a, t.b, p);
+  const auto offer = [&](const Vector3d& q) {
+    if ((p - q).squaredNorm() < (p - best).squaredNorm()) best = q;
+  };
+  offer(nearest_on(t.b, t.c, p));
+  offer(nearest_on(t.c, t.a, p));
+  const double v = ap.cross(ac).dot(n) / n.squaredNorm(), w = ab.cross(ap).dot(n) / n.squaredNorm();
+  if (v >= 0 && w >= 0 && v + w <= 1) offer(t.a + v * ab + w * ac);
+  return best;
+}
+
+}  // namespace
+
 // Which corner, edge or the face itself is nearest, by the signs of projections on the edges
 // (Ericson, Real-Time Collision Detection, 5.1.5).
 Vector3d nearest_point(const Triangle& t, const Vector3d& p) {
+  constexpr double kNarrow = 1e-8;  // squared sine of the angle at a
   const Vector3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
+  if (ab.cross(ac).squaredNorm() <= kNarrow * ab.squaredNorm() * ac.squaredNorm())
+    return nearest_of_narrow(t, p);
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0 && d2 <= 0) return t.a;
   const Vector3d bp = p - t.b;
