@@ -144,6 +144,7 @@ void WorkingTour::insert(int view, int after) {
   std::vector<int> by;
   problem_->append_way(walk_[after], view, by);
   problem_->append_way(view, walk_[after + 1], by);
+  if (by.empty()) return;  // a loop without further views, and its start
   by.pop_back();
   replace(after + 1, after, by);
 }
