@@ -160,7 +160,8 @@ input.keyframe = {
     summary = "heading: 0 is east, counter-clockwise" },
   { name = "look_at", type = "numbers", size = 3, unit = "m", minimum = -1e6, maximum = 1e6,
     also = "string",
-    summary = "looked at: a point, or the name of a subject; absent: as the keyframe before" },
+    summary = "target of the camera: a point, or the name of a subject; absent: as the keyframe "
+    .. "before" },
   { name = "subject", type = "text",
     summary = "name of the filmed subject; set by `look_at = NAME`" },
 }

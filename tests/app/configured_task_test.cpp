@@ -161,7 +161,7 @@ TEST_F(ConfiguredTask, OfARaceIsHeldToItsConfiguration) {
   expect_told({
       {"gate 1 ('gates[1]') is of another radius in the plan",
        [](Value& d) { entry(d, "task", "gates").set("radius", 3.0); }},
-      {"gate 1 ('gates[1]') has another position in the plan",
+      {"gate 1 ('gates[1]') is elsewhere in the plan",
        [](Value& d) { entry(d, "task", "gates").find("position")->as_list()[1] = 0.5; }},
       {"gate 2 ('gates[2]') is of another size in the plan",
        [](Value& d) {

@@ -134,7 +134,7 @@ TEST_F(OutputTest, NamesThatMakeOneFolderDoNotShareItInSilence) {
   EXPECT_EQ(mission_of("out/a_b"), "a/b");
   const Finished named = run({"run", "b.lua", "-o", "out/a_b"});
   EXPECT_EQ(named.status, 0);
-  EXPECT_THAT(named.out, HasSubstr("replaces the run of 'a/b' that was there"));
+  EXPECT_THAT(named.out, HasSubstr("replaces the run of 'a/b' in this folder"));
   write("a.lua", film("name = '.'"));
   write("b.lua", film("name = '~'"));
   ASSERT_EQ(run({"run", "a.lua"}).status, 0);
@@ -144,7 +144,7 @@ TEST_F(OutputTest, NamesThatMakeOneFolderDoNotShareItInSilence) {
 TEST_F(OutputTest, ARunSaysWhatItReplacesOrKeepsIt) {
   write("shot.lua", film("name = 'shot'"));
   EXPECT_THAT(run({"run", "shot.lua"}).out, Not(HasSubstr("that was there")));
-  EXPECT_THAT(run({"run", "shot.lua"}).out, HasSubstr("replaces the run that was there"));
+  EXPECT_THAT(run({"run", "shot.lua"}).out, HasSubstr("replaces the run in this folder"));
   write_file_atomically(folder_ / "out/shot/notes.txt", "mine");
   EXPECT_THAT(run({"run", "shot.lua", "--keep"}).out,
               HasSubstr("the run that was there is kept in 'out/shot.1'"));

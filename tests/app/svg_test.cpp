@@ -185,7 +185,7 @@ TEST_F(Svg, UsesSymbolsAndNestedPicturesAreDrawnWhereTheyStand) {
 }
 
 TEST_F(Svg, WhatCannotBeReadIsRefusedWithItsLine) {
-  refuses("\n<rect width='50%' height='3'/>", "line 3: <rect>: width is '50%': shares of");
+  refuses("\n<rect width='50%' height='3'/>", "line 3: <rect>: width is '50%': percentages");
   refuses("<circle r='-1'/>", "line 2: <circle>: its radius must not be below 0");
   refuses("<use href='#nothing'/>", "line 2: <use>: '#nothing' is not an element");
   refuses("<g id='a'>\n<use href='#a'/></g>", "line 3: <use>: it uses itself");

@@ -195,11 +195,11 @@ TEST_F(Sweeping, GoesOnWithWhatIsMissing) {
   EXPECT_EQ(other.status, 2);
   EXPECT_NE(other.err.find("has other inputs: seed"), std::string::npos) << other.err;
   other = run(with({"--resume", "--set", "hard=0.1"}));
-  EXPECT_NE(other.err.find("something else: set"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("other inputs: set"), std::string::npos) << other.err;
   write("shot.lua", film("name = 'hop', hard = 0.3,"));
   other = run(with({"--resume"}));
   EXPECT_EQ(other.status, 2);
-  EXPECT_NE(other.err.find("something else: scripts_sha256"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("other inputs: scripts_sha256"), std::string::npos) << other.err;
   other = run(typed);
   EXPECT_EQ(other.status, 0);
   EXPECT_NE(other.err.find("replaces the sweep in 'out/sweep'"), std::string::npos) << other.err;
@@ -321,7 +321,7 @@ TEST_F(Sweeping, LibrariesOfPluginsCount) {
   again.push_back("--resume");
   const Finished finished = run(again);
   EXPECT_EQ(finished.status, 2);
-  EXPECT_NE(finished.err.find("something else: plugins_sha256"), std::string::npos) << finished.err;
+  EXPECT_NE(finished.err.find("other inputs: plugins_sha256"), std::string::npos) << finished.err;
 }
 
 }  // namespace

@@ -139,10 +139,11 @@ TEST(TestTools, TheListsOfPackagesHoldWhatTestsNeed) {
     for (const std::string& need : needs_of(read_file(path), cmake)) {
       seen.insert(need);
       const auto found = kPackages.find(need);
-      if (found == kPackages.end())
+      if (found == kPackages.end()) {
         ADD_FAILURE() << name << " needs '" << need << "': name its Debian package here";
-      else if (!found->second.empty())
+      } else if (!found->second.empty()) {
         EXPECT_TRUE(here.contains(found->second)) << name << ": " << found->second;
+      }
     }
   }
   for (const char* need : {"GTest", "octomap", "gmock", "chromium", "nm", "zsh", "groff", "make"})

@@ -20,7 +20,9 @@ namespace fs = std::filesystem;
 
 class KeptRuns : public testing::Test {
  protected:
-  KeptRuns() : base_(fs::path(testing::TempDir()) / "lapwing_kept_runs"), folder_(base_ / "shot") {
+  KeptRuns()
+      : base_(fs::path(testing::TempDir()) / ("lapwing_kept_runs_" + std::to_string(::getpid()))),
+        folder_(base_ / "shot") {
     fs::remove_all(base_);
     fs::create_directories(base_);
   }
@@ -73,7 +75,9 @@ TEST_F(KeptRuns, AKillAtAnyStepLeavesAWholeRunUnderTheName) {
     EXPECT_EQ(complete_run_folder(folder_), "") << step;
     const std::string found = run_in(folder_);
     EXPECT_TRUE(found == "old" || found == "new") << "step " << step << ": " << found;
-    if (found == "new") EXPECT_EQ(run_in(base_ / "shot.1"), "old") << step;
+    if (found == "new") {
+      EXPECT_EQ(run_in(base_ / "shot.1"), "old") << step;
+    }
     old_seen = old_seen || found == "old";
     new_seen = new_seen || (found == "new" && !ended);
     write_run_folder(folder_, files("next"), true);

@@ -240,7 +240,7 @@ TEST_F(FilmOwnTerms, BystandersAreKeptAwayFrom) {
   EXPECT_GE(*check->worst, 2.999);
   EXPECT_TRUE(check->detail.starts_with("bystander 'couple'; bystander 'bystander"))
       << check->detail;
-  EXPECT_TRUE(check->detail.ends_with(" s, asks for 2 m")) << check->detail;
+  EXPECT_TRUE(check->detail.ends_with(" s, requires 2 m")) << check->detail;
   ASSERT_EQ(result.plan.environment.subjects.size(), 2u);
   EXPECT_FALSE(result.plan.environment.subjects[0].filmed);
   EXPECT_TRUE(result.plan.task.framing.empty());
@@ -315,7 +315,7 @@ TEST_F(FilmOwnTerms, NamedShotsDescribeTheirArguments) {
   const std::string text = annotations_of(interface, registry_);
   for (const char* line :
        {"---@field orbit fun(given: lapwing.film.shots.orbit): lapwing.film.shot.keyframes[]",
-        "---@class lapwing.film.shots.orbit", "---@field radius number|string of the circle",
+        "---@class lapwing.film.shots.orbit", "---@field radius number|string radius of the circle",
         "---@field costs? lapwing.cost_term[]|lapwing.own_cost[]"})
     EXPECT_NE(text.find(line), std::string::npos) << line;
   EXPECT_NE(argument_table_of(interface, "film.shots").find("| | `ramp` | 2 s |"),

@@ -115,7 +115,7 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set start=[0,0,2]"), HasSubstr("no free start"));
   EXPECT_THAT(refused("--set tour.budget=1"), HasSubstr("no tour of 1 s"));
   EXPECT_THAT(refused("--set region.lower=[15,15,2] --set region.upper=[20,20,6]"),
-              HasSubstr("holds no surface"));
+              HasSubstr("has no surface"));
   EXPECT_THAT(refused("--set region.lower=[-6,-5,30] --set region.upper=[6,5,33] "
                       "--set safe_height=9"),
               HasSubstr("must fly above 32 m"));
@@ -131,9 +131,9 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   // A name alone swaps the solver and keeps the budget, and what is another solver's is said.
   EXPECT_THAT(refused("--set tour=greedy"), HasSubstr("tour.iterations: unknown key"));
   EXPECT_THAT(refused("--set tour.budget=1300"), HasSubstr("more than one battery, 1200 s"));
-  EXPECT_THAT(refused("--set up=y"), HasSubstr("up: is of an input"));
+  EXPECT_THAT(refused("--set up=y"), HasSubstr("up: is for the mesh file"));
   EXPECT_THAT(refused("--set tour.begin=gredy"), HasSubstr("did you mean 'greedy'?"));
-  EXPECT_THAT(refused("--set scene=walls"), HasSubstr("no scene"));
+  EXPECT_THAT(refused("--set scene=walls"), HasSubstr("not a scene"));
   EXPECT_THAT(refused("--set scene=churhc"), HasSubstr("did you mean 'church'?"));
   EXPECT_THAT(refused("--set prior.map=a.ot"), HasSubstr("both a map and a mesh"));
   // What contradicts is said before anything is flown.
@@ -141,7 +141,7 @@ TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set tour.images=1"), HasSubstr("at least two"));
   EXPECT_THAT(refused("--set 'tour={solver: greedy, begin: cost_benefit}'"), HasSubstr("begin"));
   EXPECT_THAT(refused("--set input=hut.obj"), HasSubstr("in place of the scene 'hut'"));
-  EXPECT_THAT(refused("--set ground=true"), HasSubstr("ground: is of an input"));
+  EXPECT_THAT(refused("--set ground=true"), HasSubstr("ground: is for the mesh file"));
   EXPECT_THAT(refused("--set region.lower=[6,-5,0] --set region.upper=[-6,5,7]"),
               HasSubstr("lower must be below upper: 6 and -6 along x"));
   EXPECT_THAT(refused("--set ceiling=3"), HasSubstr("3 m is below safe_height, 9 m"));

@@ -240,7 +240,7 @@ TEST_F(RegistryTest, RefusesStaleSidecars) {
   // Older than the library, it is found out when plugins are listed.
   const auto time = fs::last_write_time(folder_ / "good.so");
   fs::last_write_time(folder_ / "good.json", time - std::chrono::seconds(5));
-  EXPECT_SAYS(refusal([&] { registry(); }), "as it is now");
+  EXPECT_SAYS(refusal([&] { registry(); }), "in its present version");
   // Older, but true: a copied tree.
   fs::copy_file(kFixtures / "whole" / "good.json", folder_ / "good.json",
                 fs::copy_options::overwrite_existing);

@@ -157,7 +157,7 @@ TEST_F(Coverage, WhatMakesNoSenseIsSaid) {
   EXPECT_THAT(said([](Plan& p) { p.task.scan->views.clear(); }), HasSubstr("must have a view"));
   EXPECT_THAT(said([](Plan& p) { p.task.scan->views[1].time = 9; }), HasSubstr("view 2 is not"));
   EXPECT_THAT(said([](Plan& p) { p.task.scan->views[2].time = 0; }), HasSubstr("not later"));
-  EXPECT_THAT(said([](Plan& p) { p.task.scan->seen = 0; }), HasSubstr("how many voxels"));
+  EXPECT_THAT(said([](Plan& p) { p.task.scan->seen = 0; }), HasSubstr("the number of seen voxels"));
   EXPECT_THAT(said([](Plan& p) { p.task.scan->range = 1e6; }), HasSubstr("rays"));
   EXPECT_THAT(said([](Plan& p) { p.task.scan->camera.width = 0; }), HasSubstr("camera"));
   EXPECT_THAT(said([](Plan& p) { p.task.scan->camera.width = 1 << 30; }), HasSubstr("10^9"));

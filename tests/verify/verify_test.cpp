@@ -154,7 +154,7 @@ TEST(Verify, DistanceFromSubjectsHasKnownValues) {
   EXPECT_LE(*check.worst, 1);
   EXPECT_NEAR(*check.worst, 1, 3e-4);
   EXPECT_NEAR(check.at, 1, 1e-6);
-  EXPECT_EQ(check.detail, "subject 'runner'; subject 'still' 2 m at 1 s, asks for 1.9 m");
+  EXPECT_EQ(check.detail, "subject 'runner'; subject 'still' 2 m at 1 s, requires 1.9 m");
   EXPECT_EQ(check.limit, 1.5);
   plan.environment.subjects[0].distance = -1;
   EXPECT_FALSE(check_of(verify(plan), "document").pass);

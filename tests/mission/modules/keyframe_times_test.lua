@@ -107,7 +107,7 @@ function T.contradicted_speeds_are_named()
   refused("speed: above the speed_limit of 2 m/s", { speed = 3, speed_limit = 2 }, { a, b })
   refused("keyframes[3].time: keyframe 2 is timed by its speed", { speed = 3 },
           { a, b, at(20, 0, 0, { time = 9 }) })
-  refused("keyframes[2]: at the place of the one before", { speed = 3 }, { a, at(0, 0, 0) })
+  refused("keyframes[2]: at the place of the keyframe before", { speed = 3 }, { a, at(0, 0, 0) })
   refused("speed: times keyframes of timing = \"given\"", { speed = 3, timing = "free" }, { a, b })
   refused("keyframes[2].speed: times keyframes", { timing = "path_first" },
           { a, at(9, 0, 0, { speed = 1 }) })
@@ -178,7 +178,8 @@ end
 
 function T.a_battery_lasts_as_long_as_it_does()
   times.check_battery(check.run(), VEHICLE, 600)
-  check.fails("duration: 601 s of flight are more than the 600 s that vehicle 'test' flies",
+  check.fails("duration: 601 s of flight are more than the 600 s that vehicle 'test' has in one "
+              .. "battery",
               times.check_battery, check.run(), VEHICLE, 601)
   times.check_battery(check.run { battery = 700 }, VEHICLE, 601)
   check.fails("700 s that `battery` allows", times.check_battery, check.run { battery = 700 },

@@ -87,14 +87,14 @@ end
 function T.broken_files_are_refused_with_their_line()
   for text, message in pairs {
     ["<svg>\n<g>"] = "line 2: <g> is not closed",
-        ["<svg>\n</g></svg>"] = "line 2: </g> closes nothing",
-    ["</svg>"] = "line 1: </svg> closes nothing",
-        ["<svg/>\n</svg>"] = "line 2: </svg> closes nothing",
+        ["<svg>\n</g></svg>"] = "line 2: </g> has no opening tag",
+    ["</svg>"] = "line 1: </svg> has no opening tag",
+        ["<svg/>\n</svg>"] = "line 2: </svg> has no opening tag",
     ["<svg>\n<path d='M0"] = "line 2: the file ends within a tag",
     ["<svg>\n<path"] = "line 2: the file ends within a tag",
     ["<svg><!-- <g/>"] = "the file ends within <!--",
     ["<svg><![CDATA[ ]]"] = "the file ends within <![CDATA[", ["<?xml"] = "the file ends within <?",
-    ["<SVG></svg>"] = "line 1: </svg> closes nothing",
+    ["<SVG></svg>"] = "line 1: </svg> has no opening tag",
   } do
     check.fails(message, tree.read, text)
   end

@@ -66,7 +66,7 @@ TEST(BoundaryState, RefusesContradictions) {
       [&] {
         create({{"start", "moving"}, {"start_velocity", list_of({8, 8, 0})}});
       },
-      {"start_velocity", "beyond", "10"});
+      {"start_velocity", "exceeds", "10"});
   expect_message(
       [&] {
         create({{"start", "moving"}, {"start_velocity", list_of({0, 0, -3})}});

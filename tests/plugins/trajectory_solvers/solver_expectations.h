@@ -59,7 +59,8 @@ inline void expect_infeasible(const char* solver) {
   EXPECT_EQ(result.report.status, SolveStatus::infeasible) << result.report.message;
   EXPECT_NE(result.report.message.find("hard_keyframe.position.x at "), std::string::npos)
       << result.report.message;
-  EXPECT_NE(result.report.message.find("missed by"), std::string::npos) << result.report.message;
+  EXPECT_NE(result.report.message.find("is violated by"), std::string::npos)
+      << result.report.message;
   EXPECT_EQ(result.report.violations.front().name, "hard_keyframe");
   EXPECT_EQ(failed_checks(impossible(), problem, result), "keyframe_miss ");
 }
