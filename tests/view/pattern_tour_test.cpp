@@ -120,7 +120,7 @@ TEST(FreePatterns, TakeAsManyViewpointsAsTheBudgetAllowsEvenly) {
   EXPECT_NE(fewer.message.find("20 s of 12.5 s"), std::string::npos) << fewer.message;
   const FreePattern none = fly_freely(line, 1, leg);
   EXPECT_TRUE(none.views.empty());
-  EXPECT_NE(none.message.find("not two"), std::string::npos) << none.message;
+  EXPECT_NE(none.message.find("fewer than two"), std::string::npos) << none.message;
   EXPECT_THROW(fly_freely({}, 10, leg), InputError);
 }
 
