@@ -83,14 +83,20 @@ void add_difference_curvature(const Eigen::MatrixXd& curvature, const RowMajor& 
   hessian.block<3, 3>(next, next) += curvature.bottomRightCorner<3, 3>();
 }
 
+// Whether the model's blocks are all plain numbers.
+bool straight(const StageLayout& layout, const BoundModel& model) {
+  for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
+    for (const int b : *blocks)
+      if (layout.block(b).topology == Topology::quaternion) return false;
+  return true;
+}
+
 }  // namespace
 
 std::vector<int> curvature_columns(const StageColumns& columns, const BoundModel& model,
                                    int stage) {
-  for (const int b : model.state_blocks)
-    if (columns.layout.block(b).topology == Topology::quaternion)
-      return model_step_columns(columns, model, stage);
-  return columns.model_columns(model, stage);
+  return straight(columns.layout, model) ? columns.model_columns(model, stage)
+                                         : model_step_columns(columns, model, stage);
 }
 
 void evaluate_model_step(const StageColumns& columns, const BoundModel& model, const Stages& at,
@@ -226,8 +232,19 @@ void TrajectoryProblem::Impl::dynamics_curvature(const Stages& at, const double*
     const int n = model.arguments();
     std::vector<double> x(n), next(model.states);
     RowMajor jacobian(model.states, n), bend(n, n), tangent;
+    const bool lines = straight(layout, model);
     for (int i = 0; i + 1 < columns.horizon.stages; ++i) {
       columns.gather_model(model, at, i, columns.step(at, i), x.data());
+      if (lines) {  // the row is the next state minus the flow
+        const Eigen::VectorXd ambient = -Eigen::Map<const Eigen::VectorXd>(
+            multipliers + model.first_row + i * model.state_tangents, model.states);
+        bend.setZero();
+        model.curvature(x.data(), ambient.data(), bend.data(), workspace);
+        for (int a = 0; a < n; ++a)
+          for (int b = 0; b <= a; ++b, ++slot)
+            if (*slot >= 0) hessian[*slot] += bend(a, b);
+        continue;
+      }
       model.flow(x.data(), next.data(), jacobian.data(), workspace);
       const RowMajor chain = argument_chain(columns, model, at, i);
       const auto width = chain.cols();

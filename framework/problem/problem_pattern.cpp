@@ -37,12 +37,34 @@ void visit_pairs(const BoundFunction& bound, const std::vector<double>& jacobian
     }
 }
 
-// Any point serves where Jacobians are constant, as long as its step is the step.
-Stages constant_stages(const StageColumns& columns) {
+// Any point serves where Jacobians are constant, as long as its step is the step, times a factor
+// where that is free.
+Stages constant_stages(const StageColumns& columns, double factor = 1.0) {
   Stages at = Stages::Zero(columns.layout.size(), columns.horizon.stages);
   for (int i = 0; i < columns.horizon.stages; ++i)
-    at(columns.layout.offset(columns.step_block), i) = columns.horizon.step_after(i);
+    at(columns.layout.offset(columns.step_block), i) = factor * columns.horizon.step_after(i);
   return at;
+}
+
+// Whether the derivatives of a model's step never depend on more than the step: 1 for those that
+// may differ from zero, [row][column of model_step_columns]; empty where they depend on more.
+std::vector<char> step_pattern(const StageColumns& columns, const BoundModel& model) {
+  if (!model.model->affine()) return {};
+  for (const auto* blocks : {&model.state_blocks, &model.input_blocks})
+    for (const int b : *blocks)
+      if (columns.layout.block(b).topology == Topology::quaternion) return {};
+  std::vector<char> entries;
+  ModelStep sample;
+  for (const double factor : {1.0, 0.6180339887, 1.7724538509}) {  // no step is special
+    if (!columns.horizon.step_free && factor != 1.0) continue;
+    evaluate_model_step(columns, model, constant_stages(columns, factor), 0, true, sample);
+    entries.resize(sample.jacobian.size());
+    for (std::size_t k = 0; k < entries.size(); ++k) entries[k] |= sample.jacobian.data()[k] != 0.0;
+    if (!columns.horizon.step_free) continue;
+    const int step = model.arguments() - 1;
+    for (int r = 0; r < model.state_tangents; ++r) entries[r * sample.jacobian.cols() + step] = 1;
+  }
+  return entries;
 }
 
 std::vector<double> constant_jacobian(const StageColumns& columns, const BoundFunction& bound) {
@@ -121,14 +143,12 @@ void TrajectoryProblem::Impl::build_patterns() {
   }
   const auto each_model_entry = [&](auto visit) {  // visit(row, column), column may be -1
     for (const BoundModel& model : columns.models) {
-      ModelStep sample;  // where the Jacobian never changes, its zeros are left out
-      const bool constant = constant_flow(model);
-      if (constant) evaluate_model_step(columns, model, constant_stages(columns), 0, true, sample);
+      const std::vector<char> entries = step_pattern(columns, model);
       for (int i = 0; i + 1 < stages; ++i) {
         const std::vector<int> step = model_step_columns(columns, model, i);
         for (int r = 0; r < model.state_tangents; ++r)
           for (std::size_t c = 0; c < step.size(); ++c) {
-            const bool zero = constant && sample.jacobian(r, static_cast<int>(c)) == 0.0;
+            const bool zero = !entries.empty() && !entries[r * step.size() + c];
             visit(model.first_row + i * model.state_tangents + r, zero ? -1 : step[c]);
           }
       }
@@ -170,11 +190,14 @@ void TrajectoryProblem::Impl::build_patterns() {
   const auto curved_models = [&](auto visit) {  // visit(row, column) in the Hessian, or (-1, -1)
     for (const BoundModel& model : columns.models) {
       if (model.model->affine() && !columns.horizon.step_free) continue;
+      const bool by_step = !step_pattern(columns, model).empty();  // only with it, the last column
       for (int i = 0; i + 1 < stages; ++i) {
         const std::vector<int> c = curvature_columns(columns, model, i);
         for (std::size_t a = 0; a < c.size(); ++a)
-          for (std::size_t b = 0; b <= a; ++b)
-            visit(c[a] < 0 || c[b] < 0 ? -1 : std::max(c[a], c[b]), std::min(c[a], c[b]));
+          for (std::size_t b = 0; b <= a; ++b) {
+            const bool none = c[a] < 0 || c[b] < 0 || (by_step && a + 1 < c.size());
+            visit(none ? -1 : std::max(c[a], c[b]), std::min(c[a], c[b]));
+          }
       }
     }
   };

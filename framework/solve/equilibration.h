@@ -19,6 +19,8 @@ class Equilibration {
 
   Eigen::VectorXd scaled_x(const Eigen::VectorXd& x) const { return x.cwiseQuotient(columns_); }
   Eigen::VectorXd unscaled_x(const Eigen::VectorXd& x) const { return x.cwiseProduct(columns_); }
+  double cost_factor() const { return cost_; }
+  const Eigen::VectorXd& row_factors() const { return rows_; }
   Eigen::VectorXd scaled_row_multipliers(const Eigen::VectorXd& y) const {
     return cost_ * y.cwiseQuotient(rows_);
   }

@@ -21,7 +21,6 @@ constexpr double kWeaker = 0.1;
 constexpr double kStronger = 100.0;  // factor of each further try
 constexpr int kTries = 4;
 constexpr int kRefinements = 15;
-constexpr double kRefined = 1e-9;  // relative residual that is good enough
 
 using Eigen::VectorXd;
 using Entry = Eigen::SparseMatrix<double>::InnerIterator;
@@ -168,7 +167,7 @@ VectorXd KktSystem::product(const VectorXd& x) const {
 // 1983). Plain refinement gains a factor delta / (delta + sigma) a step, which is nothing for rows
 // whose Schur complement sigma is below the regularisation delta, as it is where bounds hold many
 // of a row's variables; the few such directions cost a Krylov method a few steps.
-VectorXd KktSystem::solve(const VectorXd& right) {
+VectorXd KktSystem::solve(const VectorXd& right, double refined) {
   const int size = n_ + m_;
   VectorXd ordered(size), x, correction;
   for (int i = 0; i < size; ++i) ordered(place_[i]) = right(i);
@@ -178,7 +177,7 @@ VectorXd KktSystem::solve(const VectorXd& right) {
   VectorXd residual = weight_.cwiseProduct(ordered - product(x));
   const double scale = weight_.cwiseProduct(ordered).norm();
   std::vector<VectorXd> directions, images;
-  for (int k = 0; k < kRefinements && residual.norm() > kRefined * scale; ++k) {
+  for (int k = 0; k < kRefinements && residual.norm() > refined * scale; ++k) {
     correction = residual.cwiseQuotient(weight_);
     factors_.solve(correction);
     VectorXd image = weight_.cwiseProduct(product(correction));

@@ -12,13 +12,20 @@ namespace lapwing {
 
 class KktSystem {
  public:
+  static constexpr double kRefined = 1e-9;  // relative residual that is good enough
+
   // Takes the values of a scaled problem. Analyses the sparsity unless it is the same as before.
   void set_up(const QuadraticProgram& problem, const std::vector<char>& fixed,
               const std::vector<RowKind>& rows);
   // `diagonal`: D_x (added to P) and D_s (inverted below). False when no regularisation helps.
   bool factorise(const Eigen::VectorXd& diagonal);
-  // Solves without the regularisation, by refinement with a Krylov method.
-  Eigen::VectorXd solve(const Eigen::VectorXd& right);
+  // Of the last factors. As many as there are rows where the curvature is positive along all
+  // directions that the rows leave free; more where it is not.
+  int negative_pivots() const { return factors_.negative_pivots(); }
+  // Relative residual of the solves since the last factors, the worst.
+  double error() const { return error_; }
+  // Solves without the regularisation, by refinement with a Krylov method to a relative residual.
+  Eigen::VectorXd solve(const Eigen::VectorXd& right, double residual = kRefined);
 
  private:
   bool same_pattern(const QuadraticProgram& problem) const;

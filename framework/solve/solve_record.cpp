@@ -48,15 +48,19 @@ double SolveRecord::seconds() const {
 }
 
 void SolveRecord::add(const Stages& at, double step) {
+  const std::vector<Violation> violations = problem_.violations(at);
+  add(problem_.term_costs(at), violations.empty() ? 0.0 : violations.front().amount, step);
+}
+
+void SolveRecord::add(const std::vector<TermCost>& terms, double violation, double step) {
   SolveIteration entry;
   entry.iteration = static_cast<int>(history_.size());
   entry.step = step;
-  for (const TermCost& term : problem_.term_costs(at)) {
+  entry.violation = violation;
+  for (const TermCost& term : terms) {
     entry.cost += term.cost;
     entry.terms.push_back(term.cost);
   }
-  const std::vector<Violation> violations = problem_.violations(at);
-  entry.violation = violations.empty() ? 0.0 : violations.front().amount;
   history_.push_back(std::move(entry));
 }
 

@@ -416,6 +416,11 @@ bool SupernodalFactors::factorise(const Matrix& upper) {
   return true;
 }
 
+int SupernodalFactors::negative_pivots() const {
+  return static_cast<int>(
+      std::count_if(pivots_.begin(), pivots_.end(), [](double pivot) { return pivot < 0; }));
+}
+
 void SupernodalFactors::solve(Eigen::VectorXd& x) {
   const int n = static_cast<int>(place_.size());
   double* const v = ordered_.data();

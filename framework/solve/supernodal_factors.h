@@ -24,6 +24,8 @@ class SupernodalFactors {
   bool factorise(const Eigen::SparseMatrix<double>& upper);
   // x becomes the solution of L D L' x = x given.
   void solve(Eigen::VectorXd& x);
+  // Of the last factors: as many as the matrix has negative eigenvalues (Sylvester).
+  int negative_pivots() const;
   // Stored numbers of L, those of the diagonal and explicit zeros included.
   std::size_t stored() const { return panels_.size(); }
 

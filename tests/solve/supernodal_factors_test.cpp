@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 
 namespace lapwing {
@@ -208,6 +209,27 @@ TEST(SupernodalFactors, SameNumbersEveryTime) {
   first.solve(x);
   second.solve(y);
   EXPECT_EQ(x, y);
+}
+
+// As many negative pivots as negative eigenvalues, whatever the order.
+TEST(SupernodalFactors, NegativePivotsCountEigenvalues) {
+  std::mt19937 random(9);
+  for (int n : {1, 2, 9, 40})
+    for (int k = 0; k < 10; ++k) {
+      Matrix upper(n, n);
+      std::uniform_real_distribution<double> number(-1.0, 1.0);
+      Eigen::MatrixXd whole(n, n);
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i <= j; ++i) whole(i, j) = whole(j, i) = number(random);
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i <= j; ++i) upper.insert(i, j) = whole(i, j);
+      upper.makeCompressed();
+      SupernodalFactors factors;
+      factors.analyse(upper);
+      ASSERT_TRUE(factors.factorise(upper));
+      const VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(whole).eigenvalues();
+      EXPECT_EQ(factors.negative_pivots(), (values.array() < 0).count()) << n;
+    }
 }
 
 TEST(SupernodalFactors, BadPivotsAreReported) {

@@ -8,6 +8,7 @@
 // ones: q! x[t_i, ..., t_{i+q}], inputs standing in the middle of the intervals they are held over.
 //
 //   p:add_cost { type = "derivative", block = "position", order = 4, weight = 1e-3 }
+#include <array>
 #include <sstream>
 
 #include "framework/plugin/plugin.h"
@@ -74,6 +75,8 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
       shape.rows += block.size();
     }
     step_ = reads.add("step");
+    stride_ = 0;
+    for (const int block : shape.blocks) stride_ += setting.layout.block(block).size;
     ask_within(shape, setting.horizon, {}, except_);
     return shape;
   }
@@ -94,7 +97,58 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
       }
   }
 
+  // A row is linear in the blocks, sum_q w_q(h) x_q, with weights that depend on the steps alone.
+  // Only these are differentiated twice, once for all numbers of a block.
+  void curvature(InstanceRange range, const double* inputs, const double* multipliers,
+                 double* hessian, Workspace&) const override {
+    const int width = stride_ * (order_ + 1);
+    const auto step_at = [&](int q) { return q * stride_ + step_.offset(); };
+    std::array<Weight, 5> weights[2];  // of states, of inputs
+    for (int k = 0; k < range.count; ++k) {
+      for (const bool held : {false, true}) weigh(inputs, held, weights[held]);
+      for (const ReadBlock& read : read_) {
+        const std::array<Weight, 5>& w = weights[read.held && !even_];
+        for (int i = 0; i < read.block.size(); ++i, ++multipliers)
+          for (int q = 0; q <= order_; ++q) {
+            const int x = q * stride_ + read.block.offset() + i;
+            for (int a = 0; a <= order_; ++a) {
+              hessian[x * width + step_at(a)] += *multipliers * w[q].d[a].v;
+              hessian[step_at(a) * width + x] += *multipliers * w[q].d[a].v;
+              for (int b = 0; b <= order_; ++b)
+                hessian[step_at(a) * width + step_at(b)] +=
+                    *multipliers * inputs[x] * w[q].d[a].d[b];
+            }
+          }
+      }
+      inputs += width;
+      hessian += static_cast<std::size_t>(width) * width;
+    }
+  }
+
  private:
+  using Weight = Dual<Dual<double, 5>, 5>;  // in the steps of the window
+
+  // What the numbers of a window are multiplied by.
+  void weigh(const double* inputs, bool held, std::array<Weight, 5>& weights) const {
+    std::array<Weight, 5> steps, times;
+    for (int q = 0; q <= order_; ++q) {
+      steps[q] = inputs[q * stride_ + step_.offset()];
+      steps[q].v.d[q] = 1.0;
+      steps[q].d[q] = Dual<double, 5>(1.0);
+    }
+    for (int q = 0; q < order_; ++q)
+      times[q + 1] = times[q] + (even_  ? steps[0]
+                                 : held ? 0.5 * (steps[q] + steps[q + 1])
+                                        : steps[q]);
+    static constexpr double kFactorial[5] = {1, 1, 2, 6, 24};
+    for (int q = 0; q <= order_; ++q) {
+      Weight apart = 1.0;
+      for (int i = 0; i <= order_; ++i)
+        if (i != q) apart *= times[q] - times[i];
+      weights[q] = kFactorial[order_] / apart;
+    }
+  }
+
   template <class T>
   void divided(const Stage<T>& stage, Rows<T>& rows) const {
     int row = 0;
@@ -124,6 +178,7 @@ class Derivative final : public DifferentiableCost<Derivative, 8> {
   std::vector<ReadBlock> read_;
   NumberHandle step_;
   bool even_ = true;  // one step for all
+  int stride_ = 0;    // numbers of a stage of the window
   int order_;
   std::vector<TimeSpan> except_;
 };
