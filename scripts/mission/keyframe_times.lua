@@ -14,6 +14,8 @@ local function leg_time(from, to, vehicle)
                   math.sqrt(8 * across / vehicle.acceleration_across))
 end
 
+times.of_leg = leg_time
+
 -- Other keyframes with the same fields, to be completed.
 local function copies(keyframes)
   local list = {}

@@ -78,7 +78,7 @@ end
 
 -- For a problem that begins from a solution of its own on fewer stages.
 local function finishing(solver)
-  if solver.type ~= "ipopt" then return solver end
+  if not solver.first_barrier then return solver end
   local copy = {}
   for key, value in pairs(solver) do copy[key] = value end
   copy.first_barrier = math.min(copy.first_barrier, NEARLY)

@@ -2,7 +2,8 @@
 -- The strategy of timing = "free": times and flight are optimised together. Every leg between two
 -- keyframes has its own step. The time of a keyframe is exact, preferred with a weight, within a
 -- window, or free. Each second of flight costs `weights.time`. The film is then planned at the
--- times found. If it fails, times are searched again with a larger reserve of thrust.
+-- times found. If it fails, times are searched again with a larger reserve of thrust. If there are
+-- none, the film is planned at the times of straight flight from stop to stop, stretched.
 local attempts = require "mission.film_attempt"
 local film_problem = require "mission.film_problem"
 local point_mass = require "mission.point_mass"
@@ -14,9 +15,11 @@ local ways = require "mission.ways"
 
 local M = {}
 
-local FEWEST = 8                       -- intervals of a leg while times are looked for
-local STEP = 0.15                      -- s, of the first guess
+local FEWEST, MOST = 8, 16             -- intervals of a leg while times are looked for
+local STEP = 0.4                       -- s, of the first guess, where that makes neither
+local END_STEP = 0.15                  -- s, likewise where the flight begins or ends at rest
 local SHARES = { 0.95, 0.85, 0.7, 0.5 }  -- of the thrust, until the film itself holds
+local STRETCHES = { 1, 1.25, 1.6, 2, 3, 4 }  -- of straight flight, until the film itself holds
 local LONGEST = 10                     -- times the first guess, that a leg may take
 local OPEN = 1e5                       -- s, later than any film
 local EXACT = 1e-4                     -- s
@@ -38,10 +41,12 @@ end
 
 -- An initial guess of the times that meets the wishes: times first, then windows.
 local function guessed(keyframes, wishes, vehicle)
-  local untimed, own, fixed = {}, {}, {}
-  for i, k in ipairs(keyframes) do untimed[i] = { position = k.position } end
-  for i, k in ipairs((times.filled(untimed, nil, vehicle))) do
-    own[i], fixed[i] = k.time, wishes[i].time
+  local own, fixed = { 0 }, {}
+  for i, k in ipairs(keyframes) do
+    fixed[i] = wishes[i].time
+    if i > 1 then
+      own[i] = own[i - 1] + times.of_leg(keyframes[i - 1].position, k.position, vehicle)
+    end
   end
   local list = paced(own, fixed)
   for i, wish in ipairs(wishes) do
@@ -87,8 +92,12 @@ local function legs_and_keyframes(keyframes, list)
     if k.yaw then made.yaws[#made.yaws + 1] = { time = time, value = { k.yaw } } end
     if i > 1 then
       local span = time - list[i - 1]
+      local intervals = math.min(MOST, math.max(FEWEST, math.ceil(span / STEP)))
+      if i == 2 or i == #keyframes then
+        intervals = math.max(intervals, math.ceil(span / END_STEP))
+      end
       legs[i - 1] = { duration = span, mode = "free", longest = LONGEST * span,
-                      intervals = math.max(FEWEST, math.ceil(span / STEP)) }
+                      intervals = intervals }
     end
   end
   return legs, made
@@ -121,29 +130,66 @@ local function problem_of(run, request, memory)
   return p, way.legs
 end
 
--- The film of a request at the times found with the share of the thrust in `memory`; nil if there
--- are no such times, but were with more thrust.
+-- The film of a request with its keyframes at these times.
+local function at_times(run, request, list, legs, memory)
+  local keyframes = {}
+  for i, k in ipairs(request.keyframes) do
+    keyframes[i] = { position = k.position, yaw = k.yaw, look_at = k.look_at, subject = k.subject,
+                     time = list[i] }
+  end
+  local duration = list[#list]
+  times.check_battery(run, request.vehicle, duration)
+  return requests.with(request, { keyframes = keyframes, duration = duration, legs = legs,
+                                  memory = memory })
+end
+
+-- The film at the times of straight flight from stop to stop, stretched by the number of `memory`,
+-- as the wishes allow: what is left where no better times are found. `why`: a sentence. nil where
+-- the wishes allow none.
+local function straight(run, request, memory, number, why)
+  local legs = {}
+  for i = 2, #request.keyframes do
+    legs[i - 1] = STRETCHES[number] * times.of_leg(request.keyframes[i - 1].position,
+                                                   request.keyframes[i].position, request.vehicle)
+  end
+  local chosen = run:keyframe_times { wishes = memory.wishes, legs = legs }
+  if not chosen and number > 1 then return nil end
+  return at_times(run, request, chosen or memory.guess, request.legs, {
+    wishes = memory.wishes, guess = memory.guess, straight = number, why = why })
+end
+
+-- Whether wishes ask for a keyframe no later than some time, which may be too early.
+local function hurried(wishes)
+  for i, wish in ipairs(wishes) do
+    if i > 1 and (wish.latest or wish.time and not wish.time_weight) then return true end
+  end
+  return false
+end
+
+-- The film of a request at the times found with the share of the thrust that `memory` names. Where
+-- the solver finds none: at times of straight flight; nil where it had found some with more thrust,
+-- and an error where the wishes are the reason.
 local function at_share(run, request, memory)
   local stated, ways_of_legs = problem_of(run, request, memory)
   local solution = run:solve(stated, run.options.solver)
   if solution.status == "unsupported" then run:fail("solver", solution.message) end
   if solution.status ~= "optimal" and solution.status ~= "feasible" then
     if memory.number > 1 then return nil end
-    run:fail("keyframes", string.format(
-      "no times meet every wish within the limits of the vehicle: %s: %s", solution.status,
-      solution.message))
+    local reason = solution.status
+    if solution.message ~= "" then reason = reason .. ": " .. solution.message end
+    if solution.status == "infeasible" and hurried(memory.wishes) then
+      run:fail("keyframes", "no times meet every wish within the limits of the vehicle: " .. reason)
+    end
+    return straight(run, request, memory, 1,
+                    "the solver found no times of its own (" .. reason .. ")")
   end
-  local keyframes, clock, legs = {}, 0, solution.legs
-  for i, k in ipairs(request.keyframes) do
+  local list, clock, legs = {}, 0, solution.legs
+  for i in ipairs(request.keyframes) do
     clock = clock + (legs[i - 1] or 0)
     local wish = memory.wishes[i]
-    keyframes[i] = { position = k.position, yaw = k.yaw, look_at = k.look_at, subject = k.subject,
-                     time = i > 1 and not wish.time_weight and wish.time or clock }
+    list[i] = i > 1 and not wish.time_weight and wish.time or clock
   end
-  local duration = keyframes[#keyframes].time
-  times.check_battery(run, request.vehicle, duration)
-  return requests.with(request, { keyframes = keyframes, duration = duration,
-                                  legs = ways_of_legs, memory = memory })
+  return at_times(run, request, list, ways_of_legs, memory)
 end
 
 -- With the share of the thrust of that number.
@@ -162,17 +208,34 @@ function M.first(run, film)
   return at_share(run, request, remembered(memory, 1))
 end
 
+-- The next request after an outcome at times of straight flight; and what is told.
+local function next_straight(run, outcome)
+  local request, memory = outcome.request, outcome.request.memory
+  local told = { figures = { duration = request.duration, stretch_of_legs =
+                             STRETCHES[memory.straight] }, notes = { string.format(
+    "%s; flown at the times of straight flight from stop to stop, stretched by %.3g", memory.why,
+    STRETCHES[memory.straight]) } }
+  if outcome.holds or run:cancelled() or not STRETCHES[memory.straight + 1] then
+    if not outcome.holds then told.notes[2] = attempts.complaint(outcome) end
+    return nil, told
+  end
+  return straight(run, requests.with(request, { legs = outcome.legs }), memory,
+                  memory.straight + 1, memory.why), told
+end
+
 -- The next request after an outcome; told are {notes, figures}.
 function M.next(run, outcome)
   local request, memory = outcome.request, outcome.request.memory
+  if memory.straight then return next_straight(run, outcome) end
   local figures = { duration = request.duration, share = memory.share }
   if outcome.holds or run:cancelled() then return nil, { notes = {}, figures = figures } end
   local told = { figures = figures, notes = { string.format(
     "at the times found with %.2g of the thrust: %s", memory.share,
     attempts.complaint(outcome)) } }
-  if not SHARES[memory.number + 1] then return nil, told end
-  return at_share(run, requests.with(request, { legs = outcome.legs }),
-                  remembered(memory, memory.number + 1)), told
+  local again = requests.with(request, { legs = outcome.legs })
+  local request_with_spare = SHARES[memory.number + 1]
+    and at_share(run, again, remembered(memory, memory.number + 1))
+  return request_with_spare or straight(run, again, memory, 1, told.notes[1]), told
 end
 
 return M

@@ -56,6 +56,14 @@ TEST_F(Race, AFreeFormCourseRepeatsItself) {
   EXPECT_EQ(read_file(first.folder / "plan.json"), plan);
 }
 
+TEST_F(Race, SolversAgree) {
+  const std::string rotors = "--set model=quadrotor_full --set laps=1 --set closed_loop=reported";
+  const Flown ipopt = fly("../racing/round_course.lua", rotors);
+  const Flown iqp = fly("../racing/round_course.lua", rotors + " --set solver=iqp");
+  expect_flown_by_rotors(iqp, 3);
+  EXPECT_NEAR(time_of(iqp), time_of(ipopt), 0.005 * time_of(ipopt));
+}
+
 TEST_F(Race, OtherSolversSayWhichOneToTake) {
   const Flown flown = fly("../racing/seven_gates.lua", "--set solver=nlopt");
   EXPECT_EQ(flown.status, 1);

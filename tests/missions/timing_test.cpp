@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Films whose path is kept and whose times are found.
 #include "tests/missions/flown_film.h"
+#include "tests/missions/random_list.h"
 
 namespace lapwing {
 namespace {
@@ -110,6 +111,32 @@ TEST_F(FreeFilms, ADashTakesWhatTheAccelerationAllows) {
   // From rest to rest over 13.9 m with 4 m/s^2, both ways: 2 sqrt(d / a).
   EXPECT_GT(duration, 3.72);
   EXPECT_LT(duration, 4.1);
+}
+
+// Positions in a box of 20 m, from seeds.
+TEST_F(FreeFilms, RandomListsAreFlown) {
+  for (const auto& [count, seed] : {std::pair{11, 1}, {11, 2}, {11, 3}, {11, 4}, {20, 5}}) {
+    write_file_atomically(folder_ / "film.lua", random_list(count, seed));
+    const Flown flown = fly((folder_ / "film.lua").string(), "", "out", 2);
+    EXPECT_EQ(flown.status, 0) << count << " keyframes, seed " << seed << to_json(flown.result);
+    EXPECT_EQ(flown.result.at("solver").at("status").as_text(), "optimal") << seed;
+  }
+}
+
+// A solver that comes to no end is no fault of the script: the film is flown at other times.
+TEST_F(FreeFilms, WhereNoTimesAreFoundThoseOfStraightFlightAreFlown) {
+  write_file_atomically(folder_ / "film.lua", random_list(11, 1));
+  const std::string film = (folder_ / "film.lua").string();
+  const Flown best = fly(film, "", "out");
+  const Flown flown = fly(film, "--set solver.steps=3", "out", 2);
+  ASSERT_EQ(flown.status, 0) << to_json(flown.result);
+  const std::string notes = to_json(flown.result.at("notes"));
+  EXPECT_NE(notes.find("found no times of its own (iteration_limit)"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("straight flight"), std::string::npos) << notes;
+  EXPECT_GT(flown.result.at("film").at("duration").as_number(),
+            best.result.at("film").at("duration").as_number());
+  // Times that are asked for are granted there too.
+  EXPECT_NEAR(times(", time = 9", "", "", "--set solver.steps=3")[1], 9, 1e-9);
 }
 
 TEST_F(FreeFilms, WhatCannotBeGrantedIsNamed) {

@@ -24,6 +24,7 @@
 #include "framework/solve/elastic.h"
 #include "framework/solve/interior_point.h"
 #include "framework/solve/local_program.h"
+#include "framework/solve/nonlinear_interior_point.h"
 #include "framework/solve/solve_record.h"
 #include "framework/solve/trajectory_solver.h"
 
@@ -51,19 +52,28 @@ class Iqp final : public TrajectorySolver {
         .number("tolerance", 1e-6, "",
                 "predicted relative decrease of the cost that ends the solve", between(1e-12, 1e-1))
         .number("feasibility", 1e-6, "", "largest violation of a row, in its unit",
-                between(1e-12, 1e-1));
+                between(1e-12, 1e-1))
+        .integer("steps", 300, "with free times or orientations: largest number of steps",
+                 between(1, 100000))
+        .number("first_barrier", 0.1, "",
+                "with free times or orientations: first barrier parameter; less for a good guess",
+                between(1e-9, 10));
   }
 
   explicit Iqp(const Parameters& parameters)
       : iterations_(static_cast<int>(parameters.integer("iterations"))),
         tolerance_(parameters.number("tolerance")),
-        feasibility_(parameters.number("feasibility")) {}
+        feasibility_(parameters.number("feasibility")),
+        steps_(static_cast<int>(parameters.integer("steps"))),
+        first_barrier_(parameters.number("first_barrier")) {}
 
   SolveResult solve(const TrajectoryProblem& problem, const SolveRequest& request) const override;
 
  private:
   int iterations_;
   double tolerance_, feasibility_;
+  int steps_;
+  double first_barrier_;
 };
 
 // One solve: the state that goes from iteration to iteration.
@@ -341,17 +351,25 @@ std::string Solve::explain(const Step& step) const {
   return name.empty() ? text : text + "; limited by " + name;
 }
 
-SolveResult Iqp::solve(const TrajectoryProblem& problem, const SolveRequest& request) const {
+// Whether the problem is far from convex: rows that multiply a free time, or orientations.
+bool far_from_convex(const TrajectoryProblem& problem) {
   const StageLayout& layout = problem.layout();
-  for (int b = 0; b < layout.count(); ++b) {
-    if (layout.block(b).topology == Topology::line) continue;
-    const SolveRecord record(problem, request);
-    return record.finish(SolveStatus::unsupported,
-                         "iqp does not support orientations, such as block '" +
-                             layout.block(b).name + "': use the solver ipopt",
-                         0, {record.start(), {}, {}});
-  }
-  return Solve(problem, request, iterations_, tolerance_, feasibility_).run();
+  for (int b = 0; b < layout.count(); ++b)
+    if (layout.block(b).topology == Topology::quaternion) return true;
+  return problem.horizon().step_free;
+}
+
+SolveResult Iqp::solve(const TrajectoryProblem& problem, const SolveRequest& request) const {
+  if (!far_from_convex(problem))
+    return Solve(problem, request, iterations_, tolerance_, feasibility_).run();
+  SolveRecord record(problem, request);
+  const NonlinearOptions options{.iteration_limit = request.iteration_limit.value_or(steps_),
+                                 .tolerance = tolerance_,
+                                 .feasibility = feasibility_,
+                                 .first_barrier = first_barrier_};
+  NonlinearOutcome outcome = solve_nonlinear(problem, request, options, record);
+  return record.finish(outcome.status, std::move(outcome.message), outcome.iterations,
+                       std::move(outcome.point));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ipopt on orientations: steps in the tangent space of a rotation.
+// Solvers on orientations: steps in the tangent space of a rotation.
 #include "tests/plugins/trajectory_solvers/solver_expectations.h"
 #include "tests/problem/laboratory.h"
 
@@ -42,8 +42,11 @@ class LittleSpin final : public DifferentiableCost<LittleSpin> {
 };
 
 // Turned by more than half a circle from the guess, at an even spin.
-TEST(IpoptOrientation, TurnsOrientations) {
-  for (const char* hessian : {"exact", "gauss_newton"}) {
+TEST(Orientation, IsTurned) {
+  for (const auto& [solver, parameters] : {std::pair{"ipopt", table({{"hessian", "exact"}})},
+                                           {"ipopt", table({{"hessian", "gauss_newton"}})},
+                                           {"iqp", Value::map()}}) {
+    SCOPED_TRACE(solver);
     const int stages = 21;
     const double step = 0.1, turn = 2.5;
     TrajectoryProblem problem(solo(), {.stages = stages, .step = step});
@@ -51,7 +54,7 @@ TEST(IpoptOrientation, TurnsOrientations) {
     problem.add_cost("pose", 1e4, std::make_unique<Pose>(0.0, turn));
     problem.add_cost("spin", 1e-3, std::make_unique<LittleSpin>());
     problem.finish();
-    const SolveResult result = solve("ipopt", problem, {}, table({{"hessian", hessian}}));
+    const SolveResult result = solve(solver, problem, {}, parameters);
     EXPECT_EQ(result.report.status, SolveStatus::optimal) << result.report.message;
     EXPECT_LE(result.report.violations.front().amount, 1e-6);
     const int attitude = problem.layout().offset(problem.layout().index("attitude"));
