@@ -24,7 +24,8 @@ constexpr double kBarrierPower = 1.5;
 constexpr double kSolved = 10.0;    // times the parameter: a barrier problem is solved
 constexpr double kKeptNear = 1e10;  // of multipliers to barrier parameter / slack
 constexpr double kFirstShift = 1e-4, kLeastShift = 1e-20, kMostShift = 1e20;
-constexpr double kRefined = 1e-7;  // relative residual of a direction
+constexpr double kRefined = 1e-7;                // relative residual of a direction
+constexpr double kShorter = 0.5, kLonger = 1.0;  // change of a free time in a step, as a share
 constexpr double kShortestStep = 1e-7;
 constexpr int kCorrections = 2;
 constexpr double kWorseScale = 100.0;  // mean multiplier from which errors are relative
@@ -75,6 +76,7 @@ class NonlinearSolve {
   bool factorise();
   void solve_for(const VectorXd& primal, bool corrected);
   double longest(bool of_multipliers) const;
+  double within_times(double alpha) const;
   Trial trial(double alpha) const;
   bool line_search(double& alpha);
   void take(const Trial& trial, double alpha, double of_multipliers);
@@ -449,6 +451,22 @@ double NonlinearSolve::longest(bool of_multipliers) const {
   if (elastic_) {
     limit(of_multipliers ? z_p_ : e_p_, of_multipliers ? dz_p_ : de_p_);
     limit(of_multipliers ? z_q_ : e_q_, of_multipliers ? dz_q_ : de_q_);
+  }
+  return of_multipliers ? alpha : within_times(alpha);
+}
+
+// The same length, or less where a free time would change by more than a model of it is worth:
+// from a poor guess the whole step may shrink all times to nothing.
+double NonlinearSolve::within_times(double alpha) const {
+  if (!problem_.horizon().step_free) return alpha;
+  const StageLayout& layout = problem_.layout();
+  const int block = layout.index("step"), stages = problem_.horizon().stages;
+  const VectorXd dx = scaling_.unscaled_x(dx_);
+  for (int i = 0; i < stages; ++i) {  // with free times every number has a column
+    const double time = at_(layout.offset(block), i);
+    const double change = dx(i * (n() / stages) + layout.tangent_offset(block)) / time;
+    if (change < 0) alpha = std::min(alpha, -kShorter / change);
+    if (change > 0) alpha = std::min(alpha, kLonger / change);
   }
   return alpha;
 }
