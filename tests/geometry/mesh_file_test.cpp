@@ -206,7 +206,8 @@ TEST_F(MeshFiles, HostileFilesAreRefusedByName) {
   EXPECT_NE(refusal("list.dae", bad_list).find("<p> holds 'u'"), std::string::npos);
   std::string bad_count = collada("", "Y");
   bad_count.replace(bad_count.find("count=\"12\""), 10, "count=\"4000000000\"");
-  EXPECT_NE(refusal("count.dae", bad_count).find("claims more than the file has"), std::string::npos);
+  EXPECT_NE(refusal("count.dae", bad_count).find("claims more than the file has"),
+            std::string::npos);
   std::string bad_index = ply();
   bad_index.replace(bad_index.find("3 0 2 3"), 7, "3 0 2 9");
   EXPECT_NE(refusal("index.ply", bad_index), "");
