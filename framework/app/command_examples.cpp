@@ -46,9 +46,10 @@ const std::vector<CommandExamples>& command_examples() {
        {"lapwing verify out/shot/plan.json"},
        "0 certified; 1 not certified; 2 bad input; 3 internal error"},
       {"lapwing simulate",
-       {"lapwing simulate out/shot/plan.json --wind 5,1 --mass-error 10 -o flight.html"},
-       "0 done; 1 the vehicle is lost, or farther from the plan than a certificate allows; 2 bad "
-       "input; 3 internal error"},
+       {"lapwing simulate out/shot/plan.json --wind 5,1 --mass-error 10 -o flight.html",
+        "lapwing simulate out/race/plan.json --controller tvlqr --runs 100 --mass-error 5"},
+       "0 done; 1 the vehicle, or one of the runs, is lost, misses what the plan asks for or is "
+       "farther from the plan than the tolerance; 2 bad input; 3 internal error"},
       {"lapwing export",
        {"lapwing export out/shot/plan.json --format csv -o shot.csv"},
        "0 done; 1 not certified, and nothing written; 2 bad input; 3 internal error"},

@@ -10,6 +10,7 @@
 #include "framework/app/plugin_check.h"
 #include "framework/app/plugin_guard.h"
 #include "framework/app/provenance.h"
+#include "framework/app/simulation_request.h"
 #include "framework/app/sweep_command.h"
 #include "framework/app/terminal.h"
 #include "framework/app/tour_command.h"
@@ -25,9 +26,8 @@
 
 #include "framework/core/json.h"
 #include "framework/core/log.h"
-#include "framework/core/units.h"
 #include "framework/core/visible_text.h"
-#include "framework/vehicle/closed_loop.h"
+#include "framework/mission/controller_source.h"
 
 namespace lapwing {
 
@@ -74,23 +74,9 @@ void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& com
   sweep->callback([&] { command = [&] { return sweep_missions(asked, invocation); }; });
 }
 
-// "5,1" or "5,1,90".
-void read_wind(const std::string& text, FlightConditions& conditions) {
-  std::vector<double> numbers;
-  std::istringstream rest(text);
-  for (std::string part; std::getline(rest, part, ',');)
-    numbers.push_back(read_number("--wind", part));
-  if (numbers.size() < 2 || numbers.size() > 3)
-    throw CLI::ValidationError("--wind", "expected MEAN,GUST or MEAN,GUST,TO, not '" + text + "'");
-  conditions.wind_mean = numbers[0];
-  conditions.wind_gust = numbers[1];
-  if (numbers.size() > 2) conditions.wind_yaw = radians(numbers[2]);
-}
-
 void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
-                       FlightConditions& conditions, std::string& format,
-                       std::filesystem::path& target, Judges& judges, bool& uncertified,
-                       Command& command) {
+                       std::string& format, std::filesystem::path& target, Judges& judges,
+                       bool& uncertified, Command& command) {
   CLI::App* verify =
       app.add_subcommand("verify", "judge a plan again, independently of its solver");
   add_plan(*verify, plan);
@@ -103,22 +89,6 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
            [&](const std::string& path) { judges.environment = path; });
   add_json(*verify, invocation);
   verify->callback([&] { command = [&] { return verify_plan(plan, judges, invocation); }; });
-
-  CLI::App* simulate =
-      app.add_subcommand("simulate", "simulate a plan with the full quadrotor under control");
-  add_plan(*simulate, plan);
-  add_text(*simulate, "--wind", "MEAN,GUST[,TO]",
-           "mean wind and gusts in m/s, direction of flow in degrees (0: east); default: calm",
-           [&](const std::string& text) { read_wind(text, conditions); });
-  add_text(*simulate, "--mass-error", "PERCENT",
-           "mass error, in percent of the planned mass; default: 0", [&](const std::string& text) {
-             conditions.mass_error = read_number("--mass-error", text) / 100;
-           });
-  add_seed(*simulate, conditions.seed, "seed of the gusts; default: 1");
-  add_page(*simulate, target);
-  add_json(*simulate, invocation);
-  simulate->callback(
-      [&] { command = [&] { return simulate_plan(plan, conditions, target, invocation); }; });
 
   CLI::App* exported = app.add_subcommand("export", "write a plan in another format");
   add_plan(*exported, plan);
@@ -249,6 +219,13 @@ Registry Invocation::registry() const {
   return Registry(plugin_search_path(plugin_path));
 }
 
+ControllerSource controllers_of(const Invocation& invocation) {
+  return [invocation](const ControllerChoice& choice) {
+    const Registry registry = invocation.registry();
+    return controllers_of(registry)(choice);
+  };
+}
+
 namespace {
 
 // What the options of a command line are read into.
@@ -258,7 +235,7 @@ struct Requests {
   std::string format, name;
   Judges judges;
   bool uncertified = false;
-  FlightConditions conditions;
+  SimulationRequest simulation;
   SceneStatement stated;
   std::vector<std::string> pilots;
   RaceRules rules;
@@ -289,8 +266,9 @@ void declare_commands(CLI::App& app, Requests& asked) {
   add_run(app, invocation, asked.script, command);
   add_sweep(app, invocation, asked.sweep, command);
   add_difference(app, invocation, asked.difference, command);
-  add_plan_commands(app, invocation, asked.plan, asked.conditions, asked.format, asked.target,
-                    asked.judges, asked.uncertified, command);
+  add_plan_commands(app, invocation, asked.plan, asked.format, asked.target, asked.judges,
+                    asked.uncertified, command);
+  add_simulate_command(app, invocation, asked.plan, asked.simulation, asked.target, command);
   add_map_commands(app, invocation, asked.plan, asked.target, command);
   add_scene_commands(app, invocation, asked.plan, asked.stated, asked.target, command);
   add_race_command(app, invocation, asked.plan, asked.pilots, asked.rules, asked.target, command);

@@ -11,6 +11,7 @@
 #include "framework/core/value.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/plugin/registry.h"
+#include "framework/vehicle/controller.h"
 #include "framework/vehicle/race_score.h"
 
 namespace lapwing {
@@ -44,6 +45,9 @@ struct Invocation {
 
 // Parses, runs one command, reports errors on standard error (and with --json as the one object on
 // standard output), and returns an ExitStatus.
+// Opens the controllers of its plugins when asked for one.
+ControllerSource controllers_of(const Invocation& invocation);
+
 int run_command_line(int argc, const char* const* argv);
 
 // The commands. Each throws InputError for bad input and writes its result to standard output.
@@ -56,8 +60,8 @@ struct Judges;  // app/provenance.h
 ExitStatus verify_plan(const std::filesystem::path& plan, const Judges& judges,
                        const Invocation& invocation);
 // Flies a plan by the whole quadrotor; writes a report page to `target` unless that is empty.
-struct FlightConditions;
-ExitStatus simulate_plan(const std::filesystem::path& plan, const FlightConditions& conditions,
+struct SimulationRequest;  // app/simulation_request.h
+ExitStatus simulate_plan(const std::filesystem::path& plan, const SimulationRequest& asked,
                          const std::filesystem::path& target, const Invocation& invocation);
 // A plan that is not certified is refused unless `uncertified` asks for it.
 ExitStatus export_plan(const std::filesystem::path& plan, const std::string& format,

@@ -93,6 +93,7 @@ const std::map<std::string, List>& lists() {
        }},
       {"utility", [](const Invocation& given) { return plugins_of(given, "utility"); }},
       {"exporter", [](const Invocation& given) { return plugins_of(given, "exporter"); }},
+      {"controller", [](const Invocation& given) { return plugins_of(given, "controller"); }},
       {"tour_solver", [](const Invocation& given) { return plugins_of(given, "tour_solver"); }},
       {"plugin_kind", [](const Invocation&) { return templates_in("plugins"); }},
       {"mission_kind", [](const Invocation&) { return templates_in("missions"); }},
@@ -108,23 +109,25 @@ const std::map<std::string, List>& lists() {
 }  // namespace
 
 const std::vector<NamedValue>& named_values() {
-  static const std::vector<NamedValue> all{{"", "--config", "config", true},
-                                           {"lapwing verify", "--vehicle", "vehicle", true},
-                                           {"lapwing export", "--format", "exporter", false},
-                                           {"lapwing scene view", "file", "world", true},
-                                           {"lapwing plugins show", "name", "plugin", false},
-                                           {"lapwing plugins check", "plugin", "plugin", true},
-                                           {"lapwing new plugin", "kind", "plugin_kind", false},
-                                           {"lapwing new mission", "kind", "mission_kind", false},
-                                           {"lapwing schema", "kind", "schema_kind", false},
-                                           {"lapwing run", "--set", kSettings, false},
-                                           {"lapwing config", "--set", kSettings, false},
-                                           {"lapwing sweep", "--set", kSettings, false},
-                                           {"lapwing sweep", "--vary", kSettings, false},
-                                           {"", "--utility", "utility", false},
-                                           {"", "--explorer", "utility", false},
-                                           {"", "--world", "world", true},
-                                           {"", "--method", "tour_solver", false}};
+  static const std::vector<NamedValue> all{
+      {"", "--config", "config", true},
+      {"lapwing verify", "--vehicle", "vehicle", true},
+      {"lapwing simulate", "--controller", "controller", false},
+      {"lapwing export", "--format", "exporter", false},
+      {"lapwing scene view", "file", "world", true},
+      {"lapwing plugins show", "name", "plugin", false},
+      {"lapwing plugins check", "plugin", "plugin", true},
+      {"lapwing new plugin", "kind", "plugin_kind", false},
+      {"lapwing new mission", "kind", "mission_kind", false},
+      {"lapwing schema", "kind", "schema_kind", false},
+      {"lapwing run", "--set", kSettings, false},
+      {"lapwing config", "--set", kSettings, false},
+      {"lapwing sweep", "--set", kSettings, false},
+      {"lapwing sweep", "--vary", kSettings, false},
+      {"", "--utility", "utility", false},
+      {"", "--explorer", "utility", false},
+      {"", "--world", "world", true},
+      {"", "--method", "tour_solver", false}};
   return all;
 }
 

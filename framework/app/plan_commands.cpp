@@ -79,6 +79,7 @@ ExitStatus verify_plan(const std::filesystem::path& file, const Judges& given,
   Judges judges = given;
   judges.cancellation = &interruption.token();
   judges.progress = &progress;
+  judges.controllers = controllers_of(invocation);
   const JudgedPlan judged = judge_file(file, judges);
   progress.clear();
   const Certificate& certificate = judged.certificate;
@@ -108,7 +109,7 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
   require_output(target, {file});
   const Registry registry = invocation.registry();
   const auto exporter = registry.create<Exporter>(format);
-  const JudgedPlan judged = judge_file(file);
+  const JudgedPlan judged = judge_file(file, {.controllers = controllers_of(invocation)});
   if (!judged.certificate.feasible()) {
     std::string failures;
     for (const Check& check : judged.certificate.failures())

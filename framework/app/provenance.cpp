@@ -5,6 +5,7 @@
 
 #include "framework/app/configured_task.h"
 #include "framework/app/plan_sources.h"
+#include "framework/app/stated_values.h"
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
@@ -227,6 +228,9 @@ class Examination {
     compared_ = true;
     if (!source.problem.empty()) faults_.push_back(source.problem);
     source.vehicle->name = name();
+    // An option of the mission stands above the vehicle's file.
+    if (const std::string named = stated_text(plan.configuration, "controller"); !named.empty())
+      source.vehicle->controller = Value(named);
     for (std::string& one : differences(plan.vehicle, to_value(*source.vehicle), source.name))
       faults_.push_back("vehicle." + one);
   }
@@ -354,6 +358,7 @@ JudgedPlan judge(Plan plan, const fs::path& folder, const DigestFindings* digest
   judged.certificate = verify(judged.plan, {.folder = folder,
                                             .elsewhere = examination.elsewhere(),
                                             .cancellation = judges.cancellation,
+                                            .controllers = judges.controllers,
                                             .progress = judges.progress});
   state_provenance(examination.provenance(), judged.certificate);
   judged.provenance = examination.value();

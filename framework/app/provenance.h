@@ -9,6 +9,7 @@
 #include "framework/core/progress.h"
 #include "framework/trajectory/plan.h"
 #include "framework/trajectory/plan_digest.h"
+#include "framework/vehicle/controller.h"
 #include "framework/verify/certificate.h"
 
 namespace lapwing {
@@ -19,6 +20,7 @@ struct Judges {
   std::filesystem::path vehicle = {}, environment = {};
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
+  ControllerSource controllers = {};
 };
 
 // A plan with its verdict, and what the verdict is about.

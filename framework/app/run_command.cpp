@@ -248,8 +248,8 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   }
   progress.begin("certificate");
   // Also the best so far of a run that was told to end is judged.
-  JudgedPlan judged =
-      judge(outcome.result.plan, outcome.result.obstacle_folder, nullptr, {.progress = &progress});
+  JudgedPlan judged = judge(outcome.result.plan, outcome.result.obstacle_folder, nullptr,
+                            {.progress = &progress, .controllers = controllers_of(invocation)});
   outcome.certificate = std::move(judged.certificate);
   outcome.provenance = std::move(judged.provenance);
   progress.begin("files");

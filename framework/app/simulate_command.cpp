@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // lapwing simulate.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "framework/app/command_line.h"
+#include "framework/app/interruption.h"
 #include "framework/app/output_target.h"
 #include "framework/app/provenance.h"
+#include "framework/app/simulation_request.h"
 #include "framework/app/terminal.h"
 #include "framework/core/files.h"
+#include "framework/core/number_text.h"
+#include "framework/core/parallel.h"
 #include "framework/core/units.h"
 #include "framework/core/visible_text.h"
 #include "framework/export/light_painting.h"
 #include "framework/export/simulation_report.h"
 #include "framework/mission/environment_source.h"
 #include "framework/vehicle/closed_loop.h"
+#include "framework/vehicle/path_flight.h"
 #include "framework/verify/tolerances.h"
 #include "framework/verify/verify.h"
 
@@ -29,16 +36,9 @@ Value to_value(const FlownPath& path) {
   value.set("yaw_error_at", path.yaw_error_at);
   value.set("rotor_speed_worst", path.rotor_speed_worst);
   value.set("saturated_share", path.saturated_share);
-  return value;
-}
-
-Value to_value(const FlightConditions& conditions) {
-  Value value = Value::map();
-  value.set("wind", conditions.wind_mean);
-  value.set("gusts", conditions.wind_gust);
-  value.set("wind_yaw", conditions.wind_yaw);
-  value.set("mass_error", conditions.mass_error);
-  value.set("seed", static_cast<std::int64_t>(conditions.seed));
+  value.set("finished", path.finished);
+  value.set("duration", path.duration());
+  value.set("late_worst", path.late_worst);
   return value;
 }
 
@@ -54,46 +54,74 @@ Value to_value(const Check& check) {
 }
 
 // Within what the certificate asks of a flight in still air.
-bool kept(const FlownPath& path) {
-  return !path.lost && path.position_error_worst <= tolerances::kTracking &&
+bool kept(const FlownPath& path, double tolerance = tolerances::kTracking) {
+  return !path.lost && path.finished && path.position_error_worst <= tolerance &&
          path.yaw_error_worst <= tolerances::kTrackingYaw;
 }
 
+// Where the camera looks: the gimbal as planned, on the heading that was flown.
+void point_camera(const Trajectory& planned, const FlownSample& flown, Sample& kept) {
+  const auto& samples = planned.samples;
+  auto after = std::upper_bound(samples.begin() + 1, samples.end() - 1, flown.time,
+                                [](double t, const Sample& s) { return t < s.time; });
+  const Sample &a = *(after - 1), &b = *after;
+  const double share = std::clamp((flown.time - a.time) / (b.time - a.time), 0.0, 1.0);
+  kept.yaw = a.yaw + share * (b.yaw - a.yaw) + flown.yaw_error;
+  if (!planned.has_gimbal) return;
+  kept.gimbal_yaw = a.gimbal_yaw + share * (b.gimbal_yaw - a.gimbal_yaw);
+  kept.gimbal_pitch = a.gimbal_pitch + share * (b.gimbal_pitch - a.gimbal_pitch);
+}
+
 // The flown path against obstacles and subjects, judged as a plan of the model `path` is.
-std::vector<Check> distances_of(const Plan& plan, const FlownPath& path,
-                                const std::filesystem::path& folder) {
+Certificate certificate_of(const Plan& plan, const FlownPath& path,
+                           const std::filesystem::path& folder) {
   Plan flown = plan;
-  flown.task = {};
+  Task asked;
+  asked.gates = plan.task.gates;
+  asked.framing = plan.task.framing;
+  asked.framing_share = plan.task.framing_share;
+  asked.line_of_sight_required = false;
+  asked.closed_loop_required = false;
+  flown.task = asked;
   flown.constraints.clear();
-  flown.cuts.clear();
   flown.lights.clear();
   flown.trajectory = {};
   flown.trajectory.motion = path_motion();
+  flown.trajectory.has_gimbal = plan.trajectory.has_gimbal;
   for (const FlownSample& sample : path.samples) {
     if (!sample.state.position.allFinite()) break;
     Sample& kept = flown.trajectory.samples.emplace_back();
     kept.time = sample.time;
     kept.position = sample.state.position;
+    point_camera(plan.trajectory, sample, kept);
   }
+  if (flown.trajectory.samples.empty()) return {};
+  return verify(flown, folder);
+}
+
+// Those of the named checks that were made.
+std::vector<Check> made_checks(const Certificate& certificate,
+                               std::initializer_list<const char*> names) {
   std::vector<Check> found;
-  if (flown.trajectory.samples.empty()) return found;
-  const Certificate certificate = verify(flown, folder);
-  for (const char* name : {"clearance", "subject_distance"}) {
+  for (const char* name : names) {
     const Check* check = certificate.find(name);
-    if (check->skipped.empty()) found.push_back(*check);
+    if (check && check->skipped.empty()) found.push_back(*check);
   }
   return found;
 }
 
-void print(const Plan& plan, const Simulation& simulation) {
+void print(const Plan& plan, const Simulation& simulation, double tolerance) {
   const FlownPath& path = simulation.path;
   const bool near = simulation.too_near();
   std::printf("%s: %s\n", visible_line(plan.mission).c_str(),
-              tinted(kept(path) && !near ? Tone::good : Tone::bad, path.lost     ? "lost"
-                                                                   : !kept(path) ? "strays"
-                                                                   : near        ? "too near"
-                                                                                 : "flown")
+              tinted(kept(path, tolerance) && !near ? Tone::good : Tone::bad,
+                     path.lost                ? "lost"
+                     : !path.finished         ? "not finished"
+                     : !kept(path, tolerance) ? "strays"
+                     : near                   ? "too near"
+                                              : "flown")
                   .c_str());
+  std::printf("  controller              %s\n", visible_line(simulation.controller).c_str());
   std::printf("  conditions              %s\n", simulation.conditions_in_words().c_str());
   for (const Check& check : simulation.distances)
     std::printf("  %-22s  %s\n", check.name.c_str(),
@@ -102,6 +130,9 @@ void print(const Plan& plan, const Simulation& simulation) {
               path.position_error_worst, path.position_error_at, path.position_error_mean);
   std::printf("  yaw against the plan    worst %.2f degrees at %.4g s\n",
               degrees(path.yaw_error_worst), path.yaw_error_at);
+  if (path.late_worst > 0)
+    std::printf("  flown in                %.4g s, at most %.3g s behind the plan\n",
+                path.duration(), path.late_worst);
   std::printf("  rotor speed             up to %.1f %% of the largest\n",
               100 * path.rotor_speed_worst);
   std::printf("  rotors saturated        %.3g %% of the time\n", 100 * path.saturated_share);
@@ -109,9 +140,75 @@ void print(const Plan& plan, const Simulation& simulation) {
     const DrawingError error = drawing_error(plan, path);
     std::printf("  light from the drawing  worst %.3f m, mean %.4f m\n", error.worst, error.mean);
   }
-  if (!path.lost && !kept(path))
-    std::printf("  more than a certificate allows: %.3g m and %.3g degrees\n",
-                tolerances::kTracking, degrees(tolerances::kTrackingYaw));
+  if (!path.lost && !kept(path, tolerance))
+    std::printf("  more than %s allows: %.3g m and %.3g degrees\n",
+                tolerance == tolerances::kTracking ? "a certificate" : "was asked for", tolerance,
+                degrees(tolerances::kTrackingYaw));
+}
+
+// One run, judged.
+RunVerdict verdict_of(const Plan& plan, const FlownPath& path, double tolerance,
+                      const std::filesystem::path& folder) {
+  RunVerdict verdict;
+  verdict.followed = !path.lost && path.finished && path.position_error_worst <= tolerance;
+  const Certificate certificate = certificate_of(plan, path, folder);
+  const auto passes = [&](std::initializer_list<const char*> names) -> std::optional<bool> {
+    const std::vector<Check> made = made_checks(certificate, names);
+    if (made.empty()) return std::nullopt;
+    return !path.lost && path.finished &&
+           std::all_of(made.begin(), made.end(), [](const Check& c) { return c.pass; });
+  };
+  verdict.gates = passes({"gates"});
+  verdict.framed = passes({"framing"});
+  verdict.distance = passes({"clearance", "subject_distance"});
+  // A flight that ended early, or whose numbers do not hold together, meets nothing.
+  if (!plan.task.gates.empty() && !verdict.gates) verdict.gates = false;
+  if (!plan.task.framing.empty() && !verdict.framed) verdict.framed = false;
+  return verdict;
+}
+
+SimulatedRuns judged_runs(const Plan& plan, const ControlledPlan& controlled,
+                          const ControllerChoice& choice, const FlightConditions& spread,
+                          const SimulationRequest& asked, const std::filesystem::path& folder,
+                          const Invocation& invocation, const CancellationToken* token) {
+  SimulatedRuns runs{choice.name, spread, asked.tolerance.value_or(tolerances::kTracking), {}, {}};
+  runs.runs = fly_runs(controlled, spread, asked.runs, invocation.threads, token);
+  runs.verdicts.resize(runs.runs.size());
+  parallel_for(runs.runs.size(), invocation.threads, [&](std::size_t i) {
+    if (token->cancelled()) throw Cancelled();
+    runs.verdicts[i] = verdict_of(plan, runs.runs[i].path, runs.tolerance, folder);
+  });
+  // Some have obstacles near or subjects in view and others ended before: absent means kept.
+  const bool any = std::any_of(runs.verdicts.begin(), runs.verdicts.end(),
+                               [](const RunVerdict& v) { return v.distance.has_value(); });
+  for (RunVerdict& v : runs.verdicts)
+    if (any && !v.distance) v.distance = false;
+  return runs;
+}
+
+void print(const Plan& plan, const SimulatedRuns& runs) {
+  const double good = runs.good_share();
+  std::printf("%s: %s\n", visible_line(plan.mission).c_str(),
+              tinted(good == 1 ? Tone::good : Tone::bad,
+                     std::to_string(std::lround(good * static_cast<double>(runs.runs.size()))) +
+                         " of " + std::to_string(runs.runs.size()) + " runs are good")
+                  .c_str());
+  std::printf("  controller              %s\n", visible_line(runs.controller).c_str());
+  std::printf("  conditions              %s\n", spread_in_words(runs.spread).c_str());
+  const auto say = [](const char* label, const std::optional<double>& share) {
+    if (share) std::printf("  %-22s  %.4g %% of runs\n", label, 100 * *share);
+  };
+  say("through all gates", runs.share(&RunVerdict::gates));
+  say(("within " + number_text(runs.tolerance, 3) + " m").c_str(), runs.followed_share());
+  say("subject in the image", runs.share(&RunVerdict::framed));
+  say("clear of obstacles", runs.share(&RunVerdict::distance));
+  std::printf("  distance from the plan  median %.3f m, 95 %% within %.3f m, worst %.3f m\n",
+              runs.distance_quantile(0.5), runs.distance_quantile(0.95), runs.distance_quantile(1));
+  const SeededRun& worst = runs.runs[runs.worst()];
+  std::printf("  worst run               seed %llu%s, %.3f m at %.4g s\n",
+              static_cast<unsigned long long>(worst.conditions.seed),
+              worst.path.lost ? ", lost" : "", worst.path.position_error_worst,
+              worst.path.position_error_at);
 }
 
 // What the verifier would refuse cannot be flown either.
@@ -123,30 +220,60 @@ void require_a_sound_plan(const Plan& plan, const std::filesystem::path& folder)
 
 }  // namespace
 
-ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditions& conditions,
+ExitStatus simulate_plan(const std::filesystem::path& file, const SimulationRequest& asked,
                          const std::filesystem::path& target, const Invocation& invocation) {
   if (!target.empty()) require_output(target, {file});
+  const Interruption interruption;
   Plan plan = read_plan_file(file);
-  require_a_sound_plan(plan, file.parent_path());
-  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   const std::filesystem::path folder = file.parent_path();
-  Simulation flown{conditions, fly(plan.trajectory, vehicle, conditions), {}};
-  const FlownPath& path = flown.path;
-  flown.distances = distances_of(plan, path, folder);
-  if (!target.empty()) {
-    open_recorded_shapes(plan.environment, invocation.registry(), folder);
-    write_file_atomically(target, render_html(simulation_report(plan, vehicle, flown, folder)));
+  require_a_sound_plan(plan, folder);
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  if (!plan.trajectory.motion.moves) {
+    plan.trajectory = flight_along(plan.trajectory, vehicle);
+    if (!invocation.json)
+      std::printf(
+          "the plan is a path without forces: flown with a stop in every place, in %.4g s\n",
+          plan.trajectory.duration());
   }
+  const FlightConditions conditions = conditions_of(asked, vehicle);
+  const ControllerChoice choice =
+      asked.controller.empty() ? controller_of(vehicle)
+                               : controller_choice_from(Value(asked.controller), "--controller");
+  const ControlledPlan controlled(
+      plan.trajectory, vehicle, choice.is_default() ? nullptr : controllers_of(invocation)(choice));
+  if (!target.empty()) open_recorded_shapes(plan.environment, invocation.registry(), folder);
+  Value object = Value::map();
+  object.set("plan", file.string());
+  object.set("mission", plan.mission);
+  if (asked.runs > 0) {
+    const SimulatedRuns runs = judged_runs(plan, controlled, choice, conditions, asked, folder,
+                                           invocation, &interruption.token());
+    if (!target.empty())
+      write_file_atomically(target, render_html(runs_report(plan, vehicle, runs, folder)));
+    object.set("simulations", to_value(runs));
+    if (invocation.json)
+      print_json(object);
+    else
+      print(plan, runs);
+    return runs.good_share() == 1 ? ExitStatus::done : ExitStatus::not_certified;
+  }
+  const double tolerance = asked.tolerance.value_or(tolerances::kTracking);
+  Simulation flown{choice.name, conditions, controlled.fly(conditions, &interruption.token()), {}};
+  const FlownPath& path = flown.path;
+  const Certificate certificate = certificate_of(plan, path, folder);
+  flown.distances = made_checks(certificate, {"clearance", "subject_distance"});
+  if (!target.empty())
+    write_file_atomically(target, render_html(simulation_report(plan, vehicle, flown, folder)));
   if (invocation.json) {
-    Value object = Value::map();
-    object.set("plan", file.string());
-    object.set("mission", plan.mission);
     Value& simulation = object.set("simulation", to_value(path));
-    simulation.set("kept", kept(path));
+    simulation.set("controller", to_value(choice));
+    simulation.set("kept", kept(path, tolerance));
     simulation.set("conditions", to_value(conditions));
     simulation.set("too_near", flown.too_near());
     Value& distances = simulation.set("distances", Value::list());
     for (const Check& check : flown.distances) distances.push_back(to_value(check));
+    for (const Check& check : made_checks(certificate, {"gates", "framing"}))
+      simulation.set(check.name, to_value(check));
     if (!plan.task.strokes.empty()) {
       const DrawingError error = drawing_error(plan, path);
       simulation.set("drawing_error_worst", error.worst);
@@ -154,9 +281,11 @@ ExitStatus simulate_plan(const std::filesystem::path& file, const FlightConditio
     }
     print_json(object);
   } else {
-    print(plan, flown);
+    print(plan, flown, tolerance);
+    for (const Check& check : made_checks(certificate, {"gates", "framing"}))
+      std::printf("  %-22s  %s\n", check.name.c_str(), visible_line(result_of(check)).c_str());
   }
-  return !kept(path) ? ExitStatus::not_certified : ExitStatus::done;
+  return !kept(path, tolerance) ? ExitStatus::not_certified : ExitStatus::done;
 }
 
 }  // namespace lapwing

@@ -106,6 +106,8 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
             {"never too large", "sign", "depth", "surface", "bounds", "convex"},
             {"rays"},
             {"record"}};
+  if (kind == Controller::kKind)
+    return {{"creation"}, {"finite", "limits"}, {"follows"}, {"repeatable", "threads"}, {"time"}};
   if (kind == Exporter::kKind) return {{"creation"}, {"extension"}, {"repeatable", "contents"}};
   return {};
 }
@@ -156,6 +158,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
     return check_registered<ViewUtility>(registry, entry, options, check_utility);
   if (entry.kind == Shape::kKind)
     return check_shape_plugin(subject_of<Shape>(registry, entry), options, &registry);
+  if (entry.kind == Controller::kKind)
+    return check_registered<Controller>(registry, entry, options, check_controller);
   if (entry.kind == Exporter::kKind)
     return check_registered<Exporter>(registry, entry, options, check_exporter);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};

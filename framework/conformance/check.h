@@ -22,6 +22,7 @@
 #include "framework/problem/cost_term.h"
 #include "framework/problem/vehicle_model.h"
 #include "framework/solve/trajectory_solver.h"
+#include "framework/vehicle/controller.h"
 #include "framework/view/tour_solver.h"
 #include "framework/view/view_information.h"
 
@@ -95,6 +96,8 @@ std::vector<CheckResult> check_utility(const Specimen<ViewUtility>& subject,
 std::vector<CheckResult> check_shape_plugin(const Specimen<Shape>& subject,
                                             const CheckOptions& options = {},
                                             const Registry* registry = nullptr);
+std::vector<CheckResult> check_controller(const Specimen<Controller>& subject,
+                                          const CheckOptions& options = {});
 std::vector<CheckResult> check_exporter(const Specimen<Exporter>& subject,
                                         const CheckOptions& options = {});
 

@@ -11,6 +11,7 @@
 #include "framework/plugin/sidecar.h"
 #include "framework/problem/invariance.h"
 #include "framework/shape/shape.h"
+#include "framework/vehicle/controller.h"
 
 namespace lapwing {
 namespace {
@@ -31,6 +32,7 @@ void create_and_drop(const Registry& registry, const PluginEntry& entry, const V
   made(static_cast<const ViewUtility*>(nullptr));
   made(static_cast<const Exporter*>(nullptr));
   made(static_cast<const Shape*>(nullptr));
+  made(static_cast<const Controller*>(nullptr));
 }
 
 bool is_snake_case(const std::string& name) {

@@ -55,11 +55,15 @@ Drawing paths(const Plan& plan, const FlownPath& path, const std::filesystem::pa
 Facts facts_of(const Simulation& simulation) {
   const FlightConditions& c = simulation.conditions;
   Facts facts;
-  facts.facts = {{"wind", number(c.wind_mean), "m/s"},
+  facts.facts = {{"controller", simulation.controller, ""},
+                 {"wind", number(c.wind_mean), "m/s"},
                  {"wind blows towards", number(degrees(c.wind_yaw)), "\u00b0"},
                  {"gusts", number(c.wind_gust), "m/s"},
                  {"mass above that of the plan", number(100 * c.mass_error), "%"},
-                 {"seed of the gusts", std::to_string(c.seed), ""}};
+                 {"seed of gusts and noise", std::to_string(c.seed), ""}};
+  for (const DisturbanceField& f : disturbance_fields())
+    if (c.disturbances.*f.field != 0)
+      facts.facts.push_back({f.name, number(c.disturbances.*f.field), f.unit});
   for (const Check& check : simulation.distances)
     facts.facts.push_back(
         {check.name, distance_in_words(check), "", check.pass ? Mark::pass : Mark::fail});
@@ -73,16 +77,7 @@ bool Simulation::too_near() const {
 }
 
 std::string Simulation::conditions_in_words() const {
-  const FlightConditions& c = conditions;
-  std::string text = "still air";
-  if (c.wind_mean != 0 || c.wind_gust != 0)
-    text = "wind " + number(c.wind_mean) + " m/s towards " + number(degrees(c.wind_yaw)) +
-           " degrees, gusts " + number(c.wind_gust) + " m/s, seed " + std::to_string(c.seed);
-  const double more = 100 * c.mass_error;
-  return text + "; mass " +
-         (more == 0
-              ? "as planned"
-              : number(std::abs(more)) + " % " + (more > 0 ? "above" : "below") + " the plan's");
+  return in_words(conditions);
 }
 
 std::string distance_in_words(const Check& check) {

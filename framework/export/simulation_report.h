@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/export/report.h"
+#include "framework/export/runs_report.h"
 #include "framework/trajectory/plan.h"
 #include "framework/vehicle/closed_loop.h"
 #include "framework/verify/certificate.h"
@@ -14,6 +15,7 @@ namespace lapwing {
 
 // What was flown, and what came of it.
 struct Simulation {
+  std::string controller;
   FlightConditions conditions;
   FlownPath path;
   // Least distances of the flown path from obstacles and subjects, against what the plan keeps.

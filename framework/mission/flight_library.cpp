@@ -7,10 +7,13 @@
 #include <lua.hpp>
 
 #include "framework/export/light_painting.h"
+#include "framework/mission/controller_source.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
+#include "framework/trajectory/gate_passage.h"
 #include "framework/trajectory/keyframe_timing.h"
+#include "framework/vehicle/monte_carlo.h"
 #include "framework/vehicle/pursuit.h"
 #include "framework/vehicle/smooth_leg.h"
 
@@ -41,8 +44,12 @@ int fly_plan(lua_State* state) {
   Value result = Value::map();
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    const FlownPath flown = fly(object.plan.trajectory, vehicle_from_value(object.plan.vehicle), {},
-                                run_of(state).settings.cancellation);
+    const MissionRun& run = run_of(state);
+    const Vehicle vehicle = vehicle_from_value(object.plan.vehicle);
+    FlightConditions conditions;
+    conditions.disturbances = vehicle.disturbances;
+    const FlownPath flown = plan_as_named(object.plan.trajectory, vehicle, *run.settings.registry)
+                                ->fly(conditions, run.settings.cancellation);
     result.set("lost", flown.lost);
     result.set("position_error", flown.position_error_worst);
     result.set("yaw_error", flown.yaw_error_worst);
@@ -51,6 +58,73 @@ int fly_plan(lua_State* state) {
       result.set("mean_drawing_error", error.mean);
       result.set("worst_drawing_error", error.worst);
     }
+  }
+  push_value(state, result);
+  return 1;
+}
+
+constexpr BoundField kFlownPlan[] = {{"plan", "lapwing.plan", "that is flown"}};
+
+ParameterTable fly_runs_table() {
+  ParameterTable table;
+  table.integer("runs", 20, "flights, with seeds in turn", between(1, 100000))
+      .integer("seed", 1, "of the first", at_least(0))
+      .number("mass_error", 0, "", "share of the mass, drawn evenly up to it", between(0, 0.9))
+      .number("wind", 0, "m/s", "mean, towards the east", between(0, 150))
+      .number("gust", 0, "m/s", "standard deviation of each horizontal axis", between(0, 150));
+  return table;
+}
+
+// Whether the flight came to its end, through all gates of the plan.
+bool is_through(const Plan& plan, const FlownPath& flown) {
+  constexpr double kAllowed = 1e-3;  // m, as the certificate allows
+  if (flown.lost || !flown.finished) return false;
+  std::vector<PathPoint> path;
+  for (const FlownSample& s : flown.samples) path.push_back({s.time, s.state.position});
+  std::size_t from = 0;
+  double share = 0;
+  for (const GateTask& gate : plan.task.gates) {
+    const GatePassage passage = gate_passage(gate, path, from, kAllowed, share);
+    if (!(passage.outside <= kAllowed)) return false;
+    from = passage.after;
+    share = passage.share;
+  }
+  return true;
+}
+
+// run:fly_runs{plan =, runs =, mass_error =, wind =, gust =, seed =}: flights under drawn
+// conditions and those of the vehicle's file.
+int fly_plan_often(lua_State* state) {
+  const Parameters given = table_argument(state, 2, fly_runs_table(), "fly_runs", kFlownPlan);
+  lua_getfield(state, 2, "plan");
+  const PlanObject& object = object_argument<PlanObject>(state, -1, kPlanType);
+  const MissionRun& run = run_of(state);
+  begin_planning(run_of(state));
+  Value result = Value::map();
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    const Vehicle vehicle = vehicle_from_value(object.plan.vehicle);
+    FlightConditions spread;
+    spread.wind_mean = given.number("wind");
+    spread.wind_gust = given.number("gust");
+    spread.mass_error = given.number("mass_error");
+    spread.disturbances = vehicle.disturbances;
+    spread.seed = static_cast<std::uint64_t>(given.integer("seed"));
+    const auto controlled = plan_as_named(object.plan.trajectory, vehicle, *run.settings.registry);
+    const std::vector<SeededRun> flown =
+        fly_runs(*controlled, spread, static_cast<int>(given.integer("runs")), run.settings.threads,
+                 run.settings.cancellation);
+    int through = 0;
+    double position = 0, longest = 0;
+    for (const SeededRun& one : flown) {
+      through += is_through(object.plan, one.path);
+      position = std::max(position, one.path.position_error_worst);
+      longest = std::max(longest, one.path.duration());
+    }
+    result.set("through", through);
+    result.set("runs", given.integer("runs"));
+    result.set("position_error", position);
+    result.set("duration", longest);
   }
   push_value(state, result);
   return 1;
@@ -226,8 +300,9 @@ int pursue_path(lua_State* state) {
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
     const Pursuit pursuit = pursue(path, views, vehicle, settings);
-    const FlownPath flown =
-        fly(pursuit.trajectory, vehicle, {}, run_of(state).settings.cancellation);
+    const MissionRun& run = run_of(state);
+    const FlownPath flown = plan_as_named(pursuit.trajectory, vehicle, *run.settings.registry)
+                                ->fly({}, run.settings.cancellation);
     for (const ViewPassed& view_passed : pursuit.views) {
       Value entry = Value::map();
       entry.set("arrival", view_passed.arrival);
@@ -251,6 +326,10 @@ std::span<const Binding> flight_methods_of_run() {
       {"fly", &guarded<fly_plan>, "(plan: lapwing.plan): table",
        "the simulated flight in still air: position_error, yaw_error, lost; of a drawing also "
        "mean_drawing_error, worst_drawing_error"},
+      {"fly_runs", &guarded<fly_plan_often>, "(flights: @): table",
+       "{through, runs, position_error, duration}: many flights under drawn conditions, how many "
+       "come to the end through all gates, the worst distance and the longest time",
+       &fly_runs_table, kFlownPlan},
       {"time_path", &guarded<time_path>, "(path: @): table",
        "{points, times}: the path in even steps and the times of passing them, as fast as the "
        "limits "

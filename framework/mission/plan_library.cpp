@@ -4,6 +4,7 @@
 
 #include "framework/core/files.h"
 #include "framework/export/report_value.h"
+#include "framework/mission/controller_source.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -141,6 +142,7 @@ ParameterTable plan_table() {
       .tables("cuts", span_table(), "spans of discarded footage")
       .optional_number("budget", "s", "flight time", above(0))
       .tables("lights", span_table(), "spans in which the light is on")
+      .optional_text("controller", "controller that flies it; absent: that of the vehicle")
       .table("geodetic_origin", origin, "origin of the world frame")
       .tables("players", player_table(), "pilots of the course, in simulation");
   return table;
@@ -198,6 +200,7 @@ int plan(lua_State* state) {
   document.mission = run.name;
   document.kind = run.kind;
   document.vehicle = to_value(solution.problem->vehicle());
+  if (given.has("controller")) document.vehicle.set("controller", given.text("controller"));
   document.trajectory = solution.problem->trajectory(solution.result.point.stages);
   document.environment = solution.problem->environment();
   document.task = task_of(given.table("task"));
@@ -248,7 +251,9 @@ int certify(lua_State* state) {
   Certificate certificate;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    certificate = verify(object.plan, run_of(state).obstacles.folder());
+    const MissionRun& run = run_of(state);
+    certificate = verify(object.plan, {.folder = run.obstacles.folder(),
+                                       .controllers = controllers_of(*run.settings.registry)});
   }
   Value result = certificate.to_value();
   Value failures = Value::list(), checks = Value::list();

@@ -2,6 +2,7 @@
 // Stating a problem: run:vehicle, run:problem, and the methods of a problem.
 #include <lua.hpp>
 
+#include "framework/mission/controller_source.h"
 #include "framework/mission/environment_source.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -390,7 +391,12 @@ int vehicle_of_run(lua_State* state) {
   // Lua's values bear no origin: an option that is handed on keeps the place where it was written.
   const Value* option = run_of(state).configuration.find("vehicle");
   if (option && *option == source && option->origin().source != "default") source = *option;
-  new_object(state, kVehicleType, load_vehicle(source, run_of(state).files.folders()));
+  const MissionRun& run = run_of(state);
+  const Vehicle vehicle = load_vehicle(source, run.files.folders());
+  // Before anything is computed that the certificate would then refuse.
+  if (!vehicle.controller.is_null())
+    controllers_of (*run.settings.registry)(controller_of(vehicle));
+  new_object(state, kVehicleType, vehicle);
   return 1;
 }
 

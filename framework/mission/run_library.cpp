@@ -3,6 +3,7 @@
 #include <lua.hpp>
 
 #include "framework/core/phases.h"
+#include "framework/mission/controller_source.h"
 #include "framework/mission/flight_library.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
@@ -81,6 +82,17 @@ int expect_plugin(lua_State* state) {
   return 0;
 }
 
+// run:expect_controller("controller"): an error where that option is given and names no controller,
+// or parameters that it does not take.
+int expect_controller(lua_State* state) {
+  const std::string path = text_argument(state, 2, "expect_controller");
+  const MissionRun& run = run_of(state);
+  const Value* value = at_path(run.configuration, path);
+  if (value && !value->is_null())
+    controllers_of (*run.settings.registry)(controller_choice_from(*value, path));
+  return 0;
+}
+
 // run:expect_players("players"): an error where that option names a log that cannot be read, before
 // anything is computed that the error would lose.
 int expect_players(lua_State* state) {
@@ -116,6 +128,8 @@ std::span<const Binding> told_methods() {
        "an error at the place of that option"},
       {"expect_plugin", &guarded<expect_plugin>, "(option: string, kind: string)",
        "an error at that option if it names no plugin of the kind"},
+      {"expect_controller", &guarded<expect_controller>, "(option: string)",
+       "an error at that option if it names no controller, or parameters that are not its own"},
       {"expect_players", &guarded<expect_players>, "(option: string)",
        "an error at that option if it names a stick log that cannot be read"},
       {"stated", &guarded<stated>, "(option: string): boolean",

@@ -16,44 +16,30 @@ namespace {
 
 // What an acceleration of kAcceleration is worth.
 constexpr double kAcceleration = 2.0;  // m/s^2
-constexpr double kPosition = 0.1;      // m
-constexpr double kVelocity = 0.5;      // m/s
-constexpr double kIntegral = 0.1;      // m s
 constexpr double kAttitude = 0.5;      // rad, that asks for a share of the free moment
 constexpr double kMomentShare = 0.5;
 constexpr double kLagShare = 0.5;   // bandwidth of the attitude times the rotors' lag
 constexpr double kResponse = 0.15;  // s, of an attitude that is fast enough for these weights
-constexpr double kFastestTilt = 20.0, kFastestYaw = 4.0;  // rad/s
-constexpr double kDifference = 0.01;                      // s, of the attitude's derivatives
-constexpr double kAlongHeading = 1e-3;  // sine of the angle between force and heading
 
 double squared(double x) {
   return x * x;
 }
 
-// The rotation vector of a unit quaternion.
-Vector3d rotation_vector(Quaterniond q) {
-  if (q.w() < 0) q.coeffs() = -q.coeffs();
-  const double sine = q.vec().norm();
-  if (sine < 1e-12) return 2 * q.vec();
-  return 2 * std::atan2(sine, q.w()) / sine * q.vec();
-}
-
 }  // namespace
 
-ControllerGains gains_of(const Vehicle& vehicle) {
+ControllerGains gains_of(const Vehicle& vehicle, const ControllerWeights& worth) {
   const Rotors& rotors = vehicle.rotors;
   const double hover = vehicle.mass * kGravity / 4;
   const double room = std::min(hover - rotors.thrust_min, rotors.thrust_max - hover);
   const Eigen::Vector4d moments = room * mixer_of(rotors).cwiseAbs().rowwise().sum();
-  const double fastest = rotors.lag > 0 ? kLagShare / rotors.lag : kFastestTilt;
+  const double fastest = rotors.lag > 0 ? kLagShare / rotors.lag : worth.tilt_bandwidth;
   const auto bandwidth = [&](double moment, double inertia, double limit) {
     return std::min({limit, fastest, std::sqrt(kMomentShare * moment / (kAttitude * inertia))});
   };
   const Vector3d& inertia = vehicle.inertia;
-  const Vector3d bandwidths(bandwidth(moments(1), inertia.x(), kFastestTilt),
-                            bandwidth(moments(2), inertia.y(), kFastestTilt),
-                            bandwidth(moments(3), inertia.z(), kFastestYaw));
+  const Vector3d bandwidths(bandwidth(moments(1), inertia.x(), worth.tilt_bandwidth),
+                            bandwidth(moments(2), inertia.y(), worth.tilt_bandwidth),
+                            bandwidth(moments(3), inertia.z(), worth.heading_bandwidth));
   ControllerGains gains;
   gains.attitude = inertia.cwiseProduct(bandwidths.cwiseAbs2());
   gains.rates = 2 * inertia.cwiseProduct(bandwidths);
@@ -63,8 +49,9 @@ ControllerGains gains_of(const Vehicle& vehicle) {
   a(0, 1) = a(1, 2) = 1;
   const double response = 2 / bandwidths.head<2>().minCoeff() + rotors.lag;
   const double slower = std::max(1.0, response / kResponse);
-  const Vector3d weights(1 / squared(kIntegral * slower * slower * slower),
-                         1 / squared(kPosition * slower * slower), 1 / squared(kVelocity * slower));
+  const Vector3d weights(1 / squared(worth.integral * slower * slower * slower),
+                         1 / squared(worth.position * slower * slower),
+                         1 / squared(worth.velocity * slower));
   const Eigen::MatrixXd k =
       regulator_gain(a, Vector3d(0, 0, 1), weights.asDiagonal(),
                      Eigen::MatrixXd::Constant(1, 1, 1 / squared(kAcceleration)));
@@ -72,36 +59,14 @@ ControllerGains gains_of(const Vehicle& vehicle) {
   return gains;
 }
 
-Quaterniond attitude_of(const Vector3d& force, double yaw) {
-  const Vector3d z = force.norm() > 0 ? Vector3d(force.normalized()) : Vector3d::UnitZ();
-  const Vector3d heading(std::cos(yaw), std::sin(yaw), 0);
-  Vector3d y = z.cross(heading);
-  if (y.norm() < kAlongHeading) y = Vector3d(-heading.y(), heading.x(), 0);
-  y = (y - y.dot(z) * z).normalized();
-  Matrix3d r;
-  r << y.cross(z), y, z;
-  return Quaterniond(r);
-}
-
-FlightController::FlightController(const Vehicle& vehicle, const ReferenceMotion& reference)
+FlightController::FlightController(const Vehicle& vehicle, const ReferenceMotion& reference,
+                                   const ControllerWeights& weights)
     : reference_(reference),
       mass_(vehicle.mass),
       lag_(vehicle.rotors.lag),
       inertia_(vehicle.inertia),
-      gains_(gains_of(vehicle)),
+      gains_(gains_of(vehicle, weights)),
       allocation_(vehicle) {}
-
-AttitudeReference FlightController::attitude(double time) const {
-  const auto at = [&](double t) {
-    const ReferencePoint point =
-        reference_.at(std::clamp(t, reference_.start(), reference_.finish()));
-    return attitude_of(reference_.force(point), point.yaw);
-  };
-  const Quaterniond before = at(time - kDifference), now = at(time), after = at(time + kDifference);
-  const Vector3d first = rotation_vector(before.conjugate() * now) / kDifference;
-  const Vector3d second = rotation_vector(now.conjugate() * after) / kDifference;
-  return {now, (first + second) / 2, (second - first) / kDifference};
-}
 
 RotorCommand FlightController::command(double time, const BodyState& state, double step) {
   const ReferencePoint wanted = reference_.at(time);
@@ -111,8 +76,9 @@ RotorCommand FlightController::command(double time, const BodyState& state, doub
                             gains_.velocity * (state.velocity - wanted.velocity);
   const Vector3d force = reference_.force(wanted) - mass_ * feedback;  // (3.14)
 
-  const AttitudeReference forward = attitude(time);
-  const Vector3d ahead = attitude(time + lag_).accelerations;  // rotors answer that much later
+  const AttitudeReference forward = planned_attitude(reference_, time);
+  const Vector3d ahead =
+      planned_attitude(reference_, time + lag_).accelerations;  // rotors answer that much later
   const Quaterniond target = attitude_of(force, wanted.yaw);
   const Matrix3d r = state.orientation.toRotationMatrix(), rd = target.toRotationMatrix();
   const Matrix3d skew = rd.transpose() * r - r.transpose() * rd;

@@ -3,9 +3,8 @@
 // integral action for the place, (3.14), and Lee's attitude law on SO(3) (CDC 2010) for the rest.
 #pragma once
 
-#include "framework/vehicle/reference_motion.h"
-#include "framework/vehicle/rotor_allocation.h"
-#include "framework/vehicle/rotor_body.h"
+#include "framework/vehicle/controller.h"
+#include "framework/vehicle/planned_attitude.h"
 
 namespace lapwing {
 
@@ -17,34 +16,30 @@ struct ControllerGains {
   Eigen::Vector3d rates = Eigen::Vector3d::Zero();     // N m s per rad, K_omega
 };
 
-// The attitude loop is critically damped. Its bandwidth w is such that an error of 0.5 rad asks for
-// half of the moment that rotors have left beside hovering; at most 20 rad/s about roll and pitch,
-// 4 rad/s about yaw, and 0.5 over the rotors' lag. The regulator weighs deviations by what is worth
-// an acceleration of 2 m/s^2: 0.1 m, 0.5 m/s, 0.1 m s. Where the attitude answers later than 0.15 s
-// (2/w and the lag) all times of the regulator grow in proportion.
-ControllerGains gains_of(const Vehicle& vehicle);
-
-// The attitude whose z axis is along `force` and whose x axis points to `yaw`. Where the force
-// points along the heading itself, the y axis is the one that a level vehicle would have.
-Eigen::Quaterniond attitude_of(const Eigen::Vector3d& force, double yaw);
-
-// Attitude with its first two derivatives.
-struct AttitudeReference {
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // R_WB
-  Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();             // rad/s, body
-  Eigen::Vector3d accelerations = Eigen::Vector3d::Zero();          // rad/s^2, body
+// What an acceleration of 2 m/s^2 is worth to the regulator, and how fast an attitude may be.
+struct ControllerWeights {
+  double position = 0.1;           // m
+  double velocity = 0.5;           // m/s
+  double integral = 0.1;           // m s
+  double tilt_bandwidth = 20;      // rad/s, at most
+  double heading_bandwidth = 4.0;  // rad/s, at most
 };
 
-class FlightController {
+// The attitude loop is critically damped. Its bandwidth w is such that an error of 0.5 rad asks for
+// half of the moment that rotors have left beside hovering; at most those of the weights, and 0.5
+// over the rotors' lag. Where the attitude answers later than 0.15 s (2/w and the lag) all times of
+// the regulator grow in proportion.
+ControllerGains gains_of(const Vehicle& vehicle, const ControllerWeights& weights = {});
+
+// The law itself, for one flight.
+class FlightController final : public ControlledFlight {
  public:
-  FlightController(const Vehicle& vehicle, const ReferenceMotion& reference);
+  FlightController(const Vehicle& vehicle, const ReferenceMotion& reference,
+                   const ControllerWeights& weights = {});
 
-  // The command at `time` for a vehicle in this state, `step` seconds after the last call. The
-  // integral stands still while rotors are saturated.
-  RotorCommand command(double time, const BodyState& state, double step);
+  // The integral stands still while rotors are saturated.
+  RotorCommand command(double time, const BodyState& state, double step) override;
 
-  // What the feed-forward alone asks for.
-  AttitudeReference attitude(double time) const;
   const ControllerGains& gains() const { return gains_; }
 
  private:
@@ -55,6 +50,25 @@ class FlightController {
   RotorAllocation allocation_;
   Eigen::Vector3d integral_ = Eigen::Vector3d::Zero();  // m s
   bool saturated_ = false;
+};
+
+// The controller `thesis`. It follows places, headings and forces; of a plan of rotors, those that
+// `forces_of` finds. The kernel holds it because plans that name no controller are judged by it.
+class ThesisController final : public Controller {
+ public:
+  explicit ThesisController(const ControllerWeights& weights = {}) : weights_(weights) {}
+  void follow(const Vehicle& vehicle, const BodyReference& reference) override {
+    vehicle_ = &vehicle;
+    reference_ = &reference;
+  }
+  std::unique_ptr<ControlledFlight> begin() const override {
+    return std::make_unique<FlightController>(*vehicle_, reference_->motion(), weights_);
+  }
+
+ private:
+  ControllerWeights weights_;
+  const Vehicle* vehicle_ = nullptr;
+  const BodyReference* reference_ = nullptr;
 };
 
 }  // namespace lapwing

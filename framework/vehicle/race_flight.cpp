@@ -97,10 +97,14 @@ class RaceController {
     const Matrix3d rd = attitude_of(force, wanted.yaw).toRotationMatrix();
     const Matrix3d skew = rd.transpose() * r - r.transpose() * rd;
     const Vector3d error_r = 0.5 * Vector3d(skew(2, 1), skew(0, 2), skew(1, 0));
+    // Rates of the planned attitude, as far as the stick leaves the plan its feed-forward.
+    const Vector3d rates =
+        (1 - pilot_.weight) * pilot_.speed * planned_attitude(reference_, clock_).body_rates;
     const Vector3d& omega = state.body_rates;
+    const Vector3d error_rates = omega - r.transpose() * (rd * rates);
     Eigen::Vector4d wrench;
     wrench << force.dot(r.col(2)), -gains_.attitude.cwiseProduct(error_r) -
-                                       gains_.rates.cwiseProduct(omega) +
+                                       gains_.rates.cwiseProduct(error_rates) +
                                        omega.cross(inertia_.cwiseProduct(omega));
     const RotorCommand command = allocation_(wrench);
     saturated_ = command.saturated;

@@ -23,11 +23,13 @@ Eigen::Matrix4d mixer_of(const Rotors& rotors) {
   return mixer;
 }
 
-RotorBody::RotorBody(const Vehicle& vehicle, double mass_factor)
+RotorBody::RotorBody(const Vehicle& vehicle, double mass_factor, double inertia_factor,
+                     double quadratic_drag)
     : mass_(mass_factor * vehicle.mass),
       drag_(vehicle.drag),
+      quadratic_drag_(quadratic_drag),
       lag_(vehicle.rotors.lag),
-      inertia_(mass_factor * vehicle.inertia),
+      inertia_(mass_factor * inertia_factor * vehicle.inertia),
       mixer_(mixer_of(vehicle.rotors)) {}
 
 // Time derivatives, those of the orientation as body rates.
@@ -42,7 +44,9 @@ RotorBody::Rates RotorBody::rates(const BodyState& state, const Vector3d& wind) 
   const Vector3d spin = inertia_.cwiseProduct(state.body_rates);
   Rates rates;
   rates.position = state.velocity;
-  rates.velocity = (thrust - drag_ * (state.velocity - wind)) / mass_ - Vector3d(0, 0, kGravity);
+  const Vector3d air = state.velocity - wind;
+  const double drag = quadratic_drag_ > 0 ? drag_ + quadratic_drag_ * air.norm() : drag_;
+  rates.velocity = (thrust - drag * air) / mass_ - Vector3d(0, 0, kGravity);
   rates.turn = state.body_rates;
   rates.body_rates = (moment - state.body_rates.cross(spin)).cwiseQuotient(inertia_);
   return rates;

@@ -2,7 +2,8 @@
 // The whole quadrotor (thesis 3.8.1): a rigid body with four rotors, in moving air.
 //
 //   F_i, M_i = k F_i                        rotor i; k is the vehicle's torque coefficient
-//   m r'' = u_1 z_B + m g - d (r' - w)      (3.12) with linear drag d against the wind w
+//   m r'' = u_1 z_B + m g - (d + q |v|) v    (3.12) with linear and quadratic drag d, q; v is the
+//                                            airspeed r' - w in the wind w
 //   M_B = I omega' + omega x I omega        (3.13)
 //
 // Rotors are numbered counter-clockwise from above, the first on +x_B or, with diagonal arms,
@@ -27,8 +28,10 @@ struct BodyState {
 
 class RotorBody {
  public:
-  // `mass_factor` multiplies the mass and the inertia of the file: the vehicle as it truly is.
-  explicit RotorBody(const Vehicle& vehicle, double mass_factor = 1.0);
+  // The vehicle as it truly is: `mass_factor` multiplies the mass and the inertia of the file,
+  // `inertia_factor` the inertia again; `quadratic_drag` (N s^2/m^2) comes beside the linear one.
+  explicit RotorBody(const Vehicle& vehicle, double mass_factor = 1.0, double inertia_factor = 1.0,
+                     double quadratic_drag = 0.0);
 
   // Thrust and moments of (3.11): u_1 in N, u_2 to u_4 in N m, body frame.
   Eigen::Vector4d wrench(const Eigen::Vector4d& rotor_thrusts) const {
@@ -46,7 +49,7 @@ class RotorBody {
   struct Rates;
   Rates rates(const BodyState& state, const Eigen::Vector3d& wind) const;
 
-  double mass_, drag_, lag_;
+  double mass_, drag_, quadratic_drag_, lag_;
   Eigen::Vector3d inertia_;
   Eigen::Matrix4d mixer_;
 };

@@ -84,6 +84,22 @@ Value gimbal_to_value(const GimbalLimits& gimbal) {
   return value;
 }
 
+Value simulation_to_value(const Disturbances& disturbances) {
+  Value value = Value::map();
+  for (const DisturbanceField& f : disturbance_fields())
+    if (disturbances.*f.field != 0) value.set(f.name, disturbances.*f.field);
+  return value;
+}
+
+Disturbances read_simulation(Fields fields) {
+  Disturbances disturbances;
+  for (const DisturbanceField& f : disturbance_fields())
+    if (fields.has(f.name)) disturbances.*f.field = fields.number(f.name);
+  if (const auto problem = problem_of(disturbances)) fields.add_error("", *problem);
+  fields.finish();
+  return disturbances;
+}
+
 Value camera_to_value(const Camera& camera) {
   Value value = Value::map();
   value.set("name", camera.name);
@@ -186,6 +202,9 @@ Value to_value(const Vehicle& vehicle) {
   value.set("flight_time", vehicle.flight_time);
   if (vehicle.wing) value.set("wing", wing_to_value(*vehicle.wing));
   if (vehicle.gimbal) value.set("gimbal", gimbal_to_value(*vehicle.gimbal));
+  if (!vehicle.controller.is_null()) value.set("controller", vehicle.controller);
+  if (vehicle.disturbances != Disturbances{})
+    value.set("simulation", simulation_to_value(vehicle.disturbances));
   value.set("camera", camera_to_value(vehicle.camera));
   return value;
 }
@@ -198,6 +217,8 @@ Vehicle vehicle_from_value(const Value& value) {
   read_limits(fields.table("limits"), vehicle);
   if (fields.has("wing")) vehicle.wing = read_wing(fields.table("wing"));
   if (fields.has("gimbal")) vehicle.gimbal = read_gimbal(fields.table("gimbal"));
+  vehicle.controller = fields.opaque("controller");
+  if (fields.has("simulation")) vehicle.disturbances = read_simulation(fields.table("simulation"));
   vehicle.camera = read_camera(fields.table("camera"));
   fields.finish();
   errors.throw_if_any();

@@ -12,6 +12,7 @@
 
 #include "framework/core/parameters.h"
 #include "framework/geometry/camera_view.h"
+#include "framework/vehicle/disturbances.h"
 
 namespace lapwing {
 
@@ -70,6 +71,10 @@ struct Vehicle {
   std::optional<Wing> wing;
   std::optional<GimbalLimits> gimbal;
   Camera camera;
+  // What its plans are flown with: a controller's name, or a map of `type` and parameters; null:
+  // the thesis's (controller.h).
+  Value controller;
+  Disturbances disturbances;  // of its flights in simulation, beside those that are asked for
 
   // Bounds of thesis 3.8.3 with the lower one that its statement needs (README.md, reading 3.2):
   // every thrust norm in [thrust_min, thrust_max] together with every |yaw torque| up to

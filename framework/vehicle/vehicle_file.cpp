@@ -58,6 +58,25 @@ ParameterTable wing_table() {
   return table;
 }
 
+ParameterTable simulation_table() {
+  ParameterTable table;
+  for (const DisturbanceField& f : disturbance_fields()) {
+    const double scale = f.degrees ? degrees(1.0) : 1.0;
+    const std::string unit = f.degrees ? (std::string(f.unit) == "rad" ? "deg" : "deg/s") : f.unit;
+    table.number(f.outside_name(), 0, unit, f.summary, between(scale * f.least, scale * f.most));
+  }
+  return table;
+}
+
+Disturbances disturbances_from(const Parameters& table) {
+  Disturbances result;
+  for (const DisturbanceField& f : disturbance_fields()) {
+    const double value = table.number(f.outside_name());
+    result.*f.field = f.degrees ? radians(value) : value;
+  }
+  return result;
+}
+
 // All keys of a table that is present or absent as a whole; `what` names what needs them.
 bool is_whole(const Parameters& table, const ParameterTable& known, const std::string& name,
               const std::string& what, Diagnostics& errors) {
@@ -181,6 +200,9 @@ ParameterTable vehicle_table() {
       .required_number("flight_time", "s", "flight time of one battery", above(0))
       .table("wing", wing_table(), "wing of a fixed-wing aircraft; absent: none")
       .table("gimbal", gimbal_table(), "absent: the camera is fixed to the body")
+      .optional_text("controller", "plugin that flies its plans; absent: thesis")
+      .table("simulation", simulation_table(),
+             "what simulated flights have that plans do not know of; absent: nothing")
       .required_text("camera", "the camera file, such as cameras/action");
   return table;
 }
@@ -205,6 +227,8 @@ Vehicle vehicle_from(const Parameters& vehicle, const Parameters& camera, std::s
   read_limits(vehicle.table("limits"), result);
   result.wing = wing_from(vehicle.table("wing"), errors);
   result.gimbal = gimbal_from(vehicle.table("gimbal"), errors);
+  if (vehicle.has("controller")) result.controller = Value(vehicle.text("controller"));
+  result.disturbances = disturbances_from(vehicle.table("simulation"));
   const std::string& camera_file = vehicle.text("camera");
   result.camera =
       camera_from(camera, camera_file.substr(camera_file.find_last_of('/') + 1), errors);

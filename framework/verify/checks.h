@@ -128,6 +128,7 @@ struct Flight {
   const Vehicle& vehicle;
   Motion& motion;
   const JudgedShapes& shapes;
+  const ControllerSource& controllers;
   Watch& watch;  // `motion` tells it how far a walk along it has come
 };
 

@@ -92,7 +92,7 @@ Certificate verify(const Plan& plan, const VerifyRequest& request) {
   const auto intervals = static_cast<double>(std::max<std::size_t>(motion.intervals(), 1));
   motion.watch_by(
       [&](std::size_t interval) { watch.done(static_cast<double>(interval) / intervals); });
-  const Flight flight{plan, document.vehicle, motion, document.shapes, watch};
+  const Flight flight{plan, document.vehicle, motion, document.shapes, request.controllers, watch};
   const auto next = [&](auto check) {
     watch.begin();
     check(flight, certificate);

@@ -11,6 +11,7 @@
 
 #include "framework/core/progress.h"
 #include "framework/trajectory/plan.h"
+#include "framework/vehicle/controller.h"
 #include "framework/verify/certificate.h"
 
 namespace lapwing {
@@ -30,6 +31,9 @@ struct VerifyRequest {
   // elsewhere, by the names that the environment has for them.
   std::map<std::string, std::filesystem::path> elsewhere = {};
   const CancellationToken* cancellation = nullptr;
+  // Opens the controller that a plan names, which the verifier itself may not; none: a plan that
+  // names another than the thesis's is not flown, and fails where a controlled flight is required.
+  ControllerSource controllers = {};
   Progress* progress = nullptr;  // told the share of all checks that is done; it never falls
 };
 

@@ -88,6 +88,8 @@ local common = {
     summary = "vehicle model: how the vehicle moves" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
     summary = "trajectory solver" },
+  { name = "controller", type = "text",
+    summary = "plugin that flies the plan; absent: that of the vehicle, or `thesis`" },
   { name = "planner", type = "plugin", kind = "path_planner", default = "bit_star",
     summary = "planner of a path around obstacles, the first guess" },
   { name = "passages", type = "integer", default = 4, minimum = 0, maximum = 20,

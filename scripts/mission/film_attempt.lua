@@ -11,6 +11,7 @@ local function tried(run, request)
   local camera = stated.camera
   local solution = run:solve(stated.problem, run.options.solver)
   local verdict = run:certify(run:plan { solution = solution, task = stated.task,
+                                         controller = run.options.controller,
                                          cuts = camera and camera.cuts or {} })
   return requests.outcome {
     request = request, solution = solution, verdict = verdict, task = stated.task, camera = camera,

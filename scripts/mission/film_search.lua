@@ -27,7 +27,8 @@ local function finished(run, outcome, told)
   local cuts = outcome.camera and outcome.camera.cuts or {}
   return run:plan { solution = outcome.solution, task = outcome.task, cuts = cuts,
                     notes = told.notes or {}, details = told.details or {}, figures = figures,
-                    geodetic_origin = request.origin, budget = run.options.battery }
+                    geodetic_origin = request.origin, budget = run.options.battery,
+                    controller = run.options.controller }
 end
 
 -- Sentences on a film that came to nothing, with the script's constraint that is in the way first.
@@ -164,6 +165,7 @@ function M.fly(run, shot, terms)
   local way = run.options.timing
   local film = asked(run, shot, terms)
   if #film.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
+  run:expect_controller("controller")
   check_gimbal(run, film)
   timing.check(run, film)
   times.check_speed(run, film)

@@ -59,6 +59,8 @@ local DECLARATIONS = {
     summary = "vehicle model, one that can stand still" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
     summary = "trajectory solver" },
+  { name = "controller", type = "text",
+    summary = "plugin that flies the plan; absent: that of the vehicle, or `thesis`" },
 }
 
 local SPACING = 0.01     -- m, between points of the timed path
@@ -131,7 +133,7 @@ local function plan_of(run, strokes, lights, solution, figures, notes)
                  drawing_tolerance = tolerance_of(run.options) }
   for i, stroke in ipairs(strokes) do task.strokes[i] = { points = paths.flat(stroke) } end
   return run:plan { solution = solution, task = task, lights = lights,
-                    figures = figures, notes = notes }
+                    figures = figures, notes = notes, controller = run.options.controller }
 end
 
 -- What a user should know of a flight that is not as asked.
@@ -157,6 +159,7 @@ end
 local function painted(run)
   local o = run.options
   local vehicle = run:vehicle(o.vehicle)
+  run:expect_controller("controller")
   local drawn, unit, undrawn = drawings.read(run)
   drawn = drawings.without_repeats(drawn)
   if #drawn == 0 then

@@ -77,6 +77,7 @@ const std::map<std::string, Kind>& kinds() {
       {"information", {"information", "view"}},
       {"tour_solvers", {"tour_solver", "view"}},
       {"utilities", {"utility", "explore"}},
+      {"controllers", {"controller", "solve"}},
       {"exporters", {"exporter", "export"}},
   };
   return kKinds;

@@ -21,7 +21,7 @@ std::vector<PluginEntry> checked_entries() {
   for (const PluginEntry& entry : plugins().entries())
     for (const char* kind :
          {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner",
-          "tour_solver", "information", "utility", "exporter", "shape"})
+          "tour_solver", "information", "utility", "exporter", "shape", "controller"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }
@@ -87,6 +87,11 @@ TEST(EveryPlugin, IsThere) {
                                    {"path_planner", "bit_star"},
                                    {"information", "uniform"},
                                    {"information", "fronto_parallel"},
+                                   {"controller", "thesis"},
+                                   {"controller", "geometric"},
+                                   {"controller", "tvlqr"},
+                                   {"controller", "mpc"},
+                                   {"controller", "contouring"},
                                    {"tour_solver", "greedy"},
                                    {"tour_solver", "cost_benefit"},
                                    {"tour_solver", "recursive_greedy"},

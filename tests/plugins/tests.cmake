@@ -34,6 +34,13 @@ add_dependencies(test_path_planners lapwing_path_planner_ompl)
 foreach(solver greedy cost_benefit recursive_greedy local_search milp)
   add_dependencies(test_tour_solvers lapwing_tour_solver_${solver})
 endforeach()
+foreach(controller thesis geometric tvlqr predictive)
+  add_dependencies(test_controllers lapwing_controller_${controller})
+endforeach()
+target_sources(test_controllers PRIVATE
+  ${PROJECT_SOURCE_DIR}/plugins/controllers/tvlqr/error_dynamics.cpp
+  ${PROJECT_SOURCE_DIR}/plugins/controllers/predictive/horizon.cpp
+  ${PROJECT_SOURCE_DIR}/plugins/controllers/predictive/observer.cpp)
 add_dependencies(test_path lapwing_map_brick)
 add_dependencies(test_explore lapwing_map_brick)
 get_filename_component(learned ${PROJECT_SOURCE_DIR}/plugins/utilities/learned ABSOLUTE)
