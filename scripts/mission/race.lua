@@ -11,6 +11,7 @@
 local mission_of = require "mission.mission_of"
 local courses = require "mission.race_course"
 local flights = require "mission.race_flight"
+local margin = require "mission.race_margin"
 local search = require "mission.race_search"
 
 local M = {}
@@ -61,8 +62,21 @@ local DECLARATIONS = {
   { name = "closed_loop", type = "choice", default = "required",
     choices = { "required", "reported" },
     summary = "whether the certificate requires the simulated flight" },
+  { name = "controller", type = "text",
+    summary = "plugin that flies the plan; absent: that of the vehicle, or `thesis`" },
   { name = "advise", type = "boolean", default = true,
     summary = "if tracking is required and fails: search a share of the thrust that is tracked" },
+  { name = "flown", type = "table",
+    summary = "flights that must pass every gate; the race finds the largest share of thrust for them",
+    table = {
+      { name = "runs", type = "integer", default = 20, minimum = 1, maximum = 10000,
+        summary = "number of flights" },
+      number("mass_error", 0, "", "error of the mass, drawn evenly up to this share",
+             { minimum = 0, maximum = 0.9 }),
+      number("wind", 0, "m/s", "mean wind, towards the east", { minimum = 0, maximum = 150 }),
+      number("gust", 0, "m/s", "standard deviation of gusts", { minimum = 0, maximum = 150 }),
+      { name = "seed", type = "integer", default = 1, minimum = 0,
+        summary = "seed of the first flight" } } },
   number("step", 0.06, "s", "time between stages of the first guess", { above = 0, maximum = 1 }),
   { name = "refinements", type = "integer", default = 4, minimum = 0, maximum = 10,
     summary = "how often legs with too coarse steps are halved and solved again" },
@@ -105,6 +119,7 @@ local function check_options(run, vehicle)
     run:fail("thrust", string.format("%.3g of the thrust is less than the weight of vehicle '%s'",
                                      o.thrust, vehicle.name))
   end
+  run:expect_controller("controller")
   run:expect_players("players")  -- before anything is computed
 end
 
@@ -114,6 +129,7 @@ local function flown(run)
   check_options(run, vehicle)
   local course = courses.read(run)
   course.task = task_of(course)
+  if run:stated("flown") then return margin.plan(run, course, vehicle, o) end
   local made = flights.flight(run, course, vehicle, o, function(words) run:phase(words) end)
   local solution = made.solution
   local notes = { made.note }

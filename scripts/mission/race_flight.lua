@@ -18,11 +18,12 @@ function M.solved(solution)
   return solution.status == "optimal" or solution.status == "feasible"
 end
 
-function M.plan(run, course, solution, notes)
+-- `o`: the options; absent: those of the run.
+function M.plan(run, course, solution, notes, o)
   return run:plan {
     solution = solution, notes = notes, figures = { time = solution.duration },
-    players = run.options.players, budget = run.options.time,
-    task = { gates = course.task, closed_loop_required = run.options.closed_loop == "required" },
+    players = run.options.players, budget = run.options.time, controller = run.options.controller,
+    task = { gates = course.task, closed_loop_required = (o or run.options).closed_loop == "required" },
   }
 end
 
@@ -85,16 +86,25 @@ local function finishing(solver)
   return copy
 end
 
+local function copied(made)
+  local copy = {}
+  for key, value in pairs(made) do copy[key] = value end
+  copy.durations = table.move(made.durations, 1, #made.durations, 1, {})
+  copy.intervals = table.move(made.intervals, 1, #made.intervals, 1, {})
+  return copy
+end
+
 -- A flight of the course with these options, refined until it is certified: {plan =, solution = the
 -- last one, certificate = of the plan if there is a solution, softer = factor on the weight of
--- smoothness}. `say(round)` is called before each round. `softest` is the largest factor: a flight
--- that deviates too much with it is returned as it is.
-local function rounds(run, course, vehicle, o, say, softest)
-  local made = problem.legs(course, vehicle, o)
+-- smoothness, made = its legs}. `say(round)` is called before each round. `softest` is the largest
+-- factor: a flight that deviates too much with it is returned as it is. `from` is a flight with
+-- other options: its legs and solution are the initial guess.
+local function rounds(run, course, vehicle, o, say, softest, from)
+  local made = from and copied(from.made) or problem.legs(course, vehicle, o)
   check_battery(run, made, vehicle)
-  made.softer = o.closed_loop == "required" and FOLLOWED or 1
-  local solution, plan, certificate
-  if o.model == "quadrotor_full" then
+  made.softer = from and from.softer or o.closed_loop == "required" and FOLLOWED or 1
+  local solution, plan, certificate = from and from.solution, nil, nil
+  if o.model == "quadrotor_full" and not from then
     -- A point mass finds the way and the times from straight lines in a few iterations; the whole
     -- quadrotor begins from there.
     local point = run:solve(problem.make(run, course, vehicle, made, o, "quadrotor"), o.solver)
@@ -106,17 +116,23 @@ local function rounds(run, course, vehicle, o, say, softest)
   for round = 0, o.refinements do
     say(round)
     local p = problem.make(run, course, vehicle, made, o, o.model, solution)
-    local finer = run:solve(p, plan and finishing(o.solver) or o.solver)
+    local finer = run:solve(p, (plan or from) and finishing(o.solver) or o.solver)
     if plan and not M.solved(finer) then break end  -- the coarser one stands
     solution = finer
-    plan = M.plan(run, course, solution)
+    plan = M.plan(run, course, solution, nil, o)
     if not M.solved(solution) then break end
     certificate = run:certify(plan)
     if run:cancelled() or o.timing == "profile" then break end
     if certificate.feasible or made.softer >= softest and M.strays(certificate) then break end
     if not refine(made, solution, certificate) then break end
   end
-  return { plan = plan, solution = solution, certificate = certificate, softer = made.softer }
+  return { plan = plan, solution = solution, certificate = certificate, softer = made.softer,
+           made = made }
+end
+
+-- A flight by other options that begins from the flight `from`.
+function M.again(run, course, vehicle, o, from, say)
+  return rounds(run, course, vehicle, o, say, math.huge, from)
 end
 
 -- The flight of these options, or a faster one with less thrust if the controller can track only
