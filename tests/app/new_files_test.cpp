@@ -3,6 +3,7 @@
 // mission of their own, sweeps.
 #include <sys/resource.h>
 
+#include <fstream>
 #include <regex>
 
 #include "framework/core/json.h"
@@ -46,33 +47,50 @@ TEST_F(NewFiles, NamesOfTheKernelsClassesAreRefused) {
     }
 }
 
-// The guide of plugins/README.md, followed to the letter: from nothing to a passed check in a
-// minute, and to a flight with it. A Lua snippet is saved under the name in its first line.
-TEST_F(NewFiles, TheGuideOfPluginsHolds) {
-  if (tool_on_path({"cmake"}).empty()) GTEST_SKIP() << "there is no cmake";
-  if (tool_on_path({"make"}).empty()) GTEST_SKIP() << "there is no make";
-  const double began = seconds_of_children();
-  std::string script = "set -e\ncd '" + folder_.string() +
+// A guide of plugins/README.md, followed to the letter: from nothing to a passed check in a minute,
+// and to a flight with it. A Lua snippet is saved under the name in its first line. What it prints.
+std::string followed_guide(const fs::path& folder, const std::string& heading, int blocks) {
+  std::string script = "set -e\ncd '" + folder.string() +
                        "'\nexport PATH='" LAPWING_BUILD_DIR
                        "/bin':\"$PATH\" lapwing_DIR='" LAPWING_BUILD_DIR "'\n";
   int commands = 0;
-  for (const Snippet& snippet :
-       snippets_of(LAPWING_SOURCE_DIR "/plugins/README.md", "## A first cost term")) {
+  for (const Snippet& snippet : snippets_of(LAPWING_SOURCE_DIR "/plugins/README.md", heading)) {
     if (snippet.language == "sh") {
       script += snippet.text;
       ++commands;
       continue;
     }
-    ASSERT_EQ(snippet.text.rfind("-- ", 0), 0u) << snippet.text;
-    write(snippet.text.substr(3, snippet.text.find('\n') - 3), snippet.text);
+    EXPECT_EQ(snippet.text.rfind("-- ", 0), 0u) << snippet.text;
+    std::ofstream(folder / snippet.text.substr(3, snippet.text.find('\n') - 3)) << snippet.text;
   }
-  EXPECT_EQ(commands, 3);
-  write("guide.sh", script);
-  const int status = std::system(("bash '" + (folder_ / "guide.sh").string() + "' > '" +
-                                  (folder_ / "log.txt").string() + "' 2>&1")
+  EXPECT_EQ(commands, blocks);
+  std::ofstream(folder / "guide.sh") << script;
+  const int status = std::system(("bash '" + (folder / "guide.sh").string() + "' > '" +
+                                  (folder / "log.txt").string() + "' 2>&1")
                                      .c_str());
-  const std::string log = read_file(folder_ / "log.txt");
+  const std::string log = read_file(folder / "log.txt");
   EXPECT_EQ(status, 0) << log;
+  return log;
+}
+
+TEST_F(NewFiles, TheGuideOfControllersHolds) {
+  if (tool_on_path({"cmake"}).empty()) GTEST_SKIP() << "there is no cmake";
+  if (tool_on_path({"make"}).empty()) GTEST_SKIP() << "there is no make";
+  const double began = seconds_of_children();
+  const std::string log = followed_guide(folder_, "## A controller of one's own", 2);
+  EXPECT_NE(log.find("100% tests passed, 0 tests failed out of 1"), std::string::npos) << log;
+  EXPECT_NE(log.find("hop: certified"), std::string::npos) << log;
+  EXPECT_NE(log.find("20 of 20 runs are good"), std::string::npos) << log;
+  EXPECT_LT(seconds_of_children() - began, 90);
+  EXPECT_NE(read_file(folder_ / "out/hop/plan.json").find("flown by the controller 'spring'"),
+            std::string::npos);
+}
+
+TEST_F(NewFiles, TheGuideOfPluginsHolds) {
+  if (tool_on_path({"cmake"}).empty()) GTEST_SKIP() << "there is no cmake";
+  if (tool_on_path({"make"}).empty()) GTEST_SKIP() << "there is no make";
+  const double began = seconds_of_children();
+  const std::string log = followed_guide(folder_, "## A first cost term", 3);
   EXPECT_NE(log.find("100% tests passed, 0 tests failed out of 1"), std::string::npos) << log;
   EXPECT_NE(log.find("low: certified"), std::string::npos) << log;
   EXPECT_NE(log.find("stays below a height"), std::string::npos) << log;
