@@ -67,7 +67,7 @@ local DECLARATIONS = {
   { name = "advise", type = "boolean", default = true,
     summary = "if tracking is required and fails: search a share of the thrust that is tracked" },
   { name = "flown", type = "table",
-    summary = "flights that must pass every gate; the race finds the largest share of thrust for them",
+    summary = "flights that must pass every gate: the largest share of thrust is found for them",
     table = {
       { name = "runs", type = "integer", default = 20, minimum = 1, maximum = 10000,
         summary = "number of flights" },

@@ -23,7 +23,8 @@ function M.plan(run, course, solution, notes, o)
   return run:plan {
     solution = solution, notes = notes, figures = { time = solution.duration },
     players = run.options.players, budget = run.options.time, controller = run.options.controller,
-    task = { gates = course.task, closed_loop_required = (o or run.options).closed_loop == "required" },
+    task = { gates = course.task,
+             closed_loop_required = (o or run.options).closed_loop == "required" },
   }
 end
 
