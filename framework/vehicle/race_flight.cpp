@@ -53,7 +53,8 @@ class RaceController {
         inertia_(vehicle.inertia),
         gains_(gains_of(vehicle)),
         allocation_(vehicle),
-        lead_(2 / std::sqrt(gains_.attitude.x() / inertia_.x()) + vehicle.rotors.lag),
+        lead_(pilot.weight * 2 / std::sqrt(gains_.attitude.x() / inertia_.x()) +
+              vehicle.rotors.lag),
         progress_(reference.start()),
         clock_(reference.start()) {}
 
@@ -86,7 +87,7 @@ class RaceController {
     Vector3d feedback = stiffness * error + 2 * std::sqrt(stiffness) * drift;
     feedback.z() =
         gains_.integral * integral_ + gains_.position * error.z() + gains_.velocity * drift.z();
-    // The attitude answers that much later.
+    // The attitude answers that much later: as far as its rates are not fed forward, and by the lag.
     const double ahead = std::min(clock_ + pilot_.speed * lead_, reference_.finish());
     const Vector3d planned = pilot_.speed * pilot_.speed * reference_.at(ahead).acceleration;
     const Vector3d flown = pilot_.strength * (stick.x() * axes.along + stick.y() * axes.left);
@@ -99,7 +100,7 @@ class RaceController {
     const Vector3d error_r = 0.5 * Vector3d(skew(2, 1), skew(0, 2), skew(1, 0));
     // Rates of the planned attitude, as far as the stick leaves the plan its feed-forward.
     const Vector3d rates =
-        (1 - pilot_.weight) * pilot_.speed * planned_attitude(reference_, clock_).body_rates;
+        (1 - pilot_.weight) * pilot_.speed * planned_attitude(reference_, ahead).body_rates;
     const Vector3d& omega = state.body_rates;
     const Vector3d error_rates = omega - r.transpose() * (rd * rates);
     Eigen::Vector4d wrench;
