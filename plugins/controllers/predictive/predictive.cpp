@@ -94,25 +94,25 @@ class PredictiveFlight final : public ControlledFlight {
 
 ParameterTable common(const HorizonSettings& usual) {
   return ParameterTable{}
-      .number("horizon", usual.length, "s", "that is looked ahead", between(0.05, 5))
-      .integer("stages", usual.stages, "of the horizon", between(2, 100))
-      .number("period", usual.period, "s", "from one programme to the next", between(0.001, 0.1))
-      .number("position", usual.position, "m", "error, worth as much as the others",
+      .number("horizon", usual.length, "s", "length of the horizon", between(0.05, 5))
+      .integer("stages", usual.stages, "number of stages of the horizon", between(2, 100))
+      .number("period", usual.period, "s", "time from one quadratic programme to the next",
+              between(0.001, 0.1))
+      .number("position", usual.position, "m", "position error of cost 1", between(0.001, 100))
+      .number("velocity", usual.velocity, "m/s", "velocity error of cost 1", between(0.001, 100))
+      .number("attitude", usual.attitude, "rad", "attitude error of cost 1", between(0.001, 100))
+      .number("rates", usual.rates, "rad/s", "body rate error of cost 1", between(0.001, 1000))
+      .number("thrust", usual.thrust, "",
+              "thrust difference of cost 1, as a share of the largest thrust of a rotor",
               between(0.001, 100))
-      .number("velocity", usual.velocity, "m/s", "error, likewise", between(0.001, 100))
-      .number("attitude", usual.attitude, "rad", "error, likewise", between(0.001, 100))
-      .number("rates", usual.rates, "rad/s", "error, likewise", between(0.001, 1000))
-      .number("thrust", usual.thrust, "", "share of a rotor's largest thrust, likewise",
-              between(0.001, 100))
-      .number("terminal", usual.terminal, "s", "that the error at the horizon's end counts for",
-              between(0, 10))
-      .number("observer", 8, "rad/s", "bandwidth of what is found of mass and wind; 0: nothing",
+      .number("terminal", usual.terminal, "s",
+              "weight of the error at the end of the horizon, as a time", between(0, 10))
+      .number("observer", 8, "rad/s", "bandwidth of the estimate of mass and wind; 0: no estimate",
               between(0, 100))
-      .number("farthest", 3, "m", "from the plan that is answered to in full", between(0.1, 100))
-      .number("estimator_delay", 0, "s", "age of the estimate, as far as it is known",
-              between(0, 0.2))
-      .number("command_delay", 0, "s", "after which commands arrive, as far as it is known",
-              between(0, 0.2));
+      .number("farthest", 3, "m", "largest position error that is corrected in full",
+              between(0.1, 100))
+      .number("estimator_delay", 0, "s", "known age of the estimated state", between(0, 0.2))
+      .number("command_delay", 0, "s", "known delay of commands", between(0, 0.2));
 }
 
 Settings settings_from(const Parameters& p, bool paced) {
@@ -169,10 +169,9 @@ class Contouring final : public Predictive {
   static ParameterTable parameters() {
     const HorizonSettings usual;
     return common(usual)
-        .number("pace", usual.pace, "", "error of the plan's rate, worth as much as the others",
-                between(0.001, 100))
-        .number("slowest", usual.slowest, "", "rate of the plan", between(0, 1))
-        .number("quickest", usual.quickest, "", "rate of the plan", between(1, 3));
+        .number("pace", usual.pace, "", "error of the plan rate of cost 1", between(0.001, 100))
+        .number("slowest", usual.slowest, "", "smallest plan rate", between(0, 1))
+        .number("quickest", usual.quickest, "", "largest plan rate", between(1, 3));
   }
   explicit Contouring(const Parameters& parameters) : Predictive(settings_from(parameters, true)) {}
 };
