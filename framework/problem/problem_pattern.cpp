@@ -76,19 +76,45 @@ std::vector<double> constant_jacobian(const StageColumns& columns, const BoundFu
   return {j, j + values.size() * bound.width()};
 }
 
-// Calls add(row, column) for each entry of the lower triangle, or fills the slots.
-void hessian_entries(const BoundFunction& bound, const std::vector<double>& jacobian,
-                     SparsePattern& pattern, std::vector<int>* slots) {
+// visit(row, column) in the lower triangle, the row -1 where there is no entry.
+template <class Visit>
+void hessian_entries(const BoundFunction& bound, const std::vector<double>& jacobian, Visit visit) {
   for (int k = 0; k < bound.instances(); ++k)
     visit_pairs(bound, jacobian, k, [&](int a, int b, bool meets) {
       const int row = std::max(bound.columns(k)[a], bound.columns(k)[b]);
-      const int column = std::min(bound.columns(k)[a], bound.columns(k)[b]);
-      if (slots)
-        slots->push_back(meets ? pattern.slot(row, column) : -1);
-      else if (meets)
-        pattern.add(row, column);
+      visit(meets ? row : -1, std::min(bound.columns(k)[a], bound.columns(k)[b]));
     });
 }
+
+// Whether slots in a pattern are those of the entries that `each` visits.
+class KnownSlots {
+ public:
+  explicit KnownSlots(const SparseMatrix& pattern) : pattern_(pattern) {
+    column_of_.reserve(pattern.nonZeros());
+    for (int c = 0; c < pattern.outerSize(); ++c)
+      column_of_.resize(pattern.outerIndexPtr()[c + 1], c);
+  }
+  template <class Each>
+  bool are(const std::vector<int>& slots, Each each) const {
+    std::size_t visited = 0;
+    bool same = true;
+    each([&](int row, int column) {
+      if (!same || visited >= slots.size()) {
+        same = false;
+        return;
+      }
+      const int slot = slots[visited++];
+      same = row < 0 || column < 0
+                 ? slot < 0
+                 : slot >= 0 && pattern_.innerIndexPtr()[slot] == row && column_of_[slot] == column;
+    });
+    return same && visited == slots.size();
+  }
+
+ private:
+  const SparseMatrix& pattern_;
+  std::vector<int> column_of_;
+};
 
 }  // namespace
 
@@ -108,7 +134,7 @@ bool TrajectoryProblem::Impl::constant_flow(const BoundModel& model) const {
   return lines && model.model->affine() && !columns.horizon.step_free;
 }
 
-void TrajectoryProblem::Impl::build_patterns() {
+void TrajectoryProblem::Impl::build_patterns(const Impl* like) {
   const int stages = columns.horizon.stages;
   // Row numbers: per model and stage, held last inputs, clock, constraints.
   for (BoundModel& model : columns.models) {
@@ -130,17 +156,11 @@ void TrajectoryProblem::Impl::build_patterns() {
     rows += entry.bound->instances() * entry.bound->rows();
   }
 
-  SparsePattern j(rows, columns.total()), h(columns.total(), columns.total());
-  for (int c = 0; c < columns.total(); ++c) h.add(c, c);
   std::vector<std::vector<double>> cost_jacobians, constraint_jacobians;
-  for (const CostEntry& cost : costs) {
+  for (const CostEntry& cost : costs)
     cost_jacobians.push_back(constant_jacobian(columns, *cost.bound));
-    hessian_entries(*cost.bound, cost_jacobians.back(), h, nullptr);
-  }
-  for (const ConstraintEntry& entry : constraints) {
+  for (const ConstraintEntry& entry : constraints)
     constraint_jacobians.push_back(constant_jacobian(columns, *entry.bound));
-    if (!entry.is_bounds && entry.bound->curved()) hessian_entries(*entry.bound, {}, h, nullptr);
-  }
   const auto each_model_entry = [&](auto visit) {  // visit(row, column), column may be -1
     for (const BoundModel& model : columns.models) {
       const std::vector<char> entries = step_pattern(columns, model);
@@ -173,19 +193,17 @@ void TrajectoryProblem::Impl::build_patterns() {
       if (!clock[k].step) visit(row, columns.column(i, step));
     }
   };
-  const auto each_constraint_entry = [&](auto visit) {  // visit(entry, row, column or -1)
-    for (std::size_t e = 0; e < constraints.size(); ++e) {
-      ConstraintEntry& entry = constraints[e];
-      if (entry.is_bounds) continue;
-      const int m = entry.bound->rows(), width = entry.bound->width();
-      for (int k = 0; k < entry.bound->instances(); ++k)
-        for (int r = 0; r < m; ++r)
-          for (int c = 0; c < width; ++c) {
-            const bool zero = !constraint_jacobians[e].empty() &&
-                              constraint_jacobians[e][(k * m + r) * width + c] == 0.0;
-            visit(entry, entry.first_row + k * m + r, zero ? -1 : entry.bound->columns(k)[c]);
-          }
-    }
+  const auto each_entry_of = [&](std::size_t e, auto visit) {  // of a constraint, column may be -1
+    const ConstraintEntry& entry = constraints[e];
+    if (entry.is_bounds) return;
+    const int m = entry.bound->rows(), width = entry.bound->width();
+    for (int k = 0; k < entry.bound->instances(); ++k)
+      for (int r = 0; r < m; ++r)
+        for (int c = 0; c < width; ++c) {
+          const bool zero = !constraint_jacobians[e].empty() &&
+                            constraint_jacobians[e][(k * m + r) * width + c] == 0.0;
+          visit(entry.first_row + k * m + r, zero ? -1 : entry.bound->columns(k)[c]);
+        }
   };
   const auto curved_models = [&](auto visit) {  // visit(row, column) in the Hessian, or (-1, -1)
     for (const BoundModel& model : columns.models) {
@@ -202,35 +220,67 @@ void TrajectoryProblem::Impl::build_patterns() {
     }
   };
 
-  const auto add_to = [](SparsePattern& pattern) {
-    return [&pattern](int row, int column) {
-      if (row >= 0 && column >= 0) pattern.add(row, column);
-    };
+  // Every list of slots, with its pattern and the entries that it is of: take(slots of a problem,
+  // hessian?, each entry).
+  const auto each_list = [&](auto take) {
+    take(
+        [](auto& p) -> auto& { return p.model_slots; }, false, each_model_entry);
+    take(
+        [](auto& p) -> auto& { return p.fixed_slots; }, false, each_fixed_entry);
+    take(
+        [](auto& p) -> auto& { return p.closure_slots; }, false,
+        [&](auto visit) { each_closure_entry(visit); });
+    take(
+        [](auto& p) -> auto& { return p.closure_hessian_slots; }, true,
+        [&](auto visit) { each_closure_pair(visit); });
+    take(
+        [](auto& p) -> auto& { return p.model_hessian_slots; }, true, curved_models);
+    for (std::size_t k = 0; k < costs.size(); ++k)
+      take(
+          [k](auto& p) -> auto& { return p.costs[k].hessian_slots; }, true,
+          [&, k](auto visit) { hessian_entries(*costs[k].bound, cost_jacobians[k], visit); });
+    for (std::size_t e = 0; e < constraints.size(); ++e) {
+      take(
+          [e](auto& p) -> auto& { return p.constraints[e].jacobian_slots; }, false,
+          [&, e](auto visit) { each_entry_of(e, visit); });
+      if (!constraints[e].is_bounds && constraints[e].bound->curved())
+        take(
+            [e](auto& p) -> auto& { return p.constraints[e].hessian_slots; }, true,
+            [&, e](auto visit) { hessian_entries(*constraints[e].bound, {}, visit); });
+    }
   };
-  each_model_entry(add_to(j));
-  each_fixed_entry(add_to(j));
-  each_closure_entry(add_to(j));
-  each_constraint_entry([&](ConstraintEntry&, int row, int c) { add_to(j)(row, c); });
-  curved_models(add_to(h));
-  each_closure_pair(add_to(h));
-  jacobian_pattern = j.finish();
-  hessian_pattern = h.finish();
-
-  each_model_entry([&](int row, int c) { model_slots.push_back(c < 0 ? -1 : j.slot(row, c)); });
-  each_fixed_entry([&](int row, int c) { fixed_slots.push_back(j.slot(row, c)); });
-  each_closure_entry([&](int row, int c) { closure_slots.push_back(j.slot(row, c)); });
-  each_closure_pair([&](int row, int c) { closure_hessian_slots.push_back(h.slot(row, c)); });
-  each_constraint_entry([&](ConstraintEntry& entry, int row, int c) {
-    entry.jacobian_slots.push_back(c < 0 ? -1 : j.slot(row, c));
-  });
-  curved_models([&](int row, int c) {
-    model_hessian_slots.push_back(row < 0 || c < 0 ? -1 : h.slot(row, c));
-  });
-  for (std::size_t k = 0; k < costs.size(); ++k)
-    hessian_entries(*costs[k].bound, cost_jacobians[k], h, &costs[k].hessian_slots);
-  for (ConstraintEntry& entry : constraints)
-    if (!entry.is_bounds && entry.bound->curved())
-      hessian_entries(*entry.bound, {}, h, &entry.hessian_slots);
+  bool known = like && like->rows == rows && like->columns.total() == columns.total() &&
+               like->costs.size() == costs.size() && like->constraints.size() == constraints.size();
+  if (known) {
+    const KnownSlots of_jacobian(like->jacobian_pattern), of_hessian(like->hessian_pattern);
+    each_list([&](auto slots, bool hessian, auto each) {
+      known = known && (hessian ? of_hessian : of_jacobian).are(slots(*like), each);
+    });
+    for (std::size_t e = 0; e < constraints.size(); ++e)
+      known = known && (like->constraints[e].hessian_slots.empty() ==
+                        (constraints[e].is_bounds || !constraints[e].bound->curved()));
+  }
+  if (known) {
+    jacobian_pattern = like->jacobian_pattern;
+    hessian_pattern = like->hessian_pattern;
+    each_list([&](auto slots, bool, auto) { slots(*this) = slots(*like); });
+  } else {
+    SparsePattern j(rows, columns.total()), h(columns.total(), columns.total());
+    for (int c = 0; c < columns.total(); ++c) h.add(c, c);
+    each_list([&](auto, bool hessian, auto each) {
+      each([&](int row, int column) {
+        if (row >= 0 && column >= 0) (hessian ? h : j).add(row, column);
+      });
+    });
+    jacobian_pattern = j.finish();
+    hessian_pattern = h.finish();
+    each_list([&](auto slots, bool hessian, auto each) {
+      std::vector<int>& list = slots(*this);
+      each([&](int row, int column) {
+        list.push_back(row < 0 || column < 0 ? -1 : (hessian ? h : j).slot(row, column));
+      });
+    });
+  }
 
   // Gauss-Newton part of the costs that never changes.
   constant_hessian.assign(hessian_pattern.nonZeros(), 0.0);

@@ -167,13 +167,13 @@ Sample TrajectoryProblem::Impl::motion_sample(int stage) const {
   return sample_at(motion, begin + share * (end - begin));
 }
 
-void TrajectoryProblem::finish() {
+void TrajectoryProblem::finish(const TrajectoryProblem* like) {
   impl_->expect_unfinished();
   if (impl_->columns.models.empty()) throw InputError("a trajectory problem needs a vehicle model");
   impl_->add_clock();
   impl_->list_closure();
   impl_->bind_terms();
-  impl_->build_patterns();
+  impl_->build_patterns(like ? like->impl_.get() : nullptr);
   impl_->finished = true;
 }
 

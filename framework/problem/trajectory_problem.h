@@ -87,8 +87,9 @@ class TrajectoryProblem {
   void set_motion_guess(Trajectory motion, Horizon legs);
   void set_block_guess(const std::string& block, std::vector<double> times,
                        std::vector<Eigen::VectorXd> values);
-  // Binds all terms. InputError naming the term when one does not fit.
-  void finish();
+  // Binds all terms. InputError naming the term when one does not fit. The sparsity of `like` is
+  // taken over where it is the same, which saves most of the time and changes nothing else.
+  void finish(const TrajectoryProblem* like = nullptr);
 
   // -- what there is
   // --------------------------------------------------------------------------------
@@ -112,6 +113,9 @@ class TrajectoryProblem {
   // -- points
   // ---------------------------------------------------------------------------------------
   Stages initial_guess() const;  // the same for every solver
+  // The point of another trajectory, to begin from: what stands at a share of its time stands at
+  // the same share here. Blocks that it says nothing of, and the clock, are the initial guess's.
+  Stages point_of(const Trajectory& trajectory) const;
   Stages retract(const Stages& at, const Eigen::VectorXd& step) const;
   // The same first state, inputs and free blocks, flown: every later state follows through the
   // models' flows, the last inputs equal those before, and the clock runs with the first step.

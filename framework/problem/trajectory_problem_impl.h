@@ -79,7 +79,7 @@ struct TrajectoryProblem::Impl {
   void tighten(int column, double lower, double upper, int owner);
   void model_bounds();
   // problem_pattern.cpp
-  void build_patterns();
+  void build_patterns(const Impl* like);
   bool constant_flow(const BoundModel& model) const;  // its Jacobian never changes
   void add_gauss_newton(const CostEntry& cost, const double* jacobian, double* values) const;
   // problem_evaluation.cpp

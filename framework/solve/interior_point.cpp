@@ -360,6 +360,8 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     if (iteration >= options.iteration_limit || iteration - progress_at > patience)
       return QuadraticStatus::iteration_limit;
     if (!factorise()) return QuadraticStatus::numerical_error;
+    if (options.cancellation && options.cancellation->cancelled())
+      return QuadraticStatus::cancelled;
     compute_residuals();
     const double mu = complementarity();
     direction(0.0, false);

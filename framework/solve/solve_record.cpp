@@ -62,6 +62,7 @@ void SolveRecord::add(const std::vector<TermCost>& terms, double violation, doub
     entry.terms.push_back(term.cost);
   }
   history_.push_back(std::move(entry));
+  if (request_.moved && history_.size() > 1) request_.moved(at);
 }
 
 SolveResult SolveRecord::finish(SolveStatus status, std::string message, int iterations,

@@ -7,6 +7,8 @@
 // is not reproducible.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,10 +60,22 @@ struct WarmStart {
   Eigen::VectorXd bound_multipliers;  // empty, or one per column
 };
 
+// What a solver keeps from one solve to the next, where problems are alike: orderings, factors,
+// scratch memory. It never changes an answer beyond the solver's tolerance.
+class SolverMemory {
+ public:
+  virtual ~SolverMemory() = default;
+};
+
 struct SolveRequest {
   std::optional<WarmStart> warm_start;     // absent: the problem's initial guess
   std::optional<int> iteration_limit;      // absent: the solver's own parameter
   std::optional<double> wall_clock_guard;  // s
+  // The caller's place for the solver's memory, null or empty at first; one solve at a time. What
+  // another solver left there is replaced.
+  std::unique_ptr<SolverMemory>* memory = nullptr;
+  // Sees every point that the solver moves to, on the solving thread: for whoever draws meanwhile.
+  std::function<void(const Stages& at)> moved = {};
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
 };

@@ -76,6 +76,11 @@ class Iqp final : public TrajectorySolver {
   double first_barrier_;
 };
 
+// The programs of one problem after the other: their orderings are kept where nothing changed.
+struct IqpMemory final : SolverMemory {
+  InteriorPoint programs, elastic;
+};
+
 // One solve: the state that goes from iteration to iteration.
 class Solve {
  public:
@@ -86,7 +91,9 @@ class Solve {
         tolerance_(tolerance),
         feasibility_(feasibility),
         limit_(request.iteration_limit.value_or(iterations)),
-        start_(std::chrono::steady_clock::now()) {}
+        start_(std::chrono::steady_clock::now()),
+        interior_point_(memory_of(request).programs),
+        elastic_point_(memory_of(request).elastic) {}
 
   SolveResult run();
 
@@ -97,6 +104,15 @@ class Solve {
     bool elastic = false;
   };
 
+  IqpMemory& memory_of(const SolveRequest& request) {
+    if (!request.memory) return own_;
+    auto* kept = dynamic_cast<IqpMemory*>(request.memory->get());
+    if (!kept) {
+      *request.memory = std::make_unique<IqpMemory>();
+      kept = static_cast<IqpMemory*>(request.memory->get());
+    }
+    return *kept;
+  }
   void move_inside_bounds();
   SolveStatus iterate();
   void linearise();
@@ -122,7 +138,8 @@ class Solve {
   VectorXd rows_, bounds_;  // multipliers
   LocalModel model_;
   QuadraticProgram program_;
-  InteriorPoint interior_point_, elastic_point_;
+  IqpMemory own_;
+  InteriorPoint &interior_point_, &elastic_point_;
   bool contradictory_ = false;  // the last model's rows and bounds
   double program_tolerance_ = kProgramFinest;
   double merit_weight_ = 0;
@@ -316,6 +333,7 @@ void Solve::record(double step) {
   const std::vector<Violation> violations = problem_.violations(at_);
   entry.violation = violations.empty() ? 0.0 : violations.front().amount;
   report_.history.push_back(std::move(entry));
+  if (request_.moved && report_.history.size() > 1) request_.moved(at_);
 }
 
 // "hard_keyframe.position.x at 5 s is violated by 2.3; limited by state_limits.speed_across.0 at 4
