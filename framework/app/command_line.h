@@ -31,7 +31,8 @@ struct Invocation {
   std::vector<std::string> configs;    // names or paths, lowest first
   std::vector<std::string> overrides;  // "key.path=value", in order
   std::vector<std::filesystem::path> data;
-  std::filesystem::path out;  // empty: out/<mission>
+  std::filesystem::path from;  // a plan to begin from; empty: none
+  std::filesystem::path out;   // empty: out/<mission>
   std::uint64_t seed = 1;
   int threads = 0;  // 0: as many as there are cores
   bool json = false;

@@ -87,6 +87,8 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
                          ? invocation.threads
                          : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   settings.data = data_folders(invocation);
+  if (!invocation.from.empty())
+    settings.start = std::make_shared<const Plan>(read_plan(invocation.from));
   settings.registry = &registry;
   settings.cancellation = cancellation;
   settings.progress = progress;

@@ -44,6 +44,21 @@ std::string name_of_script(const std::filesystem::path& script) {
   return name;
 }
 
+// Before anything is computed.
+void expect_start(const MissionRun& run) {
+  if (!run.settings.start) return;
+  if (!run.takes_start)
+    throw InputError("--from: a mission of kind '" + run.kind + "' does not begin from a plan");
+  const std::string& kind = run.settings.start->kind;
+  if (kind != run.kind)
+    throw InputError("--from: a plan of kind '" + kind + "'; this mission is of kind '" + run.kind +
+                     "'");
+  const std::string& name = run.settings.start->mission;
+  if (name != run.name)
+    throw InputError("--from: a plan of the mission '" + name + "'; this one is '" + run.name +
+                     "' (with the same `name`, one begins from the other)");
+}
+
 }  // namespace
 
 void open_script_libraries(lua_State* state, MissionRun& run) {
@@ -102,11 +117,13 @@ void Mission::Impl::read_mission(lua_State* state) {
   ParameterTable table;
   table.required_text("kind", "kind of the mission: film, race, ...")
       .text("name", name_of_script(script),
-            "name of the mission; absent: the file name of the script");
+            "name of the mission; absent: the file name of the script")
+      .boolean("takes_start", false, "whether it begins from `run.start`, the plan of --from");
   const Parameters parts =
       check(table, value_from_lua(state, mission, origin, "mission", kParts), "mission");
   run.kind = parts.text("kind");
   run.name = parts.text("name");
+  run.takes_start = parts.boolean("takes_start");
   if (run.name.empty()) throw InputError(origin, "name: expected a text that is not empty");
   for (const char c : run.name)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
@@ -194,6 +211,30 @@ void Mission::judge() {
   }
 }
 
+MissionStatement Mission::state() {
+  MissionStatement statement;
+  MissionRun& run = impl_->run;
+  struct Stating {
+    explicit Stating(MissionStatement*& place, MissionStatement& made) : stating(place) {
+      stating = &made;
+    }
+    ~Stating() { stating = nullptr; }
+    MissionStatement*& stating;
+  } const stating(run.stating, statement);
+  const auto made = [&] { return !statement.plan.kind.empty(); };
+  try {
+    plan();
+  } catch (const StatementMade&) {
+  } catch (const InputError&) {
+    if (!made()) throw;  // else of a script that goes on after its plan was made
+  }
+  if (!made())
+    throw InputError("a mission of kind '" + run.kind +
+                     "' makes no plan of a problem that could be edited");
+  statement.obstacle_folder = run.obstacles.folder();
+  return statement;
+}
+
 bool Mission::planning_began() const {
   return impl_->run.planning_began;
 }
@@ -202,6 +243,7 @@ MissionResult Mission::plan() {
   MissionResult result;
   Impl& impl = *impl_;
   impl.run.planning_began = false;
+  expect_start(impl.run);
   impl.sandbox.protect([&](lua_State* state) {
     lua_getfield(state, LUA_REGISTRYINDEX, kPlanFunction);
     push_run(state);

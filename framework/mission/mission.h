@@ -67,6 +67,11 @@ class Mission {
   // Whether the last `plan` or `judge` came to where planning begins.
   bool planning_began() const;
 
+  // Calls the script's plan function up to its first plan, with nothing solved: what a film's first
+  // attempt would solve, and be judged by. A `stretch` that is sought is 1. InputError likewise,
+  // and where the mission makes no plan of one problem.
+  MissionStatement state();
+
   // Calls the script's plan function. InputError for errors of the script; everything that a solver
   // has to say is in the result.
   MissionResult plan();

@@ -217,12 +217,18 @@ int plan(lua_State* state) {
   }
   document.configuration = run.configuration;
   document.solver = to_value(solution.result.report, solution.solver);
+  if (solution.started_from.is_map()) document.solver.set("started_from", solution.started_from);
+  if (run.stating && run.stating->problem == solution.problem) {
+    run.stating->plan = std::move(document);
+    throw StatementMade();
+  }
   new_object(state, kPlanType, std::move(made));
   return 1;
 }
 
 constexpr BoundField kPlanFields[] = {
     {"duration", "number", "s"},
+    {"keyframes", "integer", "number of keyframes in its task"},
     {"views", "table[]", "views of a scan: {position, yaw, pitch}, m and rad"}};
 
 int plan_field(lua_State* state) {
@@ -240,6 +246,7 @@ int plan_field(lua_State* state) {
     }
   fields.set("views", std::move(views));
   fields.set("duration", plan.trajectory.duration());
+  fields.set("keyframes", static_cast<int>(plan.task.keyframes.size()));
   const std::string field = text_argument(state, 2, "plan");
   return push_field(state, "a plan", field, fields, kPlanFields);
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +45,10 @@ struct MissionSettings {
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
   std::function<void(const std::string&)> print = [](const std::string&) {};
+  // A plan that scripts may begin from, as `run.start`; null for none.
+  std::shared_ptr<const Plan> start;
+  // A problem stated before, whose sparsity later ones may have (TrajectoryProblem::finish).
+  std::shared_ptr<const TrajectoryProblem> like;
   // Sees every problem before it is solved, so that a study of solvers can keep it; may be null.
   std::function<void(std::shared_ptr<const TrajectoryProblem>)> observe_problem;
   // Sees the surfaces that depth images are taken of, which planning never does, and every tour
@@ -66,10 +71,21 @@ struct SolutionObject {
   std::string solver;
   SolveResult result;
   std::vector<StatedConstraint> constraints = {};  // of the script, as they were solved with
+  Value started_from = {};  // the plan that it began from: {mission, sha256}; null for none
 };
 
 // What several functions take beside plain data.
 inline constexpr BoundField kVehicleObject[] = {{"vehicle", "lapwing.vehicle", "vehicle"}};
+
+// What a mission asks for, before anything is solved.
+struct MissionStatement {
+  std::shared_ptr<const TrajectoryProblem> problem;
+  std::shared_ptr<const TrajectorySolver> solver;
+  std::string solver_name;
+  std::optional<WarmStart> start;  // of the plan that the mission begins from
+  Plan plan;                       // what would be judged; its motion is the first guess
+  std::filesystem::path obstacle_folder = {};  // as of MissionResult
+};
 
 // What `plan` returns, beside what the plan document holds.
 struct PlanObject {
@@ -95,14 +111,22 @@ struct MissionRun {
   Value configuration = Value::map();
   double solve_seconds = 0;
   ObstacleFiles obstacles = {};
-  bool judging = false;         // the plan function ends where planning would begin
-  bool planning_began = false;  // since the plan function was called
+  bool takes_start = false;             // the mission begins from a plan where one is given
+  bool judging = false;                 // the plan function ends where planning would begin
+  bool planning_began = false;          // since the plan function was called
+  MissionStatement* stating = nullptr;  // the plan function ends where its first plan is made
 };
 
 // Ends the plan function of a mission that is only judged; no error of anybody.
 class PlanningBegins : public Error {
  public:
   PlanningBegins() : Error("planning begins") {}
+};
+
+// Likewise of one that is only stated, once it is.
+class StatementMade : public Error {
+ public:
+  StatementMade() : Error("the mission is stated") {}
 };
 
 // Called first by every function that computes what a mission asks for, once its arguments are
@@ -126,6 +150,7 @@ inline constexpr BoundField kMissionParts[] = {
     {"kind", "string", "kind of the mission: film, race, ..."},
     {"name?", "string", "name of the mission; absent: the file name of the script"},
     {"options?", "lapwing.options|table", "declared options"},
+    {"takes_start?", "boolean", "whether it begins from `run.start`, the plan of --from"},
     {"plan", "fun(run: lapwing.run): lapwing.plan|lapwing.map",
      "called once the options are known"}};
 

@@ -150,7 +150,15 @@ int run_field(lua_State* state) {
     push_value(state, run_of(state).configuration);
     return 1;
   }
-  std::vector<std::string> known = {"options"};
+  if (field == "start") {
+    const auto& start = run_of(state).settings.start;
+    if (start)
+      new_object(state, kPlanType, PlanObject{.plan = *start});
+    else
+      lua_pushnil(state);
+    return 1;
+  }
+  std::vector<std::string> known = {"options", "start"};
   for (const auto list : all_methods())
     for (const Binding& method : list) known.emplace_back(method.name);
   const std::string nearest = nearest_name(field, known);
@@ -163,7 +171,9 @@ struct RunHandle {};
 }  // namespace
 
 void open_run_library(lua_State* state) {
-  static constexpr BoundField kRunFields[] = {{"options", "table", "the effective options"}};
+  static constexpr BoundField kRunFields[] = {
+      {"options", "table", "the effective options"},
+      {"start?", "lapwing.plan", "the plan of `--from`, to begin from"}};
   define_type<RunHandle>(state, kRunType, all_methods(), &guarded<run_field>);
   note_fields(state, kRunType, kRunFields);
 }

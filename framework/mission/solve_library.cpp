@@ -11,19 +11,60 @@
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
 #include "framework/mission/script_terms.h"
+#include "framework/trajectory/plan_digest.h"
 
 namespace lapwing {
 
 namespace {
 
-constexpr BoundField kWarmStart[] = {{"warm_start?", "lapwing.solution",
-                                      "solution of a problem of the same size, for a warm start"}};
+constexpr BoundField kWarmStart[] = {
+    {"warm_start?", "lapwing.solution", "solution of a problem of the same size, for a warm start"},
+    {"start?", "lapwing.plan",
+     "plan of the same kind and vehicle, for a warm start; resampled in time"}};
 
-std::optional<WarmStart> warm_start_argument(lua_State* state, int index,
-                                             const TrajectoryProblem& problem) {
-  if (lua_isnoneornil(state, index)) return std::nullopt;
-  table_argument(state, index, {}, "solve", kWarmStart);
-  if (lua_getfield(state, index, "warm_start") == LUA_TNIL) return std::nullopt;
+// What keeps a plan from being a start of the problem, in words; "" for nothing.
+std::string unlike(const Plan& plan, const TrajectoryProblem& problem, const std::string& kind) {
+  if (plan.kind != kind) return "a plan of kind '" + plan.kind + "', the mission is a " + kind;
+  const Value* name = plan.vehicle.is_map() ? plan.vehicle.find("name") : nullptr;
+  if (!name || !name->is_text() || name->as_text() != problem.vehicle().name)
+    return "a plan of the vehicle '" + (name && name->is_text() ? name->as_text() : "") +
+           "', the problem is of '" + problem.vehicle().name + "'";
+  const Trajectory own = problem.trajectory(problem.initial_guess());
+  const Trajectory& theirs = plan.trajectory;
+  if (theirs.motion.name != own.motion.name || theirs.motion.columns != own.motion.columns)
+    return "the plan moves by '" + theirs.motion.name + "', the problem by '" + own.motion.name +
+           "'";
+  const auto says = [](bool has) { return has ? "a " : "no "; };
+  if (theirs.has_gimbal != own.has_gimbal)
+    return std::string("the plan has ") + says(theirs.has_gimbal) + "gimbal, the problem " +
+           says(own.has_gimbal) + "gimbal";
+  if (theirs.has_target != own.has_target)
+    return std::string("the plan has ") + says(theirs.has_target) + "target, the problem " +
+           says(own.has_target) + "target";
+  return theirs.samples.size() < 2 ? "the plan has a single sample" : "";
+}
+
+// What the third argument of run:solve says, into the request; and the plan that it names, as the
+// solution tells of it.
+Value take_solve_argument(lua_State* state, int index, const TrajectoryProblem& problem,
+                          SolveRequest& request) {
+  if (lua_isnoneornil(state, index)) return {};
+  const Parameters given = table_argument(state, index, {}, "solve", kWarmStart);
+  const bool from_solution = lua_getfield(state, index, "warm_start") != LUA_TNIL;
+  if (lua_getfield(state, index, "start") != LUA_TNIL) {
+    if (from_solution)
+      throw InputError(given.origin(), "solve: give warm_start or start, not both");
+    const Plan& plan = object_argument<PlanObject>(state, -1, kPlanType).plan;
+    const std::string why = unlike(plan, problem, run_of(state).kind);
+    if (!why.empty()) throw InputError(given.origin(), "solve: cannot begin from it: " + why);
+    request.warm_start = WarmStart{problem.point_of(plan.trajectory), {}, {}};
+    Value started_from = Value::map();
+    started_from.set("mission", plan.mission);
+    started_from.set("sha256", digest_of(to_value(plan)).at("sha256"));
+    return started_from;
+  }
+  lua_pop(state, 1);
+  if (!from_solution) return {};
   const WarmStart& point = object_argument<SolutionObject>(state, -1, kSolutionType).result.point;
   if (point.stages.rows() != problem.layout().size() ||
       point.stages.cols() != problem.horizon().stages) {
@@ -32,7 +73,8 @@ std::optional<WarmStart> warm_start_argument(lua_State* state, int index,
   WarmStart start = point;
   if (start.row_multipliers.size() != problem.rows()) start.row_multipliers.resize(0);
   if (start.bound_multipliers.size() != problem.columns()) start.bound_multipliers.resize(0);
-  return start;
+  request.warm_start = std::move(start);
+  return {};
 }
 
 // What a plan says of the problem's constraints; those of plugins may share a name.
@@ -49,8 +91,23 @@ std::vector<StatedConstraint> constraints_of(const ProblemObject& object) {
   return all;
 }
 
-// run:solve(problem, solver [, {warm_start = solution}]): a solution; its `status` states the
-// outcome.
+// Of a mission that is only stated, a solution is where its solver would begin.
+void state_only(MissionStatement& statement, SolutionObject& solution,
+                std::shared_ptr<const TrajectorySolver> solver, const SolveRequest& request) {
+  if (statement.problem)
+    throw InputError(
+        "a mission that solves one problem after the other cannot be edited as one: "
+        "fix what the first is solved for (of a film: timing and times)");
+  statement.problem = solution.problem;
+  statement.solver = std::move(solver);
+  statement.solver_name = solution.solver;
+  statement.start = request.warm_start;
+  solution.result.report.status = SolveStatus::feasible;
+  solution.result.point.stages = solution.problem->initial_guess();
+}
+
+// run:solve(problem, solver [, {warm_start = solution, start = plan}]): a solution; its `status`
+// states the outcome.
 int solve(lua_State* state) {
   MissionRun& run = run_of(state);
   const ProblemObject& object = object_argument<ProblemObject>(state, 2, kProblemType);
@@ -58,10 +115,10 @@ int solve(lua_State* state) {
     throw InputError("solve: the problem is not finished; call problem:finish()");
   const PluginChoice argument = plugin_choice(state, 3, "solver");
   SolveRequest request;
-  request.warm_start = warm_start_argument(state, 4, *object.problem);
+  Value started_from = take_solve_argument(state, 4, *object.problem, request);
   request.cancellation = run.settings.cancellation;
   request.progress = run.settings.progress;
-  const auto solver =
+  const std::shared_ptr<const TrajectorySolver> solver =
       run.settings.registry->create<TrajectorySolver>(argument.type, argument.parameters, "solver");
   begin_planning(run);
   if (run.settings.observe_problem) run.settings.observe_problem(object.problem);
@@ -69,6 +126,12 @@ int solve(lua_State* state) {
   solution.problem = object.problem;
   solution.solver = argument.type;
   solution.constraints = constraints_of(object);
+  solution.started_from = std::move(started_from);
+  if (run.stating) {
+    state_only(*run.stating, solution, solver, request);
+    new_object(state, kSolutionType, std::move(solution));
+    return 1;
+  }
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
     solution.result = solve_by(*solver, *object.problem, request);

@@ -113,8 +113,10 @@ local function mission(what, given, declared, shot_of)
   local options = input.written_out(given)
   local terms = own.taken(options)
   local all = table.move(common, 1, #common, #declared + 1, { table.unpack(declared) })
-  return mission_of("film", all, options,
-                    function(run) return search.fly(run, shot_of(run), terms) end)
+  local made = mission_of("film", all, options,
+                          function(run) return search.fly(run, shot_of(run), terms) end)
+  made.takes_start = true
+  return made
 end
 
 ---@class lapwing.film.shot

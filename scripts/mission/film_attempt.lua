@@ -9,7 +9,8 @@ local M = {}
 local function tried(run, request)
   local stated = problem.state(run, request)
   local camera = stated.camera
-  local solution = run:solve(stated.problem, run.options.solver)
+  local begin = request.scope ~= "flight" and { start = run.start } or nil
+  local solution = run:solve(stated.problem, run.options.solver, begin)
   local verdict = run:certify(run:plan { solution = solution, task = stated.task,
                                          controller = run.options.controller,
                                          cuts = camera and camera.cuts or {} })

@@ -48,6 +48,13 @@ local function check_gimbal(run, film)
   if #film.cuts > 0 then run:fail("cuts", "a cut needs a subject, and there is none") end
 end
 
+-- A plan to begin from has the same keyframes, in place and time wherever they were.
+local function check_start(run, film)
+  if not run.start or run.start.keyframes == #film.keyframes then return end
+  run:fail("keyframes", string.format("%d; the plan to begin from (--from) has %d",
+                                      #film.keyframes, run.start.keyframes))
+end
+
 -- The film at the times that its keyframes have, and why a leg is too fast for the vehicle at any
 -- way (or nil), and the least stretch at which none is.
 local function first_request(run, film)
@@ -166,6 +173,7 @@ function M.fly(run, shot, terms)
   local film = asked(run, shot, terms)
   if #film.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
   run:expect_controller("controller")
+  check_start(run, film)
   check_gimbal(run, film)
   timing.check(run, film)
   times.check_speed(run, film)

@@ -31,13 +31,17 @@ class MissionTest : public ::testing::Test {
   }
   ~MissionTest() override { fs::remove_all(folder_); }
 
-  std::unique_ptr<Mission> load(const std::string& text) {
-    write_file_atomically(folder_ / "shot.lua", text);
+  MissionSettings settings() const {
     MissionSettings settings;
     settings.scripts = fs::path(LAPWING_SOURCE_DIR) / "scripts";
     settings.configs = fs::path(LAPWING_SOURCE_DIR) / "configs";
     settings.registry = &registry_;
-    return std::make_unique<Mission>(folder_ / "shot.lua", std::move(settings));
+    return settings;
+  }
+
+  std::unique_ptr<Mission> load(const std::string& text) {
+    write_file_atomically(folder_ / "shot.lua", text);
+    return std::make_unique<Mission>(folder_ / "shot.lua", settings());
   }
 
   // What is wrong before planning begins is found by judging as well, in the same words.

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/mission/mission_editor.h"
+
+#include "framework/core/error.h"
+#include "framework/verify/verify.h"
+
+namespace lapwing {
+
+MissionEditor::MissionEditor(std::filesystem::path script, MissionSettings settings, Hear hear)
+    : script_(std::move(script)),
+      settings_(std::move(settings)),
+      hear_(std::move(hear)),
+      session_([this](const EditAnswer& answer) { this->hear(answer); }) {
+  if (!hear_) throw Error("a mission editor needs a listener");
+}
+
+std::uint64_t MissionEditor::edit(MissionEdit edit) {
+  return session_.post([this, edit = std::move(edit)](const EditSession::Context& context) {
+    return state(edit, context);
+  });
+}
+
+EditStatement MissionEditor::state(const MissionEdit& edit, const EditSession::Context& context) {
+  MissionSettings settings = settings_;
+  settings.limits = sandbox_limits(edit.layers, edit.overrides);
+  settings.cancellation = &context.cancellation;
+  settings.like = context.last;
+  auto mission = std::make_unique<Mission>(script_, settings);
+  mission->configure(edit.layers, edit.overrides);
+  MissionStatement statement = mission->state();
+  mission_ = std::move(mission);
+  statement_ = std::move(statement);
+  return {.problem = statement_.problem,
+          .solver = statement_.solver,
+          .start = statement_.start,
+          .certify = [this](const EditAnswer& answer, const CancellationToken& token) {
+            plan_ = std::make_shared<const Plan>(plan_of(answer));
+            certificate_ =
+                verify(*plan_, {.folder = statement_.obstacle_folder, .cancellation = &token});
+            std::string all;
+            for (const Check& check : certificate_->failures())
+              all += (all.empty() ? "" : "; ") + to_line(check);
+            return all;
+          }};
+}
+
+Plan MissionEditor::plan_of(const EditAnswer& answer) const {
+  Plan plan = statement_.plan;
+  plan.trajectory = answer.problem->trajectory(answer.result.point.stages);
+  if (answer.grade == AnswerGrade::step)
+    plan.solver = Value();
+  else
+    plan.solver = to_value(answer.result.report, statement_.solver_name);
+  return plan;
+}
+
+void MissionEditor::hear(const EditAnswer& answer) {
+  const bool judged =
+      answer.grade == AnswerGrade::certified || answer.grade == AnswerGrade::rejected;
+  EditedPlan edited{answer, nullptr, {}};
+  if (judged) {
+    edited.plan = plan_;
+    edited.certificate = certificate_;
+  } else if (answer.problem) {
+    edited.plan = std::make_shared<const Plan>(plan_of(answer));
+  }
+  hear_(edited);
+}
+
+}  // namespace lapwing
