@@ -330,7 +330,7 @@ SolveStatus NonlinearSolve::iterate() {
     }
     outcome_.iterations = k;
     linearise();
-    record_.add(terms_, unscaled_violation(), alpha);
+    record_.add(at_, terms_, unscaled_violation(), alpha);
     set_slacks();
     residuals();
     say(k, alpha);

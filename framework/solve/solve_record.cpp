@@ -49,10 +49,11 @@ double SolveRecord::seconds() const {
 
 void SolveRecord::add(const Stages& at, double step) {
   const std::vector<Violation> violations = problem_.violations(at);
-  add(problem_.term_costs(at), violations.empty() ? 0.0 : violations.front().amount, step);
+  add(at, problem_.term_costs(at), violations.empty() ? 0.0 : violations.front().amount, step);
 }
 
-void SolveRecord::add(const std::vector<TermCost>& terms, double violation, double step) {
+void SolveRecord::add(const Stages& at, const std::vector<TermCost>& terms, double violation,
+                      double step) {
   SolveIteration entry;
   entry.iteration = static_cast<int>(history_.size());
   entry.step = step;

@@ -28,7 +28,7 @@ class SolveRecord {
   // One line of history. `step` is the accepted step length.
   void add(const Stages& at, double step);
   // The same of a point whose costs and largest violation are known.
-  void add(const std::vector<TermCost>& terms, double violation, double step);
+  void add(const Stages& at, const std::vector<TermCost>& terms, double violation, double step);
   const SolveIteration& latest() const { return history_.back(); }
   // The report on `point`, with its costs and violations.
   SolveResult finish(SolveStatus status, std::string message, int iterations,
