@@ -87,7 +87,7 @@ class RaceController {
     Vector3d feedback = stiffness * error + 2 * std::sqrt(stiffness) * drift;
     feedback.z() =
         gains_.integral * integral_ + gains_.position * error.z() + gains_.velocity * drift.z();
-    // The attitude answers that much later: as far as its rates are not fed forward, and by the lag.
+    // The attitude answers that much later, where its rates are not fed forward, and by the lag.
     const double ahead = std::min(clock_ + pilot_.speed * lead_, reference_.finish());
     const Vector3d planned = pilot_.speed * pilot_.speed * reference_.at(ahead).acceleration;
     const Vector3d flown = pilot_.strength * (stick.x() * axes.along + stick.y() * axes.left);
