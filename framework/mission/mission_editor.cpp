@@ -15,12 +15,12 @@ MissionEditor::MissionEditor(std::filesystem::path script, MissionSettings setti
 }
 
 std::uint64_t MissionEditor::edit(MissionEdit edit) {
-  return session_.post([this, edit = std::move(edit)](const EditSession::Context& context) {
+  return session_.post([this, edit = std::move(edit)](const EditSession::Turn& context) {
     return state(edit, context);
   });
 }
 
-EditStatement MissionEditor::state(const MissionEdit& edit, const EditSession::Context& context) {
+EditStatement MissionEditor::state(const MissionEdit& edit, const EditSession::Turn& context) {
   MissionSettings settings = settings_;
   settings.limits = sandbox_limits(edit.layers, edit.overrides);
   settings.cancellation = &context.cancellation;

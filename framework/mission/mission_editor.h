@@ -47,7 +47,7 @@ class MissionEditor {
   bool work() { return session_.work(); }
 
  private:
-  EditStatement state(const MissionEdit& edit, const EditSession::Context& context);
+  EditStatement state(const MissionEdit& edit, const EditSession::Turn& context);
   Plan plan_of(const EditAnswer& answer) const;
   void hear(const EditAnswer& answer);
 

@@ -59,13 +59,13 @@ struct EditStatement {
 
 class EditSession {
  public:
-  struct Context {
+  struct Turn {
     std::shared_ptr<const TrajectoryProblem> last;  // before the edit, null at first: for `finish`
     const CancellationToken& cancellation;
   };
   // States the problem anew; called on the solving thread. InputError where there is no such
   // problem. May throw Cancelled where that is asked for.
-  using State = std::function<EditStatement(const Context&)>;
+  using State = std::function<EditStatement(const Turn&)>;
   // Gets every answer, on the solving thread, in order.
   using Hear = std::function<void(const EditAnswer&)>;
 

@@ -81,6 +81,7 @@ const std::map<std::string, std::string> kPackages{// find_package and pkg_check
                                                    {"octomap", "liboctomap-dev"},
                                                    {"yaml-cpp", "libyaml-cpp-dev"},
                                                    // #include <NAME/
+                                                   {"boost", "libboost-dev"},
                                                    {"gmock", "libgmock-dev"},
                                                    {"gtest", "libgtest-dev"},
                                                    {"sys", ""},

@@ -196,13 +196,8 @@ TEST(Controllers, UpsideDownIsFlownWhereThePlanIs) {
       EXPECT_LT(lowest, -0.9) << name;
     }
   }
-  // The thesis's knows places and forces alone, and does not go over.
-  const FlownPath path = flown(flip(agile(0)), agile(0), "thesis");
-  double lowest = 1;
-  for (const FlownSample& s : path.samples)
-    lowest = std::min(lowest, (s.state.orientation * Vector3d::UnitZ()).z());
-  EXPECT_TRUE(path.lost || lowest > -0.9 || path.position_error_worst > 0.3)
-      << lowest << " " << path.position_error_worst;
+  // The thesis's knows places and forces alone. Without lag the forces lead it over as well.
+  EXPECT_LT(flown(flip(agile(0)), agile(0), "thesis").position_error_worst, 0.1);
 }
 
 TEST(Controllers, FollowAFilmInWindWithAWrongMass) {

@@ -83,7 +83,7 @@ struct Heard {
   }};
 
   std::uint64_t post(const Edited& film) {
-    return session.post([this, film](const EditSession::Context& context) {
+    return session.post([this, film](const EditSession::Turn& context) {
       return EditStatement{.problem = stated(film, context.last), .solver = by, .certify = certify};
     });
   }
