@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Beside somebody who walks along a winding path: the subject is a function of time, kept in the
--- right third of the image and from five metres away.
+-- Beside somebody who walks along a winding path: the subject is a function of time, kept a
+-- little right of the centre of the image, at a distance of at least five metres.
 --   lapwing run examples/filming/follow_walker.lua
 local film = require "mission.film"
 

@@ -1,5 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- At a walking pace past an audience that is not filmed, with a wall that the script states itself.
+-- At a walking pace past an audience that is not filmed. A constraint of the script keeps the
+-- flight south of a hedge.
 --   lapwing run examples/filming/past_the_audience.lua
 local film = require "mission.film"
 

@@ -17,7 +17,10 @@ function looks.of(run, keyframes, list, by_name)
       run:fail(what .. ".look_at", "give a subject or a point, not both")
     end
     if k.subject and not by_name[k.subject] then
-      run:fail(what .. ".look_at", "there is no subject named '" .. k.subject .. "'")
+      local names = {}
+      for n, subject in ipairs(list) do names[n] = subject.name end
+      run:fail(what .. ".look_at", string.format("no subject is named '%s'%s", k.subject,
+        #names > 0 and "; subjects: " .. table.concat(names, ", ") or ""))
     end
     if k.subject then
       found[i] = { time = k.time, subject = by_name[k.subject] }

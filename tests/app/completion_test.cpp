@@ -83,7 +83,8 @@ class Completing : public CommandLine {
   static std::vector<std::array<const char*, 3>> cases() {
     return {{"lapwing run --config", "scan/s", "scan/small\n"},
             {"lapwing verify --vehicle", "vehicles/",
-             "vehicles/crosswind\nvehicles/phantom\nvehicles/racer\nvehicles/solo\n"},
+             "vehicles/crosswind\nvehicles/phantom\nvehicles/racer\nvehicles/racer_flown\n"
+             "vehicles/solo\n"},
             {"lapwing plugins show", "cost_term/input", "cost_term/input_effort\n"},
             {"lapwing export --format", "cs", "csv\n"},
             {"lapwing evaluate explore --world", "sub", "suburb\n"},
@@ -142,7 +143,7 @@ TEST_F(Completing, SettingsAreThoseOfTheMission) {
       {"timing=g", "timing=given\n"},
       {"solver=", "solver=ipopt\nsolver=iqp\nsolver=nlopt\n"},
       {"solver.it", "solver.iterations=\n"},
-      {"vehicle=vehicles/r", "vehicle=vehicles/racer\n"},
+      {"vehicle=vehicles/r", "vehicle=vehicles/racer\nvehicle=vehicles/racer_flown\n"},
       {"stretch=", "stretch=auto\n"},
       {"ste", "step=\n"}};
   for (const auto& [typed, offered] : all) {
@@ -168,7 +169,8 @@ TEST_F(Completing, SettingsAreThoseOfTheMission) {
 TEST_F(Completing, BashPutsItsPiecesTogether) {
   write("shot.lua", film(""));
   EXPECT_EQ(in_bash_line("lapwing run --config=scan/s"), "scan/small\n");
-  EXPECT_EQ(in_bash_line("lapwing verify --vehicle=vehicles/r"), "vehicles/racer\n");
+  EXPECT_EQ(in_bash_line("lapwing verify --vehicle=vehicles/r"),
+            "vehicles/racer\nvehicles/racer_flown\n");
   EXPECT_EQ(in_bash_line("lapwing run shot.lua --set timing=g"), "given\n");
   EXPECT_EQ(in_bash_line("lapwing run shot.lua --set timing="),
             "free\ngiven\npath_first\ntime_first\n");

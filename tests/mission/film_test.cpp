@@ -187,7 +187,7 @@ TEST_F(FilmTest, WrongSubjectsAreNamed) {
   const std::string two =
       "subjects = { { name = 'a', position = {0, 0, 1} }, { name = 'b', position = {1, 0, 1} } },";
   expect(shot(two), "with several, keyframes select one: look_at = \"a\"");
-  expect(shot(two, ", look_at = 'c'"), "keyframes[2].look_at: there is no subject named 'c'");
+  expect(shot(two, ", look_at = 'c'"), "keyframes[2].look_at: no subject is named 'c'");
   expect(shot("subjects = { { name = 'a', position = {0, 0, 1} }, "
               "{ name = 'a', position = {1, 0, 1} } },"),
          "subjects[2].name: 'a' is taken");

@@ -67,7 +67,7 @@ TEST_F(Simulation, WhatWasSimulatedIsSaid) {
   EXPECT_NEAR(conditions.at("mass_error").as_number(), 0.1, 1e-12);
   EXPECT_EQ(conditions.at("seed").as_number(), 7);
   for (const char* text :
-       {"wind blows towards", "gusts", "seed of the gusts", "mass above that of the plan"})
+       {"wind blows towards", "gusts", "seed of gusts and noise", "mass above that of the plan"})
     EXPECT_NE(read_file(page).find(text), std::string::npos) << text;
 }
 

@@ -46,7 +46,7 @@ end
 function T.wrong_looks_are_named()
   check.fails("keyframes[2].look_at: give a subject or a point", of,
               { k(0), k(1, "a", { 1, 2, 3 }) })
-  check.fails("keyframes[1].look_at: there is no subject named 'c'", of, { k(0, "c") })
+  check.fails("keyframes[1].look_at: no subject is named 'c'", of, { k(0, "c") })
   check.fails("subjects: with several, keyframes select one: look_at = \"a\"", of, { k(0) })
 end
 
