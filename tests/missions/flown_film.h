@@ -12,6 +12,7 @@
 
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/mission/controller_source.h"
 #include "framework/trajectory/plan.h"
 #include "framework/verify/verify.h"
 
@@ -61,7 +62,9 @@ class Filming : public ::testing::Test {
     EXPECT_EQ(flown.status, 0) << to_json(flown.result);
     EXPECT_EQ(flown.result.at("status").as_text(), "ok");
     const Plan plan = read_plan(flown.folder / "plan.json");
-    for (const Check& check : verify(plan).failures()) ADD_FAILURE() << to_line(check);
+    static const Registry registry({fs::path(LAPWING_BUILD_DIR) / "lib/plugins"});
+    const VerifyRequest request{.controllers = controllers_of(registry)};
+    for (const Check& check : verify(plan, request).failures()) ADD_FAILURE() << to_line(check);
     const std::string report = read_file(flown.folder / "report.html");
     EXPECT_NE(report.find("certified"), std::string::npos);
     EXPECT_EQ(report.find("src=\"http"), std::string::npos);

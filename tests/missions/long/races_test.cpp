@@ -19,8 +19,8 @@ TEST_F(Race, SevenGatesAtTheLimitOfTheRotors) {
 }
 
 TEST_F(Race, SolversAgreeOnSevenGates) {
-  const Flown ipopt = fly("../racing/seven_gates.lua", "", "ipopt");
-  const Flown iqp = fly("../racing/seven_gates.lua", "--set solver=iqp", "iqp");
+  const Flown ipopt = fly("../racing/seven_gates.lua", "--set solver=ipopt", "ipopt");
+  const Flown iqp = fly("../racing/seven_gates.lua", "", "iqp");
   expect_flown_by_rotors(iqp, 7);
   EXPECT_NEAR(time_of(iqp), time_of(ipopt), 0.005 * time_of(ipopt));
   EXPECT_LT(solve_seconds(iqp), solve_seconds(ipopt));
