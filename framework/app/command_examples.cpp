@@ -97,7 +97,7 @@ const std::vector<CommandExamples>& command_examples() {
        {"lapwing evaluate scan church.lua --method milp --method greedy --seeds 1,2"},
        kOfStudies},
       {"lapwing evaluate explore",
-       {"lapwing evaluate explore --world suburb --utility unknown_volume --episodes 3"},
+       {"lapwing evaluate explore --world suburb --utility proximity_count --episodes 3"},
        kOfStudies},
       {"lapwing version", {"lapwing version"}, "0 done"},
       {"lapwing help", {"lapwing help run", "lapwing help map convert"}, kOfFiles},

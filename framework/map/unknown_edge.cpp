@@ -104,7 +104,9 @@ class Space {
     double count = 1;
     for (const int size : block_.size) count *= size;
     if (count > kMostVoxels)
-      throw InputError("the region of interest holds more than 2^28 voxels; take larger ones");
+      throw InputError(
+          "the region of interest has more than 2^28 voxels: set a larger resolution or a smaller "
+          "region, or the unit of the mesh file");
   }
   std::uint8_t& state(const Index& at) { return block_.marked[block_.place(at[0], at[1], at[2])]; }
   std::uint8_t state(const Index& at) const {

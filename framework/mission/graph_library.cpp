@@ -284,7 +284,7 @@ int scan_graph_of_run(lua_State* state) {
                 std::to_string(graph.motions.blocked) + " blocked, " +
                 std::to_string(graph.motions.planned) +
                 " around obstacles); voxels: " + std::to_string(graph.voxels.size()) +
-                "; score: " + std::to_string(graph.score->bytes() >> 20) + " MiB");
+                "; memory of the score: " + std::to_string(graph.score->bytes() >> 20) + " MiB");
   new_object(state, kGraphType, GraphObject{std::move(work)});
   return 1;
 }

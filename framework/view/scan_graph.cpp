@@ -27,7 +27,9 @@ class VoxelNumbers {
       count *= static_cast<double>(size_[axis]);
     }
     if (count > kMostRegionVoxels)
-      throw InputError("the region of interest holds more than 2^28 voxels; take larger ones");
+      throw InputError(
+          "the region of interest has more than 2^28 voxels: set a larger resolution or a smaller "
+          "region, or the unit of the mesh file");
     numbers_.assign(static_cast<std::size_t>(count), kUnseen);
   }
 
