@@ -44,7 +44,8 @@ void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& scrip
   add_configuration(*run, invocation);
   add_text(*run, "-o,--out", "DIR", "folder of the results; default: out/<mission>",
            [&](const std::string& path) { invocation.out = path; });
-  add_text(*run, "--from", "PLAN.json", "begin from this plan of an earlier run",
+  add_text(*run, "--from", "PLAN.json",
+           "begin from this plan of an earlier run; default: from a guess",
            [&](const std::string& path) { invocation.from = path; });
   run->add_flag("--keep", invocation.keep, "keep an older run in the folder as DIR.1, DIR.2, ...");
   add_threads(*run, invocation, "threads to use; default: one per core");
