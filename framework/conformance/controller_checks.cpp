@@ -258,31 +258,13 @@ class ControllerCheck {
 
 std::vector<CheckResult> check_controller(const Specimen<Controller>& subject,
                                           const CheckOptions& options) {
-  Findings findings(options);
-  const StandardSetting standard(false);
   const std::vector<ControllerWorld> worlds = controller_worlds();
-  bool first = true;
-  for (const ParameterCase& tried : parameter_cases(subject.parameters, standard)) {
-    if (findings.settled()) break;
-    findings.set_case(tried.description);
-    try {
-      subject.create(tried.parameters);
-      findings.expect("creation", true, {});
-      if (options.wants_answers())
-        findings.survives("exceptions", "its commands", [&] {
-          for (const ControllerWorld& world : worlds)
-            ControllerCheck(subject, options, findings).run(tried.parameters, world, first);
-        });
-    } catch (const InputError& error) {
-      findings.expect("creation", !tried.must_work,
-                      [&] { return std::string("refused: ") + error.what(); });
-    } catch (const std::exception& error) {
-      findings.fail("creation", std::string("throws: ") + error.what());
-    }
-    first = false;
-  }
-  findings.set_case("");
-  return std::move(findings).results();
+  return check_with_every_case(
+      subject, options, "its commands",
+      [&](Controller&, const Value& parameters, Findings& findings, bool first) {
+        for (const ControllerWorld& world : worlds)
+          ControllerCheck(subject, options, findings).run(parameters, world, first);
+      });
 }
 
 }  // namespace lapwing

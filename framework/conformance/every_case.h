@@ -9,12 +9,13 @@
 
 namespace lapwing {
 
-// Creates the subject for every case and calls `check(plugin, findings, first)`; `first`: with its
-// defaults. What it throws in creation or check becomes a finding; `what` names the check's call.
+// Creates the subject for every case and calls `check(plugin, parameters, findings, first)`;
+// `first`: with its defaults. What it throws in creation or check becomes a finding; `what` names
+// the check's call.
 template <class Kind, class Check>
-std::vector<CheckResult> check_every_case(const Specimen<Kind>& subject,
-                                          const CheckOptions& options, const std::string& what,
-                                          const Check& check) {
+std::vector<CheckResult> check_with_every_case(const Specimen<Kind>& subject,
+                                               const CheckOptions& options, const std::string& what,
+                                               const Check& check) {
   Findings findings(options);
   const StandardSetting standard(false);
   bool first = true;
@@ -25,7 +26,8 @@ std::vector<CheckResult> check_every_case(const Specimen<Kind>& subject,
       const std::unique_ptr<Kind> plugin = subject.create(parameter_case.parameters);
       findings.expect("creation", true, {});
       if (options.wants_answers())
-        findings.survives("exceptions", what, [&] { check(*plugin, findings, first); });
+        findings.survives("exceptions", what,
+                          [&] { check(*plugin, parameter_case.parameters, findings, first); });
     } catch (const InputError& error) {
       findings.expect("creation", !parameter_case.must_work,
                       [&] { return std::string("refused: ") + error.what(); });
@@ -36,6 +38,17 @@ std::vector<CheckResult> check_every_case(const Specimen<Kind>& subject,
   }
   findings.set_case("");
   return std::move(findings).results();
+}
+
+// The same for checks that need the plugin alone: `check(plugin, findings, first)`.
+template <class Kind, class Check>
+std::vector<CheckResult> check_every_case(const Specimen<Kind>& subject,
+                                          const CheckOptions& options, const std::string& what,
+                                          const Check& check) {
+  return check_with_every_case(subject, options, what,
+                               [&](Kind& plugin, const Value&, Findings& findings, bool first) {
+                                 check(plugin, findings, first);
+                               });
 }
 
 }  // namespace lapwing

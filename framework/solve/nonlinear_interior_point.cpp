@@ -321,7 +321,7 @@ SolveStatus NonlinearSolve::iterate() {
     const bool found = direction() && line_search(alpha);
     if (!found) {
       if (++failures > kMostFailures) {
-        if (elastic_ && unscaled_violation() > options_.feasibility) return SolveStatus::infeasible;
+        // That is no proof that there is no trajectory; `converged` has one where rows are elastic.
         outcome_.message = "no step improves the trajectory further";
         return SolveStatus::numerical_error;
       }

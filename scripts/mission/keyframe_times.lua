@@ -26,6 +26,18 @@ local function copies(keyframes)
   return list
 end
 
+-- A speed that the vehicle has in no direction.
+local function check_reach(run, what, speed, vehicle)
+  if not (speed and vehicle) then return end
+  local vertical = math.max(vehicle.climb_speed, vehicle.descent_speed)
+  local most = lapwing.norm { vehicle.speed_across, vertical }
+  if speed > most then
+    run:fail(what, string.format("%g m/s; the vehicle '%s' reaches at most %.4g m/s in any "
+                                 .. "direction, %g m/s across", speed, vehicle.name, most,
+                                 vehicle.speed_across))
+  end
+end
+
 -- A `speed`, of the film or of a leg, times keyframes that have no time: what contradicts it.
 function times.check_speed(run, film)
   local o, list = run.options, film.keyframes
@@ -34,6 +46,7 @@ function times.check_speed(run, film)
     local what = "keyframes[" .. i .. "]"
     own = own or k.speed and what .. ".speed"
     if k.speed and i == 1 then run:fail(what .. ".speed", "no leg leads to the first keyframe") end
+    check_reach(run, what .. ".speed", k.speed, film.vehicle)
     if k.speed and k.time then run:fail(what .. ".speed", "give a time or a speed") end
     if k.speed and o.speed_limit and k.speed > o.speed_limit then
       run:fail(what .. ".speed", string.format("above the speed_limit of %g m/s", o.speed_limit))
@@ -48,6 +61,7 @@ function times.check_speed(run, film)
       run:fail(what, "at the place of the keyframe before: a speed gives no time; give a time")
     end
   end
+  check_reach(run, "speed", o.speed, film.vehicle)
   if not (own or o.speed) then return end
   local what = own or "speed"
   if o.timing ~= "given" and o.timing ~= "time_first" then
