@@ -5,7 +5,6 @@
 #include "framework/trajectory/interpolate.h"
 
 namespace lapwing {
-
 Stages TrajectoryProblem::point_of(const Trajectory& trajectory) const {
   const StageColumns& columns = impl_->columns;
   const StageLayout& layout = columns.layout;
@@ -16,7 +15,11 @@ Stages TrajectoryProblem::point_of(const Trajectory& trajectory) const {
   Stages at = initial_guess();
   for (int i = 0; i < columns.horizon.stages; ++i) {
     const double share = here > 0 ? std::min(1.0, columns.horizon.time(i) / here) : 0.0;
-    const Sample sample = sample_at(trajectory, begin + share * duration);
+    Sample sample = sample_at(trajectory, begin + share * duration);
+    if (here > 0) {
+      const double middle = columns.horizon.time(i) + 0.5 * columns.horizon.step_after(i);
+      smooth_held_inputs(trajectory, begin + middle / here * duration, sample);
+    }
     for (const BoundModel& model : columns.models) {
       std::vector<double> numbers(model.states + model.inputs);
       in_plugin(*model.model, "from_sample",

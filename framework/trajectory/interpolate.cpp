@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/trajectory/interpolate.h"
 
+#include <algorithm>
+
 #include "framework/core/error.h"
 
 namespace lapwing {
@@ -69,6 +71,12 @@ void blend_columns(const Trajectory& trajectory, const Sample& a, const Sample& 
   }
 }
 
+// When the step of a sample is half over. The last one's is as long as the one before it.
+double middle_of_step(const std::vector<Sample>& samples, std::size_t i) {
+  const std::size_t from = std::min(i, samples.size() - 2);
+  return samples[i].time + 0.5 * (samples[from + 1].time - samples[from].time);
+}
+
 void turn_gimbal(const Sample& a, const Sample& b, double h, double s, bool held, Sample& out) {
   if (held) {
     out.gimbal_yaw = blend(a.gimbal_yaw, b.gimbal_yaw, s);
@@ -108,6 +116,25 @@ Sample sample_at(const Trajectory& trajectory, double time) {
   if (trajectory.has_gimbal) turn_gimbal(a, b, h, s, trajectory.inputs_held, out);
   if (trajectory.has_target) out.target = blend(a.target, b.target, s);
   return out;
+}
+
+void smooth_held_inputs(const Trajectory& trajectory, double time, Sample& sample) {
+  const auto& samples = trajectory.samples;
+  if (!trajectory.inputs_held || samples.size() < 2) return;
+  std::size_t after = 1;
+  while (after + 1 < samples.size() && middle_of_step(samples, after) <= time) ++after;
+  const Sample& a = samples[after - 1];
+  const Sample& b = samples[after];
+  const double from = middle_of_step(samples, after - 1), to = middle_of_step(samples, after);
+  const double s = std::clamp((time - from) / (to - from), 0.0, 1.0);
+  blend_inputs(a, b, s, sample);
+  for (const MotionColumn& column : trajectory.motion.columns) {
+    const auto first = a.columns.find(column.name), second = b.columns.find(column.name);
+    if (!column.input || first.empty() || first.size() != second.size()) continue;
+    std::vector<double> mixed(first.size());
+    for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = blend(first[i], second[i], s);
+    sample.columns.set(column.name, mixed);
+  }
 }
 
 }  // namespace lapwing

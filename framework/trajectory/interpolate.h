@@ -15,4 +15,10 @@ namespace lapwing {
 // or `time` lies outside its samples by more than a microsecond; within that it reads the end.
 Sample sample_at(const Trajectory& trajectory, double time);
 
+// Replaces held inputs of a sample by a continuous curve: each input belongs to the middle of its
+// step, and between middles inputs are linear. `time`, seconds, is the middle of the step that the
+// sample shall hold its inputs for. For a start on another grid, where steps of held inputs would
+// be jumps. Inputs that are linear stay as they are.
+void smooth_held_inputs(const Trajectory& trajectory, double time, Sample& sample);
+
 }  // namespace lapwing

@@ -69,7 +69,9 @@ TEST_F(FromPlan, RefusesWhatIsNoStart) {
   };
   refuse({"shot.lua", "--set", "model=velocity"},
          "the plan moves by 'force', the problem by 'velocity'");
-  refuse({"shot.lua", "--set", "vehicle=vehicles/racer"}, "a plan of the vehicle 'solo'");
+  write("own.yaml", read_file(LAPWING_SOURCE_DIR "/configs/vehicles/solo.yaml"));
+  refuse({"shot.lua", "--set", "vehicle=own.yaml"},
+         "a plan of the vehicle 'vehicles/solo', the problem is of 'own.yaml'");
   const auto film = [&](const char* file, const std::string& name, const std::string& more) {
     write(file, R"(
       local film = require "mission.film"

@@ -87,6 +87,7 @@ class Snippets : public CommandLine {
     static const std::map<std::string, std::string> kinds = {
         {"solver", film("")},
         {"planner", film("")},
+        {"controller", film("")},
         {"resolution", "return require('mission.map').of_scene { scene = 'street' }"},
         {"tour", "return require('mission.scan').of_scene { scene = 'church' }"},
         {"utility", "return require('mission.explore').of_scene { scene = 'downtown' }"}};

@@ -55,6 +55,38 @@ TEST(Interpolate, HeldInputsStayUntilTheNextSample) {
   EXPECT_EQ(s.columns.vector3("force"), Eigen::Vector3d(1, 2, 3));
 }
 
+// Forces that grow linearly from middle to middle of steps of 1, 2 and 0.5 s.
+TEST(Interpolate, SmoothedInputsBelongToTheMiddlesOfTheirSteps) {
+  const auto force = [](double middle) { return Eigen::Vector3d(1 + middle, -2 * middle, 3); };
+  Trajectory trajectory;
+  for (const double t : {0.0, 1.0, 3.0, 3.5}) {
+    trajectory.samples.push_back(cubic_sample(t, {0, 0, 0}, {0, 0, 0}));
+    const double middle = t + (t == 1 ? 1.0 : t >= 3 ? 0.25 : 0.5);
+    Sample& sample = trajectory.samples.back();
+    sample.columns.set("force", force(middle));
+    sample.acceleration = 2 * force(middle);
+    sample.gimbal_pitch_rate = 0.5 * middle;
+  }
+  for (const double middle : {0.5, 0.9, 2.0, 2.8, 3.25, 3.4, 3.75}) {
+    Sample sample = trajectory.samples[0];
+    smooth_held_inputs(trajectory, middle, sample);
+    EXPECT_NEAR((sample.columns.vector3("force") - force(middle)).norm(), 0, 1e-12) << middle;
+    EXPECT_NEAR((sample.acceleration - 2 * force(middle)).norm(), 0, 1e-12) << middle;
+    EXPECT_NEAR(sample.gimbal_pitch_rate, 0.5 * middle, 1e-12) << middle;
+    EXPECT_EQ(sample.position, trajectory.samples[0].position);
+  }
+  // Before the first middle and after the last, inputs are held.
+  Sample sample = trajectory.samples[0];
+  smooth_held_inputs(trajectory, 0.1, sample);
+  EXPECT_EQ(sample.columns.vector3("force"), force(0.5));
+  smooth_held_inputs(trajectory, 9, sample);
+  EXPECT_EQ(sample.columns.vector3("force"), force(3.75));
+  // Linear inputs stay.
+  trajectory.inputs_held = false;
+  smooth_held_inputs(trajectory, 2, sample);
+  EXPECT_EQ(sample.columns.vector3("force"), force(3.75));
+}
+
 TEST(Interpolate, PathIsStraight) {
   Trajectory trajectory;
   trajectory.motion = path_motion();
