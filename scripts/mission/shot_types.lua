@@ -156,11 +156,43 @@ function shots.flyover(given)
            at(given, 1, b) }
 end
 
+-- Lists without times, which a speed times: in order, a place that ends one list and begins the
+-- next once, with what the next says of it and the speed of the leg that leads to it.
+local function sequence_of_places(lists)
+  local all = {}
+  for _, list in ipairs(lists) do
+    for i, keyframe in ipairs(list) do
+      local taken, last = {}, i == 1 and all[#all]
+      for key, value in pairs(keyframe) do taken[key] = value end
+      if last and lapwing.norm(lapwing.vector(last.position) - taken.position) == 0 then
+        taken.speed, taken.time = taken.speed or last.speed, last.time
+        all[#all] = nil
+      end
+      all[#all + 1] = taken
+    end
+  end
+  return all
+end
+
 -- Several lists of keyframes in one, each beginning where the one before ends in time. A keyframe
--- at the time of the one before it replaces it.
+-- at the time of the one before it replaces it. Keyframes that a speed times have no times, except
+-- the very first; then all lists have none.
 function shots.sequence(...)
+  local lists, timed, untimed = { ... }, nil, nil
+  for i, list in ipairs(lists) do
+    for j, keyframe in ipairs(list) do
+      local what = string.format("keyframe %d of list %d", j, i)
+      if not keyframe.time then untimed = untimed or what
+      elseif i > 1 or j > 1 then timed = timed or what end
+    end
+  end
+  if timed and untimed then
+    lapwing.fail(string.format("shots.sequence: %s has no time, but %s has one: give every keyframe "
+                               .. "a time, or none and a speed", untimed, timed))
+  end
+  if untimed then return sequence_of_places(lists) end
   local all, offset = {}, 0
-  for _, list in ipairs { ... } do
+  for _, list in ipairs(lists) do
     local finish = offset
     for _, keyframe in ipairs(list) do
       local moved = {}

@@ -322,6 +322,18 @@ TEST_F(FilmTest, ShotTypesMakeKeyframes) {
       "duration = 10 })");
   EXPECT_NEAR(joined.back().time, 22, 1e-9);
   EXPECT_LT((joined[joined.size() - 2].position - Eigen::Vector3d(0, 0, 9)).norm(), 1e-9);
+  const auto by_speed = keyframes(
+      "shots.sequence({ { position = {0, 0, 2} }, { position = {8, 0, 2}, speed = 2 } }, "
+      "{ { position = {8, 0, 2}, look_at = 's' }, { position = {8, 6, 2}, speed = 1 } })");
+  ASSERT_EQ(by_speed.size(), 3u);
+  EXPECT_LT((by_speed[1].position - Eigen::Vector3d(8, 0, 2)).norm(), 1e-12);
+  EXPECT_GT(by_speed[1].time, 4);
+  EXPECT_GT(by_speed[2].time - by_speed[1].time, 6);
+  expect(
+      "return require('mission.film').shots.sequence({ { time = 0, position = {0, 0, 2} }, "
+      "{ time = 4, position = {8, 0, 2} } }, { { position = {8, 6, 2}, speed = 1 } })",
+      "shots.sequence: keyframe 1 of list 2 has no time, but keyframe 2 of list 1 has one: give "
+      "every keyframe a time, or none and a speed");
   expect("return require('mission.film').shots.orbit { radius = 3, duration = 4 }",
          "shots.orbit.center: missing");
   expect("return require('mission.film').shots.crane { position = {0, 0, 1}, by = 1, duraton = 4 }",
