@@ -116,15 +116,17 @@ int check_part(lua_State* state) {
   return 1;
 }
 
-// file:expect_keys("gates[2]", {"name", "shape"} [, slips]): an error for any other key of the
-// table there; with `slips` for those alone that are nearly one of these.
-int expect_keys(lua_State* state) {
-  const Value& content = content_of(state);
-  const std::string path = text_argument(state, 2, "expect_keys");
-  const Origin origin = Sandbox::of(state).script_position(state);
+struct WrongKey {
+  Origin origin;
+  std::string path, message;
+};
+
+// The keys of the table at `path` that are not `known`; with `slips` those alone that are nearly
+// one of these.
+void other_keys(const Value& content, const std::string& path, const Value& names, bool slips,
+                std::vector<WrongKey>& errors) {
   std::vector<std::string> known;
   std::string all;
-  const Value names = value_from_lua(state, 3, origin, "expect_keys");
   for (const Value& name : names.as_list()) {
     known.push_back(name.as_text());
     all += (all.empty() ? "" : ", ") + known.back();
@@ -134,16 +136,36 @@ int expect_keys(lua_State* state) {
     throw InputError(part.origin(), (path.empty() ? "" : path + ": ") +
                                         "expected a table with the keys " + all + ", got " +
                                         part.describe_type());
-  const bool slips = lua_toboolean(state, 4);
-  Diagnostics errors;
   for (const auto& [key, value] : part.as_map()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const std::string nearest = nearest_name(key, known);
     if (slips && nearest.empty()) continue;
-    errors.add(value.origin(), path.empty() ? key : path + "." + key,
-               nearest.empty() ? "unknown key; known: " + all
-                               : "unknown key; did you mean '" + nearest + "'?");
+    errors.push_back({value.origin(), path.empty() ? key : path + "." + key,
+                      nearest.empty() ? "unknown key; known: " + all
+                                      : "unknown key; did you mean '" + nearest + "'?"});
   }
+}
+
+// file:expect_keys("gates[2]", {"name", "shape"} [, slips]): an error for any other key of the
+// table there; with `slips` for those alone that are nearly one of these. In place of the path a
+// map from paths to their keys: one error for the wrong keys of all these tables, by line.
+int expect_keys(lua_State* state) {
+  const Value& content = content_of(state);
+  const Origin origin = Sandbox::of(state).script_position(state);
+  std::vector<WrongKey> found;
+  if (lua_istable(state, 2)) {
+    const Value paths = value_from_lua(state, 2, origin, "expect_keys");
+    for (const auto& [path, names] : paths.as_map()) other_keys(content, path, names, false, found);
+    std::stable_sort(found.begin(), found.end(), [](const WrongKey& a, const WrongKey& b) {
+      return a.origin.line < b.origin.line;
+    });
+  } else {
+    const std::string path = text_argument(state, 2, "expect_keys");
+    other_keys(content, path, value_from_lua(state, 3, origin, "expect_keys"),
+               lua_toboolean(state, 4), found);
+  }
+  Diagnostics errors;
+  for (const WrongKey& one : found) errors.add(one.origin, one.path, one.message);
   errors.throw_if_any();
   return 0;
 }
@@ -156,8 +178,10 @@ void open_data_library(lua_State* state) {
        "an error on the line of that value: \"gates[2].radius\""},
       {"check", &guarded<check_part>, "(path: string, declarations: lapwing.option[]): table",
        "the table there, checked like options, with defaults"},
-      {"expect_keys", &guarded<expect_keys>, "(path: string, known: string[], slips?: boolean)",
-       "an error for any other key of the table there; slips: for misspelt ones only"}};
+      {"expect_keys", &guarded<expect_keys>,
+       "(path: string|table<string, string[]>, known?: string[], slips?: boolean)",
+       "an error for any other key of the table there; slips: for misspelt ones only; a map from "
+       "paths to keys: one error for all"}};
   static const Binding functions[] = {
       {"read_json", &guarded<read_json>, "(name: string, folder?: string): any, lapwing.data_file",
        "a table from a file in the folder of the script, a --data folder or configs/, and the "

@@ -42,17 +42,30 @@ local function gate_of_file(file, path)
   return gate
 end
 
+-- One error names every unknown key of the file.
+local function check_keys(given, file)
+  local keys, of_gate = { [""] = { "start", "end", "gates", "waypoints" } }, {}
+  for i, declared in ipairs(FILE_GATE) do of_gate[i] = declared.name end
+  for _, key in ipairs { "start", "end" } do
+    if type(given) == "table" and type(given[key]) == "table" and #given[key] == 0 then
+      keys[key] = { "position", "velocity" }
+    end
+  end
+  local gates = type(given) == "table" and type(given.gates) == "table" and given.gates or {}
+  for i, gate in ipairs(gates) do
+    if type(gate) == "table" and next(gate) and #gate == 0 then
+      keys[string.format("gates[%d]", i)] = of_gate
+    end
+  end
+  file:expect_keys(keys)
+end
+
 -- The course of a file: {start =, finish =, gates =, keyframes =}, and what fails on its lines.
 function M.read(name)
   local given, file
   if name:match("%.json$") then given, file = lapwing.read_json(name, "tracks")
   else given, file = lapwing.read_yaml(name, "tracks") end
-  file:expect_keys("", { "start", "end", "gates", "waypoints" })
-  for _, key in ipairs { "start", "end" } do
-    if type(given[key]) == "table" and #given[key] == 0 then
-      file:expect_keys(key, { "position", "velocity" })
-    end
-  end
+  check_keys(given, file)
   for _, key in ipairs { "gates", "waypoints" } do
     if given[key] ~= nil and (type(given[key]) ~= "table" or #given[key] == 0) then
       file:fail(key, "expected a list")

@@ -116,6 +116,16 @@ TEST_F(RaceAdvice, ATypoInACourseNamesFileLineAndKey) {
               HasSubstr("course.yaml:1: start.positoin: unknown key; did you mean 'position'?"));
   EXPECT_THAT(said(begin + "waypoints: [[1, 2, 3], [1, 2]]\n"),
               HasSubstr("course.yaml:3: waypoints[2]: expected three finite numbers"));
+  const std::string all = said(
+      "strat: [0, 0, 1]\nend:\n  positoin: [9, 0, 1]\ngates:\n  - {shpae: ball, position: [5, 0, "
+      "2], "
+      "radius: 1}\n  - {shape: ball, positoin: [5, 0, 2], raduis: 1}\n");
+  EXPECT_THAT(all, HasSubstr("course.yaml:1: strat: unknown key; did you mean 'start'?"));
+  EXPECT_THAT(all, HasSubstr("course.yaml:3: end.positoin: unknown key; did you mean 'position'?"));
+  EXPECT_THAT(all, HasSubstr("course.yaml:5: gates[1].shpae: unknown key; did you mean 'shape'?"));
+  EXPECT_THAT(all, HasSubstr("course.yaml:6: gates[2].positoin: unknown key"));
+  EXPECT_THAT(all,
+              HasSubstr("course.yaml:6: gates[2].raduis: unknown key; did you mean 'radius'?"));
   EXPECT_THAT(said("- 1\n"), HasSubstr("course.yaml:1: expected a table with the keys start"));
 }
 
