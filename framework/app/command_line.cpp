@@ -157,7 +157,9 @@ void add_race_command(CLI::App& app, Invocation& invocation, std::filesystem::pa
   add_plan(*race, plan);
   add_repeated(*race, "--pilot", "LOG[:KEY=VALUE,...]", pilots,
                "a stick log (CSV: time,forward,left) with settings of its pilot: name, weight, "
-               "strength, reach, speed, handicap; repeatable, at least one; no default");
+               "strength, reach, speed, handicap; repeatable, at least one; no default; out is who "
+               "needs more "
+               "than 3 times the time of the plan divided by speed");
   add_text(*race, "--deviation-price", "S",
            "penalty in s per m of mean deviation from the course; default: 5",
            [&](const std::string& text) {
@@ -315,9 +317,9 @@ int run_command_line(int argc, const char* const* argv) {
     }
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& request) {  // --help, --version
-    return app.exit(request);
   } catch (const CLI::ParseError& error) {
+    const bool success = dynamic_cast<const CLI::Success*>(&error) != nullptr;  // --help, --version
+    if (success && !help_of_unknown(app)) return app.exit(error);
     std::cerr << tinted_error(Tone::bad, "lapwing:") << " " << visible_text(usage_error(app, error))
               << "\n";
     return static_cast<int>(ExitStatus::bad_input);

@@ -6,6 +6,7 @@
 
 #include "framework/app/command_reference.h"
 #include "framework/app/completion_names.h"
+#include "framework/app/new_files.h"
 #include "framework/app/terminal.h"
 
 namespace lapwing {
@@ -31,6 +32,14 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
     if (word.size() > 3 && name.starts_with(word) && nearest.empty()) nearest = name;
   if (nearest.empty()) nearest = nearest_name(word, known);
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
+
+// What somebody wants who takes a kind of missions for a command.
+std::string of_kind(const std::string& word) {
+  const std::vector<std::string> kinds = mission_kinds();
+  if (std::find(kinds.begin(), kinds.end(), word) == kinds.end()) return "";
+  return "; " + word + " is a kind of mission: `lapwing new mission " + word +
+         " FILE.lua` writes one, `lapwing run FILE.lua` plans it";
 }
 
 // The command that was reached; its path is "lapwing map info".
@@ -64,7 +73,9 @@ std::string unknown_word(const CLI::App& app, const ReachedCommand& reached) {
   if (commands.empty())
     return "'" + reached.path + "' takes no '" + rest.front() +
            "' in addition to the other arguments";
-  return "unknown command '" + rest.front() + "'" + did_you_mean(rest.front(), commands);
+  const std::string kind = of_kind(rest.front());
+  return "unknown command '" + rest.front() + "'" +
+         (kind.empty() ? did_you_mean(rest.front(), commands) : kind);
 }
 
 // CLI11 says "mission is required" and "--world: 1 required NAME missing".
@@ -94,8 +105,11 @@ ExitStatus print_help(const CLI::App& app, const std::vector<std::string>& words
     const CLI::App* next = nullptr;
     for (const CLI::App* command : shown_commands(*at))
       if (command->get_name() == word) next = command;
-    if (!next)
-      throw InputError("'" + path + "' has no command '" + word + "'" + did_you_mean(word, known));
+    if (!next) {
+      const std::string kind = at == &app ? of_kind(word) : "";
+      throw InputError("'" + path + "' has no command '" + word + "'" +
+                       (kind.empty() ? did_you_mean(word, known) : kind));
+    }
     at = next;
     path += " " + word;
   }
@@ -171,6 +185,12 @@ void add_colour(CLI::App& app) {
                throw CLI::ValidationError("--color",
                                           "expected auto, always or never, not '" + word + "'");
            });
+}
+
+bool help_of_unknown(const CLI::App& app) {
+  const ReachedCommand reached = reached_command(app);
+  const std::vector<std::string> rest = app.remaining(true);
+  return !rest.empty() && !rest.front().starts_with("-") && !shown_commands(*reached.app).empty();
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {

@@ -30,4 +30,7 @@ void add_colour(CLI::App& app);
 // known one, what is missing, or what `error` says; then what to type for help.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error);
 
+// Whether help was asked for behind a word that is no command: "lapwing map inof --help".
+bool help_of_unknown(const CLI::App& app);
+
 }  // namespace lapwing

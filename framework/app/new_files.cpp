@@ -152,6 +152,14 @@ ExitStatus new_plugin(const NewFiles& wanted, const Invocation& invocation) {
   return ExitStatus::done;
 }
 
+std::vector<std::string> mission_kinds() {
+  try {
+    return kinds_in(shipped_folder("scripts") / "templates" / "missions");
+  } catch (const std::exception&) {  // a hint is not worth an error
+    return {};
+  }
+}
+
 ExitStatus new_mission(const NewFiles& wanted, const Invocation& invocation) {
   const fs::path templates = shipped_folder("scripts") / "templates" / "missions";
   expect_kind(wanted.kind, kinds_in(templates), "mission");

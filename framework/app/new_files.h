@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "framework/app/command_line.h"
 
@@ -18,6 +19,9 @@ struct NewFiles {
 // A folder NAME with source, CMake list and README: builds against an installed Lapwing, and in the
 // folder of its kind in this tree. InputError for an unknown kind, a name that is taken or no name.
 ExitStatus new_plugin(const NewFiles& wanted, const Invocation& invocation);
+// The kinds of missions that there are templates for, in order; none where the shipped files are
+// not found.
+std::vector<std::string> mission_kinds();
 // One script. InputError for an unknown kind or a file that exists.
 ExitStatus new_mission(const NewFiles& wanted, const Invocation& invocation);
 

@@ -125,13 +125,20 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
   const Plan& plan = judged.plan;
   const bool folder =
       in_plugin(*exporter, "file_extension", [&] { return exporter->file_extension().empty(); });
+  std::string written = "wrote " + target.string();
   if (folder) {
-    write_folder_atomically(
-        target, in_plugin(*exporter, "write_folder", [&] { return exporter->write_folder(plan); }));
+    const NamedContents files =
+        in_plugin(*exporter, "write_folder", [&] { return exporter->write_folder(plan); });
+    write_folder_atomically(target, files);
+    for (std::size_t i = 0; i < files.size(); ++i)
+      written += (i == 0 ? ": " : ", ") + files[i].first;
   } else {
     write_file_atomically(target,
                           in_plugin(*exporter, "write", [&] { return exporter->write(plan); }));
   }
+  if (plan.task.scan)
+    written += "; the plan has " + std::to_string(plan.task.scan->views.size()) + " images";
+  std::printf("%s\n", visible_line(written).c_str());
   for (const std::string& remark :
        in_plugin(*exporter, "remarks", [&] { return exporter->remarks(plan); }))
     std::cerr << "lapwing: warning: " << visible_line(remark) << "\n";

@@ -7,6 +7,7 @@
 #include "framework/app/output_target.h"
 #include "framework/app/provenance.h"
 #include "framework/core/files.h"
+#include "framework/core/parameters.h"
 #include "framework/core/visible_text.h"
 #include "framework/export/race_report.h"
 #include "framework/verify/verify.h"
@@ -35,9 +36,14 @@ void set(Pilot& pilot, const std::string& key, std::string_view text) {
     pilot.speed = number_of(key, text);
   else if (key == "handicap")
     pilot.handicap = number_of(key, text);
-  else
-    throw InputError("--pilot: unknown '" + key +
-                     "'; a pilot has name, weight, strength, reach, speed and handicap");
+  else {
+    const std::vector<std::string> known = {"name",  "weight", "strength",
+                                            "reach", "speed",  "handicap"};
+    const std::string nearest = nearest_name(key, known);
+    throw InputError("--pilot: unknown '" + key + "'; " +
+                     (nearest.empty() ? "" : "did you mean '" + nearest + "'?; ") +
+                     "a pilot has name, weight, strength, reach, speed and handicap");
+  }
 }
 
 }  // namespace

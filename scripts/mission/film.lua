@@ -135,7 +135,7 @@ function film.shot(given)
   end)
 end
 
--- film.from_file { file = "shot_01.json", hard =, ... }; --set input=PATH replaces the file.
+-- film.from_file { input = "shot_01.json", hard =, ... }; --set input=PATH replaces the file.
 ---@param given lapwing.film.from_file
 ---@return lapwing.mission
 function film.from_file(given)

@@ -103,6 +103,10 @@ TEST_F(CommandLine, VerifyAndExport) {
   EXPECT_TRUE(from_json(finished.out, "stdout").at("certificate").at("feasible").as_boolean());
   finished = run({"export", "out/hop/plan.json", "--format", "csv", "-o", "hop.csv"});
   EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(finished.out, "wrote hop.csv\n");
+  write("ann.csv", "time,forward,left\n0,0,0\n0.4,0,0\n");
+  refused({"race", "out/hop/plan.json", "--pilot", "ann.csv:handicp=3"},
+          {"'handicp'", "did you mean 'handicap'?"});
   EXPECT_EQ(read_file(folder_ / "hop.csv"), read_file(folder_ / "out/hop/trajectory.csv"));
   refused({"export", "out/hop/plan.json", "--format", "cvs", "-o", "x.csv"}, {"'cvs'", "'csv'"});
   for (const char* of : {"map", "scene"})

@@ -37,6 +37,10 @@ TEST_F(Slips, WordsOfTheCommandLine) {
   slip({"evaluate", "explore", "--world"}, "'--world' wants NAME[:FIRST-LAST]: a scene of");
   slip({"--set", "step=1", "run", "shot.lua"},
        "'--set' is an option of 'lapwing run': write it behind that");
+  slip({"scan", "--help"},
+       "unknown command 'scan'; scan is a kind of mission: `lapwing new mission scan FILE.lua` ");
+  slip({"help", "film"}, "'lapwing' has no command 'film'; film is a kind of mission: ");
+  slip({"map", "inof", "--help"}, "unknown command 'inof'; did you mean 'info'?");
   slip({"new", "plugin", "cost", "keep_low"},
        "there is no kind of plugin 'cost'; did you mean 'cost_term'?; there are: constraint, ");
 }
