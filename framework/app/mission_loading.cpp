@@ -52,16 +52,24 @@ Value mission_config(const std::string& name, const ConfigSearch& search) {
 
 void require_script(const fs::path& script) {
   const std::string file = script.string();
+  if (script.extension() == ".svg")
+    throw InputError("'" + file +
+                     "' is not a mission script, NAME.lua; a light painting draws it: `lapwing run "
+                     "PAINTING.lua --set input=" +
+                     file + "` (mission.light_painting)");
   if (script.extension() == ".json")
     throw InputError("'" + file +
                      "' is not a mission script, NAME.lua; a plan is judged by `lapwing "
                      "verify " +
-                     file + "`");
-  if (script.extension() == ".yaml")
+                     file +
+                     "`; a designed shot is read by film.from_file, a course by race.course: "
+                     "--set input=" +
+                     file);
+  if (script.extension() == ".yaml" || script.extension() == ".yml")
     throw InputError("'" + file +
                      "' is not a mission script, NAME.lua; a configuration is applied to "
                      "one by --config " +
-                     file);
+                     file + "; a course is read by race.course: --set input=" + file);
   if (!fs::exists(script) && fs::exists(file + ".lua"))
     throw InputError("cannot read '" + file + "'; did you mean '" + file + ".lua'?");
 }

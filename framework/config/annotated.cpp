@@ -78,6 +78,31 @@ std::string comment_of(const Value& value) {
   return comment;
 }
 
+// Lists of more tables than anybody reads: a measured track. A list that needs no more than its
+// count is commented out, so that the text, read as a configuration, leaves it as it is.
+constexpr std::size_t kLongestShown = 100;
+
+// A table on one line: "{time: 0, position: [0, 0, 2]}".
+std::string shown_inline(const Value& value) {
+  if (value.is_list()) {
+    std::string text = "[";
+    for (const Value& entry : value.as_list())
+      text += (text.size() > 1 ? ", " : "") + shown_inline(entry);
+    return text + "]";
+  }
+  if (!value.is_map()) return shown_flow(value);
+  std::string text = "{";
+  for (const auto& [key, child] : value.as_map())
+    text += (text.size() > 1 ? ", " : "") + shown_text(key) + ": " + shown_inline(child);
+  return text + "}";
+}
+
+bool too_long(const Value& value) {
+  return value.is_list() && value.as_list().size() > kLongestShown &&
+         std::all_of(value.as_list().begin(), value.as_list().end(),
+                     [](const Value& entry) { return entry.is_map() || entry.is_list(); });
+}
+
 class Printer {
  public:
   // `first` begins the first line ("- " of a list entry), the others begin with as many spaces.
@@ -90,9 +115,14 @@ class Printer {
     const std::string indent(first.size(), ' ');
     if (value.is_map()) {
       for (const auto& [key, child] : value.as_map()) {
+        if (too_long(child)) {
+          print_ends(indent + "# " + shown_text(key) + ": ", child.as_list());
+          continue;
+        }
         print_entry(prefix + shown_text(key) + ":", child, indent);
         prefix = indent;
       }
+      if (prefix == first && prefix != indent) lines_.push_back({first + "{}", ""});
     } else {
       for (const Value& child : value.as_list()) {
         print(child, prefix + "- ");
@@ -120,6 +150,13 @@ class Printer {
   }
 
  private:
+  void print_ends(const std::string& start, const Value::List& list) {
+    lines_.push_back({start + std::to_string(list.size()) + " entries, from " +
+                          shown_inline(list.front()) + " to " + shown_inline(list.back()) +
+                          "; --json prints all",
+                      ""});
+  }
+
   void print_entry(const std::string& start, const Value& child, const std::string& indent) {
     if (!holds_map(child)) {
       lines_.push_back({start + " " + shown_flow(child), comment_of(child)});

@@ -51,6 +51,11 @@ TEST_F(Slips, AFileOfAnotherSort) {
        "plan.json`");
   slip({"config", "mine.yaml"},
        "'mine.yaml' is not a mission script, NAME.lua; a configuration is");
+  write("bird.svg", "<svg/>");
+  slip({"run", "bird.svg"},
+       "'bird.svg' is not a mission script, NAME.lua; a light painting draws it: `lapwing run "
+       "PAINTING.lua --set input=bird.svg`");
+  slip({"config", "track.yml"}, "'track.yml' is not a mission script, NAME.lua; a configuration");
   slip({"run", "shot"}, "cannot read 'shot'; did you mean 'shot.lua'?");
   slip({"run", "shot.lua", "--config", "vehicles/solo"},
        "--config vehicles/solo: this is a vehicle, not a configuration of a mission; expected "

@@ -127,5 +127,28 @@ TEST(Annotated, ReadsBackEqual) {
   EXPECT_EQ(parsed(annotated_yaml(Value::map())), Value::map());
 }
 
+TEST(Annotated, ALongTrackIsItsEnds) {
+  Value track = Value::list();
+  for (int i = 0; i < 101; ++i) {
+    Value entry = Value::map();
+    entry.set("time", i);
+    entry.set("position", parsed("[0, 1.5, 2]"));
+    track.push_back(entry);
+  }
+  Value subject = parsed("name: walker");
+  subject.set("track", track);
+  Value value = Value::map(), subjects = Value::list();
+  subjects.push_back(subject);
+  value.set("subjects", subjects);
+  value.set("step", 1);
+  const std::string text = annotated_yaml(value);
+  EXPECT_NE(text.find("    # track: 101 entries, from {time: 0, position: [0, 1.5, 2]} to {time: "
+                      "100, position: [0, 1.5, 2]}; --json prints all\n"),
+            std::string::npos)
+      << text;
+  EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 6) << text;
+  EXPECT_EQ(parsed(text), parsed("subjects: [{name: walker}]\nstep: 1"));
+}
+
 }  // namespace
 }  // namespace lapwing
