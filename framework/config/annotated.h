@@ -10,9 +10,9 @@ namespace lapwing {
 
 // One leaf a line, each with a comment: "# from shot.lua:12", "# --set" or "# default", aligned in
 // a column; none where the origin is not known. A list without maps in it stays on one line, and
-// its comment names every source of its entries. A list of more than 100 tables or lists under a key
-// becomes a comment with count, first and last entry. Except for these, reading the text back as
-// YAML gives equal values.
+// its comment names every source of its entries. A list of more than 100 tables or lists under a
+// key becomes a comment with count, first and last entry. Except for these, reading the text back
+// as YAML gives equal values.
 std::string annotated_yaml(const Value& value);
 
 }  // namespace lapwing

@@ -187,8 +187,8 @@ function shots.sequence(...)
     end
   end
   if timed and untimed then
-    lapwing.fail(string.format("shots.sequence: %s has no time, but %s has one: give every keyframe "
-                               .. "a time, or none and a speed", untimed, timed))
+    lapwing.fail(string.format("shots.sequence: %s has no time, but %s has one: give every "
+                               .. "keyframe a time, or none and a speed", untimed, timed))
   end
   if untimed then return sequence_of_places(lists) end
   local all, offset = {}, 0
