@@ -95,9 +95,9 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
 
   CLI::App* exported = app.add_subcommand("export", "write a plan in another format");
   add_plan(*exported, plan);
-  add_text(*exported, "--format", "NAME", "name of an exporter", [&](const std::string& name) {
-    format = name;
-  })->required();
+  add_text(*exported, "--format", "NAME[:KEY=VALUE,...]", "an exporter and its parameters",
+           [&](const std::string& name) { format = name; })
+      ->required();
   add_text(*exported, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
     target = path;
   })->required();

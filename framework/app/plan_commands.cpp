@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // lapwing verify, export and config.
+#include <charconv>
 #include <cstdio>
 #include <iostream>
+#include <sstream>
 
 #include "framework/app/command_line.h"
 #include "framework/app/interruption.h"
@@ -69,6 +71,29 @@ void warn_of_changes(const JudgedPlan& judged, const Judges& judges) {
     std::fprintf(stderr, "lapwing: %s\n", visible_line(change).c_str());
 }
 
+// "chan:frame_rate=25,first_frame=0": the exporter's name, and its parameters as a map.
+std::pair<std::string, Value> chosen_format(const std::string& format) {
+  const std::size_t colon = format.find(':');
+  Value parameters = Value::map();
+  std::istringstream rest(colon == std::string::npos ? "" : format.substr(colon + 1));
+  for (std::string part; std::getline(rest, part, ',');) {
+    const std::size_t equal = part.find('=');
+    if (equal == std::string::npos || equal == 0 || parameters.find(part.substr(0, equal)))
+      throw InputError("--format: '" + part + "' is no parameter; expected NAME:KEY=VALUE,..., " +
+                       "each key once");
+    const std::string text = part.substr(equal + 1);
+    double number = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (read.ec == std::errc() && read.ptr == text.data() + text.size())
+      parameters.set(part.substr(0, equal), number);
+    else if (text == "true" || text == "false")
+      parameters.set(part.substr(0, equal), text == "true");
+    else
+      parameters.set(part.substr(0, equal), text);
+  }
+  return {format.substr(0, colon), parameters};
+}
+
 }  // namespace
 
 ExitStatus verify_plan(const std::filesystem::path& file, const Judges& given,
@@ -108,7 +133,8 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
                        const Invocation& invocation) {
   require_output(target, {file});
   const Registry registry = invocation.registry();
-  const auto exporter = registry.create<Exporter>(format);
+  const auto [name, parameters] = chosen_format(format);
+  const auto exporter = registry.create<Exporter>(name, parameters, "--format");
   const JudgedPlan judged = judge_file(file, {.controllers = controllers_of(invocation)});
   if (!judged.certificate.feasible()) {
     std::string failures;
@@ -122,7 +148,8 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
       return ExitStatus::not_certified;
     }
   }
-  const Plan& plan = judged.plan;
+  Plan plan = judged.plan;
+  plan.certificate = judged.certificate.to_value();  // files may say whether it passed
   const bool folder =
       in_plugin(*exporter, "file_extension", [&] { return exporter->file_extension().empty(); });
   std::string written = "wrote " + target.string();
@@ -133,8 +160,12 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
     for (std::size_t i = 0; i < files.size(); ++i)
       written += (i == 0 ? ": " : ", ") + files[i].first;
   } else {
-    write_file_atomically(target,
-                          in_plugin(*exporter, "write", [&] { return exporter->write(plan); }));
+    const std::string written =
+        in_plugin(*exporter, "write", [&] { return exporter->write(plan); });
+    const std::vector<std::string> losses =
+        in_plugin(*exporter, "losses", [&] { return exporter->losses(plan, written); });
+    write_file_atomically(target, written);
+    for (const std::string& loss : losses) std::printf("%s\n", visible_line(loss).c_str());
   }
   if (plan.task.scan)
     written += "; the plan has " + std::to_string(plan.task.scan->views.size()) + " images";

@@ -29,6 +29,13 @@ class Exporter : public PluginObject {
   // likewise.
   virtual NamedContents write_folder(const Plan&) const { return {}; }
 
+  // What the format loses: sentences for the user. Of a format of one file: `written` is what
+  // `write` gave for this plan. It is read as a program would that plays it back, by other code
+  // than that which wrote it, and compared with the plan.
+  virtual std::vector<std::string> losses(const Plan&, const std::string& /*written*/) const {
+    return {};
+  }
+
   // Sentences for the user on what the file is not good for, though it can be written.
   virtual std::vector<std::string> remarks(const Plan&) const { return {}; }
 };
