@@ -9,6 +9,7 @@
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/output_target.h"
+#include "framework/app/plan_surfaces.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
 #include "framework/app/terminal.h"
@@ -149,6 +150,7 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
     }
   }
   Plan plan = judged.plan;
+  open_surfaces(plan.environment, registry, file.parent_path());
   plan.certificate = judged.certificate.to_value();  // files may say whether it passed
   const bool folder =
       in_plugin(*exporter, "file_extension", [&] { return exporter->file_extension().empty(); });
