@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // lapwing verify, export and config.
+#include <unistd.h>
+
 #include <charconv>
 #include <cstdio>
 #include <iostream>
@@ -162,11 +164,11 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
     for (std::size_t i = 0; i < files.size(); ++i)
       written += (i == 0 ? ": " : ", ") + files[i].first;
   } else {
-    const std::string written =
+    const std::string content =
         in_plugin(*exporter, "write", [&] { return exporter->write(plan); });
     const std::vector<std::string> losses =
-        in_plugin(*exporter, "losses", [&] { return exporter->losses(plan, written); });
-    write_file_atomically(target, written);
+        in_plugin(*exporter, "losses", [&] { return exporter->losses(plan, content); });
+    write_file_atomically(target, content);
     for (const std::string& loss : losses) std::printf("%s\n", visible_line(loss).c_str());
   }
   if (plan.task.scan)
@@ -187,10 +189,12 @@ ExitStatus show_configuration(const std::filesystem::path& script, const Invocat
     print_json(mission->configuration());
     return ExitStatus::done;
   }
+  // Who reads wants the ends of a track; a file is a configuration, and has all of it.
+  const LongLists lists = ::isatty(STDOUT_FILENO) ? LongLists::shortened : LongLists::whole;
   // Whoever still has to name an input wants to see what there is to set.
   std::cout << "# " << visible_line(mission->kind()) << ": " << visible_line(mission->name())
             << "\n"
-            << visible_text(annotated_yaml(mission->configuration())) << std::flush;
+            << visible_text(annotated_yaml(mission->configuration(), lists)) << std::flush;
   mission->judge();
   return ExitStatus::done;
 }

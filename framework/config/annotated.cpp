@@ -78,8 +78,7 @@ std::string comment_of(const Value& value) {
   return comment;
 }
 
-// Lists of more tables than anybody reads: a measured track. A list that needs no more than its
-// count is commented out, so that the text, read as a configuration, leaves it as it is.
+// Lists of more tables than anybody reads: a measured track.
 constexpr std::size_t kLongestShown = 100;
 
 // A table on one line: "{time: 0, position: [0, 0, 2]}".
@@ -105,6 +104,8 @@ bool too_long(const Value& value) {
 
 class Printer {
  public:
+  explicit Printer(LongLists lists) : lists_(lists) {}
+
   // `first` begins the first line ("- " of a list entry), the others begin with as many spaces.
   void print(const Value& value, const std::string& first) {
     if (!holds_map(value)) {
@@ -115,7 +116,7 @@ class Printer {
     const std::string indent(first.size(), ' ');
     if (value.is_map()) {
       for (const auto& [key, child] : value.as_map()) {
-        if (too_long(child)) {
+        if (lists_ == LongLists::shortened && too_long(child)) {
           print_ends(indent + "# " + shown_text(key) + ": ", child.as_list());
           continue;
         }
@@ -153,7 +154,7 @@ class Printer {
   void print_ends(const std::string& start, const Value::List& list) {
     lines_.push_back({start + std::to_string(list.size()) + " entries, from " +
                           shown_inline(list.front()) + " to " + shown_inline(list.back()) +
-                          "; --json prints all",
+                          "; all of it in a file: > FILE.yaml",
                       ""});
   }
 
@@ -166,13 +167,14 @@ class Printer {
     print(child, indent + "  ");
   }
 
+  LongLists lists_;
   std::vector<Line> lines_;
 };
 
 }  // namespace
 
-std::string annotated_yaml(const Value& value) {
-  Printer printer;
+std::string annotated_yaml(const Value& value, LongLists lists) {
+  Printer printer(lists);
   printer.print(value, "");
   return printer.text();
 }

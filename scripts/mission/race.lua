@@ -115,9 +115,11 @@ local function check_options(run, vehicle)
   if o.timing == "profile" and o.model == "quadrotor_full" then
     run:fail("timing", "'profile' is for the model 'quadrotor'; 'quadrotor_full' needs 'optimal'")
   end
-  if o.thrust <= search.least(vehicle, o) then
-    run:fail("thrust", string.format("%.3g of the thrust is less than the weight of vehicle '%s'",
-                                     o.thrust, vehicle.name))
+  local least = search.least(vehicle, o)
+  if o.thrust <= least then
+    run:fail("thrust", string.format("%.3g of the thrust is not more than the weight of vehicle "
+                                     .. "'%s', which needs %.3g to hover: give more than that",
+                                     o.thrust, vehicle.name, math.ceil(1000 * least) / 1000))
   end
   run:expect_controller("controller")
   run:expect_players("players")  -- before anything is computed

@@ -141,13 +141,15 @@ TEST(Annotated, ALongTrackIsItsEnds) {
   subjects.push_back(subject);
   value.set("subjects", subjects);
   value.set("step", 1);
-  const std::string text = annotated_yaml(value);
+  const std::string text = annotated_yaml(value, LongLists::shortened);
   EXPECT_NE(text.find("    # track: 101 entries, from {time: 0, position: [0, 1.5, 2]} to {time: "
-                      "100, position: [0, 1.5, 2]}; --json prints all\n"),
+                      "100, position: [0, 1.5, 2]}; all of it in a file: > FILE.yaml\n"),
             std::string::npos)
       << text;
   EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 6) << text;
   EXPECT_EQ(parsed(text), parsed("subjects: [{name: walker}]\nstep: 1"));
+  // Text that is used as a configuration loses nothing.
+  EXPECT_EQ(parsed(annotated_yaml(value)), value);
 }
 
 }  // namespace
