@@ -33,7 +33,7 @@ class Slips : public CommandLine {
 TEST_F(Slips, WordsOfTheCommandLine) {
   slip({"run"}, "'lapwing run' wants MISSION.lua: mission script");
   slip({"export", "plan.json", "-o", "x"},
-       "'lapwing export' wants --format NAME: name of an exporter");
+       "'lapwing export' wants --format NAME[:KEY=VALUE,...]: an exporter");
   slip({"evaluate", "explore", "--world"}, "'--world' wants NAME[:FIRST-LAST]: a scene of");
   slip({"--set", "step=1", "run", "shot.lua"},
        "'--set' is an option of 'lapwing run': write it behind that");
