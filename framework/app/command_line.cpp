@@ -158,8 +158,7 @@ void add_race_command(CLI::App& app, Invocation& invocation, std::filesystem::pa
   add_repeated(*race, "--pilot", "LOG[:KEY=VALUE,...]", pilots,
                "a stick log (CSV: time,forward,left) with settings of its pilot: name, weight, "
                "strength, reach, speed, handicap; repeatable, at least one; no default; out is who "
-               "needs more "
-               "than 3 times the time of the plan divided by speed");
+               "needs more than 3 times the time of the plan divided by speed");
   add_text(*race, "--deviation-price", "S",
            "penalty in s per m of mean deviation from the course; default: 5",
            [&](const std::string& text) {

@@ -2,23 +2,23 @@
 // lapwing verify, export and config.
 #include <unistd.h>
 
-#include <charconv>
 #include <cstdio>
 #include <iostream>
-#include <sstream>
+#include <optional>
 
 #include "framework/app/command_line.h"
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/output_target.h"
-#include "framework/app/plan_surfaces.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
 #include "framework/app/terminal.h"
 #include "framework/config/annotated.h"
 #include "framework/core/files.h"
+#include "framework/core/named_parameters.h"
 #include "framework/core/visible_text.h"
 #include "framework/export/exporter.h"
+#include "framework/mission/environment_source.h"
 
 namespace lapwing {
 
@@ -74,29 +74,6 @@ void warn_of_changes(const JudgedPlan& judged, const Judges& judges) {
     std::fprintf(stderr, "lapwing: %s\n", visible_line(change).c_str());
 }
 
-// "chan:frame_rate=25,first_frame=0": the exporter's name, and its parameters as a map.
-std::pair<std::string, Value> chosen_format(const std::string& format) {
-  const std::size_t colon = format.find(':');
-  Value parameters = Value::map();
-  std::istringstream rest(colon == std::string::npos ? "" : format.substr(colon + 1));
-  for (std::string part; std::getline(rest, part, ',');) {
-    const std::size_t equal = part.find('=');
-    if (equal == std::string::npos || equal == 0 || parameters.find(part.substr(0, equal)))
-      throw InputError("--format: '" + part + "' is no parameter; expected NAME:KEY=VALUE,..., " +
-                       "each key once");
-    const std::string text = part.substr(equal + 1);
-    double number = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (read.ec == std::errc() && read.ptr == text.data() + text.size())
-      parameters.set(part.substr(0, equal), number);
-    else if (text == "true" || text == "false")
-      parameters.set(part.substr(0, equal), text == "true");
-    else
-      parameters.set(part.substr(0, equal), text);
-  }
-  return {format.substr(0, colon), parameters};
-}
-
 }  // namespace
 
 ExitStatus verify_plan(const std::filesystem::path& file, const Judges& given,
@@ -136,8 +113,11 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
                        const Invocation& invocation) {
   require_output(target, {file});
   const Registry registry = invocation.registry();
-  const auto [name, parameters] = chosen_format(format);
-  const auto exporter = registry.create<Exporter>(name, parameters, "--format");
+  const std::optional<NamedParameters> chosen = named_parameters_from(format);
+  if (!chosen)
+    throw InputError("--format: expected NAME or NAME:KEY=VALUE,..., each key once, got '" +
+                     format + "'");
+  const auto exporter = registry.create<Exporter>(chosen->name, chosen->parameters, "--format");
   const JudgedPlan judged = judge_file(file, {.controllers = controllers_of(invocation)});
   if (!judged.certificate.feasible()) {
     std::string failures;
@@ -152,7 +132,8 @@ ExitStatus export_plan(const std::filesystem::path& file, const std::string& for
     }
   }
   Plan plan = judged.plan;
-  open_surfaces(plan.environment, registry, file.parent_path());
+  if (in_plugin(*exporter, "shows_surroundings", [&] { return exporter->shows_surroundings(); }))
+    open_recorded_shapes(plan.environment, registry, file.parent_path());
   plan.certificate = judged.certificate.to_value();  // files may say whether it passed
   const bool folder =
       in_plugin(*exporter, "file_extension", [&] { return exporter->file_extension().empty(); });

@@ -40,9 +40,11 @@ void set(Pilot& pilot, const std::string& key, std::string_view text) {
     const std::vector<std::string> known = {"name",  "weight", "strength",
                                             "reach", "speed",  "handicap"};
     const std::string nearest = nearest_name(key, known);
+    std::string all;
+    for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
     throw InputError("--pilot: unknown '" + key + "'; " +
-                     (nearest.empty() ? "" : "did you mean '" + nearest + "'?; ") +
-                     "a pilot has name, weight, strength, reach, speed and handicap");
+                     (nearest.empty() ? "" : "did you mean '" + nearest + "'?; ") + "a pilot has " +
+                     all);
   }
 }
 

@@ -47,6 +47,12 @@ Pose filming_pose(const Plan& plan, double time) {
   return camera_pose(sample.position, sample.yaw + sample.gimbal_yaw, sample.gimbal_pitch);
 }
 
+Pose from_y_up(const Eigen::Vector3d& place, const Eigen::Quaterniond& turn) {
+  const Eigen::Quaterniond upright(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()));
+  const Eigen::Quaterniond optical(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+  return {upright * place, upright * turn * optical};
+}
+
 TrackDeviation deviation_of(const Plan& plan, double start, double finish, int steps,
                             const std::function<Pose(double)>& played) {
   TrackDeviation worst;

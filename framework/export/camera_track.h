@@ -30,6 +30,10 @@ Pinhole filming_camera(const Plan& plan, const std::string& format);
 // The camera of the plan at a time in s, as of a pose: x right, y down, z forward.
 Pose filming_pose(const Plan& plan, double time);
 
+// The pose, in the world of the plan, of a camera that a format places in a world with y up (x
+// east, z south), where cameras look along their -z axis.
+Pose from_y_up(const Eigen::Vector3d& place, const Eigen::Quaterniond& turn);
+
 // How far a playback is from the plan, at most, and when.
 struct TrackDeviation {
   double distance = 0, distance_time = 0;  // m, s

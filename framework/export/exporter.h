@@ -29,6 +29,10 @@ class Exporter : public PluginObject {
   // likewise.
   virtual NamedContents write_folder(const Plan&) const { return {}; }
 
+  // Whether the file holds obstacles too: then the plan that it is given has their shapes open,
+  // maps excepted.
+  virtual bool shows_surroundings() const { return false; }
+
   // What the format loses: sentences for the user. Of a format of one file: `written` is what
   // `write` gave for this plan. It is read as a program would that plays it back, by other code
   // than that which wrote it, and compared with the plan.

@@ -90,7 +90,8 @@ TriangleMesh moved_mesh(TriangleMesh mesh, const Eigen::Vector3d& moved) {
   return mesh;
 }
 
-// The surface of an obstacle as it is drawn; empty where nobody has it.
+}  // namespace
+
 TriangleMesh drawn_surface(const Obstacle& obstacle, const Plan& plan,
                            const std::filesystem::path& folder) {
   constexpr double kShare = 0.02;  // of its size, that chords may leave a round surface by
@@ -112,6 +113,8 @@ TriangleMesh drawn_surface(const Obstacle& obstacle, const Plan& plan,
     return {};  // the certificate says what is wrong with it
   }
 }
+
+namespace {
 
 void add_obstacle(const Obstacle& obstacle, const Plan& plan, const std::filesystem::path& folder,
                   Drawing& drawing) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/core/log.h"
+#include "framework/solve/elastic_rows.h"
 #include "framework/solve/equilibration.h"
 #include "framework/solve/kkt_system.h"
 #include "framework/solve/step_filter.h"
@@ -105,10 +106,8 @@ class NonlinearSolve {
   VectorXd values_, s_, y_;              // scaled
   VectorXd dx_, ds_, dy_;                // direction
   VectorXd dual_, slack_dual_, primal_;  // residuals
-  VectorXd diagonal_, relief_, slack_right_, elastic_right_;
-  bool elastic_ = false;
-  double penalty_ = 0;
-  VectorXd e_p_, e_q_, z_p_, z_q_, de_p_, de_q_, dz_p_, dz_q_;
+  VectorXd diagonal_;
+  ElasticRows elastic_;
   double barrier_ = 0, shift_ = 0, last_shift_ = 0;
   StepFilter filter_;
   NonlinearOutcome outcome_;
@@ -251,7 +250,7 @@ void NonlinearSolve::residuals() {
     else
       primal_(r) = 0.0;
     if (rows_[r] != RowKind::inequality) slack_dual_(r) = 0.0;
-    if (elastic_ && rows_[r] != RowKind::unbounded) primal_(r) += e_q_(r) - e_p_(r);
+    if (elastic_.active() && rows_[r] != RowKind::unbounded) primal_(r) -= elastic_.miss(r);
   }
   for (const Side* side : {&lower_, &upper_})
     for (std::size_t k = 0; k < side->index.size(); ++k) {
@@ -270,11 +269,7 @@ double NonlinearSolve::error(double barrier) const {
     if (side->t.size())
       worst = std::max(worst, (side->t.cwiseProduct(side->z).array() - barrier).abs().maxCoeff());
   }
-  if (elastic_)
-    for (int r = 0; r < m(); ++r)
-      if (rows_[r] != RowKind::unbounded)
-        worst = std::max(
-            {worst, std::abs(e_p_(r) * z_p_(r) - barrier), std::abs(e_q_(r) * z_q_(r) - barrier)});
+  if (elastic_.active()) worst = std::max(worst, elastic_.deviation(barrier));
   const double scale = std::max(kWorseScale, (sum + of_bounds) / (m() + count() + 1)) / kWorseScale;
   const double dual =
       std::max(dual_.lpNorm<Eigen::Infinity>(), m() ? slack_dual_.lpNorm<Eigen::Infinity>() : 0.0);
@@ -293,8 +288,8 @@ std::optional<SolveStatus> NonlinearSolve::converged() {
   const double total = lower_.t.dot(lower_.z) + upper_.t.dot(upper_.z);
   if (error(0.0) <= 10 * options_.tolerance && total <= allowed) {
     if (violation <= options_.feasibility) return SolveStatus::optimal;
-    if (elastic_ && barrier_ <= least) {
-      if (penalty_ >= kMostPenalty) return SolveStatus::infeasible;
+    if (elastic_.active() && barrier_ <= least) {
+      if (elastic_.penalty() >= kMostPenalty) return SolveStatus::infeasible;
       make_elastic();  // rows may be missed because it costs too little
       return {};
     }
@@ -343,8 +338,8 @@ void NonlinearSolve::say(int iteration, double alpha) const {
   std::snprintf(
       line, sizeof line,
       "iqp: %4d%c cost %.9g  missed %.1e  error %.1e  barrier %.1e  shift %.1e  step %.2g",
-      iteration, elastic_ ? 'e' : ' ', model_.cost, unscaled_violation(), error(0.0), barrier_,
-      shift_, alpha);
+      iteration, elastic_.active() ? 'e' : ' ', model_.cost, unscaled_violation(), error(0.0),
+      barrier_, shift_, alpha);
   logging::debug(line);
 }
 
@@ -355,13 +350,11 @@ bool NonlinearSolve::factorise() {
       diagonal_(side->index[k]) += side->z(k) / side->t(k);
   solved_rows_ = rows_;
   VectorXd whole = diagonal_;
-  if (elastic_) {
-    relief_.setZero(m());
+  if (elastic_.active()) {
     for (int r = 0; r < m(); ++r) {
       if (rows_[r] == RowKind::unbounded) continue;
-      relief_(r) = e_p_(r) / z_p_(r) + e_q_(r) / z_q_(r);
       const double soft = rows_[r] == RowKind::inequality ? 1.0 / diagonal_(n() + r) : 0.0;
-      whole(n() + r) = 1.0 / (soft + relief_(r));
+      whole(n() + r) = 1.0 / (soft + elastic_.relief(r));
       solved_rows_[r] = RowKind::inequality;
     }
   }
@@ -398,19 +391,11 @@ void NonlinearSolve::solve_for(const VectorXd& primal, bool corrected) {
       const double push = side->sign * (barrier_ / side->t(k) - side->z(k));
       (i < n() ? right(i) : slack(i - n())) += push;
     }
-  VectorXd a_p, a_q;
-  if (elastic_) {
-    a_p.setZero(m());
-    a_q.setZero(m());
-  }
   for (int r = 0; r < m(); ++r) {
     double value = rows_[r] == RowKind::unbounded ? 0.0 : primal(r);
     if (rows_[r] == RowKind::inequality) value += slack(r) / diagonal_(n() + r);
-    if (elastic_ && rows_[r] != RowKind::unbounded) {
-      a_p(r) = barrier_ / z_p_(r) - e_p_(r) - e_p_(r) / z_p_(r) * (penalty_ - y_(r) - z_p_(r));
-      a_q(r) = barrier_ / z_q_(r) - e_q_(r) - e_q_(r) / z_q_(r) * (penalty_ + y_(r) - z_q_(r));
-      value += a_q(r) - a_p(r);
-    }
+    if (elastic_.active() && rows_[r] != RowKind::unbounded)
+      value += elastic_.aim(r, y_(r), barrier_);
     right(n() + r) = value;
   }
   for (int i = 0; i < n(); ++i)
@@ -421,16 +406,7 @@ void NonlinearSolve::solve_for(const VectorXd& primal, bool corrected) {
   ds_.setZero(m());
   for (int r = 0; r < m(); ++r)
     if (rows_[r] == RowKind::inequality) ds_(r) = (slack(r) - dy_(r)) / diagonal_(n() + r);
-  if (elastic_) {
-    for (VectorXd* v : {&de_p_, &de_q_, &dz_p_, &dz_q_}) v->setZero(m());
-    for (int r = 0; r < m(); ++r) {
-      if (rows_[r] == RowKind::unbounded) continue;
-      de_p_(r) = a_p(r) + e_p_(r) / z_p_(r) * dy_(r);
-      de_q_(r) = a_q(r) - e_q_(r) / z_q_(r) * dy_(r);
-      dz_p_(r) = penalty_ - y_(r) - z_p_(r) - dy_(r);
-      dz_q_(r) = penalty_ + y_(r) - z_q_(r) + dy_(r);
-    }
-  }
+  if (elastic_.active()) elastic_.follow(y_, dy_);
   for (Side* side : {&lower_, &upper_})
     for (std::size_t k = 0; k < side->index.size(); ++k) {
       const int i = side->index[k];
@@ -448,10 +424,7 @@ double NonlinearSolve::longest(bool of_multipliers) const {
   };
   for (const Side* side : {&lower_, &upper_})
     of_multipliers ? limit(side->z, side->dz) : limit(side->t, side->dt);
-  if (elastic_) {
-    limit(of_multipliers ? z_p_ : e_p_, of_multipliers ? dz_p_ : de_p_);
-    limit(of_multipliers ? z_q_ : e_q_, of_multipliers ? dz_q_ : de_q_);
-  }
+  if (elastic_.active()) elastic_.limit(of_multipliers, share, alpha);
   return of_multipliers ? alpha : within_times(alpha);
 }
 
@@ -479,9 +452,9 @@ double NonlinearSolve::violation_of(const VectorXd& values, double alpha) const 
     double away =
         values(r) - (rows_[r] == RowKind::equation ? p_.row_lower(r)
                                                    : s_(r) + (alpha != 0 ? alpha * ds_(r) : 0.0));
-    if (elastic_) {
-      away += e_p_(r) - e_q_(r);
-      if (alpha != 0) away += alpha * (de_p_(r) - de_q_(r));
+    if (elastic_.active()) {
+      away += elastic_.miss(r);
+      if (alpha != 0) away += alpha * elastic_.change_of_miss(r);
     }
     sum += std::abs(away);
   }
@@ -508,15 +481,9 @@ NonlinearSolve::Trial NonlinearSolve::trial(double alpha) const {
   };
   add(lower_.t, lower_.dt);
   add(upper_.t, upper_.dt);
-  if (elastic_)
-    for (int r = 0; r < m(); ++r) {
-      if (rows_[r] == RowKind::unbounded) continue;
-      const double p = e_p_(r) + (alpha != 0 ? alpha * de_p_(r) : 0);
-      const double q = e_q_(r) + (alpha != 0 ? alpha * de_q_(r) : 0);
-      logs += std::log(p) + std::log(q);
-      sum += p + q;
-    }
-  result.barrier_cost = scaling_.cost_factor() * result.cost + penalty_ * sum - barrier_ * logs;
+  if (elastic_.active()) elastic_.add_cost(alpha, logs, sum);
+  result.barrier_cost =
+      scaling_.cost_factor() * result.cost + elastic_.penalty() * sum - barrier_ * logs;
   return result;
 }
 
@@ -525,11 +492,7 @@ bool NonlinearSolve::line_search(double& alpha) {
   double slope = p_.gradient.dot(dx_);
   for (const Side* side : {&lower_, &upper_})
     slope -= barrier_ * side->dt.cwiseQuotient(side->t).sum();
-  if (elastic_)
-    for (int r = 0; r < m(); ++r)
-      if (rows_[r] != RowKind::unbounded)
-        slope +=
-            penalty_ * (de_p_(r) + de_q_(r)) - barrier_ * (de_p_(r) / e_p_(r) + de_q_(r) / e_q_(r));
+  if (elastic_.active()) elastic_.add_slope(barrier_, slope);
   const double longest_step = longest(false), of_multipliers = longest(true);
   const VectorXd dy = dy_;
   const auto accepted = [&](const Trial& next, double length) {
@@ -545,7 +508,8 @@ bool NonlinearSolve::line_search(double& alpha) {
     if (alpha != longest_step || !(next.violation >= here.violation)) continue;
     // Second-order correction: the rows as they are at the end of the step.
     const VectorXd dx = dx_, ds = ds_;
-    const VectorXd de_p = de_p_, de_q = de_q_, dt_low = lower_.dt, dt_up = upper_.dt;
+    const ElasticRows::Steps elastic = elastic_.steps();
+    const VectorXd dt_low = lower_.dt, dt_up = upper_.dt;
     VectorXd primal = primal_;
     double before = here.violation, length = alpha;
     for (int c = 0; c < kCorrections && next.violation < 1e3 * (1 + before); ++c) {
@@ -553,7 +517,7 @@ bool NonlinearSolve::line_search(double& alpha) {
         if (rows_[r] == RowKind::unbounded) continue;
         double away = (rows_[r] == RowKind::equation ? p_.row_lower(r) : s_(r) + length * ds_(r)) -
                       next.values(r);
-        if (elastic_) away -= e_p_(r) - e_q_(r) + length * (de_p_(r) - de_q_(r));
+        if (elastic_.active()) away -= elastic_.miss(r) + length * elastic_.change_of_miss(r);
         primal(r) = length * primal(r) + away;
       }
       solve_for(primal, true);
@@ -571,8 +535,7 @@ bool NonlinearSolve::line_search(double& alpha) {
     dx_ = dx;
     ds_ = ds;
     dy_ = dy;
-    de_p_ = de_p;
-    de_q_ = de_q;
+    elastic_.set_steps(elastic);
     lower_.dt = dt_low;
     upper_.dt = dt_up;
   }
@@ -592,40 +555,22 @@ void NonlinearSolve::take(const Trial& next, double alpha, double of_multipliers
     side->z += of_multipliers * side->dz;
     for (Eigen::Index k = 0; k < side->t.size(); ++k) keep(side->z(k), side->t(k));
   }
-  if (!elastic_) return;
-  e_p_ += alpha * de_p_;
-  e_q_ += alpha * de_q_;
-  z_p_ += of_multipliers * dz_p_;
-  z_q_ += of_multipliers * dz_q_;
-  for (int r = 0; r < m(); ++r) {
-    keep(z_p_(r), e_p_(r));
-    keep(z_q_(r), e_q_(r));
-  }
+  if (!elastic_.active()) return;
+  elastic_.take(alpha, of_multipliers);
+  elastic_.keep(keep);
 }
 
 // From here on rows may be missed, at a price; or, where they may already, with fresh numbers.
 void NonlinearSolve::make_elastic() {
   const double largest = m() ? y_.lpNorm<Eigen::Infinity>() : 0.0;
-  penalty_ = std::clamp(kPenaltyFactor * largest, std::max(kLeastPenalty, penalty_), kMostPenalty);
+  const double penalty = std::clamp(kPenaltyFactor * largest,
+                                    std::max(kLeastPenalty, elastic_.penalty()), kMostPenalty);
   y_.setZero();
-  elastic_ = false;
+  elastic_.end();
   residuals();
   const double worst = m() ? primal_.lpNorm<Eigen::Infinity>() : 0.0;
   barrier_ = std::clamp(worst, 10 * barrier_, std::max(0.1, 10 * barrier_));
-  elastic_ = true;
-  for (VectorXd* v : {&e_p_, &e_q_, &z_p_, &z_q_}) v->setOnes(m());
-  for (VectorXd* v : {&de_p_, &de_q_, &dz_p_, &dz_q_}) v->setZero(m());
-  for (int r = 0; r < m(); ++r) {
-    if (rows_[r] == RowKind::unbounded) continue;
-    const double away = -primal_(r);  // q - p
-    const double half = (barrier_ - penalty_ * away) / (2 * penalty_);
-    e_p_(r) = half + std::sqrt(half * half + barrier_ * away / (2 * penalty_));
-    if (!(e_p_(r) > 0) || !std::isfinite(e_p_(r))) e_p_(r) = std::max(-away, 0.0) + 1e-8;
-    e_q_(r) = away + e_p_(r);
-    if (!(e_q_(r) > 0)) e_q_(r) = 1e-8;
-    z_p_(r) = barrier_ / e_p_(r);
-    z_q_(r) = barrier_ / e_q_(r);
-  }
+  elastic_.begin(rows_, primal_, penalty, barrier_);
   for (Side* side : {&lower_, &upper_}) side->z = barrier_ * side->t.cwiseInverse();
   linearise();
   residuals();

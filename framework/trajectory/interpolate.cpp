@@ -52,23 +52,25 @@ void blend_inputs(const Sample& a, const Sample& b, double s, Sample& out) {
   out.gimbal_pitch_rate = blend(a.gimbal_pitch_rate, b.gimbal_pitch_rate, s);
 }
 
-// States linearly, an orientation along the shortest turn; inputs as `held` says.
+// Linearly, an orientation along the shortest turn; nothing where only one of both has it.
+void blend_column(const std::string& name, const Sample& a, const Sample& b, double s,
+                  Sample& out) {
+  const auto from = a.columns.find(name), to = b.columns.find(name);
+  if (from.empty() || from.size() != to.size()) return;
+  if (name == "orientation" && from.size() == 4) {
+    out.columns.set(name, a.columns.quaternion(name).slerp(s, b.columns.quaternion(name)));
+    return;
+  }
+  std::vector<double> mixed(from.size());
+  for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = blend(from[i], to[i], s);
+  out.columns.set(name, mixed);
+}
+
+// States; and inputs, unless they are held.
 void blend_columns(const Trajectory& trajectory, const Sample& a, const Sample& b, double s,
                    Sample& out) {
-  for (const MotionColumn& column : trajectory.motion.columns) {
-    const auto from = a.columns.find(column.name), to = b.columns.find(column.name);
-    if (from.empty() || from.size() != to.size()) continue;
-    if (column.input && trajectory.inputs_held) continue;
-    if (column.name == "orientation" && from.size() == 4) {
-      out.columns.set(
-          column.name,
-          a.columns.quaternion(column.name).slerp(s, b.columns.quaternion(column.name)));
-      continue;
-    }
-    std::vector<double> mixed(from.size());
-    for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = blend(from[i], to[i], s);
-    out.columns.set(column.name, mixed);
-  }
+  for (const MotionColumn& column : trajectory.motion.columns)
+    if (!column.input || !trajectory.inputs_held) blend_column(column.name, a, b, s, out);
 }
 
 // When the step of a sample is half over. The last one's is as long as the one before it.
@@ -121,20 +123,19 @@ Sample sample_at(const Trajectory& trajectory, double time) {
 void smooth_held_inputs(const Trajectory& trajectory, double time, Sample& sample) {
   const auto& samples = trajectory.samples;
   if (!trajectory.inputs_held || samples.size() < 2) return;
-  std::size_t after = 1;
-  while (after + 1 < samples.size() && middle_of_step(samples, after) <= time) ++after;
-  const Sample& a = samples[after - 1];
-  const Sample& b = samples[after];
-  const double from = middle_of_step(samples, after - 1), to = middle_of_step(samples, after);
+  // The last step whose middle is not after `time`, and the one behind it.
+  const auto begun = std::upper_bound(samples.begin(), samples.end(), time,
+                                      [](double t, const Sample& x) { return t < x.time; });
+  auto last = static_cast<std::size_t>(std::max<std::ptrdiff_t>(begun - samples.begin() - 1, 0));
+  if (last > 0 && middle_of_step(samples, last) > time) --last;
+  last = std::min(last, samples.size() - 2);
+  const Sample& a = samples[last];
+  const Sample& b = samples[last + 1];
+  const double from = middle_of_step(samples, last), to = middle_of_step(samples, last + 1);
   const double s = std::clamp((time - from) / (to - from), 0.0, 1.0);
   blend_inputs(a, b, s, sample);
-  for (const MotionColumn& column : trajectory.motion.columns) {
-    const auto first = a.columns.find(column.name), second = b.columns.find(column.name);
-    if (!column.input || first.empty() || first.size() != second.size()) continue;
-    std::vector<double> mixed(first.size());
-    for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = blend(first[i], second[i], s);
-    sample.columns.set(column.name, mixed);
-  }
+  for (const MotionColumn& column : trajectory.motion.columns)
+    if (column.input) blend_column(column.name, a, b, s, sample);
 }
 
 }  // namespace lapwing

@@ -93,6 +93,22 @@ TEST_F(CommandLine, AnOverConstrainedFilmNamesLimitAndTime) {
   EXPECT_EQ(run({"run", "shot.lua", "--set", "stretch=auto"}).status, 0);
 }
 
+// Shapes are not in a plan document: they are opened again from what it records.
+TEST_F(CommandLine, ExportsWithSurroundingsHoldEveryObstacle) {
+  write("rock.obj", "v 0 20 0\nv 1 20 0\nv 0 21 0\nf 1 2 3\n");
+  write("shot.lua", film("name = 'hop', obstacles = { { type = 'sphere', name = 'ball', "
+                         "center = {0, 20, 3}, radius = 1 }, { type = 'mesh', name = 'rock', "
+                         "file = 'rock.obj' } },"));
+  const Finished made = run({"run", "shot.lua"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Finished finished = run({"export", "out/hop/plan.json", "--format", "gltf", "-o", "x.glb"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(finished.out.find("left out"), std::string::npos) << finished.out;
+  const std::string file = read_file(folder_ / "x.glb");
+  EXPECT_NE(file.find("\"ball\""), std::string::npos);
+  EXPECT_NE(file.find("\"rock\""), std::string::npos);
+}
+
 TEST_F(CommandLine, VerifyAndExport) {
   write("shot.lua", film("name = 'hop',"));
   ASSERT_EQ(run({"run", "shot.lua"}).status, 0);
@@ -104,6 +120,9 @@ TEST_F(CommandLine, VerifyAndExport) {
   finished = run({"export", "out/hop/plan.json", "--format", "csv", "-o", "hop.csv"});
   EXPECT_EQ(finished.status, 0) << finished.err;
   EXPECT_EQ(finished.out, "wrote hop.csv\n");
+  for (const char* format : {"csv:", "csv:x", "gltf:frame_rate=24,frame_rate=25"})
+    refused({"export", "out/hop/plan.json", "--format", format, "-o", "x"},
+            {"--format: expected NAME or NAME:KEY=VALUE,..., each key once", format});
   write("ann.csv", "time,forward,left\n0,0,0\n0.4,0,0\n");
   refused({"race", "out/hop/plan.json", "--pilot", "ann.csv:handicp=3"},
           {"'handicp'", "did you mean 'handicap'?"});

@@ -67,8 +67,7 @@ std::set<std::string> packages_of(const std::string& name) {
   return found;
 }
 
-// What a test may need by name, and the Debian package that holds it; "": every Debian has it, or
-// the test is of no use without a package from elsewhere, and is skipped by name without it.
+// What a test may need by name, and the Debian package that holds it; "": every Debian has it.
 const std::map<std::string, std::string> kPackages{// find_package and pkg_check_modules
                                                    {"Eigen3", "libeigen3-dev"},
                                                    {"GTest", "libgtest-dev"},
@@ -94,7 +93,6 @@ const std::map<std::string, std::string> kPackages{// find_package and pkg_check
                                                    {"groff", "groff-base"},
                                                    {"make", "make"},
                                                    {"nm", "binutils"},
-                                                   {"node", ""},
                                                    {"script", ""},
                                                    {"zsh", "zsh"}};
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "framework/core/random.h"
 #include "framework/solve/quadratic_program.h"
 
 namespace lapwing {
@@ -25,6 +26,18 @@ inline QuadraticProgram dense_program(const Eigen::MatrixXd& p, const Eigen::Vec
 
 inline Eigen::VectorXd numbers(std::initializer_list<double> list) {
   return Eigen::Map<const Eigen::VectorXd>(list.begin(), static_cast<Eigen::Index>(list.size()));
+}
+
+inline Eigen::VectorXd normal_vector(int n, Random& random) {
+  Eigen::VectorXd v(n);
+  for (double& x : v) x = random.normal();
+  return v;
+}
+
+inline Eigen::MatrixXd normal_matrix(int rows, int columns, Random& random) {
+  Eigen::MatrixXd matrix(rows, columns);
+  for (double& x : matrix.reshaped()) x = random.normal();
+  return matrix;
 }
 
 // Without rows.

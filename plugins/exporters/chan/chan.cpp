@@ -45,10 +45,7 @@ Pose shown_pose(const ChanFrame& frame) {
   const auto about = [&](int axis) {
     return Eigen::AngleAxisd(radians(frame.turn[axis]), Eigen::Vector3d::Unit(axis));
   };
-  const Eigen::Quaterniond turned = about(1) * about(0) * about(2);
-  const Eigen::Quaterniond upright(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()));
-  const Eigen::Quaterniond optical(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
-  return {upright * frame.place, upright * turned * optical};
+  return from_y_up(frame.place, about(1) * about(0) * about(2));
 }
 
 class Chan final : public Exporter {

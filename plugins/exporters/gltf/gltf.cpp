@@ -8,6 +8,7 @@
 #include "framework/core/number_text.h"
 #include "framework/export/camera_track.h"
 #include "framework/export/exporter.h"
+#include "framework/export/surroundings.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/plugin/plugin.h"
 #include "framework/shape/surfaces.h"
@@ -23,7 +24,7 @@ using gltf_file::y_up;
 
 const Eigen::Vector4d kPath{0.05, 0.2, 0.8, 1}, kSubject{0.8, 0.2, 0.05, 1},
     kObstacle{0.4, 0.35, 0.3, 0.6}, kGate{0.9, 0.6, 0.02, 1}, kStroke{1, 0.9, 0.3, 1};
-constexpr double kTolerance = 0.02;  // m, chords of round surfaces
+constexpr double kTolerance = 0.02;  // m, chords of subjects and balls
 
 class Gltf final : public Exporter {
  public:
@@ -36,6 +37,8 @@ class Gltf final : public Exporter {
   explicit Gltf(const Parameters& parameters) : rate_(parameters.number("frame_rate")) {}
 
   std::string file_extension() const override { return ".glb"; }
+
+  bool shows_surroundings() const override { return true; }
 
   std::string write(const Plan& plan) const override {
     Document document;
@@ -67,15 +70,13 @@ class Gltf final : public Exporter {
     if (!plan.cuts.empty()) said.push_back("cuts are not marked: they are in the animation");
     std::string unseen;
     for (std::size_t i = 0; i < plan.environment.obstacles.size(); ++i)
-      if (!drawn(plan.environment.obstacles[i]))
+      if (drawn_surface(plan.environment.obstacles[i], plan, {}).triangles.empty())
         unseen += (unseen.empty() ? "" : ", ") + plan.environment.obstacles[i].label(i + 1);
     if (!unseen.empty()) said.push_back("without a surface here, and left out: " + unseen);
     return said;
   }
 
  private:
-  static bool drawn(const Obstacle& obstacle) { return obstacle.shape || obstacle.triangles; }
-
   std::vector<double> key_times(const Plan& plan) const {
     std::vector<double> times = frame_times(plan.trajectory, rate_, "gltf");
     const double end = plan.trajectory.samples.back().time;
@@ -160,15 +161,7 @@ class Gltf final : public Exporter {
   }
 
   static void add_obstacle(Document& document, const Plan& plan, const Obstacle& obstacle) {
-    if (!drawn(obstacle)) return;
-    Eigen::AlignedBox3d near;
-    for (const Sample& s : plan.trajectory.samples) near.extend(s.position);
-    near.min().array() -= 10;
-    near.max().array() += 10;
-    if (obstacle.shape && !near.intersects(obstacle.shape->bounds()))
-      near.extend(obstacle.shape->bounds());
-    const TriangleMesh surface =
-        obstacle.shape ? obstacle.shape->triangles(kTolerance, near) : *obstacle.triangles;
+    const TriangleMesh surface = drawn_surface(obstacle, plan, {});
     if (surface.triangles.empty()) return;
     Eigen::Vector4d color = kObstacle;
     if (obstacle.side == Side::keep_inside) color[3] = 0.15;

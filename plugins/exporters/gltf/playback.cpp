@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "framework/core/json.h"
+#include "framework/export/camera_track.h"
 
 namespace lapwing::gltf_file {
 namespace {
@@ -66,10 +67,8 @@ Pose AnimatedNode::at(double time) const {
       next == times.begin() ? 0 : static_cast<std::size_t>(next - times.begin()) - 1;
   const std::size_t j = std::min(i + 1, times.size() - 1);
   const double share = j == i ? 0 : std::clamp((time - times[i]) / (times[j] - times[i]), 0.0, 1.0);
-  const Eigen::Quaterniond upright(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()));
-  const Eigen::Quaterniond optical(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
-  return {upright * Eigen::Vector3d(places[i] + share * (places[j] - places[i])),
-          upright * turns[i].slerp(share, turns[j]).normalized() * optical};
+  return from_y_up(places[i] + share * (places[j] - places[i]),
+                   turns[i].slerp(share, turns[j]).normalized());
 }
 
 }  // namespace lapwing::gltf_file

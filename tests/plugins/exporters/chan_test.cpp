@@ -13,12 +13,6 @@
 namespace lapwing {
 namespace {
 
-Value chan_rate(double rate) {
-  Value given = Value::map();
-  given.set("frame_rate", rate);
-  return given;
-}
-
 std::vector<std::vector<double>> chan_lines(const std::string& text) {
   std::vector<std::vector<double>> lines;
   std::istringstream stream(text);
@@ -48,7 +42,7 @@ Eigen::Vector2d chan_pixel(const std::vector<double>& f, const Eigen::Vector3d& 
 TEST(Chan, PointsFallWhereThePlansCameraSeesThem) {
   const Plan plan = planned_camera();
   const Pinhole camera = filming_drone().camera.pinhole();
-  const auto frames = chan_lines(exporter_named("chan", chan_rate(25))->write(plan));
+  const auto frames = chan_lines(exporter_named("chan", with_frame_rate(25))->write(plan));
   ASSERT_EQ(frames.size(), 51u);  // 2.03 s
   for (std::size_t i = 0; i < frames.size(); ++i) {
     ASSERT_EQ(frames[i].size(), 8u);
@@ -67,7 +61,7 @@ TEST(Chan, PointsFallWhereThePlansCameraSeesThem) {
 
 TEST(Chan, StatesWhatLiesBetweenAndAfterItsFrames) {
   Plan plan = planned_camera();
-  const auto chan = exporter_named("chan", chan_rate(10));
+  const auto chan = exporter_named("chan", with_frame_rate(10));
   const auto said = chan->losses(plan, chan->write(plan));
   // The sagitta of a chord of 0.1 rad on a circle of 10 m is 12.5 mm.
   EXPECT_TRUE(says(said, "at most 12.5 mm")) << said[1];
@@ -92,7 +86,7 @@ TEST(Chan, SaysThatAPlanIsNotCertified) {
 
 TEST(Chan, RefusesWhatItCannotHold) {
   for (const double rate : {0.0, -24.0, 1e9})
-    EXPECT_THROW(exporter_named("chan", chan_rate(rate)), InputError);
+    EXPECT_THROW(exporter_named("chan", with_frame_rate(rate)), InputError);
   Plan race = planned_camera();
   race.kind = "race";
   race.trajectory.has_gimbal = false;

@@ -17,6 +17,12 @@ inline std::unique_ptr<Exporter> exporter_named(const std::string& name,
   return registry.create<Exporter>(name, parameters);
 }
 
+inline Value with_frame_rate(double rate) {
+  Value given = Value::map();
+  given.set("frame_rate", rate);
+  return given;
+}
+
 inline Vehicle filming_drone() {
   Vehicle vehicle = camera_drone();
   vehicle.gimbal = GimbalLimits{-2, 2, -1.5, 0.5, 2, 2};
