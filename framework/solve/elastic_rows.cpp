@@ -34,8 +34,8 @@ void ElasticRows::begin(const std::vector<RowKind>& rows, const VectorXd& away, 
 double ElasticRows::deviation(double barrier) const {
   double worst = 0;
   for (const int r : rows_)
-    worst = std::max(
-        {worst, std::abs(p_(r) * z_p_(r) - barrier), std::abs(q_(r) * z_q_(r) - barrier)});
+    worst =
+        std::max({worst, std::abs(p_(r) * z_p_(r) - barrier), std::abs(q_(r) * z_q_(r) - barrier)});
   return worst;
 }
 

@@ -27,8 +27,8 @@ TEST(NamedParameters, ANameAloneHasNone) {
 }
 
 TEST(NamedParameters, WhatIsNoListIsNone) {
-  for (const char* text : {"a:", "a:b", "a:b=", "a:=1", "a:b=1,", "a:,b=1", "a:b=1,,c=2",
-                           "a:b=1,b=2", "a:b=1,c"})
+  for (const char* text :
+       {"a:", "a:b", "a:b=", "a:=1", "a:b=1,", "a:,b=1", "a:b=1,,c=2", "a:b=1,b=2", "a:b=1,c"})
     EXPECT_FALSE(named_parameters_from(text)) << text;
 }
 
