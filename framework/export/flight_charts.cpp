@@ -76,9 +76,16 @@ bool all_around(const Zone& zone) {
   return zone.name == "floor";
 }
 
-Projection better_side(const Trajectory& trajectory) {
-  Eigen::Vector3d low = trajectory.samples.front().position, high = low;
-  for (const Sample& s : trajectory.samples) {
+// The side that a drawing of light is read from; of other flights, where they look widest.
+Projection better_side(const Plan& plan) {
+  const Eigen::Vector3d& view = plan.task.drawing_view;
+  if (!plan.task.strokes.empty()) {
+    if (std::abs(view.x()) > std::abs(view.y()))
+      return view.x() > 0 ? Projection::from_west : Projection::from_east;
+    return view.y() >= 0 ? Projection::from_south : Projection::from_north;
+  }
+  Eigen::Vector3d low = plan.trajectory.samples.front().position, high = low;
+  for (const Sample& s : plan.trajectory.samples) {
     low = low.cwiseMin(s.position);
     high = high.cwiseMax(s.position);
   }
@@ -87,7 +94,7 @@ Projection better_side(const Trajectory& trajectory) {
 }
 
 std::vector<Block> views_of(const Drawing& drawing, const std::string& title, Projection side) {
-  const std::string from = side == Projection::from_south ? "south" : "east";
+  const std::string from = projection_names().at(static_cast<std::size_t>(side)).substr(5);
   return {PathView{title + " from above", Projection::above, drawing},
           PathView{title + " from the " + from, side, drawing},
           Scene3D{title + " in space", drawing}};
@@ -119,7 +126,7 @@ Section path_section(const Plan& plan, const std::filesystem::path& folder) {
   drawing.value = {"speed", "m/s"};
   drawing.lines.push_back(std::move(line));
   add_task(plan, folder, drawing);
-  return {"Path", views_of(drawing, "Path", better_side(plan.trajectory))};
+  return {"Path", views_of(drawing, "Path", better_side(plan))};
 }
 
 Section paths_section(const std::vector<std::pair<std::string, const Plan*>>& plans,
@@ -136,7 +143,7 @@ Section paths_section(const std::vector<std::pair<std::string, const Plan*>>& pl
     drawing.lines.push_back(std::move(line));
   }
   add_task(*plans.front().second, folder, drawing);
-  return {"Paths", views_of(drawing, "Paths", better_side(plans.front().second->trajectory))};
+  return {"Paths", views_of(drawing, "Paths", better_side(*plans.front().second))};
 }
 
 Section motion_section(const Plan& plan, const Vehicle& vehicle) {

@@ -8,6 +8,13 @@
 #include "framework/export/report_data.h"
 
 namespace lapwing {
+
+const std::vector<std::string>& projection_names() {
+  static const std::vector<std::string> names{"above", "from_south", "from_east", "from_north",
+                                              "from_west"};
+  return names;
+}
+
 namespace {
 
 std::string escaped(const std::string& text) {

@@ -149,7 +149,11 @@ struct Drawing {
 };
 
 // Looking down (east to the right), north (east to the right) or west (north to the right).
-enum class Projection { above, from_south, from_east };
+// What lies right of the picture: east from above and from the south, north from the east, west
+// from the north, south from the west.
+enum class Projection { above, from_south, from_east, from_north, from_west };
+// "above", "from_south", ...: in the order of the enumeration.
+const std::vector<std::string>& projection_names();
 
 struct PathView {
   std::string title;

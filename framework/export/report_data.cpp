@@ -192,12 +192,12 @@ void write(const Chart& c, const Section& section, Writer& writer) {
 }
 
 void write(const PathView& v, const Section& section, Writer& writer) {
-  static constexpr const char* kNames[] = {"above", "from_south", "from_east"};
   writer.enter(section.title, v.title);
-  writer.blocks.push_back({{"type", "path"},
-                           {"title", v.title},
-                           {"projection", kNames[static_cast<int>(v.projection)]},
-                           {"drawing", drawing(v.drawing, writer)}});
+  writer.blocks.push_back(
+      {{"type", "path"},
+       {"title", v.title},
+       {"projection", projection_names().at(static_cast<std::size_t>(v.projection))},
+       {"drawing", drawing(v.drawing, writer)}});
 }
 
 void write(const Scene3D& s, const Section& section, Writer& writer) {

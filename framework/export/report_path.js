@@ -4,6 +4,8 @@ const projections = {
   above: { across: 0, up: 1, names: ["east", "north"] },
   from_south: { across: 0, up: 2, names: ["east", "up"] },
   from_east: { across: 1, up: 2, names: ["north", "up"] },
+  from_north: { across: 0, up: 2, names: ["west", "up"], mirrored: true },
+  from_west: { across: 1, up: 2, names: ["south", "up"], mirrored: true },
 };
 
 // Lowest and highest corner of everything in a drawing that is finite.
@@ -51,12 +53,15 @@ function makePath(figure, spec) {
   const { low, high } = drawingBounds(drawing);
   const [least, most] = extent(drawing.lines.map((l) => l.values || []));
   if (drawing.lines.some((l) => l.values)) drawRamp(figure, drawing.value, least, most);
-  const flat = (p) => [p[view.across], p[view.up]];
+  const side = view.mirrored ? -1 : 1;
+  const flat = (p) => [side * p[view.across], p[view.up]];
+  // Lower and higher end across, of what reaches from one place to another.
+  const across = (p, q) => [p, q].map((v) => flat(v)[0]).sort((a, b) => a - b);
   let svg, sx, sy, cursor;
 
   function draw() {
     const width = Math.max(plot.clientWidth, 220), left = 46, right = width - 14, top = 22;
-    let [x0, y0] = flat(low), [x1, y1] = flat(high);
+    let [x0, x1] = across(low, high), y0 = low[view.up], y1 = high[view.up];
     const pad = Math.max(0.06 * Math.max(x1 - x0, y1 - y0), 0.5);
     x0 -= pad; x1 += pad; y0 -= pad; y1 += pad;
     const wanted = (right - left) * (y1 - y0) / (x1 - x0);
@@ -72,8 +77,8 @@ function makePath(figure, spec) {
     const old = svg;
     svg = document.createElementNS(svgSpace, "svg");
     const set = { viewBox: `0 0 ${width} ${area.bottom + 38}`, role: "img", tabindex: 0,
-      "aria-label": `${spec.title}: ${view.names[0]} from ${numberText(flat(low)[0])} to ` +
-        `${numberText(flat(high)[0])} m, ${view.names[1]} from ${numberText(flat(low)[1])} to ` +
+      "aria-label": `${spec.title}: ${view.names[0]} from ` +
+        `${across(low, high).map(numberText).join(" to ")} m, ${view.names[1]} from ${numberText(flat(low)[1])} to ` +
         `${numberText(flat(high)[1])} m` };
     for (const key in set) svg.setAttribute(key, set[key]);
     const step = roundTicks(x0, x1, (right - left) / 70).step;
@@ -97,7 +102,7 @@ function makePath(figure, spec) {
     for (const z of drawing.zones) {
       let corners = z.x.map((x, i) => [sx(x), sy(z.y[i])]);
       if (view.up === 2) {
-        const sides = view.across === 0 ? z.x : z.y;
+        const sides = (view.across === 0 ? z.x : z.y).map((v) => side * v);
         const [left, right] = [sx(Math.min(...sides)), sx(Math.max(...sides))];
         const bottom = z.floor === null ? area.bottom : sy(z.floor);
         const top = z.ceiling === null ? area.top : sy(z.ceiling);
@@ -117,7 +122,7 @@ function makePath(figure, spec) {
       svgChild(node, "title", {}, s.label);
     }
     for (const b of drawing.boxes) {
-      const [x0, y0] = flat(b.lower), [x1, y1] = flat(b.upper);
+      const [x0, x1] = across(b.lower, b.upper), y0 = b.lower[view.up], y1 = b.upper[view.up];
       const node = svgChild(svg, "rect", { class: "body", x: sx(x0), y: sy(y1),
         width: Math.max(0, sx(x1) - sx(x0)), height: Math.max(0, sy(y0) - sy(y1)) });
       svgChild(node, "title", {}, b.label);

@@ -202,8 +202,7 @@ Drawing drawing(Fields& fields) {
 PathView path_block(Fields& fields) {
   PathView out;
   out.title = fields.text("title");
-  out.projection =
-      static_cast<Projection>(fields.choice("projection", {"above", "from_south", "from_east"}));
+  out.projection = static_cast<Projection>(fields.choice("projection", projection_names()));
   out.drawing = drawing(fields);
   return out;
 }

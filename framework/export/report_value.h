@@ -9,7 +9,7 @@
 //     table  title, columns: name, unit; rows: cells (text or number), result
 //     chart  title, x, y (axes), series: name, x, y, stepped, spread; limits: label, value;
 //            markers: label, x; spans: label, from, to
-//     path   title, projection (above, from_south, from_east), and a drawing
+//     path   title, projection (above, from_south, from_east, from_north, from_west), and a drawing
 //     scene  title, and a drawing
 //     image  caption, and png_base64 or, where files may be read, file
 //   axis     label, unit, whole, logarithmic (of y only)

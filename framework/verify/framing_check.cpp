@@ -28,17 +28,18 @@ Moment moment_at(const Moment& a, const Moment& b, double time) {
           a.pitch + s * (b.pitch - a.pitch)};
 }
 
-// Whether anything stands between the camera and the middle of a subject.
-bool hidden(const Flight& flight, const Eigen::Vector3d& camera, const Eigen::Vector3d& middle,
-            const Subject& subject, double time) {
+// What stands between the camera and the middle of a subject: the first such obstacle of the list,
+// or null.
+const Obstacle* hiding(const Flight& flight, const Eigen::Vector3d& camera,
+                       const Eigen::Vector3d& middle, const Subject& subject, double time) {
   const auto& obstacles = flight.plan.environment.obstacles;
   const double own = std::max(subject.height, subject.width) / 2;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     if (!obstacles[i].opaque || obstacles[i].side == Side::keep_inside) continue;
     const Eigen::Vector3d moved = obstacles[i].moved(time);
-    if (flight.shapes[i]->hides(camera - moved, middle - moved, own)) return true;
+    if (flight.shapes[i]->hides(camera - moved, middle - moved, own)) return &obstacles[i];
   }
-  return false;
+  return nullptr;
 }
 
 // The ways of seeing a subject that are judged.
@@ -50,7 +51,7 @@ bool seen(Sight sight, const CameraView& view, const Subject& subject, double ti
           const Flight& flight) {
   const Eigen::Vector3d middle = subject.position(time);
   if (sight == Sight::middle) return view.sees(middle);
-  if (sight == Sight::free) return !hidden(flight, view.position, middle, subject, time);
+  if (sight == Sight::free) return !hiding(flight, view.position, middle, subject, time);
   const auto box = view.box_of(middle, subject.height, subject.width);
   return box && box->left >= -0.5 && box->top >= -0.5 && box->right < view.pinhole.width - 0.5 &&
          box->bottom < view.pinhole.height - 0.5;
@@ -61,6 +62,7 @@ struct Lasting {
   double seconds = 0;
   double lost_at = 0;
   const Subject* lost = nullptr;
+  std::string behind;  // the obstacle that hid it then; "" for none
 };
 
 class Framing {
@@ -126,8 +128,21 @@ class Framing {
       const auto lost = [&](double time) {
         return unseen(kSights[k], moment_at(a, b, time), subjects);
       };
-      measure(lost, from, to, lasting_[k]);
+      Lasting& lasting = lasting_[k];
+      const bool before = lasting.lost != nullptr;
+      measure(lost, from, to, lasting);
+      if (!before && lasting.lost && kSights[k] == Sight::free) {
+        lasting.behind = what_hides(*lasting.lost, moment_at(a, b, lasting.lost_at));
+      }
     }
+  }
+
+  std::string what_hides(const Subject& subject, const Moment& m) const {
+    const Obstacle* obstacle =
+        hiding(flight_, m.position, subject.position(m.time), subject, m.time);
+    if (!obstacle) return "";
+    const auto& all = flight_.plan.environment.obstacles;
+    return obstacle->label(static_cast<std::size_t>(obstacle - all.data()) + 1);
   }
 
   template <class Lost>
@@ -188,6 +203,7 @@ void check_framing(const Flight& flight, Certificate& certificate) {
                          tolerance_of(task.framing_share), lasting.lost_at, true);
     if (lasting.lost) {
       check.detail += (check.detail.empty() ? "" : "; ") + ("subject '" + lasting.lost->name + "'");
+      if (!lasting.behind.empty()) check.detail += " behind " + lasting.behind;
     }
     certificate.checks.push_back(check);
   }

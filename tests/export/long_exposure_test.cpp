@@ -92,12 +92,13 @@ TEST(LongExposure, SlowIsBright) {
     const Picture picture = long_exposure(plan, flown, 184);
     return brightness(picture, 92, static_cast<int>(picture.height - 0.6 * 184 / 5.2));
   };
-  const int slow = middle(flight({}, 2), 2), plain = middle(flight({}, 4), 4),
-            fast = middle(flight({}, 16), 16);
+  const int slow = middle(flight(Vector3d::Zero(), 2), 2),
+            plain = middle(flight(Vector3d::Zero(), 4), 4),
+            fast = middle(flight(Vector3d::Zero(), 16), 16);
   EXPECT_GT(slow, plain + 20);
   EXPECT_GT(plain, fast + 50);
-  FlownPath twice = flight({}, 4);
-  const FlownPath again = flight({}, 4, 30);
+  FlownPath twice = flight(Vector3d::Zero(), 4);
+  const FlownPath again = flight(Vector3d::Zero(), 4, 30);
   twice.samples.insert(twice.samples.end(), again.samples.begin(), again.samples.end());
   EXPECT_NEAR(middle(twice, 4), slow, 6);
 }

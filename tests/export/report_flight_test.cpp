@@ -168,5 +168,19 @@ TEST(FlightReport, IsTheSameEachTime) {
   EXPECT_EQ(render_html(flight_report(plan)), render_html(flight_report(plan)));
 }
 
+TEST(FlightReport, LightPaintingsAreSeenFromTheirSpectators) {
+  Plan plan = synthetic_flight(20, 201, 4);
+  const auto side = [&plan](const Eigen::Vector3d& view) {
+    plan.task.drawing_view = view;
+    return std::get<PathView>(named(flight_sections(plan), "Path").blocks.at(1)).title;
+  };
+  EXPECT_EQ(side({1, 0, 0}), "Path from the south") << "no strokes: where it looks widest";
+  plan.task.strokes.emplace_back();
+  EXPECT_EQ(side({0, 1, 0}), "Path from the south");
+  EXPECT_EQ(side({0, -1, 0}), "Path from the north");
+  EXPECT_EQ(side({1, 0.5, 0}), "Path from the west") << "they look east";
+  EXPECT_EQ(side({-1, 0.5, 0}), "Path from the east");
+}
+
 }  // namespace
 }  // namespace lapwing

@@ -157,7 +157,7 @@ TEST(Framing, ObstaclesInTheLineOfSightFailTheFilm) {
   EXPECT_EQ(share_of(plan, "line_of_sight"), 0);
   EXPECT_FALSE(verify(plan).feasible());
   EXPECT_TRUE(check_of(plan, "line_of_sight").required);
-  EXPECT_EQ(check_of(plan, "line_of_sight").detail, "subject 'point'");
+  EXPECT_EQ(check_of(plan, "line_of_sight").detail, "subject 'point' behind box 'wall'");
   plan.task.line_of_sight_required = false;
   EXPECT_TRUE(verify(plan).feasible());
   EXPECT_FALSE(check_of(plan, "line_of_sight").pass);

@@ -261,6 +261,39 @@ then(() => drag(false)).then(() => then(() => drag(true)))
   EXPECT_EQ(views[4], views[0]) << "Home resets";
 }
 
+// A line to the east and north runs to the right for those who look from the south or the east, to
+// the left for those who look from the north or the west; a zone and a box lie on the same side.
+TEST_F(ReportInBrowser, EverySideShowsRightWhatIsRightOfTheSpectator) {
+  Drawing drawing;
+  drawing.lines = {{"line", {{1, 2, 0}, {9, 8, 3}}, {}, {}}};
+  drawing.boxes = {{"box", {8, 7, 0}, {9, 8, 1}}};
+  drawing.zones = {{"zone", {{8, 7}, {9, 7}, {9, 8}}, 0, 2}};
+  Report report;
+  for (const Projection side : {Projection::from_south, Projection::from_east,
+                                Projection::from_north, Projection::from_west}) {
+    const std::string name = projection_names().at(static_cast<std::size_t>(side));
+    report.sections.push_back({name, {PathView{name, side, drawing}}});
+  }
+  const std::string dom = opened(render_html(report), R"(
+document.documentElement.dataset.sides =
+  [...document.querySelectorAll("figure[data-block] svg")].map((svg) => {
+    const line = svg.querySelector(".series"), [box, zone] =
+      [".body", ".zone"].map((name) => svg.querySelector(name).getBBox());
+    const from = line.getPointAtLength(0).x, to = line.getPointAtLength(line.getTotalLength()).x;
+    const middle = (b) => b.x + b.width / 2, near = (x) => Math.abs(x - to) < Math.abs(x - from);
+    return [from < to ? "right" : "left", near(middle(box)), near(middle(zone)), box.width > 1,
+      svg.getAttribute("aria-label").replace(/^[^:]*: /, "")].join(" ");
+  }).join(";");
+)");
+  EXPECT_EQ(attribute(dom, "error"), "");
+  const auto heights = [](const std::string& text) { return text + " m, up from 0 to 3 m"; };
+  EXPECT_EQ(attribute(dom, "sides"),
+            heights("right true true true east from 1 to 9") + ";" +
+                heights("right true true true north from 2 to 8") + ";" +
+                heights("left true true true west from \u22129 to \u22121") + ";" +
+                heights("left true true true south from \u22128 to \u22122"));
+}
+
 TEST_F(ReportInBrowser, HostileTextAndGapsBreakNothing) {
   const std::string hostile = "</script><script>window.hit = 1</script><img src=x onerror='hit=1'>";
   const double nan = std::numeric_limits<double>::quiet_NaN();
