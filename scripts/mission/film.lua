@@ -64,6 +64,8 @@ local common = {
     summary = "largest deviation from the path with timing = path_first" },
   { name = "obstacles", type = "plugins", kind = "shape", table = input.obstacle,
     summary = "shapes that the flight keeps out of, or inside of" },
+  { name = "ground", type = "number", unit = "m", minimum = -1e6, maximum = 1e6,
+    summary = "height of level ground, an obstacle that hides nothing; absent: there is none" },
   { name = "margin", type = "number", unit = "m", default = 0.5, minimum = 0, maximum = 1e3,
     summary = "distance of the path from every obstacle; includes the radius of the vehicle" },
   { name = "flight_zones", type = "tables", table = input.flight_zone,
@@ -103,6 +105,9 @@ local of_shot = {
     summary = "places of the camera, with times or without" },
   { name = "subjects", type = "tables", table = input.subject,
     summary = "filmed subjects; a single one may be given as `subject`" },
+  { name = "subject", type = "text",
+    refused = "a script's `subject` is the first of `subjects`: write subjects[1], as in "
+    .. "--set subjects[1].distance=3" },
 }
 local of_file = { { name = "input", type = "text", summary = "JSON file of a designed shot" } }
 

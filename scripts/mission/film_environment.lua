@@ -6,6 +6,7 @@ local M = {}
 
 local MOST_OBSTACLES = 300
 local ROOM = 15  -- m about the keyframes, in which a map is looked at
+local SAGS = 0.1  -- m below the lowest keyframe, of which nothing is said
 
 -- Where flights may be: the zones, and the tracking volume as one more, as obstacles to stay inside
 -- of.
@@ -28,6 +29,31 @@ local function add_flight_zones(run, options, obstacles)
   end
 end
 
+-- Whether the options say how low flights may be.
+local function bounded_below(options)
+  local volume = options.volume
+  if options.ground or volume and volume.lower then return true end
+  for _, zone in ipairs(options.flight_zones) do
+    if zone.floor then return true end
+  end
+  for _, obstacle in ipairs(options.obstacles) do
+    if obstacle.type == "half_space" then return true end
+  end
+  return false
+end
+
+-- A sentence on a path that comes near height 0 by itself, where nothing says what the ground is;
+-- or nil. `path`: x, y, z in turn.
+function M.low_pass(options, keyframes, path)
+  if bounded_below(options) then return nil end
+  local lowest, low = math.huge, math.huge
+  for _, k in ipairs(keyframes) do lowest = math.min(lowest, k.position[3]) end
+  for i = 3, #path, 3 do low = math.min(low, path[i]) end
+  if low >= math.min(options.margin, lowest - SAGS) then return nil end
+  return string.format("the path comes down to height %.2f m, lower than any keyframe, and no "
+    .. "ground is stated: `ground = 0` makes level ground at height 0 an obstacle", low)
+end
+
 -- The box about the keyframes in which distances of maps are wanted.
 local function surroundings(keyframes)
   local lower, upper = {}, {}
@@ -41,8 +67,8 @@ local function surroundings(keyframes)
   return { lower = lower, upper = upper }
 end
 
--- What surrounds a problem, from the options `obstacles`, `flight_zones` and `volume`: obstacles as
--- run:problem takes them, and the rest of its environment.
+-- What surrounds a problem, from the options `obstacles`, `ground`, `flight_zones` and `volume`:
+-- obstacles as run:problem takes them, and the rest of its environment.
 function M.of(run, options, keyframes)
   if #options.obstacles > MOST_OBSTACLES then
     run:fail("obstacles", string.format("%d are more than %d, the limit of a film",
@@ -54,6 +80,10 @@ function M.of(run, options, keyframes)
     for key, value in pairs(given) do made[key] = value end
     if made.name == "" then made.name = given.file end
     obstacles[i] = made
+  end
+  if options.ground then
+    obstacles[#obstacles + 1] = { type = "half_space", name = "ground", opaque = false,
+                                  point = { 0, 0, options.ground }, normal = { 0, 0, 1 } }
   end
   add_flight_zones(run, options, obstacles)
   return { obstacles = obstacles, margin = options.margin, region = surroundings(keyframes) }

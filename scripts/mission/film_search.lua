@@ -2,6 +2,7 @@
 -- From the options of a film to its plan: the first request, the strategy of its timing, and the
 -- strategies for a failed film.
 local attempts = require "mission.film_attempt"
+local environment = require "mission.film_environment"
 local failure = require "mission.film_failure"
 local passages = require "mission.passages"
 local problem = require "mission.film_problem"
@@ -25,8 +26,10 @@ local function finished(run, outcome, told)
   local figures = { stretch = request.stretch, certified_stretch = told.certified }
   for name, value in pairs(told.figures or {}) do figures[name] = value end
   local cuts = outcome.camera and outcome.camera.cuts or {}
+  local notes = table.move(told.notes or {}, 1, #(told.notes or {}), 1, {})
+  notes[#notes + 1] = environment.low_pass(run.options, request.keyframes, outcome.solution.path)
   return run:plan { solution = outcome.solution, task = outcome.task, cuts = cuts,
-                    notes = told.notes or {}, details = told.details or {}, figures = figures,
+                    notes = notes, details = told.details or {}, figures = figures,
                     geodetic_origin = request.origin, budget = run.options.battery,
                     controller = run.options.controller }
 end

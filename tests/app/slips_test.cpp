@@ -139,6 +139,9 @@ TEST_F(Slips, Settings) {
        "--set keyframes.2.time=3: '.2' is not a key; an entry of a list is written keyframes[2]");
   slip({"run", "race.lua", "--set", "gates=[]", "--set", "keyframes=3"},
        "--set keyframes=3: keyframes: expected a list of tables, got 3");
+  slip({"run", "shot.lua", "--set", "subject.distance=3"},
+       "--set subject.distance=3: subject: a script's `subject` is the first of `subjects`: write "
+       "subjects[1], as in --set subjects[1].distance=3");
   // A list of all keys is shown once.
   write("mine.yaml", "margn: 1\ncolour: red\nflavour: sweet\n");
   const Finished keys = run({"config", "shot.lua", "--config", "mine.yaml"});

@@ -47,6 +47,33 @@ TEST_F(Filming, SofterAndSmootherByConfiguration) {
             stiff.result.at("solver").at("terms").at("keyframe").as_number());
 }
 
+// A path that sags between two low keyframes, with and without a ground.
+TEST_F(Filming, PathsThatSagIntoNoGroundSaySo) {
+  write_file_atomically(folder_ / "low.lua", R"(return require "mission.film".shot {
+    name = "low", keyframes = { { time = 0, position = {0, 0, 6} },
+      { time = 4, position = {8, 0, 0.6} }, { time = 7, position = {16, 0, 0.6} },
+      { time = 12, position = {24, 0, 6} } } })");
+  const std::string script = (folder_ / "low.lua").string();
+  const auto lowest = [](const Flown& flown) {
+    double low = 1e9;
+    for (const Sample& s : read_plan(flown.folder / "plan.json").trajectory.samples)
+      low = std::min(low, s.position.z());
+    return low;
+  };
+  const Flown open = fly(script);
+  EXPECT_LT(lowest(open), 0);
+  const std::string note = open.result.at("notes").as_list().at(0).as_text();
+  EXPECT_NE(note.find("no ground is stated: `ground = 0`"), std::string::npos) << note;
+  for (const char* solver : {"iqp", "ipopt", "nlopt"}) {
+    const Flown above = fly(script, std::string("--set ground=0 --set solver=") + solver, solver);
+    expect_certified(above);
+    EXPECT_GT(lowest(above), 0.5 - 1e-3) << solver;
+    EXPECT_TRUE(above.result.at("notes").as_list().empty());
+  }
+  const Flown zone = fly(script, "--set volume.lower=[-9,-9,-9] --set volume.upper=[99,9,9]", "in");
+  EXPECT_TRUE(zone.result.at("notes").as_list().empty()) << "a flight zone has a floor";
+}
+
 TEST_F(Filming, SoftKeyframesBeyondTheVehicleAreExplained) {
   write_file_atomically(folder_ / "there_and_back.lua", R"(return require "mission.film".shot {
     name = "there and back", duration = 2, vehicle = "vehicles/solo",
