@@ -26,6 +26,9 @@ constexpr double kControlStep = 0.002;    // s
 constexpr double kFollowedWithin = 0.25;  // m, what a certificate allows
 constexpr double kCallLimit = 0.004;      // s, of the median call, on one thread
 constexpr double kFlightDuration = 4.0;   // s
+// States in a world that a controller is asked about: with its defaults, and with every other value
+// of a parameter.
+constexpr int kAsked = 300, kAskedOther = 60;
 
 Vehicle flown_vehicle(double lag) {
   Vehicle v;
@@ -159,7 +162,8 @@ class ControllerCheck {
                        [&] { return world.name + " is refused with the defaults"; });
       return;
     }
-    if (options_.wants_any({"finite", "limits"})) answers(*controller, reference, world);
+    if (options_.wants_any({"finite", "limits"}))
+      answers(*controller, reference, world, defaults ? kAsked : kAskedOther);
     if (!defaults) return;
     if (options_.wants_any({"repeatable", "threads"})) repeats(*controller, reference, world);
     if (options_.wants("follows") && world.upright) flies(parameters, world);
@@ -168,10 +172,10 @@ class ControllerCheck {
 
  private:
   void answers(const Controller& controller, const BodyReference& reference,
-               const ControllerWorld& world) {
+               const ControllerWorld& world, int asked) {
     Random random(options_.seed);
     const auto flight = controller.begin();
-    for (int k = 0; k < 300; ++k) {
+    for (int k = 0; k < asked; ++k) {
       const double time = random.uniform(reference.start() - 0.1, reference.finish() + 0.5);
       const BodyState state = drawn_state(reference.at(time), k % 3, random);
       const RotorCommand command = flight->command(time, state, kControlStep);
