@@ -56,6 +56,7 @@ ElasticProgram make_elastic(const QuadraticProgram& problem, int first_row, bool
   p.jacobian.setFromTriplets(jacobian.begin(), jacobian.end());
   p.gradient = Eigen::VectorXd::Constant(n + 2 * k, penalty);
   p.gradient.head(n) = problem.gradient;
+  p.cost_at_zero = problem.cost_at_zero;
   return result;
 }
 

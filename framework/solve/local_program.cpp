@@ -10,7 +10,8 @@ QuadraticProgram local_program(const LocalModel& model) {
           model.row_lower - model.values,
           model.row_upper - model.values,
           model.step_lower,
-          model.step_upper};
+          model.step_upper,
+          model.cost};
 }
 
 }  // namespace lapwing

@@ -82,10 +82,12 @@ QuadraticResiduals residuals(const QuadraticProgram& problem, const Eigen::Vecto
                       largest_size(bound_multipliers)});
   result.dual =
       std::max(leak, largest_size(px + problem.gradient - aty - bound_multipliers)) / dual_scale;
-  result.gap = std::abs(primal - dual) / (1.0 + std::abs(primal));
+  const double gap_scale =
+      1.0 + std::max(std::abs(primal), std::abs(problem.cost_at_zero + primal));
+  result.gap = std::abs(primal - dual) / gap_scale;
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   result.dual_rounding = kRoundings * kEpsilon * largest_size(magnitude) / dual_scale;
-  result.gap_rounding = kRoundings * kEpsilon * terms / (1.0 + std::abs(primal));
+  result.gap_rounding = kRoundings * kEpsilon * terms / gap_scale;
   return result;
 }
 

@@ -19,6 +19,7 @@ struct QuadraticProgram {
   Eigen::SparseMatrix<double> jacobian;  // A, m x n
   Eigen::VectorXd row_lower, row_upper;  // m
   Eigen::VectorXd x_lower, x_upper;      // n
+  double cost_at_zero = 0;               // of the problem that this one stands for, at x = 0
 
   int variables() const { return static_cast<int>(gradient.size()); }
   int rows() const { return static_cast<int>(jacobian.rows()); }
@@ -50,7 +51,9 @@ struct QuadraticResult {
 // Relative residuals of any primal-dual point, from the problem's own numbers:
 //   primal  worst violation of a row or bound, over 1 + the largest |A x| or |x| at a finite bound
 //   dual    |P x + c - A'y - z|, over 1 + the largest of |P x|, |A'y|, |c|, |z|
-//   gap     |primal - dual objective| over 1 + |primal objective|
+//   gap     |primal - dual objective| over 1 + the larger of |primal objective| and the cost, which
+//           is `cost_at_zero` more: a model of a large cost around its optimum has an objective
+//           near 0
 // The rounding fields say how far sums of the problem's size are from exact in double precision, on
 // the same scale: no solver can be asked for less. Snap costs reach it, for their large
 // coefficients cancel.

@@ -81,8 +81,8 @@ TEST_F(Covering, ASmallScanKeepsBudgetRegionCameraAndRange) {
     EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0);
     return from_json(read_file(folder_ / "options.json"), "options");
   };
-  const auto shown = [](const Value& options, const char* key) {
-    const Value* found = options.find(key);
+  const auto shown = [](const Value& given, const char* key) {
+    const Value* found = given.find(key);
     return found ? to_json(*found) : std::string("absent");
   };
   const Value stated = options(""), small = options("--config scan/small");

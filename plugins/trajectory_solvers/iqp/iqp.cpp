@@ -10,6 +10,13 @@
 // violations  by a share of what the model promises; nu exceeds every multiplier. A purely
 // quadratic problem is one program and one full step.
 //
+// Where this cuts a step short, the whole step is taken on trial (the watchdog of Chamberlain,
+// Powell, Lemarechal and Pedersen, Math. Programming Study 16, 1982). The merit may grow, and more
+// whole steps follow, until one lies as low as the search asked of the first. If the fourth does
+// not, the solve goes back and takes the cut step. In a curved valley, such as a camera that moves
+// along its line of sight, whole steps leave the valley and return to it further on, where cut ones
+// creep along it.
+//
 // It stops as optimal when the violations are within `feasibility` and the model promises less than
 // `tolerance` * (1 + |cost|). Where the model's rows contradict each other its elastic form is
 // solved: the step then restores feasibility, and where it no longer can, the problem is
@@ -35,12 +42,18 @@ using Eigen::VectorXd;
 
 constexpr double kArmijo = 1e-4;        // share of the promised decrease that must come true
 constexpr double kShortestStep = 1e-6;  // shorter line-search steps end the solve
-constexpr double kMeritMargin = 1.5;    // merit weight over the largest multiplier
+constexpr double kNoise = 1e-13;        // relative, of a merit
+// A step this short or shorter gives way to whole ones on trial, so many at most.
+constexpr double kCut = 0.25;
+constexpr int kTrialSteps = 4;
+constexpr double kMeritMargin = 1.5;  // merit weight over the largest multiplier
 // Programs are solved to this share of what the one before promised, within these limits: early
 // ones only show the way.
 constexpr double kProgramShare = 0.1, kProgramFinest = 1e-9, kProgramCoarsest = 1e-2;
 constexpr double kPushing = 1e-8;        // of the largest multiplier: smaller ones are none
 constexpr double kElasticPenalty = 1e3;  // times 1 + |g|
+// The penalties are large beside the cost, so rounding may keep elastic programs from a finer one.
+constexpr double kElasticTolerance = 1e-8;
 
 class Iqp final : public TrajectorySolver {
  public:
@@ -120,14 +133,28 @@ class Solve {
   Step elastic_step();
   std::optional<SolveStatus> stopped() const;
   bool line_search(const Step& step, double violation);
+  void go_on(const Step& step);
+  void go_back();
   double total_violation(const Stages& at) const;
   double predicted_violation(const Step& step) const;
+  double merit_at(const Stages& at) const {
+    return problem_.cost(at) + merit_weight_ * total_violation(at);
+  }
+  bool made_up(double merit) const;
   double worst_violation() const;
   void record(double step);
   std::string explain(const Step& step) const;
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
+
+  // Whole steps on trial: from where, what the search asked of the first, and the cut step instead.
+  struct Trial {
+    Stages from;
+    double cost, violation, slope, cut;
+    Step step;
+    int steps = 1;
+  };
 
   const TrajectoryProblem& problem_;
   const SolveRequest& request_;
@@ -143,6 +170,9 @@ class Solve {
   bool contradictory_ = false;  // the last model's rows and bounds
   double program_tolerance_ = kProgramFinest;
   double merit_weight_ = 0;
+  std::optional<Trial> trial_;
+  int no_trial_ = 0;  // so many line searches begin none
+  int failures_ = 0;  // trials in a row that came to nothing
   SolveReport report_;
 };
 
@@ -160,6 +190,7 @@ SolveResult Solve::run() {
   }
   record(0.0);
   report_.status = iterate();
+  if (trial_ && report_.status != SolveStatus::optimal) go_back();
   report_.terms = problem_.term_costs(at_);
   report_.cost = 0;
   for (const TermCost& term : report_.terms) report_.cost += term.cost;
@@ -198,6 +229,10 @@ SolveStatus Solve::iterate() {
                      step.status == QuadraticStatus::numerical_error;
     if (contradictory_) step = elastic_step();
     if (step.status == QuadraticStatus::cancelled) return SolveStatus::cancelled;
+    if (step.status != QuadraticStatus::optimal && trial_) {
+      go_back();
+      continue;
+    }
     if (step.status != QuadraticStatus::optimal) {
       report_.message = step.status == QuadraticStatus::unbounded
                             ? "the cost is unbounded: a term or a bound is missing"
@@ -224,6 +259,10 @@ SolveStatus Solve::iterate() {
         std::clamp(kProgramShare * std::abs(promised) / (1.0 + std::abs(model_.cost)),
                    kProgramFinest, kProgramCoarsest);
     const bool still = std::abs(promised) <= tolerance_ * (1.0 + std::abs(model_.cost));
+    if (still && trial_ && !made_up(model_.cost + merit_weight_ * violation)) {
+      go_back();  // what it ends at is worse than where it began
+      continue;
+    }
     if (still && worst_violation() <= feasibility_) {
       if (!coarse) return SolveStatus::optimal;
       program_tolerance_ = fine;  // a coarse program may promise less than there is
@@ -277,6 +316,7 @@ Solve::Step Solve::elastic_step() {
     const ElasticProgram elastic = make_elastic(hard, problem_.dynamics_rows(), bounds, penalty);
     InteriorPointOptions options;
     options.cancellation = request_.cancellation;
+    options.tolerance = kElasticTolerance;
     const QuadraticResult result = elastic_point_.solve(elastic.program, options);
     if (result.status == QuadraticStatus::infeasible && !bounds) continue;
     return {result.status, result.x.head(elastic.variables),
@@ -306,20 +346,63 @@ double Solve::predicted_violation(const Step& step) const {
 bool Solve::line_search(const Step& step, double violation) {
   const double largest = step.rows.size() ? step.rows.cwiseAbs().maxCoeff() : 0.0;
   merit_weight_ = std::max(merit_weight_, kMeritMargin * largest);
+  if (trial_) {
+    go_on(step);
+    return true;
+  }
   const double left = predicted_violation(step);
   const double slope =
       std::min(0.0, model_.gradient.dot(step.d) - merit_weight_ * (violation - left));
   const double merit = model_.cost + merit_weight_ * violation;
-  const double noise = 1e-13 * (1.0 + std::abs(merit));
+  const double noise = kNoise * (1.0 + std::abs(merit));
+  double whole = 0;
   for (double alpha = 1.0; alpha > kShortestStep; alpha *= 0.5) {
-    const Stages next = problem_.retract(at_, alpha * step.d);
-    const double now = problem_.cost(next) + merit_weight_ * total_violation(next);
+    Stages next = problem_.retract(at_, alpha * step.d);
+    const double now = merit_at(next);
+    if (alpha == 1.0) whole = now;
     if (!(now <= merit + kArmijo * alpha * slope + noise)) continue;
-    at_ = next;
-    record(alpha);
+    const bool on_trial = alpha <= kCut && no_trial_ == 0 && !step.elastic && std::isfinite(whole);
+    if (on_trial) {
+      trial_ = Trial{at_, model_.cost, violation, slope, alpha, step};
+      next = problem_.retract(at_, step.d);
+    } else if (no_trial_ > 0) {
+      --no_trial_;
+    }
+    at_ = std::move(next);
+    record(on_trial ? 1.0 : alpha);
     return true;
   }
   return false;
+}
+
+// Whether a merit is as low as the first step on trial should have made it.
+bool Solve::made_up(double merit) const {
+  const double before = trial_->cost + merit_weight_ * trial_->violation;
+  return merit <= before + kArmijo * trial_->slope + kNoise * (1.0 + std::abs(before));
+}
+
+// The next whole step, which may end the trial; or back.
+void Solve::go_on(const Step& step) {
+  Stages whole = problem_.retract(at_, step.d);
+  const double merit = merit_at(whole);
+  if (made_up(merit)) {
+    trial_.reset();
+    failures_ = 0;
+  } else if (++trial_->steps > kTrialSteps || !std::isfinite(merit)) {
+    return go_back();
+  }
+  at_ = std::move(whole);
+  record(1.0);
+}
+
+void Solve::go_back() {
+  at_ = problem_.retract(trial_->from, trial_->cut * trial_->step.d);
+  rows_ = trial_->step.rows;
+  bounds_ = trial_->step.bounds;
+  record(trial_->cut);
+  trial_.reset();
+  contradictory_ = false;
+  no_trial_ = 1 << std::min(++failures_, 5);
 }
 
 void Solve::record(double step) {
