@@ -6,5 +6,5 @@ return light_painting.text {
   name   = "hello light",
   text   = "HELLO",
   height = 2,            -- m
-  origin = { 0, 0, 2 },  -- m, world: the middle of the word's lower edge
+  base = { 0, 0, 2 },  -- m, world: the middle of the word's lower edge
 }

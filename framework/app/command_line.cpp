@@ -78,8 +78,7 @@ void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& com
 }
 
 void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
-                       std::string& format, std::filesystem::path& target, Judges& judges,
-                       bool& uncertified, Command& command) {
+                       ExportRequest& asked, Judges& judges, Command& command) {
   CLI::App* verify =
       app.add_subcommand("verify", "judge a plan again, independently of its solver");
   add_plan(*verify, plan);
@@ -94,17 +93,20 @@ void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::p
   verify->callback([&] { command = [&] { return verify_plan(plan, judges, invocation); }; });
 
   CLI::App* exported = app.add_subcommand("export", "write a plan in another format");
-  add_plan(*exported, plan);
+  add_plan(*exported, asked.plan);
   add_text(*exported, "--format", "NAME[:KEY=VALUE,...]", "an exporter and its parameters",
-           [&](const std::string& name) { format = name; })
+           [&](const std::string& name) { asked.format = name; })
       ->required();
   add_text(*exported, "-o,--output", "PATH", "the file to write", [&](const std::string& path) {
-    target = path;
+    asked.target = path;
   })->required();
-  exported->add_flag("--uncertified", uncertified, "also export a plan that is not certified");
-  exported->callback([&] {
-    command = [&] { return export_plan(plan, format, target, uncertified, invocation); };
-  });
+  exported->add_flag("--uncertified", asked.uncertified,
+                     "also export a plan that is not certified");
+  add_text(*exported, "--origin", "LAT,LON,HEIGHT,OF",
+           "origin of a plan that has none: degrees north, degrees east, height in m of z = 0 "
+           "above OF: ellipsoid, sea, or ground (that at the origin); default: none",
+           [&](const std::string& text) { asked.origin = text; });
+  exported->callback([&] { command = [&] { return export_plan(asked, invocation); }; });
 }
 
 void add_map_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& file,
@@ -236,9 +238,9 @@ namespace {
 struct Requests {
   Invocation invocation;
   std::filesystem::path script, plan, target;
-  std::string format, name;
+  std::string name;
+  ExportRequest exporting;
   Judges judges;
-  bool uncertified = false;
   SimulationRequest simulation;
   SceneStatement stated;
   std::vector<std::string> pilots;
@@ -270,8 +272,7 @@ void declare_commands(CLI::App& app, Requests& asked) {
   add_run(app, invocation, asked.script, command);
   add_sweep(app, invocation, asked.sweep, command);
   add_difference(app, invocation, asked.difference, command);
-  add_plan_commands(app, invocation, asked.plan, asked.format, asked.target, asked.judges,
-                    asked.uncertified, command);
+  add_plan_commands(app, invocation, asked.plan, asked.exporting, asked.judges, command);
   add_simulate_command(app, invocation, asked.plan, asked.simulation, asked.target, command);
   add_map_commands(app, invocation, asked.plan, asked.target, command);
   add_scene_commands(app, invocation, asked.plan, asked.stated, asked.target, command);

@@ -65,9 +65,14 @@ struct SimulationRequest;  // app/simulation_request.h
 ExitStatus simulate_plan(const std::filesystem::path& plan, const SimulationRequest& asked,
                          const std::filesystem::path& target, const Invocation& invocation);
 // A plan that is not certified is refused unless `uncertified` asks for it.
-ExitStatus export_plan(const std::filesystem::path& plan, const std::string& format,
-                       const std::filesystem::path& target, bool uncertified,
-                       const Invocation& invocation);
+struct ExportRequest {
+  std::filesystem::path plan;
+  std::string format;  // of --format
+  std::filesystem::path target;
+  bool uncertified = false;
+  std::string origin;  // of --origin; "" for none
+};
+ExitStatus export_plan(const ExportRequest& asked, const Invocation& invocation);
 ExitStatus show_map(const std::filesystem::path& file, const Invocation& invocation);
 // By the ending of the target: .ot, .bt or .ply.
 ExitStatus convert_map(const std::filesystem::path& file, const std::filesystem::path& target,

@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// lapwing verify, export and config.
+// lapwing verify and config.
 #include <unistd.h>
 
 #include <cstdio>
 #include <iostream>
-#include <optional>
 
 #include "framework/app/command_line.h"
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
-#include "framework/app/output_target.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
 #include "framework/app/terminal.h"
 #include "framework/config/annotated.h"
-#include "framework/core/files.h"
-#include "framework/core/named_parameters.h"
 #include "framework/core/visible_text.h"
-#include "framework/export/exporter.h"
-#include "framework/mission/environment_source.h"
 
 namespace lapwing {
 
@@ -106,59 +100,6 @@ ExitStatus verify_plan(const std::filesystem::path& file, const Judges& given,
     print_others(certificate);
   }
   return certificate.feasible() ? ExitStatus::done : ExitStatus::not_certified;
-}
-
-ExitStatus export_plan(const std::filesystem::path& file, const std::string& format,
-                       const std::filesystem::path& target, bool uncertified,
-                       const Invocation& invocation) {
-  require_output(target, {file});
-  const Registry registry = invocation.registry();
-  const std::optional<NamedParameters> chosen = named_parameters_from(format);
-  if (!chosen)
-    throw InputError("--format: expected NAME or NAME:KEY=VALUE,..., each key once, got '" +
-                     format + "'");
-  const auto exporter = registry.create<Exporter>(chosen->name, chosen->parameters, "--format");
-  const JudgedPlan judged = judge_file(file, {.controllers = controllers_of(invocation)});
-  if (!judged.certificate.feasible()) {
-    std::string failures;
-    for (const Check& check : judged.certificate.failures())
-      failures += "\n  " + visible_line(to_line(check));
-    std::fprintf(stderr, "lapwing: '%s' is not certified%s%s\n",
-                 visible_line(file.string()).c_str(),
-                 uncertified ? ", and exported on request:" : ":", failures.c_str());
-    if (!uncertified) {
-      std::fprintf(stderr, "  nothing was written; --uncertified exports it\n");
-      return ExitStatus::not_certified;
-    }
-  }
-  Plan plan = judged.plan;
-  if (in_plugin(*exporter, "shows_surroundings", [&] { return exporter->shows_surroundings(); }))
-    open_recorded_shapes(plan.environment, registry, file.parent_path());
-  plan.certificate = judged.certificate.to_value();  // files may say whether it passed
-  const bool folder =
-      in_plugin(*exporter, "file_extension", [&] { return exporter->file_extension().empty(); });
-  std::string written = "wrote " + target.string();
-  if (folder) {
-    const NamedContents files =
-        in_plugin(*exporter, "write_folder", [&] { return exporter->write_folder(plan); });
-    write_folder_atomically(target, files);
-    for (std::size_t i = 0; i < files.size(); ++i)
-      written += (i == 0 ? ": " : ", ") + files[i].first;
-  } else {
-    const std::string content =
-        in_plugin(*exporter, "write", [&] { return exporter->write(plan); });
-    const std::vector<std::string> losses =
-        in_plugin(*exporter, "losses", [&] { return exporter->losses(plan, content); });
-    write_file_atomically(target, content);
-    for (const std::string& loss : losses) std::printf("%s\n", visible_line(loss).c_str());
-  }
-  if (plan.task.scan)
-    written += "; the plan has " + std::to_string(plan.task.scan->views.size()) + " images";
-  std::printf("%s\n", visible_line(written).c_str());
-  for (const std::string& remark :
-       in_plugin(*exporter, "remarks", [&] { return exporter->remarks(plan); }))
-    std::cerr << "lapwing: warning: " << visible_line(remark) << "\n";
-  return ExitStatus::done;
 }
 
 ExitStatus show_configuration(const std::filesystem::path& script, const Invocation& invocation) {

@@ -155,6 +155,7 @@ int plan_exploration(lua_State* state) {
   document.vehicle = to_value(vehicle);
   document.trajectory = trajectory_of(e, vehicle.gimbal.has_value());
   document.budget = e.settings.budget;
+  document.geodetic_origin = run.origin;
   document.configuration = run.configuration;
   document.solver = to_value(made.report, made.solver);
   Obstacle obstacle;

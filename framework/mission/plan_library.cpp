@@ -132,6 +132,15 @@ Task task_of(const Parameters& given) {
   return task;
 }
 
+// The origin that the mission was given, or one that its input has.
+std::optional<GeodeticOrigin> origin_of(const MissionRun& run, const Parameters& place) {
+  if (!place.has("lat") || !place.has("lon")) return run.origin;
+  if (run.origin)
+    throw InputError("origin: the input of the mission has an origin of its own; remove one");
+  return GeodeticOrigin{place.number("lat"), place.number("lon"),
+                        place.has("alt") ? place.number("alt") : 0.0};
+}
+
 ParameterTable plan_table() {
   ParameterTable origin;
   origin.optional_number("lat", "", "degrees north", between(-90, 90))
@@ -210,11 +219,7 @@ int plan(lua_State* state) {
   for (const Parameters& light : given.tables("lights"))
     document.lights.push_back({light.number("start"), light.number("finish")});
   if (given.has("budget")) document.budget = given.number("budget");
-  const Parameters& place = given.table("geodetic_origin");
-  if (place.has("lat") && place.has("lon")) {
-    document.geodetic_origin = GeodeticPoint{place.number("lat"), place.number("lon"),
-                                             place.has("alt") ? place.number("alt") : 0.0};
-  }
+  document.geodetic_origin = origin_of(run, given.table("geodetic_origin"));
   document.configuration = run.configuration;
   document.solver = to_value(solution.result.report, solution.solver);
   if (solution.started_from.is_map()) document.solver.set("started_from", solution.started_from);

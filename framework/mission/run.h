@@ -115,6 +115,7 @@ struct MissionRun {
   bool judging = false;                 // the plan function ends where planning would begin
   bool planning_began = false;          // since the plan function was called
   MissionStatement* stating = nullptr;  // the plan function ends where its first plan is made
+  std::optional<GeodeticOrigin> origin = {};  // of the world frame, where the mission states it
 };
 
 // Ends the plan function of a mission that is only judged; no error of anybody.

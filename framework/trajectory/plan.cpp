@@ -12,27 +12,44 @@ namespace {
 
 const std::vector<std::string> kAxes{"east north up"};
 
-Value frame_to_value(const std::optional<GeodeticPoint>& origin) {
+// The altitude is that above the ellipsoid, of which a height above the ground tells nothing.
+Value frame_to_value(const std::optional<GeodeticOrigin>& origin) {
   Value value = Value::map();
   value.set("axes", kAxes[0]);
   if (!origin) return value;
   Value point = Value::map();
   point.set("latitude_deg", origin->latitude_deg);
   point.set("longitude_deg", origin->longitude_deg);
-  point.set("altitude", origin->altitude);
+  if (const auto altitude = origin->altitude()) point.set("altitude", *altitude);
+  if (origin->height_of != HeightOf::ellipsoid) {
+    point.set("height", origin->height);
+    point.set("height_of", std::string(to_string(origin->height_of)));
+  }
   value.set("geodetic_origin", std::move(point));
   return value;
 }
 
-std::optional<GeodeticPoint> frame_from(Fields fields) {
+GeodeticOrigin origin_from(Fields& point) {
+  GeodeticOrigin origin{point.number("latitude_deg"), point.number("longitude_deg")};
+  if (point.has("height_of") || point.has("height")) {
+    const bool ground = point.choice("height_of", {"sea", "ground"}) == 1;
+    origin.height_of = ground ? HeightOf::ground : HeightOf::sea;
+    origin.height = point.number("height");
+    if (!ground) origin.geoid_height = point.number("altitude") - origin.height;
+  } else {
+    origin.height = point.number("altitude");
+  }
+  return origin;
+}
+
+std::optional<GeodeticOrigin> frame_from(Fields fields) {
   fields.choice("axes", kAxes);
-  std::optional<GeodeticPoint> origin;
+  std::optional<GeodeticOrigin> origin;
   if (fields.has("geodetic_origin")) {
     Fields point = fields.table("geodetic_origin");
-    origin = GeodeticPoint{point.number("latitude_deg"), point.number("longitude_deg"),
-                           point.number("altitude")};
+    origin = origin_from(point);
     try {
-      check_geodetic(*origin, "geodetic origin");
+      check_geodetic(origin->point(), "geodetic origin");
     } catch (const InputError& error) {
       point.add_error("", error.what());
     }

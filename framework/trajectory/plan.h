@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "framework/core/value.h"
-#include "framework/geometry/geodetic.h"
+#include "framework/geometry/geodetic_origin.h"
 #include "framework/trajectory/environment.h"
 #include "framework/trajectory/gate.h"
 #include "framework/trajectory/polyline.h"
@@ -55,10 +55,10 @@ struct Task {
 
 struct Plan {
   static constexpr int kFormat = 2;              // format 1 is read and converted
-  std::string mission;                           // name as the script gave it
-  std::string kind;                              // film, race, ...
-  std::optional<GeodeticPoint> geodetic_origin;  // of the world frame
-  Value vehicle;                                 // as vehicle/vehicle.h writes it, camera included
+  std::string mission;                            // name as the script gave it
+  std::string kind;                               // film, race, ...
+  std::optional<GeodeticOrigin> geodetic_origin;  // of the world frame
+  Value vehicle;                                  // as vehicle/vehicle.h writes it, camera included
   Trajectory trajectory;
   Environment environment;
   std::vector<TimeSpan> cuts;    // footage thrown away; in order, apart from each other

@@ -103,7 +103,7 @@ function M.placed(strokes, unit, o)
     world[i] = {}
     for k, p in ipairs(stroke) do
       local u, up = scale * (p[1] - (left + right) / 2), scale * (p[2] - low)
-      world[i][k] = u * across + { 0, 0, up } + o.origin
+      world[i][k] = u * across + { 0, 0, up } + o.base
     end
   end
   return world

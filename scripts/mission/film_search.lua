@@ -170,12 +170,20 @@ local function asked(run, shot, terms)
            vehicle = run:vehicle(run.options.vehicle) }
 end
 
+-- Two origins of one world cannot both be meant.
+local function check_origin(run, shot)
+  if shot.origin and run:stated("origin.latitude_deg") then
+    run:fail("origin", "the shot file states the origin of its world (refLLH); remove this one")
+  end
+end
+
 -- The plan of a shot {keyframes, duration, subjects, origin}; `terms` are own_terms.taken of it.
 function M.fly(run, shot, terms)
   local way = run.options.timing
   local film = asked(run, shot, terms)
   if #film.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
   run:expect_controller("controller")
+  check_origin(run, shot)
   check_start(run, film)
   check_gimbal(run, film)
   timing.check(run, film)

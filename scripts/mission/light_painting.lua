@@ -4,7 +4,7 @@
 --   local light_painting = require "mission.light_painting"
 --   return light_painting.text { name = "hello", text = "HELLO", height = 2 }
 --
--- A drawing is a text in a font of strokes, an SVG picture, or points. It is vertical. `origin` is
+-- A drawing is a text in a font of strokes, an SVG picture, or points. It is vertical. `base` is
 -- the centre of its lower edge. Spectators look along `view_yaw_deg`.
 local mission_of = require "mission.mission_of"
 local drawings = require "mission.drawings"
@@ -32,7 +32,7 @@ local DECLARATIONS = {
     { name = "points", type = "numbers", summary = "x, y, x, y, ..., with y upwards" } } },
   { name = "height", type = "number", unit = "m", default = 2, minimum = 0.01,
     summary = "height of a capital letter, or of the picture" },
-  { name = "origin", type = "numbers", size = 3, unit = "m", default = { 0, 0, 2 },
+  { name = "base", type = "numbers", size = 3, unit = "m", default = { 0, 0, 2 },
     summary = "centre of the lower edge of the drawing, world" },
   { name = "view_yaw_deg", type = "number", unit = "deg", default = 90,
     summary = "viewing direction of the spectators; 90: from south to north" },
@@ -208,7 +208,13 @@ local function painted(run)
   end
 end
 
-local function mission(given) return mission_of("light_painting", DECLARATIONS, given, painted) end
+local function mission(given)
+  if type(given) == "table" and type(given.origin) == "table" and given.origin[1] then
+    lapwing.fail("origin: the place of a drawing is `base`; `origin` is that of the world on the "
+                 .. "earth, { latitude_deg =, longitude_deg =, height =, height_of = }")
+  end
+  return mission_of("light_painting", DECLARATIONS, given, painted)
+end
 
 ---@type fun(given: lapwing.light_painting.text): lapwing.mission
 M.text = mission

@@ -273,7 +273,7 @@ TEST_F(MissionTest, DesignersShotsAreRead) {
   EXPECT_TRUE(plan.environment.subjects[0].position(0).isApprox(Eigen::Vector3d(0, 10, 0)));
   EXPECT_LT(plan.environment.subjects[0].position(10).norm(), 1e-12);
   ASSERT_TRUE(plan.geodetic_origin);
-  EXPECT_EQ(plan.geodetic_origin->altitude, 400);
+  EXPECT_EQ(plan.geodetic_origin->altitude(), 400);
   EXPECT_TRUE(verify(plan).feasible());
 
   mission = load(script);  // without a gimbal the vehicle's yaw turns the camera

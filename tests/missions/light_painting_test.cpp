@@ -68,7 +68,7 @@ TEST_F(LightPainting, TooSmoothIsAMatterOfWeights) {
 }
 
 TEST_F(LightPainting, TurnedRoundForItsSpectators) {
-  const Flown flown = paint("text = 'L', view_yaw_deg = 0, origin = {5, 1, 3}, height = 1");
+  const Flown flown = paint("text = 'L', view_yaw_deg = 0, base = {5, 1, 3}, height = 1");
   expect_certified(flown);
   // Looking east the letter's foot points south, to the right.
   const Points stroke = read_plan(flown.folder / "plan.json").task.strokes.at(0);

@@ -19,7 +19,7 @@ Plan small_plan(const MotionRecord& motion = force_motion()) {
   Plan plan;
   plan.mission = "castle \"flyover\" \xc3\xa9";
   plan.kind = "film";
-  plan.geodetic_origin = GeodeticPoint{47.1, 8.2, 400};
+  plan.geodetic_origin = GeodeticOrigin{47.1, 8.2, 400};
   plan.vehicle = Value::map();
   plan.vehicle.set("name", "solo");
   plan.trajectory.motion = motion;
@@ -219,6 +219,26 @@ TEST(Plan, OptionalSectionsHaveNoKey) {
   EXPECT_EQ(value.find("configuration"), nullptr);
   EXPECT_EQ(value.at("frame").find("geodetic_origin"), nullptr);
   EXPECT_FALSE(reread(plan).budget);
+}
+
+TEST(Plan, OriginKeepsWhatItsHeightIsMeasuredFrom) {
+  Plan plan = small_plan();
+  EXPECT_EQ(to_value(plan).at("frame").at("geodetic_origin").find("height_of"), nullptr);
+  for (const GeodeticOrigin& origin :
+       {GeodeticOrigin{47.1, 8.2, 400}, GeodeticOrigin{47.1, 8.2, 352.5, HeightOf::sea, 47.5},
+        GeodeticOrigin{47.1, 8.2, 1.5, HeightOf::ground}}) {
+    plan.geodetic_origin = origin;
+    EXPECT_EQ(reread(plan).geodetic_origin, origin);
+  }
+  EXPECT_FALSE(plan.geodetic_origin->altitude());
+  Value value = to_value(plan);
+  Value& ground = *value.find("frame")->find("geodetic_origin");
+  EXPECT_EQ(ground.find("altitude"), nullptr) << "of a height above the ground nobody knows it";
+  ground.set("height_of", "roof");
+  EXPECT_THAT(error_of(value),
+              HasSubstr("geodetic_origin.height_of: expected one of: sea, ground"));
+  erase(ground, "height_of");
+  EXPECT_THAT(error_of(value), HasSubstr("geodetic_origin.height_of: missing"));
 }
 
 TEST(Plan, EveryErrorIsListed) {
