@@ -59,8 +59,8 @@ Found hit(const UprightCylinderShape& cylinder, const Ray& ray) {
   const Vector3d p = ray.origin - cylinder.middle;
   const Vector3d& d = ray.direction;
   // The span of the ray between the two caps, and that within the endless tube.
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  double enter = -kInfinite, leave = kInfinite;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double enter = -infinity, leave = infinity;
   bool enter_cap = true, leave_cap = true;
   const double half = cylinder.height / 2, radius = cylinder.width / 2;
   if (d.z() == 0) {

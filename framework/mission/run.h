@@ -90,13 +90,13 @@ struct MissionStatement {
 // What `plan` returns, beside what the plan document holds.
 struct PlanObject {
   Plan plan;
-  SolveReport report;
-  std::string solver;
-  std::vector<std::string> notes;         // sentences for the user
+  SolveReport report = {};
+  std::string solver = {};
+  std::vector<std::string> notes = {};    // sentences for the user
   std::vector<std::string> details = {};  // likewise, of what was tried and came to nothing
-  Value block;                            // the kind's own figures; null or a map
-  std::string block_name;                 // of them in the answer; "": the kind
-  std::vector<Pilot> pilots;              // who fly it by hand
+  Value block = {};                       // the kind's own figures; null or a map
+  std::string block_name = {};            // of them in the answer; "": the kind
+  std::vector<Pilot> pilots = {};         // who fly it by hand
   std::vector<std::string> told = {};     // likewise, that stand in no plan
   // Of the report, beside those of every flight: those that are made already, and those that are
   // drawn once the mission has ended; null where there are none of these.
@@ -111,10 +111,10 @@ struct MissionRun {
   Value configuration = Value::map();
   double solve_seconds = 0;
   ObstacleFiles obstacles = {};
-  bool takes_start = false;             // the mission begins from a plan where one is given
-  bool judging = false;                 // the plan function ends where planning would begin
-  bool planning_began = false;          // since the plan function was called
-  MissionStatement* stating = nullptr;  // the plan function ends where its first plan is made
+  bool takes_start = false;                   // the mission begins from a plan where one is given
+  bool judging = false;                       // the plan function ends where planning would begin
+  bool planning_began = false;                // since the plan function was called
+  MissionStatement* stating = nullptr;        // the plan function ends where its first plan is made
   std::optional<GeodeticOrigin> origin = {};  // of the world frame, where the mission states it
 };
 

@@ -54,7 +54,7 @@ struct Task {
 };
 
 struct Plan {
-  static constexpr int kFormat = 2;              // format 1 is read and converted
+  static constexpr int kFormat = 2;               // format 1 is read and converted
   std::string mission;                            // name as the script gave it
   std::string kind;                               // film, race, ...
   std::optional<GeodeticOrigin> geodetic_origin;  // of the world frame

@@ -44,7 +44,7 @@ TEST_P(FuzzCorpus, EveryInputIsTakenOrRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Readers, FuzzCorpus, testing::ValuesIn(fuzzed_readers()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& reader) { return std::string(reader.param.name); });
 
 // A fuzzer that is in no line of CMakeLists.txt would be replayed and never run.
 TEST(FuzzList, HoldsEveryFuzzer) {

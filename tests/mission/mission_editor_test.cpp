@@ -95,8 +95,9 @@ TEST_F(Editing, ACertificateIsOfWhatIsDrawn) {
     ASSERT_EQ(drawn.samples.size(), edited.plan->trajectory.samples.size());
     for (std::size_t i = 0; i < drawn.samples.size(); ++i)
       EXPECT_EQ(drawn.samples[i].position, edited.plan->trajectory.samples[i].position);
-    if (judged)
+    if (judged) {
       EXPECT_EQ(to_json(edited.certificate->to_value()), to_json(verify(*edited.plan).to_value()));
+    }
   }
   EXPECT_EQ(heard_.front().answer.grade, AnswerGrade::step);
   EXPECT_EQ(heard_.back().answer.grade, AnswerGrade::certified);

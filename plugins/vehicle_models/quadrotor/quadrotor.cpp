@@ -54,21 +54,21 @@ class Quadrotor final : public DifferentiableModel<Quadrotor, 8, 4> {
   // Twice differentiable in the step and what it multiplies alone.
   void curvature(InstanceRange range, const double* inputs, const double* multipliers,
                  double* hessian, Workspace&) const override {
-    constexpr int kArguments = 13, kStep = 12;
+    constexpr int kInputs = 13, kStep = 12;
     for (int k = 0; k < range.count; ++k) {
-      const double* const at = inputs + k * kArguments;
+      const double* const at = inputs + k * kInputs;
       const double* const multiplier = multipliers + k * 8;
-      double* const h = hessian + k * kArguments * kArguments;
+      double* const h = hessian + k * kInputs * kInputs;
       const auto add = [&](int i, double value) {
-        h[i * kArguments + kStep] += value;
-        h[kStep * kArguments + i] += value;
+        h[i * kInputs + kStep] += value;
+        h[kStep * kInputs + i] += value;
       };
       for (int i = 0; i < 4; ++i) {
         const double inverse = 1.0 / (i < 3 ? mass_ : yaw_inertia_);
         const double acceleration = at[8 + i] * inverse - (i == 2 ? kGravity : 0.0);
         add(4 + i, multiplier[i]);
         add(8 + i, inverse * (multiplier[i] * at[kStep] + multiplier[4 + i]));
-        h[kStep * kArguments + kStep] += multiplier[i] * acceleration;
+        h[kStep * kInputs + kStep] += multiplier[i] * acceleration;
       }
     }
   }
