@@ -40,6 +40,10 @@ const std::vector<CommandExamples>& command_examples() {
         "lapwing sweep shot.lua --vary weights.smoothness=0.1,1,10 --resume"},
        "the worst of the runs: 0 all certified; 1 one is infeasible or not certified; 2 bad input; "
        "3 internal error; 130 interrupted: --resume continues"},
+      {"lapwing studio",
+       {"lapwing studio examples/filming/castle_flyover.lua",
+        "lapwing studio shot.lua --port 8123 --no-open"},
+       "0 done; 2 bad input; 3 internal error; 130 ended twice by Ctrl-C"},
       {"lapwing diff",
        {"lapwing diff out/a out/b", "lapwing diff out/a/plan.json out/b/plan.json -o diff.html"},
        "0 the plans are the same; 1 they differ; 2 bad input; 3 internal error"},

@@ -11,6 +11,7 @@
 #include "framework/app/plugin_guard.h"
 #include "framework/app/provenance.h"
 #include "framework/app/simulation_request.h"
+#include "framework/app/studio_command.h"
 #include "framework/app/sweep_command.h"
 #include "framework/app/terminal.h"
 #include "framework/app/tour_command.h"
@@ -251,6 +252,7 @@ struct Requests {
   Description described;
   NewFiles wanted;
   Sweep sweep;
+  StudioRequest studio;
   PlanDifference difference;
   ScanEvaluation scanning;
   ExploreEvaluation exploring;
@@ -271,6 +273,7 @@ void declare_commands(CLI::App& app, Requests& asked) {
   app.fallthrough();
   add_run(app, invocation, asked.script, command);
   add_sweep(app, invocation, asked.sweep, command);
+  add_studio_commands(app, invocation, asked.studio, command);
   add_difference(app, invocation, asked.difference, command);
   add_plan_commands(app, invocation, asked.plan, asked.exporting, asked.judges, command);
   add_simulate_command(app, invocation, asked.plan, asked.simulation, asked.target, command);

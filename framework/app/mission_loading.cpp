@@ -50,6 +50,8 @@ Value mission_config(const std::string& name, const ConfigSearch& search) {
   return config;
 }
 
+}  // namespace
+
 void require_script(const fs::path& script) {
   const std::string file = script.string();
   if (script.extension() == ".svg")
@@ -74,7 +76,18 @@ void require_script(const fs::path& script) {
     throw InputError("cannot read '" + file + "'; did you mean '" + file + ".lua'?");
 }
 
-}  // namespace
+MissionSettings mission_settings(const Invocation& invocation, const Registry& registry) {
+  MissionSettings settings;
+  settings.scripts = shipped_folder("scripts");
+  settings.configs = shipped_folder("configs");
+  settings.seed = invocation.seed;
+  settings.threads = invocation.threads > 0
+                         ? invocation.threads
+                         : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  settings.data = data_folders(invocation);
+  settings.registry = &registry;
+  return settings;
+}
 
 std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& invocation,
                                       const Registry& registry,
@@ -82,22 +95,14 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
                                       std::function<void()> before_print,
                                       const MissionObservers& observers) {
   require_script(script);
-  MissionSettings settings;
-  settings.scripts = shipped_folder("scripts");
-  settings.configs = shipped_folder("configs");
+  MissionSettings settings = mission_settings(invocation, registry);
   ConfigSearch search;
   search.folders = {settings.configs};
   std::vector<Value> layers;
   for (const std::string& name : invocation.configs) layers.push_back(mission_config(name, search));
   settings.limits = sandbox_limits(layers, invocation.overrides);
-  settings.seed = invocation.seed;
-  settings.threads = invocation.threads > 0
-                         ? invocation.threads
-                         : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  settings.data = data_folders(invocation);
   if (!invocation.from.empty())
     settings.start = std::make_shared<const Plan>(read_plan(invocation.from));
-  settings.registry = &registry;
   settings.cancellation = cancellation;
   settings.progress = progress;
   settings.observe_surface = observers.surface;

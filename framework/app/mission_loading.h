@@ -21,6 +21,13 @@ struct MissionObservers {
   std::function<void(const ScanWork&, const TourDefinition&)> tour;
 };
 
+// What missions are loaded with, limits and observers apart. InputError when a data folder is none.
+// `registry` outlives the missions.
+MissionSettings mission_settings(const Invocation& invocation, const Registry& registry);
+
+// InputError when the file is something else than a script, and says what it is for.
+void require_script(const std::filesystem::path& script);
+
 // InputError when script, configurations, overrides or data folders are wrong. `registry`, and what
 // `cancellation` and `progress` point to, outlive the mission.
 std::unique_ptr<Mission> load_mission(const std::filesystem::path& script,

@@ -152,4 +152,15 @@ FilmStrip film_strip(const Plan& plan, const Vehicle& vehicle, const std::vector
   return strip;
 }
 
+std::string film_frame(const Plan& plan, const Vehicle& vehicle, double time, int most_across,
+                       int most_down) {
+  const auto& samples = plan.trajectory.samples;
+  if (samples.empty() || !(time >= samples.front().time && time <= samples.back().time))
+    throw InputError("there is no frame at " + number_text(time, 6) +
+                     " s: the flight does not last until then");
+  const Pinhole pinhole = vehicle.camera.pinhole().fitted(most_across, most_down);
+  const CameraView view = view_of(sample_at(plan.trajectory, time), pinhole);
+  return encode_png(Renderer(bodies_at(plan, time)).picture(view));
+}
+
 }  // namespace lapwing

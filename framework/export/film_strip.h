@@ -19,4 +19,9 @@ std::vector<double> strip_times(const Plan& plan, int count = 12);
 // not things and are not drawn. Bodies beyond 1e5 m are left out.
 FilmStrip film_strip(const Plan& plan, const Vehicle& vehicle, const std::vector<double>& times);
 
+// One such frame as a PNG file, the camera's view in as many pixels as fit. InputError for a time
+// outside of the flight.
+std::string film_frame(const Plan& plan, const Vehicle& vehicle, double time, int most_across,
+                       int most_down);
+
 }  // namespace lapwing

@@ -170,6 +170,10 @@ std::vector<SettableOption> Mission::settable() const {
                                               *impl_->run.settings.registry);
 }
 
+Value Mission::declarations() const {
+  return impl_->options.declarations.to_value();
+}
+
 void Mission::configure(std::span<const Value> layers, std::span<const std::string> overrides) {
   std::vector<Value> own_layers;
   for (const Value& layer : layers) {

@@ -58,6 +58,9 @@ class Mission {
   void configure(std::span<const Value> layers, std::span<const std::string> overrides);
   // What --set may be given, for whoever completes it. InputError for an unknown plugin.
   std::vector<SettableOption> settable() const;
+  // What its options are declared as: the list that `lapwing.options` took, or one made of the
+  // options of a script that declares none.
+  Value declarations() const;
   // Effective options; every value with its origin.
   const Value& configuration() const;
 

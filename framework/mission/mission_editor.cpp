@@ -2,6 +2,7 @@
 #include "framework/mission/mission_editor.h"
 
 #include "framework/core/error.h"
+#include "framework/mission/controller_source.h"
 #include "framework/verify/verify.h"
 
 namespace lapwing {
@@ -35,8 +36,9 @@ EditStatement MissionEditor::state(const MissionEdit& edit, const EditSession::T
           .start = statement_.start,
           .certify = [this](const EditAnswer& answer, const CancellationToken& token) {
             plan_ = std::make_shared<const Plan>(plan_of(answer));
-            certificate_ =
-                verify(*plan_, {.folder = statement_.obstacle_folder, .cancellation = &token});
+            certificate_ = verify(*plan_, {.folder = statement_.obstacle_folder,
+                                           .cancellation = &token,
+                                           .controllers = controllers_of(*settings_.registry)});
             std::string all;
             for (const Check& check : certificate_->failures())
               all += (all.empty() ? "" : "; ") + to_line(check);
@@ -57,13 +59,14 @@ Plan MissionEditor::plan_of(const EditAnswer& answer) const {
 void MissionEditor::hear(const EditAnswer& answer) {
   const bool judged =
       answer.grade == AnswerGrade::certified || answer.grade == AnswerGrade::rejected;
-  EditedPlan edited{answer, nullptr, {}};
+  EditedPlan edited{answer, nullptr, {}, {}};
   if (judged) {
     edited.plan = plan_;
     edited.certificate = certificate_;
   } else if (answer.problem) {
     edited.plan = std::make_shared<const Plan>(plan_of(answer));
   }
+  edited.folder = statement_.obstacle_folder;
   hear_(edited);
 }
 

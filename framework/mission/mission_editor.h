@@ -31,6 +31,8 @@ struct EditedPlan {
   std::shared_ptr<const Plan> plan;
   // The verifier's, of this very plan: where the grade is certified or rejected.
   std::optional<Certificate> certificate;
+  // Where the files lie that the plan's environment names, until the next edit.
+  std::filesystem::path folder = {};
 };
 
 class MissionEditor {

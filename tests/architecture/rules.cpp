@@ -54,7 +54,8 @@ const std::map<std::string, Names>& rooms() {
       {"conformance", without(kAllButApp, "mission")},
       {"mission", kAllButApp},
       {"study", {"geometry", "surface", "view", "export", "config", "plugin"}},
-      {"app", with(with(kAllButApp, "app"), "study")},
+      {"studio", kAllButApp},
+      {"app", with(with(with(kAllButApp, "app"), "study"), "studio")},
   };
   return kRooms;
 }
@@ -94,6 +95,8 @@ constexpr Containment kContained[] = {
     {"lauxlib.h", "framework/mission/", false},
     {"yaml-cpp/", "framework/config/", true},
     {"boost/math/", "framework/study/", true},
+    {"boost/asio/", "framework/studio/", true},
+    {"boost/beast/", "framework/studio/", true},
     {"CLI/", "framework/app/", false},
     {"embree", "framework/geometry/", true},
     {"assimp/", "framework/geometry/", false},

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/app/studio_command.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "framework/app/interruption.h"
+#include "framework/app/mission_loading.h"
+#include "framework/core/visible_text.h"
+#include "framework/studio/studio.h"
+#include "framework/studio/worker.h"
+
+namespace lapwing {
+namespace {
+
+// In the browser of the desktop, where there is one; nobody waits for it.
+void open_in_browser(const std::string& address) {
+  const pid_t child = ::fork();
+  if (child != 0) return;
+  ::setsid();
+  const int nowhere = ::open("/dev/null", O_RDWR);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
+  ::execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
+  ::_exit(1);
+}
+
+void add_folders(std::vector<std::string>& words, const char* option,
+                 const std::vector<std::filesystem::path>& folders) {
+  for (const std::filesystem::path& folder : folders)
+    words.insert(words.end(), {option, folder.string()});
+}
+
+ExitStatus open_studio(const StudioRequest& asked, const Invocation& invocation) {
+  require_script(asked.script);
+  const Interruption interruption;
+  const Registry registry = invocation.registry();
+  mission_settings(invocation, registry);  // folders that are none are told here
+  StudioSettings settings;
+  settings.script = asked.script;
+  settings.assets = asked.assets;
+  settings.port = asked.port;
+  settings.worker.words = {"lapwing", "studio-worker", asked.script.string()};
+  settings.run_words = {"lapwing", "run",     asked.script.string(), "--json",
+                        "--quiet", "--color", "never"};
+  for (auto* words : {&settings.worker.words, &settings.run_words}) {
+    add_folders(*words, "--data", invocation.data);
+    add_folders(*words, "--plugin-path", invocation.plugin_path);
+  }
+  run_studio(settings, interruption.token(), [&](const std::string& address) {
+    std::cout << visible_line(address) << std::endl;
+    if (!asked.no_open) open_in_browser(address);
+  });
+  return ExitStatus::done;
+}
+
+ExitStatus work_for_studio(const StudioRequest& asked, const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  MissionSettings settings = mission_settings(invocation, registry);
+  run_studio_worker(asked.script, settings);
+  return ExitStatus::done;
+}
+
+void add_data(CLI::App& command, Invocation& invocation) {
+  add_repeated(command, "--data", "DIR", invocation.data,
+               "a folder that the script may read; repeatable; default: those of LAPWING_DATA");
+}
+
+}  // namespace
+
+void add_studio_commands(CLI::App& app, Invocation& invocation, StudioRequest& asked,
+                         Command& command) {
+  CLI::App* studio =
+      app.add_subcommand("studio", "edit, certify and fly a film in a browser of this machine");
+  add_mission(*studio, asked.script);
+  add_count(*studio, "--port", 1, 65535, "port on 127.0.0.1; default: one that is free",
+            [&](std::uint64_t port) { asked.port = static_cast<std::uint16_t>(port); });
+  studio->add_flag("--no-open", asked.no_open, "print the address and open no browser");
+  add_text(*studio, "--assets", "DIR", "folder of the page's files; default: the page built in",
+           [&](const std::string& path) { asked.assets = path; });
+  add_data(*studio, invocation);
+  studio->callback([&] { command = [&] { return open_studio(asked, invocation); }; });
+  CLI::App* worker = app.add_subcommand("studio-worker", "a working process of a studio");
+  worker->group("");
+  add_mission(*worker, asked.script);
+  add_data(*worker, invocation);
+  worker->callback([&] { command = [&] { return work_for_studio(asked, invocation); }; });
+}
+
+}  // namespace lapwing

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/studio/journal.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason() {
+  return std::strerror(errno);
+}
+
+// So that a new file's name is on disk as well.
+void sync_folder(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+Journal::Journal(fs::path file) : file_(std::move(file)) {
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  if (descriptor_ < 0)
+    throw InputError("cannot write '" + file_.string() + "', the journal of edits: " + reason());
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) < 0) {
+    const bool taken = errno == EWOULDBLOCK;
+    const std::string why = reason();
+    ::close(descriptor_);
+    throw InputError(taken ? "another studio has this mission open ('" + file_.string() +
+                                 "' is in use); its address is where that was started"
+                           : "cannot lock '" + file_.string() + "': " + why);
+  }
+  try {
+    read();
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+Journal::~Journal() {
+  if (lines_ <= 1) ::unlink(file_.c_str());
+  ::close(descriptor_);
+}
+
+void Journal::read() {
+  const std::string text = read_file(file_, kLargest);
+  while (length_ < text.size()) {
+    const std::size_t end = text.find('\n', length_);
+    const bool last = end == text.npos || end + 1 == text.size();
+    try {
+      if (end == text.npos) throw InputError("it has no end");
+      read_line(text.substr(length_, end - length_), lines_ + 1);
+    } catch (const InputError& error) {
+      if (!last)
+        throw InputError("'" + file_.string() + "', line " + std::to_string(lines_ + 1) +
+                         ": not a journal's: " + error.what() +
+                         "; move it away to begin without its edits");
+      remark_ = "the last line of '" + file_.string() + "' was cut off (" +
+                std::to_string(text.size() - length_) + " bytes): what it said is lost";
+      if (::ftruncate(descriptor_, static_cast<off_t>(length_)) < 0)
+        throw InputError("cannot mend '" + file_.string() + "': " + reason());
+      break;
+    }
+    length_ = end + 1;
+    ++lines_;
+  }
+}
+
+void Journal::read_line(const std::string& line, std::size_t number) {
+  const Value value = without_origins(from_json(line, "journal"));
+  if (number > 1) {
+    document_->add(history_entry(value));
+    return;
+  }
+  if (value.at("lapwing_studio_journal") != Value(kFormat))
+    throw InputError("expected format " + std::to_string(kFormat));
+  document_.emplace(value.at("script"));
+}
+
+void Journal::begin(const Value& script) {
+  Value line = Value::map();
+  line.set("lapwing_studio_journal", kFormat);
+  line.set("script", script);
+  write(to_json(line, -1));
+  sync_folder(file_);
+}
+
+void Journal::append(const HistoryEntry& entry) {
+  write(to_json(to_value(entry), -1));
+}
+
+void Journal::write(std::string line) {
+  line += '\n';
+  std::size_t done = 0;
+  while (done < line.size()) {
+    const ssize_t count = ::pwrite(descriptor_, line.data() + done, line.size() - done,
+                                   static_cast<off_t>(length_ + done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  if (done == line.size() && ::fdatasync(descriptor_) == 0) {
+    length_ += line.size();
+    ++lines_;
+    return;
+  }
+  const std::string why = reason();
+  if (::ftruncate(descriptor_, static_cast<off_t>(length_)) < 0) {
+    // Dropped as cut off when it is opened again, and written over until then.
+  }
+  throw InputError("cannot write '" + file_.string() + "': " + why);
+}
+
+}  // namespace lapwing

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/studio/page_message.h"
+
+#include <cmath>
+
+#include "framework/core/json.h"
+
+namespace lapwing {
+namespace {
+
+using Type = PageMessageType;
+
+constexpr std::size_t kLongestName = 128;  // bytes, of ids, tabs and formats
+constexpr std::size_t kLongestLabel = 400;
+constexpr std::int64_t kLargestNumber = (std::int64_t{1} << 53) - 1;
+
+constexpr std::array kTypes{Type::hello,   Type::preview,     Type::gesture,       Type::undo,
+                            Type::redo,    Type::rest,        Type::resolve_script, Type::fly,
+                            Type::picture, Type::export_plan, Type::save_report,   Type::export_lua};
+
+Type type_named(const std::string& name) {
+  for (const Type type : kTypes)
+    if (name == to_string(type)) return type;
+  throw InputError("type: '" + name.substr(0, kLongestName) + "' is not a message of a page");
+}
+
+// Reads each field once, and tells what nobody read.
+class MessageFields {
+ public:
+  explicit MessageFields(const Value& message) : message_(message) {}
+
+  const Value& at(const char* name) {
+    const Value* found = find(name);
+    if (!found) throw InputError(std::string(name) + ": missing");
+    return *found;
+  }
+  const Value* find(const char* name) {
+    ++read_;
+    const Value* found = message_.find(name);
+    if (!found) --read_;
+    return found;
+  }
+  std::string text(const char* name, std::size_t longest, bool may_be_empty = false) {
+    const Value& value = at(name);
+    const bool fits = value.is_text() && value.as_text().size() <= longest &&
+                      (may_be_empty || !value.as_text().empty());
+    if (!fits)
+      throw InputError(std::string(name) + ": expected a text of at most " +
+                       std::to_string(longest) + " bytes");
+    return value.as_text();
+  }
+  std::int64_t count(const char* name, std::int64_t least, std::int64_t most) {
+    const Value& value = at(name);
+    const bool whole = value.is_number() && std::abs(value.as_number()) <= kLargestNumber &&
+                       value.as_number() == std::floor(value.as_number());
+    if (!whole || value.as_number() < static_cast<double>(least) ||
+        value.as_number() > static_cast<double>(most))
+      throw InputError(std::string(name) + ": expected a whole number from " +
+                       std::to_string(least) + " to " + std::to_string(most));
+    return static_cast<std::int64_t>(value.as_number());
+  }
+  double number(const char* name, double least, double most) {
+    return checked(at(name), name, least, most);
+  }
+  static double checked(const Value& value, const char* name, double least, double most) {
+    if (!value.is_number() || !(value.as_number() >= least && value.as_number() <= most))
+      throw InputError(std::string(name) + ": expected a number from " + std::to_string(least) +
+                       " to " + std::to_string(most));
+    return value.as_number();
+  }
+  void require_all_read() const {
+    if (message_.as_map().size() == read_) return;
+    throw InputError("a field that '" + message_.at("type").as_text() + "' does not have");
+  }
+
+ private:
+  const Value& message_;
+  std::size_t read_ = 1;  // `type`
+};
+
+void read_edit(MessageFields& fields, PageMessage& message) {
+  message.edit = static_cast<std::uint64_t>(fields.count("edit", 0, kLargestNumber));
+}
+
+void read_id(MessageFields& fields, PageMessage& message) {
+  message.id = fields.text("id", kLongestName);
+}
+
+void read_base(MessageFields& fields, PageMessage& message) {
+  message.base = static_cast<std::uint64_t>(fields.count("base", 0, kLargestNumber));
+}
+
+StudioDocument::Take take_named(const std::string& name) {
+  if (name == "mine") return StudioDocument::Take::mine;
+  if (name == "theirs") return StudioDocument::Take::theirs;
+  if (name == "both") return StudioDocument::Take::both;
+  throw InputError("take: expected mine, theirs or both");
+}
+
+void read_flight(MessageFields& fields, PageMessage& message) {
+  constexpr double kStrongest = 100;  // m/s
+  read_edit(fields, message);
+  const Value& wind = fields.at("wind");
+  if (!wind.is_list() || wind.as_list().size() != 3)
+    throw InputError("wind: expected three numbers, m/s");
+  for (std::size_t i = 0; i < 3; ++i)
+    message.wind[i] = MessageFields::checked(wind.as_list()[i], "wind", -kStrongest, kStrongest);
+  if (message.wind[2] != 0) throw InputError("wind: it blows horizontally; the third number is 0");
+  if (const Value* gust = fields.find("gust"))
+    message.gust = MessageFields::checked(*gust, "gust", 0, kStrongest);
+  message.seed = static_cast<std::uint64_t>(fields.count("seed", 0, kLargestNumber));
+}
+
+void read_picture(MessageFields& fields, PageMessage& message) {
+  read_edit(fields, message);
+  message.time = fields.number("time", 0, 1e6);
+  message.width = static_cast<int>(fields.count("width", 1, kLargestPicture));
+  message.height = static_cast<int>(fields.count("height", 1, kLargestPicture));
+}
+
+void read_export(MessageFields& fields, PageMessage& message) {
+  read_id(fields, message);
+  message.format = fields.text("format", kLongestName);
+  if (const Value* parameters = fields.find("parameters")) {
+    if (!parameters->is_map()) throw InputError("parameters: expected an object");
+    message.parameters = *parameters;
+  }
+  if (const Value* uncertified = fields.find("uncertified")) {
+    if (uncertified->type() != Value::Type::boolean)
+      throw InputError("uncertified: expected true or false");
+    message.uncertified = uncertified->as_boolean();
+  }
+}
+
+void read_fields(MessageFields& fields, PageMessage& message) {
+  switch (message.type) {
+    case Type::hello:
+      message.token = fields.text("token", kLongestName);
+      message.tab = fields.text("tab", kLongestName);
+      message.seen = static_cast<std::uint64_t>(fields.count("seen", 0, kLargestNumber));
+      return;
+    case Type::preview:
+      read_edit(fields, message);
+      message.patch = patch_from(fields.at("patch"), "patch");
+      return;
+    case Type::gesture:
+      read_id(fields, message);
+      read_base(fields, message);
+      message.label = fields.text("label", kLongestLabel, true);
+      message.patch = patch_from(fields.at("patch"), "patch");
+      return;
+    case Type::undo:
+    case Type::redo:
+      read_id(fields, message);
+      read_base(fields, message);
+      return;
+    case Type::rest:
+      return;
+    case Type::resolve_script:
+      message.take = take_named(fields.text("take", kLongestName));
+      return;
+    case Type::fly:
+      return read_flight(fields, message);
+    case Type::picture:
+      return read_picture(fields, message);
+    case Type::export_plan:
+      return read_export(fields, message);
+    case Type::save_report:
+    case Type::export_lua:
+      return read_id(fields, message);
+  }
+}
+
+}  // namespace
+
+const char* to_string(PageMessageType type) {
+  switch (type) {
+    case Type::hello:
+      return "hello";
+    case Type::preview:
+      return "preview";
+    case Type::gesture:
+      return "gesture";
+    case Type::undo:
+      return "undo";
+    case Type::redo:
+      return "redo";
+    case Type::rest:
+      return "rest";
+    case Type::resolve_script:
+      return "resolve_script";
+    case Type::fly:
+      return "fly";
+    case Type::picture:
+      return "picture";
+    case Type::export_plan:
+      return "export";
+    case Type::save_report:
+      return "save_report";
+    case Type::export_lua:
+      return "export_lua";
+  }
+  return "";
+}
+
+PageMessage page_message(std::string_view text) {
+  const Value value = without_origins(from_json(text, "message"));
+  const Value* type = value.find("type");
+  if (!type || !type->is_text()) throw InputError("expected an object with a text `type`");
+  PageMessage message;
+  message.type = type_named(type->as_text());
+  MessageFields fields(value);
+  read_fields(fields, message);
+  fields.require_all_read();
+  return message;
+}
+
+}  // namespace lapwing

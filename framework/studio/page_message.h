@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a page says to the server (PROTOCOL.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "framework/studio/document.h"
+
+namespace lapwing {
+
+enum class PageMessageType {
+  hello,
+  preview,
+  gesture,
+  undo,
+  redo,
+  rest,
+  resolve_script,
+  fly,
+  picture,
+  export_plan,  // "export"
+  save_report,
+  export_lua,
+};
+const char* to_string(PageMessageType type);
+
+struct PageMessage {
+  PageMessageType type = PageMessageType::hello;
+  std::string token, tab;                   // hello
+  std::uint64_t seen = 0;                   // hello
+  std::string id, label;                    // gesture and what follows it; one id each
+  std::uint64_t base = 0;                   // revision
+  std::uint64_t edit = 0;                   // preview, fly, picture
+  Patch patch;                              // preview, gesture
+  StudioDocument::Take take = StudioDocument::Take::mine;
+  std::array<double, 3> wind{};             // m/s
+  double gust = 0;                          // m/s
+  std::uint64_t seed = 1;
+  double time = 0;                          // s
+  int width = 0, height = 0;                // pixels
+  std::string format;                       // of export
+  Value parameters = Value::map();          // of the exporter
+  bool uncertified = false;
+};
+
+// Of a picture, each way.
+inline constexpr int kLargestPicture = 2048;  // pixels
+
+// Throws InputError naming the field for what is no message: JSON that is not one, unknown types,
+// fields that are missing, unknown, of another type or out of range.
+PageMessage page_message(std::string_view text);
+
+}  // namespace lapwing

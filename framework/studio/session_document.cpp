@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// Changes of the document and of its script.
+#include <sys/stat.h>
+
+#include "framework/core/json.h"
+#include "framework/studio/layer_file.h"
+#include "framework/studio/session.h"
+
+namespace lapwing {
+namespace {
+
+// What a file looks like without reading it; "" where there is none.
+std::string look_of(const std::filesystem::path& file) {
+  struct stat found {};
+  if (::stat(file.c_str(), &found) != 0) return "";
+  return std::to_string(found.st_ino) + " " + std::to_string(found.st_size) + " " +
+         std::to_string(found.st_mtim.tv_sec) + "." + std::to_string(found.st_mtim.tv_nsec);
+}
+
+}  // namespace
+
+// ---- the script ---------------------------------------------------------------------------------
+
+void StudioSession::glance() {
+  const std::string look = look_of(settings_.script);
+  if (look != watched_) {
+    watched_ = look;
+    check_script();
+  }
+  loop_.after(settings_.glance, [this, alive = alive_] {
+    if (*alive) glance();
+  });
+}
+
+void StudioSession::check_script() {
+  Check check;
+  check.of_script = true;
+  checks_.push_back(std::move(check));
+  advance();
+}
+
+const Value& StudioSession::base_options() const {
+  return pending_script_ ? *pending_script_ : document_->script();
+}
+
+Value StudioSession::document_layer() const {
+  return layer_of(base_options(), document_->current());
+}
+
+void StudioSession::begin_document(const Value& options) {
+  if (!journal_) {
+    document_.emplace(options);
+    return;
+  }
+  if (journal_->document()) {
+    document_ = journal_->document();
+  } else {
+    try {
+      journal_->begin(options);
+    } catch (const InputError& error) {  // a full disk: to be looked at
+      why_not_ = error.what();
+    }
+    document_.emplace(options);
+  }
+  adopt_layer();
+}
+
+// What somebody wrote into the layer's file by hand is an edit. What a studio wrote last may be older
+// than its journal: it is written again.
+void StudioSession::adopt_layer() {
+  if (!why_not_.empty()) return;
+  std::optional<LayerFile> file;
+  try {
+    file = read_layer(settings_.script);
+  } catch (const InputError& error) {
+    why_not_ = std::string(error.what()) + "; mend or remove it";
+    return;
+  }
+  const bool from_journal = document_->revision() > 0;
+  if (!file || (file->as_written && from_journal)) {
+    if (from_journal) layer_changed();
+    return;
+  }
+  Proposal proposal;
+  proposal.gesture.label = beside_script(settings_.script, ".studio.yaml").filename().string() +
+                           (from_journal ? " was edited" : " was found");
+  Value next = document_->script();
+  merge(next, file->layer);
+  proposal.next = std::move(next);
+  proposal.quiet = true;
+  propose(std::move(proposal));
+}
+
+void StudioSession::found_script(const Value& options) {
+  script_error_.clear();
+  if (!document_) begin_document(options);
+  if (description_.empty()) ask_for_description();
+  if (same_options(document_->script(), options)) {
+    pending_script_.reset();
+    solve_document(true);
+  } else if (document_->layer().as_map().empty()) {
+    Proposal proposal;
+    proposal.kind = EntryKind::script;
+    proposal.gesture.label = "the script changed";
+    proposal.script = options;
+    proposal.take = StudioDocument::Take::theirs;
+    proposal.quiet = true;
+    if (editable()) {
+      propose(std::move(proposal));
+    } else {  // to be looked at: without a history
+      const Patch patch = difference(document_->current(), options);
+      document_.emplace(options);
+      Value message = Value::map();
+      message.set("type", "document");
+      message.set("revision", 0);
+      message.set("patch", to_value(patch));
+      message.set("by", "");
+      message.set("label", "the script changed");
+      message.set("can_undo", false);
+      message.set("can_redo", false);
+      tell_all(message);
+      solve_document(true);
+    }
+  } else {
+    pending_script_ = options;
+    Value message = Value::map();
+    message.set("type", "script_changed");
+    message.set("conflict", document_->conflicts(options));
+    message.set("message", "the script changed on disk; your edits are kept until you choose");
+    tell_all(message);
+    solve_document(true);
+  }
+  welcome_all();
+}
+
+// ---- proposals ----------------------------------------------------------------------------------
+
+void StudioSession::propose(Proposal proposal) {
+  Check check;
+  check.proposal = std::move(proposal);
+  checks_.push_back(std::move(check));
+  advance();
+}
+
+Value StudioSession::next_of(const Proposal& proposal) const {
+  const Gesture& gesture = proposal.gesture;
+  if (proposal.next) return *proposal.next;
+  switch (proposal.kind) {
+    case EntryKind::gesture:
+      return document_->proposed(gesture);
+    case EntryKind::undo:
+    case EntryKind::redo:
+      if (gesture.base != document_->revision())
+        throw InputError("something else was changed meanwhile: look at it, and ask again");
+      return proposal.kind == EntryKind::undo ? document_->undone() : document_->redone();
+    case EntryKind::script:
+      break;
+  }
+  if (!proposal.script && !pending_script_)
+    throw InputError("the script has not changed, or it was answered already");
+  return document_->taken(proposal.script ? *proposal.script : *pending_script_, proposal.take);
+}
+
+// Sends the next check, one at a time: each is of the document that the one before left.
+void StudioSession::advance() {
+  while (!checks_.empty() && checks_.front().serial == 0) {
+    Check& check = checks_.front();
+    Proposal& proposal = check.proposal;
+    if (!check.of_script) {
+      if (!proposal.gesture.id.empty() && document_->has(proposal.gesture.id)) {
+        acknowledge(proposal);
+        checks_.pop_front();
+        continue;
+      }
+      try {
+        proposal.next = next_of(proposal);
+        if (proposal.kind == EntryKind::script && !proposal.script)
+          proposal.script = *pending_script_;
+      } catch (const InputError& error) {
+        refuse_gesture(proposal, error.what());
+        checks_.pop_front();
+        continue;
+      }
+    }
+    check.serial = ++serial_;
+    const Value& base = proposal.script ? *proposal.script : document_ ? base_options() : Value();
+    const Value layer = check.of_script ? Value::map() : layer_of(base, *proposal.next);
+    check.frame.header.set("do", "check");
+    check.frame.header.set("serial", check.serial);
+    check.frame.header.set("layer", layer);
+    // What was done before is done again, whatever the mission says of it.
+    check.frame.header.set("judge", !check.of_script && proposal.kind == EntryKind::gesture &&
+                                        !proposal.quiet);
+    checker_->send(check.frame);
+    if (!check.of_script) {  // most proposals hold: it is solved meanwhile
+      Solve solve;
+      solve.held = true;
+      post_solve(layer, std::move(solve));
+      check.solve = solve_->serial;
+    }
+  }
+}
+
+void StudioSession::checked(const Frame& frame) {
+  if (checks_.empty() || frame.header.at("serial") != Value(checks_.front().serial)) return;
+  const Check check = std::move(checks_.front());
+  checks_.pop_front();
+  mission_name_ = frame.header.at("mission").at("name").as_text();
+  mission_kind_ = frame.header.at("mission").at("kind").as_text();
+  if (check.of_script)
+    found_script(frame.header.at("document"));
+  else
+    commit(check, frame.header.at("document"));
+  advance();
+}
+
+void StudioSession::not_checked(const Frame& frame) {
+  if (checks_.empty() || frame.header.at("serial") != Value(checks_.front().serial)) return;
+  const Check check = std::move(checks_.front());
+  checks_.pop_front();
+  const std::string& why = frame.header.at("why").as_text();
+  if (check.of_script) {
+    const Value* line = frame.header.find("line");
+    script_error_ = as_utf8(why);
+    error_line_ = line ? static_cast<int>(line->as_integer()) : 0;
+    Value message = Value::map();
+    message.set("type", "script_error");
+    message.set("message", script_error_);
+    message.set("line", error_line_);
+    tell_all(message);
+    welcome_all();
+  } else {
+    refuse_gesture(check.proposal, why);
+    // A layer that was found and does not hold is left alone, and nothing is written over it.
+    if (check.proposal.quiet && check.proposal.kind == EntryKind::gesture)
+      why_not_ = beside_script(settings_.script, ".studio.yaml").string() + ": " + why;
+    solve_document();
+  }
+  advance();
+}
+
+void StudioSession::commit(const Check& check, const Value& next) {
+  const Proposal& proposal = check.proposal;
+  const Gesture& gesture = proposal.gesture;
+  const char* label = proposal.kind == EntryKind::script ? "the script changed" : "";
+  const std::string said = proposal.kind == EntryKind::undo   ? document_->undo_label()
+                           : proposal.kind == EntryKind::redo ? document_->redo_label()
+                           : gesture.label.empty()            ? label
+                                                              : gesture.label;
+  HistoryEntry entry =
+      document_->entry_for(proposal.kind, gesture.id, said, next, proposal.script);
+  if (entry.patch.empty() && proposal.kind == EntryKind::gesture) {
+    acknowledge(proposal);  // it changes nothing
+    return solve_document();
+  }
+  try {
+    if (journal_) journal_->append(entry);
+  } catch (const InputError& error) {
+    refuse_gesture(proposal, std::string(error.what()) + "; nothing was changed");
+    return solve_document();
+  }
+  Value message = Value::map();
+  message.set("type", "document");
+  message.set("revision", static_cast<std::int64_t>(entry.revision));
+  message.set("patch", to_value(entry.patch));
+  message.set("by", gesture.id);
+  message.set("label", said);
+  document_->add(std::move(entry));
+  if (proposal.script) pending_script_.reset();
+  message.set("can_undo", document_->can_undo());
+  message.set("can_redo", document_->can_redo());
+  message.set("undo_label", document_->undo_label());
+  message.set("redo_label", document_->redo_label());
+  tell_all(message);
+  layer_changed();
+  document_changed(check.solve);
+}
+
+// Whoever asked is told that it is done; nobody else need know.
+void StudioSession::acknowledge(const Proposal& proposal) {
+  Value message = Value::map();
+  message.set("type", "document");
+  message.set("revision", static_cast<std::int64_t>(document_->revision()));
+  message.set("patch", Value::list());
+  message.set("by", proposal.gesture.id);
+  message.set("label", proposal.gesture.label);
+  message.set("can_undo", document_->can_undo());
+  message.set("can_redo", document_->can_redo());
+  message.set("undo_label", document_->undo_label());
+  message.set("redo_label", document_->redo_label());
+  tell(proposal.from, message);
+}
+
+// ---- the layer ----------------------------------------------------------------------------------
+
+void StudioSession::layer_changed() {
+  if (layer_waits_) return;
+  layer_waits_ = true;
+  loop_.after(settings_.pause, [this, alive = alive_] {
+    if (!*alive || !layer_waits_) return;
+    const std::string why = write_layer_now();
+    if (why.empty()) return;
+    Value message = Value::map();
+    message.set("type", "remark");
+    message.set("message", as_utf8(why + "; the journal has every edit, and the next one tries again"));
+    tell_all(message);
+  });
+}
+
+std::string StudioSession::write_layer_now() {
+  if (!document_ || !journal_) return "";
+  layer_waits_ = false;
+  try {
+    write_layer(settings_.script, document_->revision(), document_layer(), base_options());
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace lapwing

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// Solves, their answers, and errands.
+#include <cmath>
+
+#include "framework/core/json.h"
+#include "framework/studio/layer_file.h"
+#include "framework/studio/session.h"
+
+namespace lapwing {
+namespace {
+
+using Type = PageMessageType;
+
+constexpr std::size_t kMostErrands = 32;
+
+int rank_of(const std::string& grade) {
+  return grade == "step" ? 0 : grade == "converged" ? 1 : 2;
+}
+
+}  // namespace
+
+// ---- solves -------------------------------------------------------------------------------------
+
+void StudioSession::post_solve(const Value& layer, Solve solve) {
+  solve.serial = ++serial_;
+  solve.layer = to_json(layer, -1);
+  solve.came = Clock::now();
+  solve.frame.header.set("do", "solve");
+  solve.frame.header.set("serial", solve.serial);
+  solve.frame.header.set("layer", layer);
+  solver_->send(solve.frame);
+  solve_ = std::move(solve);
+}
+
+void StudioSession::preview(PageSocket& page, const PageMessage& message) {
+  Solve solve;
+  try {
+    if (!editable()) throw InputError(why_not());
+    const Value next = document_->proposed(message.patch);
+    solve.base = document_->revision();
+    solve.edit = message.edit;
+    solve.tab = pages_.at(&page).tab;
+    post_solve(layer_of(base_options(), next), std::move(solve));
+  } catch (const InputError& error) {
+    refuse(&page, message, error.what());
+  }
+}
+
+// A drag that came to nothing: the document's own answer is told again, or it is solved.
+void StudioSession::rest() {
+  if (!document_) return;
+  if (document_rank_ < 2 || settled_world_ != world_) return solve_document();
+  Solve solve;
+  solve.serial = ++serial_;
+  solve.layer = to_json(document_layer(), -1);
+  solve.revision = document_->revision();
+  solve.rank = 2;
+  solve_ = std::move(solve);
+  Frame drop;
+  drop.header.set("do", "drop");
+  drop.header.set("serial", solve_->serial);
+  solver_->send(std::move(drop));
+  tell_all(document_answer_);
+}
+
+// Whatever was said of the document is not about it any more. A solve that began while it was
+// checked is its own now; a drag that began since goes on.
+void StudioSession::document_changed(std::int64_t solved_meanwhile) {
+  document_answer_.clear();
+  document_rank_ = -1;
+  settled_.reset();
+  const bool its_own = solve_ && solve_->serial == solved_meanwhile;
+  if (its_own) solve_->layer = to_json(document_layer(), -1);
+  const bool dragged = solve_ && !its_own && !solve_->held && !solve_->revision;
+  if (!dragged) solve_document();
+}
+
+// What is solved becomes the document's where it is of the same options.
+void StudioSession::solve_document(bool anew) {
+  const Value layer = document_layer();
+  const std::uint64_t revision = document_->revision();
+  if (!anew && solve_ && solve_->layer == to_json(layer, -1) && script_error_.empty()) {
+    if (!solve_->held && solve_->revision == revision) return;
+    solve_->held = false;
+    solve_->revision = revision;
+    for (const Frame& frame : solve_->answers) deliver(frame);
+    return;
+  }
+  Solve solve;
+  solve.revision = revision;
+  document_answer_.clear();
+  document_rank_ = -1;
+  settled_.reset();
+  post_solve(layer, std::move(solve));
+}
+
+void StudioSession::solver_started() {
+  if (!solve_ || solve_->rank >= 2) return;
+  if (++solve_->tries <= 1) return solver_->send(solve_->frame);
+  Frame refused;
+  refused.header.set("serial", solve_->serial);
+  refused.header.set("grade", "refused");
+  refused.header.set("message", "the solving process crashed twice on this edit");
+  answered(std::move(refused));
+}
+
+void StudioSession::answered(Frame frame) {
+  if (!solve_ || frame.header.at("serial") != Value(solve_->serial)) return;
+  const int rank = rank_of(frame.header.at("grade").as_text());
+  if (rank < solve_->rank || (rank == solve_->rank && rank > 0)) return;  // late, or said again
+  if (rank == solve_->rank) solve_->answers.pop_back();
+  solve_->rank = rank;
+  solve_->answers.push_back(frame);
+  if (!solve_->held) deliver(solve_->answers.back());
+}
+
+void StudioSession::deliver(const Frame& frame) {
+  const Solve& solve = *solve_;
+  const std::string& grade = frame.header.at("grade").as_text();
+  Value head = Value::map();
+  head.set("type", "answer");
+  head.set("revision", static_cast<std::int64_t>(solve.revision.value_or(solve.base)));
+  head.set("edit", solve.revision ? Value() : Value(static_cast<std::int64_t>(solve.edit)));
+  head.set("tab", solve.revision ? Value() : Value(solve.tab));
+  head.set("grade", grade);
+  head.set("message", frame.header.at("message"));
+  head.set("ms", std::round(std::chrono::duration<double, std::milli>(Clock::now() - solve.came)
+                                .count() *
+                            10) /
+                     10);
+  const auto part = [&](std::size_t i) {
+    return i < frame.parts.size() && !frame.parts[i].empty() ? frame.parts[i] : "null";
+  };
+  std::string text = to_json(head, -1);
+  text.pop_back();
+  text += ",\"plan\":" + part(0) + ",\"certificate\":" + part(1) + "}";
+  if (solve.revision && rank_of(grade) >= document_rank_) {
+    document_answer_ = text;
+    document_rank_ = rank_of(grade);
+    settled_world_ = world_;
+  }
+  settle(frame);
+  tell_all(text, grade == "step");
+}
+
+// Keeps what may be flown, drawn and exported.
+void StudioSession::settle(const Frame& frame) {
+  if (frame.parts.size() < 3 || frame.parts[2].empty()) return;
+  Settled settled{frame.parts[2], solve_->frame.header.at("layer"),
+                  solve_->revision.value_or(solve_->base)};
+  if (solve_->revision) {
+    settled_ = settled;
+    if (frame.header.at("grade") == Value("certified")) certified_ = settled;
+  }
+  displayed_ = std::move(settled);
+}
+
+void StudioSession::world(const Frame& frame) {
+  const Value::List& names = frame.header.at("blobs").as_list();
+  for (std::size_t i = 0; i < names.size() && i + 1 < frame.parts.size(); ++i)
+    blobs_.put(names[i].as_text(), frame.parts[i + 1]);
+  world_ = frame.parts.at(0);
+  tell_all(world_);
+}
+
+// ---- errands ------------------------------------------------------------------------------------
+
+void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {
+  // Of pictures and flights a page wants the newest alone.
+  const bool newest_alone = message.type == Type::picture || message.type == Type::fly;
+  for (std::size_t i = errand_under_way_ ? 1 : 0; newest_alone && i < errand_queue_.size(); ++i) {
+    if (errand_queue_[i].from != &page || errand_queue_[i].type != message.type) continue;
+    errand_queue_.erase(errand_queue_.begin() + static_cast<std::ptrdiff_t>(i));
+    break;
+  }
+  if (errand_queue_.size() >= kMostErrands) return fail(&page, message, "too much is asked for");
+  Errand errand;
+  errand.type = message.type;
+  errand.from = &page;
+  errand.message = message;
+  errand_queue_.push_back(std::move(errand));
+  next_errand();
+}
+
+Frame StudioSession::errand_frame(const PageMessage& message) {
+  Frame frame;
+  frame.header.set("do", to_string(message.type));
+  const auto use = [&](const std::optional<Settled>& settled, const char* lacking) {
+    if (!settled) throw InputError(lacking);
+    frame.header.set("layer", settled->layer);
+    frame.parts = {settled->document};
+  };
+  switch (message.type) {
+    case Type::fly:
+      use(certified_, "there is no certified plan to fly yet");
+      frame.header.set("wind_mean", std::hypot(message.wind[0], message.wind[1]));
+      frame.header.set("wind_yaw", std::atan2(message.wind[1], message.wind[0]));
+      frame.header.set("wind_gust", message.gust);
+      frame.header.set("seed", static_cast<std::int64_t>(message.seed));
+      break;
+    case Type::picture:
+      use(displayed_, "there is no plan to picture yet");
+      frame.header.set("time", message.time);
+      frame.header.set("width", message.width);
+      frame.header.set("height", message.height);
+      break;
+    case Type::export_plan:
+      use(settled_, "the document is not solved yet");
+      frame.header.set("format", message.format);
+      frame.header.set("parameters", message.parameters);
+      frame.header.set("uncertified", message.uncertified);
+      break;
+    case Type::export_lua:
+      frame.header.set("layer", document_layer());
+      frame.header.set("target", beside_script(settings_.script, ".studio.lua").string());
+      break;
+    case Type::save_report: {
+      if (const std::string why = write_layer_now(); !why.empty()) throw InputError(why);
+      Value words = Value::list();
+      for (const std::string& word : settings_.run_words) words.push_back(word);
+      if (!document_layer().as_map().empty()) {
+        words.push_back("--config");
+        words.push_back(beside_script(settings_.script, ".studio.yaml").string());
+      }
+      frame.header.set("words", std::move(words));
+      break;
+    }
+    default:
+      throw InputError("not an errand");
+  }
+  return frame;
+}
+
+void StudioSession::next_errand() {
+  while (!errand_under_way_ && !errand_queue_.empty()) {
+    Errand& errand = errand_queue_.front();
+    try {
+      errand.frame = errand_frame(errand.message);
+    } catch (const InputError& error) {
+      fail(errand.from, errand.message, error.what());
+      errand_queue_.pop_front();
+      continue;
+    }
+    errand.serial = ++serial_;
+    errand.frame.header.set("serial", errand.serial);
+    errands_->send(errand.frame);
+    errand_under_way_ = true;
+  }
+}
+
+void StudioSession::errand_done(Frame frame) {
+  if (!errand_under_way_ || frame.header.at("serial") != Value(errand_queue_.front().serial))
+    return;
+  const Errand errand = std::move(errand_queue_.front());
+  errand_queue_.pop_front();
+  errand_under_way_ = false;
+  if (frame.header.at("said") != Value("done")) {
+    fail(errand.from, errand.message, frame.header.at("why").as_text());
+    return next_errand();
+  }
+  Value message = Value::map();
+  std::string raw;
+  if (errand.type == Type::fly) {
+    message.set("type", "flown");
+    message.set("edit", static_cast<std::int64_t>(errand.message.edit));
+    for (const char* key : {"lost", "finished", "kept", "worst"})
+      message.set(key, frame.header.at(key));
+    raw = ",\"samples\":" + frame.parts.at(0);
+  } else if (errand.type == Type::picture) {
+    message.set("type", "picture");
+    message.set("edit", static_cast<std::int64_t>(errand.message.edit));
+    message.set("time", errand.message.time);
+    message.set("blob", blobs_.put(std::move(frame.parts.at(0))));
+  } else {
+    message.set("type", "wrote");
+    message.set("id", errand.message.id);
+    message.set("files", frame.header.at("files"));
+    message.set("loss", frame.header.at("loss"));
+    if (const Value* status = frame.header.find("status")) message.set("status", *status);
+  }
+  std::string text = to_json(message, -1);
+  text.insert(text.size() - 1, raw);
+  if (errand.from && pages_.count(errand.from))
+    errand.from->send(std::make_shared<const std::string>(text));
+  next_errand();
+}
+
+}  // namespace lapwing

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/studio/studio.h"
+
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "framework/core/error.h"
+#include "framework/studio/embedded_page.h"
+#include "framework/studio/layer_file.h"
+#include "framework/studio/page_assets.h"
+#include "framework/studio/session.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// 128 bits from the system, in hexadecimal.
+std::string new_token() {
+  unsigned char bytes[16];
+  if (::getrandom(bytes, sizeof bytes, 0) != static_cast<ssize_t>(sizeof bytes))
+    throw Error("the system gives no random numbers");
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", byte);
+    token += digits;
+  }
+  return token;
+}
+
+// None where the script's folder cannot be written; `why` then says so.
+std::unique_ptr<Journal> open_journal(const fs::path& script, std::string& why) {
+  const fs::path folder = script.has_parent_path() ? script.parent_path() : fs::path(".");
+  if (::access(folder.c_str(), W_OK) != 0) {
+    why = "the folder of the script cannot be written: edits would have no place";
+    return nullptr;
+  }
+  return std::make_unique<Journal>(beside_script(script, ".studio.journal"));
+}
+
+constexpr std::string_view kBlobs = "/blob/";
+
+WebContent blob_content(std::shared_ptr<const std::string> bytes) {
+  const bool picture = bytes->starts_with("\x89PNG");
+  return {picture ? "image/png" : "application/octet-stream", std::move(bytes), true};
+}
+
+void watch_token(EventLoop& loop, const CancellationToken& token) {
+  if (token.cancelled()) return loop.stop();
+  loop.after(std::chrono::milliseconds(50), [&loop, &token] { watch_token(loop, token); });
+}
+
+}  // namespace
+
+bool has_built_page() {
+  return !embedded_page().empty();
+}
+
+void run_studio(const StudioSettings& settings, const CancellationToken& token,
+                const std::function<void(const std::string& address)>& ready) {
+  std::error_code code;
+  if (!fs::is_regular_file(settings.script, code))
+    throw InputError("there is no script '" + settings.script.string() + "'");
+  const PageAssets assets = settings.assets.empty() ? PageAssets::built_in()
+                                                    : PageAssets::of_folder(settings.assets);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error to be told
+  std::string why_not;
+  std::unique_ptr<Journal> journal = open_journal(settings.script, why_not);
+  EventLoop loop;
+  SessionSettings own;
+  own.script = settings.script;
+  own.token = new_token();
+  own.run_words = settings.run_words;
+  StudioSession session(loop, own, std::move(journal), why_not);
+  WebHandlers handlers;
+  handlers.get = [&](std::string_view path) -> std::optional<WebContent> {
+    if (!path.starts_with(kBlobs)) return assets.find(path);
+    auto bytes = session.blob(path.substr(kBlobs.size()));
+    if (!bytes) return std::nullopt;
+    return blob_content(std::move(bytes));
+  };
+  handlers.opened = [&](const std::shared_ptr<PageSocket>& page) { session.opened(page); };
+  handlers.received = [&](PageSocket& page, std::string_view text) {
+    session.received(page, text);
+  };
+  handlers.closed = [&](PageSocket& page) { session.closed(page); };
+  const WebServer server(loop, settings.port, "/session", handlers);
+  const auto link = [&](WorkerRole role) {
+    return std::make_unique<WorkerLink>(
+        loop, settings.worker,
+        WorkerListener{[&session, role](Frame frame) { session.heard(role, std::move(frame)); },
+                       [&session, role] { session.started(role); },
+                       [&session, role](const std::string& why) { session.crashed(role, why); }});
+  };
+  const auto solver = link(WorkerRole::solver), checker = link(WorkerRole::checker),
+             errands = link(WorkerRole::errands);
+  session.begin(*solver, *checker, *errands);
+  ready("http://127.0.0.1:" + std::to_string(server.port()) + "/#" + own.token);
+  watch_token(loop, token);
+  loop.run();
+  session.finish();
+}
+
+}  // namespace lapwing

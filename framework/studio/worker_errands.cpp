@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/studio/worker_errands.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstring>
+
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+#include "framework/export/exporter.h"
+#include "framework/export/film_strip.h"
+#include "framework/export/run_folder.h"
+#include "framework/mission/controller_source.h"
+#include "framework/mission/environment_source.h"
+#include "framework/studio/plan_message.h"
+#include "framework/verify/certificate.h"
+#include "framework/verify/tolerances.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+Frame done() {
+  Frame frame;
+  frame.header.set("said", "done");
+  return frame;
+}
+
+Plan plan_in(const Frame& asked) {
+  if (asked.parts.empty()) throw InputError("there is no plan yet");
+  return plan_from_value(from_json(asked.parts.front(), "plan"));
+}
+
+// Reads to the end, and waits for the process.
+std::string read_to_end(int descriptor) {
+  std::string text;
+  char bytes[4096];
+  for (;;) {
+    const ssize_t count = ::read(descriptor, bytes, sizeof bytes);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(bytes, static_cast<std::size_t>(count));
+  }
+}
+
+// What this program says on standard output for these words, which begin with its name.
+std::string answer_of_program(const Value::List& given) {
+  std::vector<std::string> words;
+  for (const Value& word : given) words.push_back(word.as_text());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) < 0) throw Error("no pipe to a run");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::dup2(ends[1], STDOUT_FILENO) < 0) ::_exit(3);
+    ::execv("/proc/self/exe", arguments.data());
+    ::_exit(3);
+  }
+  ::close(ends[1]);
+  std::string text = child > 0 ? read_to_end(ends[0]) : "";
+  ::close(ends[0]);
+  if (child < 0) throw Error("no process for a run");
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (text.empty()) throw Error("the run ended without an answer");
+  return text;
+}
+
+}  // namespace
+
+int line_in(const std::string& message, const fs::path& script) {
+  const std::string start = script.string() + ":";
+  if (!message.starts_with(start)) return 0;
+  int line = 0;
+  std::from_chars(message.data() + start.size(), message.data() + message.size(), line);
+  return line;
+}
+
+std::unique_ptr<Mission> configured_mission(const fs::path& script, MissionSettings settings,
+                                            const Value& layer) {
+  const std::vector<Value> layers{layer};
+  settings.limits = sandbox_limits(layers, {});
+  auto mission = std::make_unique<Mission>(script, std::move(settings));
+  mission->configure(layers, {});
+  return mission;
+}
+
+Frame WorkerErrands::answer(const Frame& asked) {
+  const std::string& what = asked.header.at("do").as_text();
+  if (what == "check") return check(asked);
+  if (what == "describe") return describe();
+  if (what == "fly") return fly(asked);
+  if (what == "picture") return picture(asked);
+  if (what == "export") return export_plan(asked);
+  if (what == "export_lua") return export_lua(asked);
+  if (what == "save_report") return save_report(asked);
+  throw Error("a working process does not know '" + what + "'");
+}
+
+Frame WorkerErrands::check(const Frame& asked) const {
+  const std::unique_ptr<Mission> mission =
+      configured_mission(script_, settings_, asked.header.at("layer"));
+  if (asked.header.at("judge").as_boolean()) mission->judge();
+  Frame frame;
+  frame.header.set("said", "checked");
+  frame.header.set("document", mission->configuration());
+  Value& about = frame.header.set("mission", Value::map());
+  about.set("name", mission->name());
+  about.set("kind", mission->kind());
+  return frame;
+}
+
+Frame WorkerErrands::describe() const {
+  Frame frame;
+  frame.header.set("said", "described");
+  describe_mission(*configured_mission(script_, settings_, Value::map()), settings_, frame.header);
+  return frame;
+}
+
+Frame WorkerErrands::fly(const Frame& asked) const {
+  const Plan plan = plan_in(asked);
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  if (!plan.trajectory.motion.moves)
+    throw InputError("the plan is a path without forces: lapwing simulate flies it");
+  FlightConditions conditions;
+  conditions.disturbances = vehicle.disturbances;
+  conditions.wind_mean = asked.header.at("wind_mean").as_number();
+  conditions.wind_yaw = asked.header.at("wind_yaw").as_number();
+  conditions.wind_gust = asked.header.at("wind_gust").as_number();
+  conditions.seed = static_cast<std::uint64_t>(asked.header.at("seed").as_integer());
+  const FlownPath flown =
+      plan_as_named(plan.trajectory, vehicle, *settings_.registry)->fly(conditions);
+  Frame frame = done();
+  frame.header.set("lost", flown.lost);
+  frame.header.set("finished", flown.finished);
+  frame.header.set("kept", !flown.lost && flown.finished &&
+                               flown.position_error_worst <= tolerances::kTracking);
+  Value& worst = frame.header.set("worst", Value::map());
+  worst.set("position_error", flown.position_error_worst);
+  worst.set("time", flown.position_error_at);
+  worst.set("limit", tolerances::kTracking);
+  worst.set("mean", flown.position_error_mean);
+  worst.set("rotor_speed", flown.rotor_speed_worst);
+  frame.parts.push_back(flown_message(flown, plan.trajectory));
+  return frame;
+}
+
+Plan WorkerErrands::with_shapes(const Frame& asked) {
+  Plan plan = plan_in(asked);
+  const Value& layer = asked.header.at("layer");
+  const std::string stated = to_json(layer, -1) + read_file(script_);
+  if (stated != stated_layer_ || !stated_mission_) {
+    stated_layer_ = stated;
+    stated_mission_.reset();
+    try {
+      auto mission = configured_mission(script_, settings_, layer);
+      stated_environment_ = mission->state().plan.environment;
+      stated_mission_ = std::move(mission);
+    } catch (const InputError&) {  // a mission of several problems: what the plan records
+    }
+  }
+  if (stated_mission_)
+    plan.environment = stated_environment_;
+  else
+    open_recorded_shapes(plan.environment, *settings_.registry, ".");
+  return plan;
+}
+
+Frame WorkerErrands::picture(const Frame& asked) {
+  const Plan plan = with_shapes(asked);
+  Frame frame = done();
+  frame.parts.push_back(
+      film_frame(plan, vehicle_from_value(plan.vehicle), asked.header.at("time").as_number(),
+                 static_cast<int>(asked.header.at("width").as_integer()),
+                 static_cast<int>(asked.header.at("height").as_integer())));
+  return frame;
+}
+
+Frame WorkerErrands::export_plan(const Frame& asked) {
+  const std::string& format = asked.header.at("format").as_text();
+  const auto exporter = settings_.registry->create<Exporter>(
+      format, asked.header.at("parameters"), "parameters");
+  Plan plan = plan_in(asked);
+  if (!asked.header.at("uncertified").as_boolean()) {
+    std::string failures;
+    if (plan.certificate.is_null()) failures = "it has not been judged yet";
+    else
+      for (const Check& check : Certificate::from_value(plan.certificate).failures())
+        failures += (failures.empty() ? "" : "; ") + to_line(check);
+    if (!failures.empty()) throw InputError("the plan is not certified: " + failures);
+  }
+  const Value certificate = plan.certificate;
+  if (exporter->shows_surroundings()) plan = with_shapes(asked);
+  plan.certificate = certificate;
+  const std::string extension = exporter->file_extension();
+  const std::string name = run_folder_name(plan.mission);
+  const fs::path target = run_folder(plan.mission) /
+                          (name + (extension == "." + format ? "" : "." + format) + extension);
+  Frame frame = done();
+  Value files = Value::list(), losses = Value::list();
+  if (extension.empty()) {
+    const NamedContents contents = exporter->write_folder(plan);
+    write_folder_atomically(target, contents);
+    for (const auto& [file, bytes] : contents) files.push_back((target / file).string());
+  } else {
+    const std::string bytes = exporter->write(plan);
+    for (const std::string& loss : exporter->losses(plan, bytes)) losses.push_back(as_utf8(loss));
+    write_file_atomically(target, bytes);
+    files.push_back(target.string());
+  }
+  for (const std::string& remark : exporter->remarks(plan)) losses.push_back(as_utf8(remark));
+  frame.header.set("files", std::move(files));
+  frame.header.set("loss", std::move(losses));
+  return frame;
+}
+
+Frame WorkerErrands::export_lua(const Frame& asked) const {
+  const std::unique_ptr<Mission> mission =
+      configured_mission(script_, settings_, asked.header.at("layer"));
+  const fs::path target = asked.header.at("target").as_text();
+  write_flat_script(script_, settings_, *mission, target);
+  Frame frame = done();
+  frame.header.set("files", Value(Value::List{target.string()}));
+  frame.header.set("loss", Value::list());
+  return frame;
+}
+
+Frame WorkerErrands::save_report(const Frame& asked) const {
+  const Value answer =
+      from_json(answer_of_program(asked.header.at("words").as_list()), "the run's answer");
+  if (const Value* error = answer.find("error")) throw InputError(error->as_text());
+  Frame frame = done();
+  const fs::path folder = fs::path(answer.at("plan").as_text()).parent_path();
+  Value files = Value::list();
+  for (const char* name : {"report.html", "plan.json", "trajectory.csv", "run.log"})
+    files.push_back((folder / name).string());
+  frame.header.set("files", std::move(files));
+  frame.header.set("loss", Value::list());
+  frame.header.set("status", answer.at("status"));
+  return frame;
+}
+
+}  // namespace lapwing

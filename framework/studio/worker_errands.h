@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a working process does beside solving. Internal to this room.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "framework/mission/mission.h"
+#include "framework/studio/frames.h"
+
+namespace lapwing {
+
+// "shot.lua:12: ..." is line 12 of the script; 0 where it is of no line of it.
+int line_in(const std::string& message, const std::filesystem::path& script);
+
+// A mission of the script with this configuration on it.
+std::unique_ptr<Mission> configured_mission(const std::filesystem::path& script,
+                                            MissionSettings settings, const Value& layer);
+
+class WorkerErrands {
+ public:
+  WorkerErrands(std::filesystem::path script, const MissionSettings& settings)
+      : script_(std::move(script)), settings_(settings) {}
+
+  // Does what the frame asks for. InputError and what plugins throw come out.
+  Frame answer(const Frame& asked);
+
+ private:
+  Frame check(const Frame& asked) const;
+  Frame describe() const;
+  Frame fly(const Frame& asked) const;
+  Frame picture(const Frame& asked);
+  Frame export_plan(const Frame& asked);
+  Frame export_lua(const Frame& asked) const;
+  Frame save_report(const Frame& asked) const;
+  // With the shapes of its obstacles open.
+  Plan with_shapes(const Frame& asked);
+
+  std::filesystem::path script_;
+  const MissionSettings& settings_;
+  std::string stated_layer_;  // whose environment is kept
+  std::unique_ptr<Mission> stated_mission_;
+  Environment stated_environment_;
+};
+
+// What a page shows in forms: declared options, parameters of plugins, names to choose from.
+void describe_mission(const Mission& mission, const MissionSettings& settings, Value& described);
+
+// A script that makes this document without a layer: `film.shot`, or `film.from_file`. Written to
+// `target` once it was loaded and found to come to the same options. InputError where it cannot.
+void write_flat_script(const std::filesystem::path& script, const MissionSettings& settings,
+                       const Mission& mission, const std::filesystem::path& target);
+
+}  // namespace lapwing
