@@ -13,7 +13,7 @@ export(EXPORT lapwing_targets NAMESPACE lapwing:: FILE ${CMAKE_BINARY_DIR}/lapwi
 # Plugins see the kernel's headers; Lua, studies and the command line stay inside.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lapwing FILES_MATCHING PATTERN "*.h"
-  PATTERN "framework/mission" EXCLUDE PATTERN "framework/study" EXCLUDE
+  PATTERN "framework/mission" EXCLUDE PATTERN "framework/study" EXCLUDE PATTERN "framework/studio" EXCLUDE
   PATTERN "framework/app" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs ${PROJECT_SOURCE_DIR}/scripts
   ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/lapwing)

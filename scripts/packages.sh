@@ -14,6 +14,7 @@ lapwing_fuzz_packages=(clang libclang-rt-14-dev)
 lapwing_learn_packages=(libtorch-dev)
 lapwing_fresh_packages=(debootstrap)
 lapwing_judge_packages=(nodejs npm gdal-bin gpsbabel)
+lapwing_studio_packages=(nodejs npm)  # for scripts/studio.sh, beside those for building
 lapwing_check_packages=(clang-format clang-tidy)  # for scripts/format.sh and scripts/tidy.sh
 lapwing_package_packages=(dpkg-dev file)  # dpkg-shlibdeps finds the dependencies of a .deb
 

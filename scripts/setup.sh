@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian packages that building, testing, benchmarking and so on need.
-#   scripts/setup.sh [--yes] [--for build|test|bench|fuzz|learn|fresh|judge|check|package]...
+#   scripts/setup.sh [--yes] [--for build|test|bench|fuzz|learn|fresh|judge|studio|check|package]...
 # Prints the packages to install. Asks first on a terminal, unless --yes. Default: build and test.
 # `fuzz` is for scripts/fuzz.sh, `learn` for the preset `learn`, `fresh` for tests/fresh_machine,
-# `judge` for scripts/judge.sh, `check` for scripts/format.sh and scripts/tidy.sh, `package` for scripts/package.sh.
+# `judge` for scripts/judge.sh, `studio` for scripts/studio.sh, `check` for scripts/format.sh and scripts/tidy.sh, `package` for scripts/package.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
 
-readonly kinds="build, test, bench, fuzz, learn, fresh, judge, check or package"
+readonly kinds="build, test, bench, fuzz, learn, fresh, judge, studio, check or package"
 yes=false
 wanted=()
 while [ $# -gt 0 ]; do
@@ -36,6 +36,7 @@ for what in "${wanted[@]}"; do
     learn) packages+=("${lapwing_learn_packages[@]}") ;;
     fresh) packages+=("${lapwing_fresh_packages[@]}") ;;
     judge) packages+=("${lapwing_judge_packages[@]}") ;;
+    studio) packages+=("${lapwing_studio_packages[@]}") ;;
     check) packages+=("${lapwing_check_packages[@]}") ;;
     package) packages+=("${lapwing_package_packages[@]}") ;;
     *) echo "setup.sh: unknown kind '$what'; --for needs $kinds" >&2; exit 2 ;;

@@ -43,8 +43,8 @@ ExitStatus open_studio(const StudioRequest& asked, const Invocation& invocation)
   settings.assets = asked.assets;
   settings.port = asked.port;
   settings.worker.words = {"lapwing", "studio-worker", asked.script.string()};
-  settings.run_words = {"lapwing", "run",     asked.script.string(), "--json",
-                        "--quiet", "--color", "never"};
+  settings.run_words = {"lapwing", "run",  asked.script.string(), "--json", "--quiet",
+                        "--color", "never"};
   for (auto* words : {&settings.worker.words, &settings.run_words}) {
     add_folders(*words, "--data", invocation.data);
     add_folders(*words, "--plugin-path", invocation.plugin_path);

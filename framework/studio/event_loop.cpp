@@ -38,8 +38,8 @@ void EventLoop::stop() {
   impl_->io.stop();
 }
 
-asio::io_context& EventLoop::io() {
-  return impl_->io;
+void* EventLoop::io() {
+  return &impl_->io;
 }
 
 }  // namespace lapwing

@@ -6,10 +6,6 @@
 #include <functional>
 #include <memory>
 
-namespace boost::asio {
-class io_context;
-}
-
 namespace lapwing {
 
 class EventLoop {
@@ -27,7 +23,7 @@ class EventLoop {
   void run();
   void stop();
 
-  boost::asio::io_context& io();  // for sockets
+  void* io();  // the loop as Boost.Asio has it, for sockets
 
  private:
   struct Impl;

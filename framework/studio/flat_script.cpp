@@ -20,9 +20,9 @@ constexpr const char* kMark = "-- Written by lapwing studio from ";
 
 bool is_lua_name(const std::string& key) {
   static const std::vector<std::string> kWords{
-      "and",   "break", "do",       "else",   "elseif", "end",   "false", "for",
-      "function", "goto", "if",     "in",     "local",  "nil",   "not",   "or",
-      "repeat", "return", "then",   "true",   "until",  "while"};
+      "and",      "break",  "do",   "else", "elseif", "end",  "false", "for",
+      "function", "goto",   "if",   "in",   "local",  "nil",  "not",   "or",
+      "repeat",   "return", "then", "true", "until",  "while"};
   if (key.empty() || std::isdigit(static_cast<unsigned char>(key[0]))) return false;
   for (const char c : key)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_') return false;
@@ -104,8 +104,7 @@ class TriedScript {
   fs::path file_;
 };
 
-Value options_of(const fs::path& beside, const MissionSettings& settings,
-                 const std::string& text) {
+Value options_of(const fs::path& beside, const MissionSettings& settings, const std::string& text) {
   const TriedScript script(beside, text);
   return configured_mission(script.file(), settings, Value::map())->configuration();
 }

@@ -31,8 +31,8 @@ class Journal {
   // A sentence on what was dropped, or "".
   const std::string& remark() const { return remark_; }
 
-  // The first line, of an empty journal, and an entry of the document. Both return once it is on disk. Throw InputError with the
-  // system's reason; the journal is then as it was.
+  // The first line, of an empty journal, and an entry of the document. Both return once it is on
+  // disk. Throw InputError with the system's reason; the journal is then as it was.
   void begin(const Value& script);
   void append(const HistoryEntry& entry);
 

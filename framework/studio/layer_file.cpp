@@ -67,8 +67,8 @@ std::optional<LayerFile> read_layer(const fs::path& script) {
   const std::size_t sum = text.find(kSum);
   if (sum != text.npos) {
     const std::size_t begin = sum + std::string(kSum).size(), end = text.find('\n', begin);
-    read.as_written = end != text.npos &&
-                      text.substr(begin, end - begin) == sha256(text.substr(end + 1));
+    read.as_written =
+        end != text.npos && text.substr(begin, end - begin) == sha256(text.substr(end + 1));
   }
   return read;
 }

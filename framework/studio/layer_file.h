@@ -13,8 +13,8 @@ namespace lapwing {
 // "shots/castle.studio.yaml" of "shots/castle.lua", and likewise with other endings.
 std::filesystem::path beside_script(const std::filesystem::path& script, const char* ending);
 
-// The file's text: comments with revision and checksums, then the layer. Lists of the layer stand in
-// place of the script's, whose checksum is said.
+// The file's text: comments with revision and checksums, then the layer. Lists of the layer stand
+// in place of the script's, whose checksum is said.
 std::string layer_text(const std::filesystem::path& script, std::uint64_t revision,
                        const Value& layer, const Value& script_options);
 

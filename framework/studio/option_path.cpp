@@ -69,8 +69,8 @@ std::string to_text(const OptionPath& path) {
 }
 
 bool overlap(const OptionPath& a, const OptionPath& b) {
-  return std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(std::min(a.size(), b.size())),
-                    b.begin());
+  return std::equal(
+      a.begin(), a.begin() + static_cast<std::ptrdiff_t>(std::min(a.size(), b.size())), b.begin());
 }
 
 const Value* find_at(const Value& document, const OptionPath& path, std::size_t steps) {

@@ -14,12 +14,16 @@ constexpr std::size_t kMostFiles = 1000, kLargestFile = 32 << 20;
 
 // "" for a file that is none of a page.
 std::string type_of(const fs::path& name) {
-  static const std::map<std::string, std::string> kTypes{
-      {".html", "text/html; charset=utf-8"}, {".js", "text/javascript; charset=utf-8"},
-      {".css", "text/css; charset=utf-8"},   {".json", "application/json"},
-      {".svg", "image/svg+xml"},             {".png", "image/png"},
-      {".ico", "image/x-icon"},              {".woff2", "font/woff2"},
-      {".txt", "text/plain; charset=utf-8"}, {".map", "application/json"}};
+  static const std::map<std::string, std::string> kTypes{{".html", "text/html; charset=utf-8"},
+                                                         {".js", "text/javascript; charset=utf-8"},
+                                                         {".css", "text/css; charset=utf-8"},
+                                                         {".json", "application/json"},
+                                                         {".svg", "image/svg+xml"},
+                                                         {".png", "image/png"},
+                                                         {".ico", "image/x-icon"},
+                                                         {".woff2", "font/woff2"},
+                                                         {".txt", "text/plain; charset=utf-8"},
+                                                         {".map", "application/json"}};
   const auto found = kTypes.find(name.extension().string());
   return found == kTypes.end() ? "" : found->second;
 }
@@ -37,8 +41,8 @@ PageAssets PageAssets::of_folder(const fs::path& folder) {
     const std::string path = "/" + item.path().lexically_relative(folder).generic_string();
     assets.table_[path] = {type, item.path(), nullptr};
     if (assets.table_.size() > kMostFiles)
-      throw InputError("--assets " + folder.string() + ": more than " +
-                       std::to_string(kMostFiles) + " files");
+      throw InputError("--assets " + folder.string() + ": more than " + std::to_string(kMostFiles) +
+                       " files");
   }
   assets.table_["/"] = assets.table_.at("/index.html");
   return assets;

@@ -14,9 +14,10 @@ constexpr std::size_t kLongestName = 128;  // bytes, of ids, tabs and formats
 constexpr std::size_t kLongestLabel = 400;
 constexpr std::int64_t kLargestNumber = (std::int64_t{1} << 53) - 1;
 
-constexpr std::array kTypes{Type::hello,   Type::preview,     Type::gesture,       Type::undo,
-                            Type::redo,    Type::rest,        Type::resolve_script, Type::fly,
-                            Type::picture, Type::export_plan, Type::save_report,   Type::export_lua};
+constexpr std::array kTypes{Type::hello,          Type::preview,     Type::gesture,
+                            Type::undo,           Type::redo,        Type::rest,
+                            Type::resolve_script, Type::fly,         Type::picture,
+                            Type::export_plan,    Type::save_report, Type::export_lua};
 
 Type type_named(const std::string& name) {
   for (const Type type : kTypes)

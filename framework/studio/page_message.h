@@ -29,20 +29,20 @@ const char* to_string(PageMessageType type);
 
 struct PageMessage {
   PageMessageType type = PageMessageType::hello;
-  std::string token, tab;                   // hello
-  std::uint64_t seen = 0;                   // hello
-  std::string id, label;                    // gesture and what follows it; one id each
-  std::uint64_t base = 0;                   // revision
-  std::uint64_t edit = 0;                   // preview, fly, picture
-  Patch patch;                              // preview, gesture
+  std::string token, tab;  // hello
+  std::uint64_t seen = 0;  // hello
+  std::string id, label;   // gesture and what follows it; one id each
+  std::uint64_t base = 0;  // revision
+  std::uint64_t edit = 0;  // preview, fly, picture
+  Patch patch;             // preview, gesture
   StudioDocument::Take take = StudioDocument::Take::mine;
-  std::array<double, 3> wind{};             // m/s
-  double gust = 0;                          // m/s
+  std::array<double, 3> wind{};  // m/s
+  double gust = 0;               // m/s
   std::uint64_t seed = 1;
-  double time = 0;                          // s
-  int width = 0, height = 0;                // pixels
-  std::string format;                       // of export
-  Value parameters = Value::map();          // of the exporter
+  double time = 0;                  // s
+  int width = 0, height = 0;        // pixels
+  std::string format;               // of export
+  Value parameters = Value::map();  // of the exporter
   bool uncertified = false;
 };
 

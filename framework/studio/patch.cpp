@@ -116,10 +116,11 @@ Patch patch_from(const Value& list, const std::string& what) {
     const bool removes = remove && *remove == Value(true);
     if (!entry.is_map() || entry.as_map().size() != 2 || !path || !path->is_text() ||
         !(value || removes))
-      throw InputError(what + ": expected changes {\"path\", \"value\"} or {\"path\", \"remove\": "
-                              "true}");
-    patch.push_back({option_path(path->as_text()),
-                     value ? std::optional<Value>(*value) : std::nullopt});
+      throw InputError(what +
+                       ": expected changes {\"path\", \"value\"} or {\"path\", \"remove\": "
+                       "true}");
+    patch.push_back(
+        {option_path(path->as_text()), value ? std::optional<Value>(*value) : std::nullopt});
   }
   return patch;
 }

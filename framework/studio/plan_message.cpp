@@ -71,7 +71,8 @@ double thrust_of(const Sample& s) {
 void add_columns(std::string& text, const Plan& plan, bool distances) {
   const std::vector<Sample>& samples = plan.trajectory.samples;
   text += "\"columns\":{";
-  add_column(text, "time", samples, [](const Sample& s) { return s.time; }, 9);
+  add_column(
+      text, "time", samples, [](const Sample& s) { return s.time; }, 9);
   constexpr const char* kNames[3][3] = {{"x", "y", "z"}, {"vx", "vy", "vz"}, {"ax", "ay", "az"}};
   for (int i = 0; i < 3; ++i) {
     add_column(text, kNames[0][i], samples, [i](const Sample& s) { return s.position[i]; });
@@ -88,8 +89,8 @@ void add_columns(std::string& text, const Plan& plan, bool distances) {
     add_column(text, "gimbal_pitch_rate", samples,
                [](const Sample& s) { return s.gimbal_pitch_rate; });
   }
-  if (!samples.empty() && (samples.front().columns.has("force") ||
-                           samples.front().columns.has("rotor_thrusts")))
+  if (!samples.empty() &&
+      (samples.front().columns.has("force") || samples.front().columns.has("rotor_thrusts")))
     add_column(text, "thrust", samples, thrust_of);
   if (distances && !plan.environment.obstacles.empty())
     add_column(text, "distance", samples, [&](const Sample& s) {
@@ -279,11 +280,11 @@ std::string flown_message(const FlownPath& flown, const Trajectory& planned) {
     samples.push_back(sample);
   }
   std::string text = "{";
-  add_column(text, "time", samples, [](const FlownSample& s) { return s.time; }, 9);
+  add_column(
+      text, "time", samples, [](const FlownSample& s) { return s.time; }, 9);
   constexpr const char* kNames[3] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i)
-    add_column(text, kNames[i], samples,
-               [i](const FlownSample& s) { return s.state.position[i]; });
+    add_column(text, kNames[i], samples, [i](const FlownSample& s) { return s.state.position[i]; });
   const double end = planned.samples.back().time;
   add_turns(text, samples, [&](const FlownSample& s) {
     Sample at = sample_at(planned, std::min(s.time, end));

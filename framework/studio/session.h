@@ -29,8 +29,8 @@ namespace lapwing {
 
 struct SessionSettings {
   std::filesystem::path script;
-  std::string token;                   // of the address
-  std::vector<std::string> run_words;  // `lapwing run SCRIPT --json ...`, for reports
+  std::string token;                      // of the address
+  std::vector<std::string> run_words;     // `lapwing run SCRIPT --json ...`, for reports
   std::chrono::milliseconds glance{250};  // between looks at the script
   std::chrono::milliseconds pause{150};   // after a gesture, before the layer is written
 };
@@ -92,12 +92,12 @@ class StudioSession {
   };
   struct Solve {
     std::int64_t serial = 0;
-    std::string layer;                       // as JSON
-    std::optional<std::uint64_t> revision;   // of the document; none of a preview
-    std::uint64_t base = 0;                  // the revision that a preview is laid on
-    std::uint64_t edit = 0;                  // of a preview
-    std::string tab;                         // likewise
-    bool held = false;                       // of a proposal that has no revision yet
+    std::string layer;                      // as JSON
+    std::optional<std::uint64_t> revision;  // of the document; none of a preview
+    std::uint64_t base = 0;                 // the revision that a preview is laid on
+    std::uint64_t edit = 0;                 // of a preview
+    std::string tab;                        // likewise
+    bool held = false;                      // of a proposal that has no revision yet
     Clock::time_point came;
     int rank = -1;  // of the best answer so far
     int tries = 0;

@@ -65,8 +65,8 @@ void StudioSession::begin_document(const Value& options) {
   adopt_layer();
 }
 
-// What somebody wrote into the layer's file by hand is an edit. What a studio wrote last may be older
-// than its journal: it is written again.
+// What somebody wrote into the layer's file by hand is an edit. What a studio wrote last may be
+// older than its journal: it is written again.
 void StudioSession::adopt_layer() {
   if (!why_not_.empty()) return;
   std::optional<LayerFile> file;
@@ -189,8 +189,8 @@ void StudioSession::advance() {
     check.frame.header.set("serial", check.serial);
     check.frame.header.set("layer", layer);
     // What was done before is done again, whatever the mission says of it.
-    check.frame.header.set("judge", !check.of_script && proposal.kind == EntryKind::gesture &&
-                                        !proposal.quiet);
+    check.frame.header.set(
+        "judge", !check.of_script && proposal.kind == EntryKind::gesture && !proposal.quiet);
     checker_->send(check.frame);
     if (!check.of_script) {  // most proposals hold: it is solved meanwhile
       Solve solve;
@@ -247,8 +247,7 @@ void StudioSession::commit(const Check& check, const Value& next) {
                            : proposal.kind == EntryKind::redo ? document_->redo_label()
                            : gesture.label.empty()            ? label
                                                               : gesture.label;
-  HistoryEntry entry =
-      document_->entry_for(proposal.kind, gesture.id, said, next, proposal.script);
+  HistoryEntry entry = document_->entry_for(proposal.kind, gesture.id, said, next, proposal.script);
   if (entry.patch.empty() && proposal.kind == EntryKind::gesture) {
     acknowledge(proposal);  // it changes nothing
     return solve_document();
@@ -302,7 +301,8 @@ void StudioSession::layer_changed() {
     if (why.empty()) return;
     Value message = Value::map();
     message.set("type", "remark");
-    message.set("message", as_utf8(why + "; the journal has every edit, and the next one tries again"));
+    message.set("message",
+                as_utf8(why + "; the journal has every edit, and the next one tries again"));
     tell_all(message);
   });
 }

@@ -124,10 +124,10 @@ void StudioSession::deliver(const Frame& frame) {
   head.set("tab", solve.revision ? Value() : Value(solve.tab));
   head.set("grade", grade);
   head.set("message", frame.header.at("message"));
-  head.set("ms", std::round(std::chrono::duration<double, std::milli>(Clock::now() - solve.came)
-                                .count() *
-                            10) /
-                     10);
+  head.set("ms",
+           std::round(std::chrono::duration<double, std::milli>(Clock::now() - solve.came).count() *
+                      10) /
+               10);
   const auto part = [&](std::size_t i) {
     return i < frame.parts.size() && !frame.parts[i].empty() ? frame.parts[i] : "null";
   };

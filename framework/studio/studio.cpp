@@ -65,8 +65,8 @@ void run_studio(const StudioSettings& settings, const CancellationToken& token,
   std::error_code code;
   if (!fs::is_regular_file(settings.script, code))
     throw InputError("there is no script '" + settings.script.string() + "'");
-  const PageAssets assets = settings.assets.empty() ? PageAssets::built_in()
-                                                    : PageAssets::of_folder(settings.assets);
+  const PageAssets assets =
+      settings.assets.empty() ? PageAssets::built_in() : PageAssets::of_folder(settings.assets);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error to be told
   std::string why_not;
   std::unique_ptr<Journal> journal = open_journal(settings.script, why_not);

@@ -20,9 +20,9 @@ struct StudioSettings {
   std::vector<std::string> run_words;  // of `lapwing run` for reports
 };
 
-// Serves until the token is cancelled. `ready` is told the address once it can be opened. InputError
-// where the script is no file, the port is taken, another studio has the script, or there is no
-// page.
+// Serves until the token is cancelled. `ready` is told the address once it can be opened.
+// InputError where the script is no file, the port is taken, another studio has the script, or
+// there is no page.
 void run_studio(const StudioSettings& settings, const CancellationToken& token,
                 const std::function<void(const std::string& address)>& ready);
 

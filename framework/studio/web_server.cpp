@@ -85,7 +85,7 @@ struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
   Impl(EventLoop& the_loop, std::uint16_t port, std::string path, WebHandlers given,
        const WebLimits& most)
       : loop(the_loop),
-        acceptor(the_loop.io().get_executor()),
+        acceptor(static_cast<asio::io_context*>(the_loop.io())->get_executor()),
         socket_path(std::move(path)),
         handlers(std::move(given)),
         limits(most) {
@@ -139,8 +139,8 @@ struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
     Connection& connection = **held;
     connection.head.append(connection.bytes, count);
     error_code error;
-    connection.parsed += connection.parser.put(
-        asio::buffer(connection.head) + connection.parsed, error);
+    connection.parsed +=
+        connection.parser.put(asio::buffer(connection.head) + connection.parsed, error);
     if (error == http::error::need_more && connection.head.size() <= limits.header)
       return read(held);
     if (error) return answer(held, "400 Bad Request", {});
@@ -175,8 +175,7 @@ struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
     if (error) return;
     ++sockets;
     open.push_back(accept_web_socket(loop, descriptor, connection->head, security_headers(port()),
-                                     limits, handlers,
-                                     [weak = weak_from_this()] {
+                                     limits, handlers, [weak = weak_from_this()] {
                                        if (const auto self = weak.lock()) --self->sockets;
                                      }));
     std::erase_if(open, [](const auto& page) { return page.expired(); });
@@ -219,8 +218,8 @@ struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
 
 WebServer::WebServer(EventLoop& loop, std::uint16_t port, std::string socket_path,
                      WebHandlers handlers, const WebLimits& limits)
-    : impl_(std::make_shared<Impl>(loop, port, std::move(socket_path), std::move(handlers),
-                                   limits)) {
+    : impl_(
+          std::make_shared<Impl>(loop, port, std::move(socket_path), std::move(handlers), limits)) {
   impl_->accept();
 }
 

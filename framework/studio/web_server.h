@@ -36,13 +36,13 @@ class PageSocket {
 };
 
 struct WebLimits {
-  std::size_t connections = 64;          // at once
-  std::size_t sockets = 16;              // pages at once
-  std::size_t header = 8 << 10;          // bytes of a request
-  std::size_t message = 1 << 20;         // bytes of a frame from a page
-  double messages = 200;                 // a second from a page; twice as many in a burst
-  std::size_t waiting = 256 << 20;       // bytes that a page may leave unread
-  std::chrono::seconds patience{10};     // for a request to be complete
+  std::size_t connections = 64;       // at once
+  std::size_t sockets = 16;           // pages at once
+  std::size_t header = 8 << 10;       // bytes of a request
+  std::size_t message = 1 << 20;      // bytes of a frame from a page
+  double messages = 200;              // a second from a page; twice as many in a burst
+  std::size_t waiting = 256 << 20;    // bytes that a page may leave unread
+  std::chrono::seconds patience{10};  // for a request to be complete
 };
 
 struct WebHandlers {

@@ -22,7 +22,8 @@ class WebSocket final : public PageSocket, public std::enable_shared_from_this<W
  public:
   WebSocket(EventLoop& loop, int descriptor, const std::string& head, const std::string& headers,
             const WebLimits& limits, const WebHandlers& handlers, std::function<void()> done)
-      : stream_(Socket(loop.io().get_executor(), asio::ip::tcp::v4(), descriptor)),
+      : stream_(Socket(static_cast<asio::io_context*>(loop.io())->get_executor(),
+                       asio::ip::tcp::v4(), descriptor)),
         head_(head),
         limits_(limits),
         handlers_(handlers),
@@ -35,15 +36,14 @@ class WebSocket final : public PageSocket, public std::enable_shared_from_this<W
     auto patience = websocket::stream_base::timeout::suggested(boost::beast::role_type::server);
     patience.handshake_timeout = limits.patience;
     stream_.set_option(patience);
-    stream_.set_option(
-        websocket::stream_base::decorator([headers](websocket::response_type& response) {
-          for (std::size_t at = 0; at < headers.size();) {
-            const std::size_t colon = headers.find(": ", at), end = headers.find("\r\n", at);
-            response.set(headers.substr(at, colon - at),
-                         headers.substr(colon + 2, end - colon - 2));
-            at = end + 2;
-          }
-        }));
+    stream_.set_option(websocket::stream_base::decorator([headers](
+                                                             websocket::response_type& response) {
+      for (std::size_t at = 0; at < headers.size();) {
+        const std::size_t colon = headers.find(": ", at), end = headers.find("\r\n", at);
+        response.set(headers.substr(at, colon - at), headers.substr(colon + 2, end - colon - 2));
+        at = end + 2;
+      }
+    }));
   }
   ~WebSocket() override { done_(); }
 

@@ -16,7 +16,8 @@ std::vector<std::string> files_in(const fs::path& configs, const std::string& fo
   std::vector<std::string> names;
   std::error_code code;
   for (const auto& item : fs::directory_iterator(configs / folder, code))
-    if (item.path().extension() == ".yaml") names.push_back(folder + "/" + item.path().stem().string());
+    if (item.path().extension() == ".yaml")
+      names.push_back(folder + "/" + item.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -144,8 +144,8 @@ Frame WorkerErrands::fly(const Frame& asked) const {
   Frame frame = done();
   frame.header.set("lost", flown.lost);
   frame.header.set("finished", flown.finished);
-  frame.header.set("kept", !flown.lost && flown.finished &&
-                               flown.position_error_worst <= tolerances::kTracking);
+  frame.header.set(
+      "kept", !flown.lost && flown.finished && flown.position_error_worst <= tolerances::kTracking);
   Value& worst = frame.header.set("worst", Value::map());
   worst.set("position_error", flown.position_error_worst);
   worst.set("time", flown.position_error_at);
@@ -180,21 +180,22 @@ Plan WorkerErrands::with_shapes(const Frame& asked) {
 Frame WorkerErrands::picture(const Frame& asked) {
   const Plan plan = with_shapes(asked);
   Frame frame = done();
-  frame.parts.push_back(
-      film_frame(plan, vehicle_from_value(plan.vehicle), asked.header.at("time").as_number(),
-                 static_cast<int>(asked.header.at("width").as_integer()),
-                 static_cast<int>(asked.header.at("height").as_integer())));
+  frame.parts.push_back(film_frame(plan, vehicle_from_value(plan.vehicle),
+                                   asked.header.at("time").as_number(),
+                                   static_cast<int>(asked.header.at("width").as_integer()),
+                                   static_cast<int>(asked.header.at("height").as_integer())));
   return frame;
 }
 
 Frame WorkerErrands::export_plan(const Frame& asked) {
   const std::string& format = asked.header.at("format").as_text();
-  const auto exporter = settings_.registry->create<Exporter>(
-      format, asked.header.at("parameters"), "parameters");
+  const auto exporter =
+      settings_.registry->create<Exporter>(format, asked.header.at("parameters"), "parameters");
   Plan plan = plan_in(asked);
   if (!asked.header.at("uncertified").as_boolean()) {
     std::string failures;
-    if (plan.certificate.is_null()) failures = "it has not been judged yet";
+    if (plan.certificate.is_null())
+      failures = "it has not been judged yet";
     else
       for (const Check& check : Certificate::from_value(plan.certificate).failures())
         failures += (failures.empty() ? "" : "; ") + to_line(check);

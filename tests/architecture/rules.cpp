@@ -437,8 +437,13 @@ std::vector<SourceFile> read_tree(const fs::path& root) {
   std::vector<SourceFile> files;
   for (const char* top : {"framework", "plugins", "scripts", "configs", "tests", "examples"}) {
     if (!fs::is_directory(root / top)) continue;
-    for (const auto& item : fs::recursive_directory_iterator(root / top)) {
+    for (auto at = fs::recursive_directory_iterator(root / top); at != fs::end(at); ++at) {
+      const fs::directory_entry& item = *at;
       const std::string path = item.path().lexically_relative(root).generic_string();
+      if (path.ends_with("/node_modules") || path.ends_with("/page/dist")) {  // of npm
+        at.disable_recursion_pending();
+        continue;
+      }
       const bool text = has_extension(
           path, {".h", ".cpp", ".lua", ".md", ".txt", ".cmake", ".sh", ".yaml", ".py"});
       if (item.is_regular_file() && text) files.push_back({path, read_file(item.path())});

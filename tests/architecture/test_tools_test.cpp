@@ -81,9 +81,11 @@ const std::map<std::string, std::string> kPackages{// find_package and pkg_check
                                                    {"octomap", "liboctomap-dev"},
                                                    {"yaml-cpp", "libyaml-cpp-dev"},
                                                    // #include <NAME/
+                                                   {"arpa", ""},
                                                    {"boost", "libboost-dev"},
                                                    {"gmock", "libgmock-dev"},
                                                    {"gtest", "libgtest-dev"},
+                                                   {"netinet", ""},
                                                    {"sys", ""},
                                                    {"torch", "libtorch-dev"},
                                                    // tool_on_path and installed
