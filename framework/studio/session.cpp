@@ -276,7 +276,7 @@ void StudioSession::started(WorkerRole role) {
   if (role == WorkerRole::solver) solver_started();
   if (role == WorkerRole::errands && errand_under_way_) {
     Errand& errand = errand_queue_.front();
-    if (++errand.tries <= 1) return errands_->send(errand.frame);
+    if (errand.crashes <= 1) return errands_->send(errand.frame);
     fail(errand.from, errand.message, "the process that does it crashed twice");
     errand_queue_.pop_front();
     errand_under_way_ = false;
@@ -286,7 +286,7 @@ void StudioSession::started(WorkerRole role) {
   if (document_ && description_.empty()) ask_for_description();
   if (checks_.empty() || checks_.front().serial == 0) return;
   Check& check = checks_.front();
-  if (++check.tries <= 1) return checker_->send(check.frame);
+  if (check.crashes <= 1) return checker_->send(check.frame);
   Frame refused;
   refused.header.set("serial", check.serial);
   refused.header.set("why", "the process that checks it crashed twice");
@@ -304,6 +304,10 @@ void StudioSession::crashed(WorkerRole role, const std::string& why) {
   Value message = typed("worker");
   message.set("role", to_string(role));
   crashed_.insert(role);
+  // What was sent to it and is not done; what comes from now on waits for the next process.
+  if (role == WorkerRole::solver && solve_ && solve_->rank < 2) ++solve_->crashes;
+  if (role == WorkerRole::checker && !checks_.empty()) ++checks_.front().crashes;
+  if (role == WorkerRole::errands && errand_under_way_) ++errand_queue_.front().crashes;
   message.set("state", "crashed");
   message.set("message", as_utf8(why));
   tell_all(message);

@@ -87,7 +87,7 @@ class StudioSession {
     bool of_script = false;  // of its options alone, or of a proposal
     Proposal proposal = {};
     Frame frame = {};
-    int tries = 0;
+    int crashes = 0;  // of a process that was at it
     std::int64_t solve = 0;  // that began with it
   };
   struct Solve {
@@ -100,7 +100,7 @@ class StudioSession {
     bool held = false;                      // of a proposal that has no revision yet
     Clock::time_point came;
     int rank = -1;  // of the best answer so far
-    int tries = 0;
+    int crashes = 0;  // of a process that was at it
     Frame frame = {};
     std::vector<Frame> answers = {};  // the last of each rank
   };
@@ -110,7 +110,7 @@ class StudioSession {
     PageSocket* from = nullptr;
     PageMessage message = {};
     Frame frame = {};
-    int tries = 0;
+    int crashes = 0;
   };
   // What a page may fly, draw and export.
   struct Settled {

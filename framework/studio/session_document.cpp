@@ -93,7 +93,11 @@ void StudioSession::adopt_layer() {
 
 void StudioSession::found_script(const Value& options) {
   script_error_.clear();
-  if (!document_) begin_document(options);
+  if (!document_) {
+    begin_document(options);
+    // Whoever was let in while there was none is welcomed again.
+    for (auto& [socket, page] : pages_) page.welcomed = false;
+  }
   if (description_.empty()) ask_for_description();
   if (same_options(document_->script(), options)) {
     pending_script_.reset();

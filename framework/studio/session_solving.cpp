@@ -96,7 +96,7 @@ void StudioSession::solve_document(bool anew) {
 
 void StudioSession::solver_started() {
   if (!solve_ || solve_->rank >= 2) return;
-  if (++solve_->tries <= 1) return solver_->send(solve_->frame);
+  if (solve_->crashes <= 1) return solver_->send(solve_->frame);
   Frame refused;
   refused.header.set("serial", solve_->serial);
   refused.header.set("grade", "refused");

@@ -186,7 +186,7 @@ void WorkerLink::ended(const std::shared_ptr<Run>& run) {
   const auto now = std::chrono::steady_clock::now();
   std::erase_if(crashes_, [&](auto time) { return now - time > std::chrono::seconds(10); });
   crashes_.push_back(now);
-  const bool keeps_ending = crashes_.size() > 4;
+  const bool keeps_ending = crashes_.size() > 8;
   loop_.after(std::chrono::milliseconds(keeps_ending ? 1000 : 0), [this, alive = alive_] {
     if (*alive && !run_) start();
   });

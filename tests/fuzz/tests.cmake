@@ -21,7 +21,7 @@ std::vector<lapwing::FuzzedReader> lapwing::fuzzed_readers() { return {${readers
 ")
 
 add_executable(test_fuzz_corpus ${CMAKE_CURRENT_LIST_DIR}/corpus_test.cpp ${fuzzers} ${reader_list})
-target_link_libraries(test_fuzz_corpus PRIVATE lapwing GTest::gtest GTest::gtest_main)
+target_link_libraries(test_fuzz_corpus PRIVATE lapwing_studio lapwing GTest::gtest GTest::gtest_main)
 target_compile_definitions(test_fuzz_corpus PRIVATE ${test_definitions})
 target_compile_options(test_fuzz_corpus PRIVATE ${test_options})
 target_precompile_headers(test_fuzz_corpus REUSE_FROM lapwing_test_precompiled)

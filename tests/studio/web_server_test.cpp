@@ -91,9 +91,9 @@ TEST_F(Web, EveryAnswerForbidsWhatIsForeign) {
 TEST_F(Web, AnotherHostOrOriginIsRefused) {
   serve();
   const std::string port = std::to_string(port_);
-  for (const std::string& host :
-       {std::string("localhost:") + port, std::string("127.0.0.1"), "evil.example:" + port,
-        "127.0.0.1:" + port + ".evil.example", std::string("127.0.0.1:1"), "[::1]:" + port, std::string("")})
+  for (const std::string& host : {std::string("localhost:") + port, std::string("127.0.0.1"),
+                                  "evil.example:" + port, "127.0.0.1:" + port + ".evil.example",
+                                  std::string("127.0.0.1:1"), "[::1]:" + port, std::string("")})
     EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: " + host + "\r\n\r\n"), "403") << host;
   EXPECT_EQ(status("GET / HTTP/1.1\r\n\r\n"), "403");
   EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: " + host_ + "\r\nHost: " + host_ + "\r\n\r\n"), "403");
