@@ -79,7 +79,7 @@ std::string StudioSession::why_not() const {
 }
 
 void StudioSession::opened(const std::shared_ptr<PageSocket>& page) {
-  pages_[page.get()] = {page, "", 0, false, false};
+  pages_[page.get()] = {page, "", false, false};
   // Who says nothing is not kept.
   loop_.after(std::chrono::seconds(10), [this, alive = alive_, weak = std::weak_ptr(page)] {
     const auto held = weak.lock();
@@ -119,7 +119,6 @@ void StudioSession::greet(PageSocket& socket, const PageMessage& message) {
   if (!same_token(message.token, settings_.token)) return socket.close("wrong token");
   page.greeted = true;
   page.tab = message.tab;
-  page.seen = message.seen;
   welcome(page);
 }
 

@@ -69,7 +69,6 @@ class StudioSession {
   struct Page {
     std::shared_ptr<PageSocket> socket;
     std::string tab;
-    std::uint64_t seen = 0;
     bool greeted = false, welcomed = false;
   };
   // A change of the document on its way: checked, then committed.
