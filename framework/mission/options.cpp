@@ -327,11 +327,25 @@ Value OptionDeclarations::checked_plugins(const Option& option, const Value* giv
   return all;
 }
 
+namespace {
+
+// A vehicle's table on another layer than a vehicle's name replaces it: what `merge` kept as its
+// `type` is that name.
+void forget_replaced_vehicle(Value* given) {
+  if (!given || !given->is_map()) return;
+  const Value *type = given->find("type"), *mass = given->find("mass");
+  if (!type || !mass || type->origin() == mass->origin()) return;
+  std::erase_if(given->as_map(), [](const auto& entry) { return entry.first == "type"; });
+}
+
+}  // namespace
+
 // The table depends on the values: on the plugins chosen, and on the forms used.
 ParameterTable OptionDeclarations::table_for(Value& given, const Registry& registry) const {
   Value list = Value::list();
   for (const Option& option : options_) {
     if (option.plugins) continue;
+    if (option.vehicle) forget_replaced_vehicle(given.find(option.name));
     list.push_back(option.plugin_kind.empty() ? plain_entry(option, given.find(option.name))
                                               : plugin_entry(option, given, registry));
   }

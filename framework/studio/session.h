@@ -33,6 +33,8 @@ struct SessionSettings {
   std::vector<std::string> run_words;     // `lapwing run SCRIPT --json ...`, for reports
   std::chrono::milliseconds glance{250};  // between looks at the script
   std::chrono::milliseconds pause{150};   // after a gesture, before the layer is written
+  // How long a drag waits for the first answer of the move before, so that quick moves are drawn.
+  std::chrono::milliseconds patience{200};
 };
 
 enum class WorkerRole { solver, checker, errands };
@@ -86,7 +88,7 @@ class StudioSession {
     bool of_script = false;  // of its options alone, or of a proposal
     Proposal proposal = {};
     Frame frame = {};
-    int crashes = 0;  // of a process that was at it
+    int crashes = 0;         // of a process that was at it
     std::int64_t solve = 0;  // that began with it
   };
   struct Solve {
@@ -97,9 +99,9 @@ class StudioSession {
     std::uint64_t edit = 0;                 // of a preview
     std::string tab;                        // likewise
     bool held = false;                      // of a proposal that has no revision yet
-    Clock::time_point came;
-    int rank = -1;  // of the best answer so far
-    int crashes = 0;  // of a process that was at it
+    Clock::time_point came, posted;         // the edit; the solve
+    int rank = -1;                          // of the best answer so far
+    int crashes = 0;                        // of a process that was at it
     Frame frame = {};
     std::vector<Frame> answers = {};  // the last of each rank
   };
@@ -157,6 +159,8 @@ class StudioSession {
   void preview(PageSocket& page, const PageMessage& message);
   void rest();
   void post_solve(const Value& layer, Solve solve);
+  void drag(const Value& layer, Solve solve);
+  void drag_on();
   void solve_document(bool anew = false);
   void document_changed(std::int64_t solved_meanwhile);
   void answered(Frame frame);
@@ -187,7 +191,7 @@ class StudioSession {
   bool layer_waits_ = false;
   std::set<WorkerRole> crashed_;  // and not started again yet
 
-  std::optional<Solve> solve_;
+  std::optional<Solve> solve_, next_drag_;  // the second waits for an answer of the first
   std::optional<Settled> certified_, settled_, displayed_;
   std::string document_answer_;  // the last one of the document as it is
   int document_rank_ = -1;

@@ -24,7 +24,9 @@ int rank_of(const std::string& grade) {
 void StudioSession::post_solve(const Value& layer, Solve solve) {
   solve.serial = ++serial_;
   solve.layer = to_json(layer, -1);
-  solve.came = Clock::now();
+  if (solve.came == Clock::time_point{}) solve.came = Clock::now();
+  next_drag_.reset();
+  solve.posted = Clock::now();
   solve.frame.header.set("do", "solve");
   solve.frame.header.set("serial", solve.serial);
   solve.frame.header.set("layer", layer);
@@ -40,16 +42,40 @@ void StudioSession::preview(PageSocket& page, const PageMessage& message) {
     solve.base = document_->revision();
     solve.edit = message.edit;
     solve.tab = pages_.at(&page).tab;
-    post_solve(layer_of(base_options(), next), std::move(solve));
+    drag(layer_of(base_options(), next), std::move(solve));
   } catch (const InputError& error) {
     refuse(&page, message, error.what());
   }
+}
+
+// A move that ended the solve of the one before would, of quick moves, leave none that is drawn: it
+// waits until that one has an answer, or has had time enough. Of those that wait the newest counts.
+void StudioSession::drag(const Value& layer, Solve solve) {
+  const bool under_way = solve_ && !solve_->revision && !solve_->held && solve_->rank < 0 &&
+                         Clock::now() - solve_->posted < settings_.patience;
+  if (!under_way) return post_solve(layer, std::move(solve));
+  solve.came = Clock::now();
+  solve.frame.header.set("layer", layer);
+  const bool waited = next_drag_.has_value();
+  next_drag_ = std::move(solve);
+  if (waited) return;
+  loop_.after(settings_.patience, [this, alive = alive_] {
+    if (*alive) drag_on();
+  });
+}
+
+void StudioSession::drag_on() {
+  if (!next_drag_) return;
+  Solve next = std::move(*next_drag_);
+  const Value layer = next.frame.header.at("layer");
+  post_solve(layer, std::move(next));
 }
 
 // A drag that came to nothing: the document's own answer is told again, or it is solved.
 void StudioSession::rest() {
   if (!document_) return;
   if (document_rank_ < 2 || settled_world_ != world_) return solve_document();
+  next_drag_.reset();
   Solve solve;
   solve.serial = ++serial_;
   solve.layer = to_json(document_layer(), -1);
@@ -112,6 +138,7 @@ void StudioSession::answered(Frame frame) {
   solve_->rank = rank;
   solve_->answers.push_back(frame);
   if (!solve_->held) deliver(solve_->answers.back());
+  drag_on();
 }
 
 void StudioSession::deliver(const Frame& frame) {

@@ -29,16 +29,16 @@ Value names_of(const Registry& registry, const std::string& kind) {
   return names;
 }
 
-// Configurations that a page may lay on the document, with what they say.
-Value styles_in(const fs::path& configs) {
-  Value styles = Value::list();
-  for (const std::string& name : files_in(configs, "filming")) {
-    Value style = Value::map();
-    style.set("name", name);
-    style.set("layer", read_yaml(configs / (name + ".yaml")));
-    styles.push_back(std::move(style));
+// Each with what it says: {name, layer}.
+Value contents_in(const fs::path& configs, const std::string& folder) {
+  Value all = Value::list();
+  for (const std::string& name : files_in(configs, folder)) {
+    Value one = Value::map();
+    one.set("name", name);
+    one.set("layer", read_yaml(configs / (name + ".yaml")));
+    all.push_back(std::move(one));
   }
-  return styles;
+  return all;
 }
 
 }  // namespace
@@ -56,14 +56,15 @@ void describe_mission(const Mission& mission, const MissionSettings& settings, V
     one.set("parameters", entry.parameters.to_value());
   }
   Value& choices = described.set("choices", Value::map());
-  for (const auto& [key, folder] : {std::pair{"vehicle", "vehicles"}, {"camera", "cameras"}}) {
-    Value& names = choices.set(key, Value::list());
-    for (const std::string& name : files_in(settings.configs, folder)) names.push_back(name);
-  }
+  Value cameras = Value::list();
+  for (const std::string& name : files_in(settings.configs, "cameras")) cameras.push_back(name);
+  choices.set("vehicle", contents_in(settings.configs, "vehicles"));
+  choices.set("camera", std::move(cameras));
   choices.set("solver", names_of(registry, "trajectory_solver"));
   choices.set("exporters", names_of(registry, "exporter"));
   choices.set("shapes", names_of(registry, "shape"));
-  choices.set("style", styles_in(settings.configs));
+  choices.set("controllers", names_of(registry, "controller"));
+  choices.set("style", contents_in(settings.configs, "filming"));
 }
 
 }  // namespace lapwing

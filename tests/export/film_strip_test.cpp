@@ -76,6 +76,21 @@ TEST(FilmStrip, FramesCarryTheBoxesOfWhatIsAskedFor) {
   EXPECT_NEAR(strip.frames[0].boxes[0].bottom, (box->bottom + 0.5) / pinhole.height, 1e-9);
 }
 
+TEST(FilmStrip, OneFrameHasTheSizeThatIsAskedFor) {
+  const Plan plan = film();
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  const std::string of_strip = film_strip(plan, vehicle, {4}).frames[0].png;
+  EXPECT_TRUE(film_frame(plan, vehicle, 4, 288, 288) == of_strip);
+  const std::string png = film_frame(plan, vehicle, 4, 640, 200);  // as many as fit
+  const auto number_at = [&png](std::size_t at) {
+    return static_cast<unsigned char>(png[at]) * 256 + static_cast<unsigned char>(png[at + 1]);
+  };
+  EXPECT_EQ(number_at(22), 200);  // of the PNG's header: across, down
+  EXPECT_EQ(number_at(18), 356);
+  EXPECT_THROW(film_frame(plan, vehicle, -1, 64, 64), InputError);
+  EXPECT_THROW(film_frame(plan, vehicle, 20.5, 64, 64), InputError);
+}
+
 TEST(FilmStrip, SamePlanSameBytes) {
   const std::string html = render_html(flight_report(film()));
   EXPECT_EQ(render_html(flight_report(film())), html);

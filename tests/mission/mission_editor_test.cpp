@@ -95,9 +95,8 @@ TEST_F(Editing, ACertificateIsOfWhatIsDrawn) {
     ASSERT_EQ(drawn.samples.size(), edited.plan->trajectory.samples.size());
     for (std::size_t i = 0; i < drawn.samples.size(); ++i)
       EXPECT_EQ(drawn.samples[i].position, edited.plan->trajectory.samples[i].position);
-    if (judged) {
-      EXPECT_EQ(to_json(edited.certificate->to_value()), to_json(verify(*edited.plan).to_value()));
-    }
+    if (!judged) continue;
+    EXPECT_EQ(to_json(edited.certificate->to_value()), to_json(verify(*edited.plan).to_value()));
   }
   EXPECT_EQ(heard_.front().answer.grade, AnswerGrade::step);
   EXPECT_EQ(heard_.back().answer.grade, AnswerGrade::certified);
@@ -170,6 +169,30 @@ TEST_F(Editing, RepeatsBitForBit) {
       end += plan_text(*edit({std::string("keyframes[2].position=") + place}).plan);
   }
   EXPECT_EQ(ends[0], ends[1]);
+}
+
+// Its closed loop is flown by what the plan names, as `run` judges it.
+TEST_F(Editing, PlansThatNameAControllerAreCertified) {
+  open(kShot);
+  const EditedPlan& flown = edit({"controller=geometric"});
+  EXPECT_EQ(flown.answer.grade, AnswerGrade::certified) << flown.answer.message;
+  const Check* check = flown.certificate->find("closed_loop");
+  ASSERT_TRUE(check);
+  EXPECT_EQ(check->skipped, "");
+}
+
+TEST_F(Editing, MissionsTellWhatTheyDeclare) {
+  open(kShot);
+  const Mission mission(folder_ / "shot.lua", settings());
+  bool found = false;
+  const Value declared = mission.declarations();
+  for (const Value& entry : declared.as_list()) {
+    if (entry.at("name") != Value("margin")) continue;
+    found = true;
+    EXPECT_EQ(entry.at("unit"), Value("m"));
+    EXPECT_EQ(entry.at("default").as_number(), 0.5);
+  }
+  EXPECT_TRUE(found);
 }
 
 TEST_F(Editing, BeginsFromAPlan) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "framework/config/yaml.h"
 #include "tests/mission/mission_fixture.h"
 
 namespace lapwing {
@@ -63,6 +64,25 @@ TEST_F(MissionTest, WrongOptionsAreNamed) {
   expect(film(""), "--set duration=soon: duration: 'soon' is not a quantity in s",
          {"duration=soon"});
   expect(film(""), "keyframes[9]", {"keyframes[9].time=2"});
+}
+
+// A vehicle file's contents in a configuration, on a script that names a file.
+TEST_F(MissionTest, ATableOfAVehicleReplacesTheNameOfOne) {
+  write_file_atomically(folder_ / "shot.lua", R"(return require("mission.film").shot {
+    vehicle = "vehicles/solo",
+    keyframes = { { position = {0, 0, 2} }, { position = {3, 4, 4} } } })");
+  Mission mission(folder_ / "shot.lua", settings());
+  Value layer = Value::map();
+  layer.set("vehicle",
+            read_yaml(std::string(LAPWING_SOURCE_DIR) + "/configs/vehicles/phantom.yaml"));
+  mission.configure(std::vector<Value>{layer}, {});
+  const Value& vehicle = mission.configuration().at("vehicle");
+  EXPECT_FALSE(vehicle.find("type"));
+  EXPECT_GT(vehicle.at("mass").as_number(), 0);
+  // Whoever writes a `type` beside the others is told.
+  layer.find("vehicle")->set("type", "vehicles/solo");
+  layer.find("vehicle")->find("type")->with_origin(layer.at("vehicle").at("mass").origin());
+  EXPECT_THROW(mission.configure(std::vector<Value>{layer}, {}), InputError);
 }
 
 TEST_F(MissionTest, WrongKeyframesAreNamed) {

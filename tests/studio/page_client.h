@@ -100,7 +100,7 @@ inline std::string upgrade_request(const std::string& host, const std::string& o
 
 class PageClient {
  public:
-  static constexpr std::chrono::milliseconds kPatience{20000};
+  static constexpr std::chrono::milliseconds kPatience{120000};
 
   explicit PageClient(int port) : connection_(port) {
     const std::string host = "127.0.0.1:" + std::to_string(port);

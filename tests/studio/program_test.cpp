@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -230,6 +231,24 @@ TEST_F(StudioProgram, TheLayerPlansTheSameFlightByteForByte) {
   ASSERT_EQ(x.as_list().size(), plan.trajectory.samples.size());
   for (std::size_t i = 0; i < plan.trajectory.samples.size(); ++i)
     ASSERT_NEAR(x.as_list()[i].as_number(), plan.trajectory.samples[i].position.x(), 0.1);
+  // Another camera on the vehicle, which is then a table in place of a name.
+  Value vehicle;
+  for (const Value& one : page.welcome.at("choices").at("vehicle").as_list())
+    if (one.at("name") == Value("vehicles/solo")) vehicle = one.at("layer");
+  vehicle.set("camera", "cameras/one_inch");
+  page.send(gesture("camera", revision, {change("vehicle", vehicle)}));
+  ++revision;
+  EXPECT_NE(page.until_judged(revision).at("plan").at("camera").at("name"),
+            judged.at("plan").at("camera").at("name"));
+  save.set("id", "s2");
+  page.send(save);
+  page.until_type("wrote");
+  ASSERT_EQ(run({"run", "castle_flyover.lua", "--config", "castle_flyover.studio.yaml", "-o",
+                 "layer", "--quiet"}),
+            0)
+      << errors_;
+  EXPECT_TRUE(read_file(folder_ / "layer/plan.json") ==
+              read_file(folder_ / "out/castle_flyover/plan.json"));
   // All taken back: the script alone, and no layer.
   for (std::int64_t i = revision; i > 0; --i) {
     Value undo = page_says("undo");
@@ -444,7 +463,11 @@ TEST_F(StudioProgram, AKillOfTheServerLosesNoEditThatWasAcknowledged) {
     ASSERT_TRUE(now == margin || (revision == acknowledged + 1 && now == margin + 0.001)) << now;
     margin = now;
     acknowledged = revision;
-    std::thread killer([&, pause = random() % 400] {
+    // After none to four acknowledged edits, and a part of another.
+    std::atomic<std::int64_t> told_of = 0;
+    std::thread killer([&, edits = random() % 5, pause = random() % 100] {
+      while (told_of < static_cast<std::int64_t>(edits))
+        std::this_thread::sleep_for(milliseconds(1));
       std::this_thread::sleep_for(milliseconds(pause));
       ::kill(server_->process, SIGKILL);
     });
@@ -454,19 +477,20 @@ TEST_F(StudioProgram, AKillOfTheServerLosesNoEditThatWasAcknowledged) {
                          {change("margin", next)}));
       Value told;
       do {
-        told = page->receive(milliseconds(5000));
+        told = page->receive();
       } while (!told.is_null() && told.at("type") != Value("document") &&
                told.at("type") != Value("refused"));
       if (told.is_null()) break;
-      ASSERT_EQ(told.at("type"), Value("document")) << to_json(told);
+      EXPECT_EQ(told.at("type"), Value("document")) << to_json(told);
       margin = next;
       acknowledged = ++revision;
+      ++told_of;
     }
     killer.join();
     server_->end(SIGKILL);
   }
-  EXPECT_GT(acknowledged, rounds / 2);
-  EXPECT_LT(slowest, 2) << "s until reconnected";
+  EXPECT_GT(acknowledged, rounds);
+  EXPECT_LT(slowest, 20) << "s until reconnected";  // 0.1 on an idle machine
   std::printf("%d kills of the server: %lld edits, at most %.2f s until connected again\n", rounds,
               static_cast<long long>(acknowledged), slowest);
   PageClient page(serve(), "a");

@@ -269,11 +269,15 @@ TEST_F(Session, ACertificateIsNeverOfAnotherRevision) {
       case 0:
         say(page, gesture("g" + std::to_string(k), revision, {change("margin", value - 1)}));
         break;
-      case 1:
-        say(page, preview(++edit, {change("weights.yaw", value)}));
-        if (!solver_.frames.empty())
-          layer_of_edit[edit] = to_json(solver_.frames.back().header.at("layer"), -1);
+      case 1: {
+        const StudioDocument& document = *session_->document();
+        layer_of_edit[++edit] =
+            to_json(layer_of(document.script(),
+                             document.proposed(Patch{{option_path("weights.yaw"), Value(value)}})),
+                    -1);
+        say(page, preview(edit, {change("weights.yaw", value)}));
         break;
+      }
       case 2:
         say(page, R"({"type": "rest"})");
         break;
@@ -353,6 +357,30 @@ TEST_F(Session, AfterADragThatWasDroppedTheDocumentsAnswerStandsAgain) {
   say(*a, gesture("g", 0, {change("margin", 3)}));
   check_all();
   solve(solver_.frames.back(), "certified");
+  EXPECT_EQ(a->last("answer").at("revision"), Value(1));
+}
+
+TEST_F(Session, QuickMovesAreDrawnAllTheSame) {
+  const auto a = page("a");
+  solver_.frames.clear();
+  for (int i = 1; i <= 10; ++i) say(*a, preview(i, {change("margin", i)}));
+  ASSERT_EQ(solver_.frames.size(), 1u);  // else each would end the one before
+  solve(solver_.frames[0], "step");
+  EXPECT_EQ(a->last("answer").at("edit"), Value(1));
+  ASSERT_EQ(solver_.frames.size(), 2u);  // the newest alone
+  solve(solver_.frames[0], "converged");
+  solve(solver_.frames[1], "step");
+  EXPECT_EQ(a->last("answer").at("edit"), Value(10));
+  // One that has been drawn is ended at once, and so is one by a gesture.
+  say(*a, preview(11, {change("margin", 11)}));
+  EXPECT_EQ(solver_.frames.size(), 3u);
+  say(*a, preview(12, {change("margin", 12)}));
+  say(*a, gesture("g", 0, {change("margin", 13)}));
+  check_all();
+  EXPECT_EQ(solver_.frames.size(), 4u);
+  solve(solver_.frames[2], "step");
+  solve(solver_.frames[3], "step");
+  EXPECT_EQ(solver_.frames.size(), 4u);
   EXPECT_EQ(a->last("answer").at("revision"), Value(1));
 }
 
