@@ -20,7 +20,7 @@ const char* const kGood[] = {
     R"({"type": "fly", "edit": 1, "wind": [3, -1, 0], "gust": 0.5, "seed": 2})",
     R"({"type": "picture", "edit": 1, "time": 2.5, "width": 640, "height": 480})",
     R"({"type": "export", "id": "e", "format": "csv"})",
-    R"({"type": "export", "id": "e", "format": "csv", "parameters": {"r": 5}, "uncertified": true})",
+    R"({"type": "export", "id": "e", "format": "x", "parameters": {"r": 5}, "uncertified": true})",
     R"({"type": "save_report", "id": "s"})",
     R"({"type": "export_lua", "id": "l"})"};
 
