@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edits of a film as patches with a label. A list that keeps its length is changed entry by entry,
+// any other is set whole.
+import { entries, filmOf } from "./film";
+import { handleOf, movedObstacle } from "./shapes";
+import type { Json, JsonObject, Patch, Vec3 } from "./types";
+import { add, minus, mix, rounded, vec } from "./vector";
+
+export interface Edit {
+  label: string;
+  patch: Patch;
+}
+
+export type Item =
+  | { kind: "keyframe" | "look" | "subject" | "obstacle"; index: number }
+  | { kind: "track"; index: number; point: number };
+
+export const sameItem = (a: Item | null, b: Item | null): boolean =>
+  a !== null && b !== null && a.kind === b.kind && a.index === b.index &&
+  (a.kind !== "track" || b.kind !== "track" || a.point === b.point);
+
+const listNames: Record<Item["kind"], string> = {
+  keyframe: "keyframes", look: "keyframes", subject: "subjects", obstacle: "obstacles",
+  track: "subjects",
+};
+
+export function entryOf(document: JsonObject, item: Item): JsonObject | null {
+  return entries(document, listNames[item.kind])[item.index] ?? null;
+}
+
+export function nameOf(document: JsonObject, item: Item): string {
+  const entry = entryOf(document, item);
+  const name = typeof entry?.name === "string" && entry.name ? entry.name : "";
+  const n = item.index + 1;
+  switch (item.kind) {
+    case "keyframe": return `keyframe ${n}`;
+    case "look": return `look-at point of keyframe ${n}`;
+    case "subject": return name ? `subject ${name}` : `subject ${n}`;
+    case "track": return `place ${item.point + 1} of ${name || `subject ${n}`}`;
+    case "obstacle": return name ? `obstacle ${name}` : `obstacle ${n}`;
+  }
+}
+
+export function pathOfItem(document: JsonObject, item: Item): string | null {
+  const list = `${listNames[item.kind]}[${item.index + 1}]`;
+  if (item.kind === "keyframe") return `${list}.position`;
+  if (item.kind === "look") return `${list}.look_at`;
+  if (item.kind === "track") return `${list}.track[${item.point + 1}].position`;
+  if (item.kind === "subject") {
+    return vec(entryOf(document, item)?.position) ? `${list}.position` : null;
+  }
+  return null;
+}
+
+export function placeOfItem(document: JsonObject, item: Item): Vec3 | null {
+  const entry = entryOf(document, item);
+  if (!entry) return null;
+  if (item.kind === "keyframe") return vec(entry.position);
+  if (item.kind === "look") return vec(entry.look_at);
+  if (item.kind === "obstacle") return handleOf(entry);
+  const track = Array.isArray(entry.track) ? entry.track : [];
+  if (item.kind === "track") return vec((track[item.point] as JsonObject | undefined)?.position);
+  return vec(entry.position) ?? vec((track[0] as JsonObject | undefined)?.position);
+}
+
+export function moved(document: JsonObject, item: Item, to: Vec3): Edit | null {
+  const from = placeOfItem(document, item);
+  const entry = entryOf(document, item);
+  if (!from || !entry) return null;
+  const label = `Move ${nameOf(document, item)}`;
+  const path = pathOfItem(document, item);
+  if (path) return { label, patch: [{ path, value: rounded(to) }] };
+  if (item.kind === "obstacle") {
+    const patch = movedObstacle(entry, `obstacles[${item.index + 1}]`, minus(to, from));
+    return patch.length > 0 ? { label, patch } : null;
+  }
+  // A subject with a track moves as a whole.
+  const by = minus(to, from);
+  const track = (Array.isArray(entry.track) ? entry.track : []) as JsonObject[];
+  const patch: Patch = track.flatMap((point, i) => {
+    const position = vec(point.position);
+    return position
+      ? [{ path: `subjects[${item.index + 1}].track[${i + 1}].position`,
+           value: rounded(add(position, by)) }] : [];
+  });
+  return patch.length > 0 ? { label, patch } : null;
+}
+
+const tenth = (time: number): number => Math.round(time * 10) / 10;
+
+function withKeyframes(label: string, list: JsonObject[], duration?: number): Edit {
+  const patch: Patch = [{ path: "keyframes", value: list }];
+  if (duration !== undefined) patch.push({ path: "duration", value: duration });
+  return { label, patch };
+}
+
+// A keyframe at a time, between those beside it; its index is returned as well.
+export function inserted(
+  document: JsonObject, time: number, position: Vec3, lookAt: Vec3 | null = null,
+): Edit & { index: number } {
+  const film = filmOf(document);
+  const list = entries(document, "keyframes");
+  let index = film.keyframes.filter((k) => k.time <= time).length;
+  const made: JsonObject = { time: tenth(time), position: rounded(position) };
+  while (film.keyframes.some((k) => Math.abs(k.time - (made.time as number)) < 0.05)) {
+    made.time = tenth((made.time as number) + 0.5);
+    index = film.keyframes.filter((k) => k.time <= (made.time as number)).length;
+  }
+  if (lookAt) made.look_at = rounded(lookAt);
+  const timedList = withTimes(document, list);
+  timedList.splice(index, 0, made);
+  const end = longer(document, made.time as number);
+  return { ...withKeyframes(`Add keyframe ${index + 1}`, timedList, end), index };
+}
+
+// One after the last, as far in time as the leg is long at the mean speed so far.
+export function appended(
+  document: JsonObject, position: Vec3, lookAt: Vec3 | null = null,
+): Edit & { index: number } {
+  const film = filmOf(document);
+  const last = film.keyframes[film.keyframes.length - 1];
+  if (!last) return inserted(document, 0, position, lookAt);
+  const first = film.keyframes[0] as typeof last;
+  let way = 0;
+  film.keyframes.forEach((k, i) => {
+    const before = film.keyframes[i - 1];
+    if (before) way += Math.hypot(...minus(k.position, before.position));
+  });
+  const speed = last.time > first.time ? Math.max(0.5, way / (last.time - first.time)) : 2;
+  const leg = Math.max(2, Math.hypot(...minus(position, last.position)) / speed);
+  return inserted(document, last.time + leg, position, lookAt);
+}
+
+function longer(document: JsonObject, time: number): number | undefined {
+  return typeof document.duration === "number" && document.duration < time ? time : undefined;
+}
+
+// A list in which a new time is stated needs the times of the others too, except where a speed
+// gives them.
+function withTimes(document: JsonObject, list: JsonObject[]): JsonObject[] {
+  const film = filmOf(document);
+  const stretch = typeof document.stretch === "number" ? document.stretch : 1;
+  return list.map((entry, i) => {
+    if (typeof entry.time === "number") return entry;
+    const { speed: _speed, ...rest } = entry;
+    return { ...rest, time: tenth((film.keyframes[i]?.time ?? 0) / stretch) };
+  });
+}
+
+export function duplicated(document: JsonObject, index: number): (Edit & { index: number }) | null {
+  const film = filmOf(document);
+  const keyframe = film.keyframes[index];
+  const entry = entries(document, "keyframes")[index];
+  if (!keyframe || !entry) return null;
+  const next = film.keyframes[index + 1];
+  const time = next ? (keyframe.time + next.time) / 2 : keyframe.time + 2;
+  const position = next ? mix(keyframe.position, next.position, 0.25)
+    : add(keyframe.position, [0, 0, 1]);
+  const list = withTimes(document, entries(document, "keyframes"));
+  list.splice(index + 1, 0, { ...entry, time: tenth(time), position: rounded(position) });
+  const end = longer(document, tenth(time));
+  return { ...withKeyframes(`Duplicate keyframe ${index + 1}`, list, end), index: index + 1 };
+}
+
+// What a script sets cannot be taken away alone; a list without it can be set whole.
+export function without(document: JsonObject, label: string, index: number, key: string): Edit {
+  const list = entries(document, "keyframes").map((entry, i) => {
+    if (i !== index) return entry;
+    const { [key]: _gone, ...rest } = entry;
+    return rest;
+  });
+  return { label, patch: [{ path: "keyframes", value: list }] };
+}
+
+export function deleted(document: JsonObject, item: Item): Edit | null {
+  const label = `Delete ${nameOf(document, item)}`;
+  if (item.kind === "look") return without(document, label, item.index, "look_at");
+  const name = listNames[item.kind];
+  const list = entries(document, name);
+  if (item.kind === "keyframe" && list.length <= 2) return null;
+  if (item.kind === "track") return null;
+  return { label, patch: [{ path: name, value: list.filter((_, i) => i !== item.index) }] };
+}
+
+// The places change, the times stay: what was passed second is passed first.
+export function reordered(document: JsonObject, index: number, by: -1 | 1): Edit | null {
+  const list = entries(document, "keyframes").slice();
+  const other = index + by;
+  const a = list[index], b = list[other];
+  if (!a || !b) return null;
+  const timesOf = (entry: JsonObject): JsonObject => {
+    const kept: JsonObject = {};
+    for (const key of ["time", "earliest", "latest", "time_weight", "speed"]) {
+      if (entry[key] !== undefined) kept[key] = entry[key] as Json;
+    }
+    return kept;
+  };
+  const untimed = (entry: JsonObject): JsonObject => {
+    const { time: _t, earliest: _e, latest: _l, time_weight: _w, speed: _s, ...rest } = entry;
+    return rest;
+  };
+  list[index] = { ...timesOf(a), ...untimed(b) };
+  list[other] = { ...timesOf(b), ...untimed(a) };
+  return withKeyframes(`Swap keyframes ${Math.min(index, other) + 1} and ` +
+    `${Math.max(index, other) + 1}`, list);
+}
+
+// Between its neighbours; the film grows with its last keyframe and shrinks with it.
+export function retimed(document: JsonObject, index: number, time: number): Edit | null {
+  const film = filmOf(document);
+  const stretch = typeof document.stretch === "number" ? document.stretch : 1;
+  const before = film.keyframes[index - 1], after = film.keyframes[index + 1];
+  if (!film.keyframes[index]) return null;
+  let wanted = tenth(time);
+  if (before) wanted = Math.max(wanted, tenth(before.time + 0.2));
+  if (after) wanted = Math.min(wanted, tenth(after.time - 0.2));
+  wanted = tenth(Math.max(0, wanted) / stretch);
+  const label = `Time of keyframe ${index + 1}`;
+  const all = entries(document, "keyframes");
+  const patch: Patch = all.every((entry) => typeof entry.time === "number")
+    ? [{ path: `keyframes[${index + 1}].time`, value: wanted }]
+    : [{ path: "keyframes", value: withTimes(document, all).map((entry, i) =>
+        i === index ? { ...entry, time: wanted } : entry) }];
+  if (!after && typeof document.duration === "number") {
+    patch.push({ path: "duration", value: wanted });
+  }
+  return { label, patch };
+}
+
+// The leg to a keyframe takes `factor` times as long; all that follows comes later.
+export function slowed(document: JsonObject, index: number, factor: number): Edit | null {
+  const film = filmOf(document);
+  const here = film.keyframes[index], before = film.keyframes[index - 1];
+  if (!here || !before) return null;
+  const by = (here.time - before.time) * (factor - 1);
+  const list = withTimes(document, entries(document, "keyframes")).map((entry, i) =>
+    i < index ? entry : { ...entry, time: Math.ceil(((entry.time as number) + by) * 10) / 10 });
+  const last = list[list.length - 1]?.time as number;
+  const end = typeof document.duration === "number"
+    ? Math.max(last, tenth(document.duration + by)) : undefined;
+  return withKeyframes(`Slow the leg to keyframe ${index + 1}`, list, end);
+}
+
+export function cutAt(document: JsonObject, start: number, finish: number): Edit {
+  const list = [...entries(document, "cuts"), { start: tenth(start), finish: tenth(finish) }]
+    .sort((a, b) => Number(a.start) - Number(b.start));
+  return { label: "Add a cut", patch: [{ path: "cuts", value: list as Json }] };
+}
+
+export function uncut(document: JsonObject, index: number): Edit {
+  const list = entries(document, "cuts").filter((_, i) => i !== index);
+  return { label: `Remove cut ${index + 1}`, patch: [{ path: "cuts", value: list }] };
+}
+
+export function addedObstacle(document: JsonObject, type: "sphere" | "box", at: Vec3): Edit {
+  const list = entries(document, "obstacles");
+  const name = `${type} ${list.length + 1}`;
+  const p = rounded(at);
+  const shape: JsonObject = type === "sphere"
+    ? { type, name, center: [p[0], p[1], p[2] + 2], radius: 2 }
+    : { type, name, lower: [p[0] - 2, p[1] - 2, p[2]], upper: [p[0] + 2, p[1] + 2, p[2] + 4] };
+  return { label: `Add obstacle ${name}`, patch: [{ path: "obstacles", value: [...list, shape] }] };
+}
+
+export function addedSubject(document: JsonObject, at: Vec3): Edit {
+  const list = entries(document, "subjects");
+  // With one subject the film needs no name for it; with two every one does.
+  const named = list.map((entry, i) => (entry.name ? entry : { ...entry, name: `subject ${i + 1}` }));
+  const made: JsonObject = { position: rounded(add(at, [0, 0, 0.9])), height: 1.8, width: 0.6 };
+  if (list.length > 0) made.name = `subject ${list.length + 1}`;
+  return { label: "Add a subject", patch: [{ path: "subjects", value: [...named, made] }] };
+}
+
+export function lookedAt(document: JsonObject, index: number, point: Vec3): Edit {
+  void document;
+  return {
+    label: `Aim keyframe ${index + 1}`,
+    patch: [{ path: `keyframes[${index + 1}].look_at`, value: rounded(point) }],
+  };
+}

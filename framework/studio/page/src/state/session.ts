@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// The conversation with the server: greeting, gestures with their replay, drags, answers, and the
+// way back after a lost connection. It knows no browser: sockets and clocks are handed in.
+import { applied, equal } from "./document";
+import { Grades, type Standing } from "./grades";
+import { GestureQueue, tryPatch } from "./queue";
+import type {
+  Answer, Choices, Gesture, Json, JsonObject, MissionInfo, Option, Patch, ServerMessage,
+  Welcome, World,
+} from "./types";
+
+export interface Socket {
+  send(text: string): void;
+  close(): void;
+  onopen: (() => void) | null;
+  onmessage: ((event: { data: unknown }) => void) | null;
+  onclose: (() => void) | null;
+}
+
+export interface Clock {
+  now(): number;                                       // ms
+  later(ms: number, then: () => void): number;
+  cancel(id: number): void;
+}
+
+export type Link = "connecting" | "open" | "lost";
+
+export interface Event {
+  what: "link" | "welcome" | "document" | "standing" | "world" | "note" | "flown" | "picture" |
+    "wrote" | "script" | "worker" | "settled";
+  message?: ServerMessage;
+  text?: string;
+}
+
+export interface SessionParts {
+  connect(): Socket;
+  clock: Clock;
+  queue: GestureQueue;
+  token: string;
+  tab: string;
+  unique(): string;
+}
+
+const PREVIEW_EVERY = 40;                              // ms
+const WAITS = [100, 200, 400, 800, 1500];              // ms, between attempts to connect
+const CONNECT_LIMIT = 4000;                            // ms
+
+export class Session {
+  readonly grades: Grades;
+  link: Link = "connecting";
+  mission: MissionInfo = { name: "", kind: "", script: "", editable: false };
+  schema: Option[] = [];
+  choices: Choices = {};
+  world: World = {};
+  revision = 0;
+  canUndo = false;
+  canRedo = false;
+  welcomed = false;
+  scriptError: { message: string; line?: number } | null = null;
+  private stored: JsonObject = {};
+  private drag: { edit: number; patch: Patch } | null = null;
+  private edits = 0;
+  private sentAt = -Infinity;
+  private timer: number | null = null;
+  private socket: Socket | null = null;
+  private attempts = 0;
+  private watch: number | null = null;
+  private acknowledged = new Set<string>();
+  private readonly listeners: ((event: Event) => void)[] = [];
+
+  constructor(private readonly parts: SessionParts) {
+    this.grades = new Grades(parts.tab);
+  }
+
+  on(listener: (event: Event) => void): void {
+    this.listeners.push(listener);
+  }
+
+  start(): void {
+    this.open();
+  }
+
+  // What is on display: the stored document, gestures on their way, the drag under way.
+  document(): JsonObject {
+    const base = this.parts.queue.onto(this.stored);
+    return this.drag ? tryPatch(base, this.drag.patch) : base;
+  }
+
+  // The same without the drag: what a drag is measured from.
+  settled(): JsonObject {
+    return this.parts.queue.onto(this.stored);
+  }
+
+  standing(): Standing {
+    return this.grades.standing();
+  }
+
+  get pending(): number {
+    return this.parts.queue.size;
+  }
+
+  get dragging(): boolean {
+    return this.drag !== null;
+  }
+
+  // The number of the state on display, for `fly` and `picture`.
+  get edit(): number {
+    return this.edits;
+  }
+
+  // A drag under way; sent at most every 40 ms, the newest always.
+  preview(patch: Patch): void {
+    if (!this.mission.editable) return;
+    this.edits += 1;
+    this.drag = { edit: this.edits, patch };
+    this.moment();
+    this.tell({ what: "document" });
+    const wait = this.sentAt + PREVIEW_EVERY - this.parts.clock.now();
+    if (wait <= 0) this.sendPreview();
+    else if (this.timer === null) {
+      this.timer = this.parts.clock.later(wait, () => this.sendPreview());
+    }
+  }
+
+  private sendPreview(): void {
+    if (this.timer !== null) this.parts.clock.cancel(this.timer);
+    this.timer = null;
+    if (!this.drag) return;
+    this.sentAt = this.parts.clock.now();
+    this.send({ type: "preview", edit: this.drag.edit, patch: this.drag.patch });
+  }
+
+  // The drag was dropped: nothing has changed.
+  rest(): void {
+    if (!this.drag) return;
+    this.endDrag();
+    this.moment();
+    this.send({ type: "rest" });
+    this.tell({ what: "document" });
+  }
+
+  private endDrag(): void {
+    if (this.timer !== null) this.parts.clock.cancel(this.timer);
+    this.timer = null;
+    this.drag = null;
+  }
+
+  // One finished edit. Returns its id, or null when it would change nothing.
+  gesture(label: string, patch: Patch): string | null {
+    if (!this.mission.editable) {
+      this.tell({ what: "note", text: this.mission.why_not ?? "This mission cannot be edited." });
+      this.rest();
+      return null;
+    }
+    let after: JsonObject;
+    try {
+      after = applied(this.settled(), patch);
+    } catch (error) {
+      this.rest();
+      this.tell({ what: "note", text: (error as Error).message });
+      return null;
+    }
+    if (equal(after, this.settled())) {
+      this.rest();
+      return null;
+    }
+    this.endDrag();
+    return this.queued({ type: "gesture", id: this.parts.unique(), base: this.revision, label,
+                         patch });
+  }
+
+  undo(): void {
+    this.step("undo", this.canUndo);
+  }
+
+  redo(): void {
+    this.step("redo", this.canRedo);
+  }
+
+  private step(type: "undo" | "redo", can: boolean): void {
+    if (!can && this.pending === 0) {
+      this.tell({ what: "note", text: `Nothing to ${type}.` });
+      return;
+    }
+    this.endDrag();
+    this.queued({ type, id: this.parts.unique(), base: this.revision });
+  }
+
+  private queued(gesture: Gesture): string {
+    this.parts.queue.add(gesture);
+    this.moment();
+    this.send(gesture as unknown as JsonObject);
+    this.tell({ what: "document" });
+    return gesture.id;
+  }
+
+  ask(message: JsonObject): string {
+    const id = this.parts.unique();
+    const sent = this.send("id" in message ? { ...message, id } : message);
+    if (!sent) this.tell({ what: "note", text: "Not connected: try again in a moment." });
+    return id;
+  }
+
+  private send(message: JsonObject | Gesture): boolean {
+    if (this.link !== "open" || !this.socket) return false;
+    this.socket.send(JSON.stringify(message));
+    return true;
+  }
+
+  private moment(): void {
+    this.grades.at({
+      revision: this.revision, edit: this.drag?.edit ?? null, pending: this.parts.queue.size,
+    });
+  }
+
+  private tell(event: Event): void {
+    for (const listener of this.listeners) listener(event);
+  }
+
+  // ---- connection ------------------------------------------------------------------------------
+
+  private open(): void {
+    const { clock } = this.parts;
+    let socket: Socket;
+    try {
+      socket = this.parts.connect();
+    } catch {
+      this.again();
+      return;
+    }
+    this.socket = socket;
+    this.watch = clock.later(CONNECT_LIMIT, () => {
+      if (this.link !== "open") this.dropped(socket);
+    });
+    socket.onopen = () => socket.send(JSON.stringify({
+      type: "hello", token: this.parts.token, tab: this.parts.tab, seen: this.revision,
+    }));
+    socket.onmessage = (event) => {
+      if (socket === this.socket) this.receive(String(event.data));
+    };
+    socket.onclose = () => this.dropped(socket);
+  }
+
+  private dropped(socket: Socket): void {
+    if (socket !== this.socket) return;
+    this.socket = null;
+    socket.onclose = null;
+    socket.close();
+    if (this.watch !== null) this.parts.clock.cancel(this.watch);
+    this.watch = null;
+    if (this.link !== "lost") {
+      this.link = "lost";
+      this.tell({ what: "link" });
+    }
+    this.again();
+  }
+
+  private again(): void {
+    const wait = WAITS[Math.min(this.attempts, WAITS.length - 1)] as number;
+    this.attempts += 1;
+    this.parts.clock.later(wait, () => this.open());
+  }
+
+  // ---- what comes --------------------------------------------------------------------------------
+
+  private receive(text: string): void {
+    let message: ServerMessage;
+    try {
+      message = JSON.parse(text) as ServerMessage;
+    } catch {
+      this.tell({ what: "note", text: "The server sent something that cannot be read." });
+      return;
+    }
+    switch (message.type) {
+      case "welcome": return this.welcome(message);
+      case "document": return this.changed(message);
+      case "answer": return this.answered(message);
+      case "refused":
+      case "failed": return this.refused(message);
+      case "world":
+        this.world = message;
+        return this.tell({ what: "world" });
+      case "flown": return this.tell({ what: "flown", message });
+      case "picture": return this.tell({ what: "picture", message });
+      case "wrote": return this.tell({ what: "wrote", message });
+      case "worker": return this.tell({ what: "worker", message });
+      case "script_changed":
+        this.scriptError = null;
+        return this.tell({ what: "script", message });
+      case "script_error":
+        this.scriptError = message;
+        return this.tell({ what: "script", message });
+      default:
+        return;
+    }
+  }
+
+  private welcome(message: Welcome): void {
+    this.stored = message.document;
+    this.revision = message.revision;
+    this.canUndo = message.can_undo;
+    this.canRedo = message.can_redo;
+    this.mission = message.mission;
+    this.schema = message.schema ?? [];
+    this.choices = message.choices ?? {};
+    if (message.world) this.world = message.world;
+    this.link = "open";
+    this.attempts = 0;
+    this.welcomed = true;
+    if (this.watch !== null) this.parts.clock.cancel(this.watch);
+    this.watch = null;
+    // A drag that the lost server knew of is told again, like the gestures before it.
+    for (const gesture of this.parts.queue.all()) this.send(gesture);
+    this.moment();
+    if (message.answer) this.grades.take(message.answer);
+    this.tell({ what: "welcome" });
+    this.tell({ what: "link" });
+    this.tell({ what: "standing" });
+    if (this.drag) this.sendPreview();
+  }
+
+  private changed(message: ServerMessage & { type: "document" }): void {
+    const mine = this.parts.queue.settle(message.by);
+    // A gesture that was applied before the connection was lost is acknowledged once more, with the
+    // revision that we have already.
+    if (message.revision > this.revision) {
+      try {
+        this.stored = applied(this.stored, message.patch);
+      } catch (error) {
+        this.tell({ what: "note", text: (error as Error).message });
+        this.socket?.close();      // the documents differ: greet again
+        return;
+      }
+      this.revision = message.revision;
+    }
+    this.canUndo = message.can_undo;
+    this.canRedo = message.can_redo;
+    if (mine) this.acknowledged.add(message.by);
+    this.moment();
+    this.tell({ what: "document", message });
+    if (mine) this.tell({ what: "settled", text: message.by });
+  }
+
+  private answered(message: Answer): void {
+    this.grades.take(message);
+    this.tell({ what: "standing", message });
+  }
+
+  private refused(message: ServerMessage & { type: "refused" | "failed" }): void {
+    if (message.id !== undefined && this.parts.queue.settle(message.id)) this.moment();
+    this.tell({ what: "document" });
+    if (message.edit !== undefined && this.drag && message.edit < this.drag.edit) return;
+    this.tell({ what: "note", text: message.why, message });
+  }
+}
+
+export function plainDocument(value: Json): JsonObject {
+  return typeof value === "object" && value !== null && !Array.isArray(value) ? value : {};
+}

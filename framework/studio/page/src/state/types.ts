@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// The messages of the session and what is in them. SI units; radians in plans.
+
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+export type JsonObject = { [key: string]: Json };
+export type Vec3 = [number, number, number];
+
+export type Change = { path: string; value: Json } | { path: string; remove: true };
+export type Patch = Change[];
+
+export interface Option {
+  name: string;
+  type: string;
+  summary?: string;
+  unit?: string;
+  default?: Json;
+  required?: boolean;
+  minimum?: number;
+  above?: number;
+  maximum?: number;
+  choices?: string[];
+  size?: number;
+  table?: Option[];
+  kind?: string;
+  words?: string[];
+}
+
+export interface Choice {
+  name: string;
+  summary?: string;
+  values?: JsonObject;
+  parameters?: Option[];
+  extension?: string;
+  loss?: string;
+}
+
+export interface MissionInfo {
+  name: string;
+  kind: string;
+  script: string;
+  editable: boolean;
+  why_not?: string;
+}
+
+export interface Check {
+  name: string;
+  passed: boolean;
+  required: boolean;
+  worst?: number | null;
+  limit?: number | null;
+  sense?: "at_least" | "at_most";
+  unit?: string;
+  time?: number | null;
+  detail?: string;
+  skipped?: boolean | string;
+}
+
+export interface Certificate {
+  passed: boolean;
+  checks: Check[];
+}
+
+export interface SubjectTrack {
+  name: string;
+  times: number[];
+  positions: Vec3[];
+  height?: number;
+  width?: number;
+}
+
+export interface CameraOptics {
+  width: number;
+  height: number;
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+}
+
+export interface Passage {
+  start: number;
+  finish: number;
+  check: string;
+  value?: number;
+  limit?: number;
+  unit?: string;
+  mend?: string;
+}
+
+export type Columns = Record<string, number[]> & { time: number[] };
+
+export interface Plan {
+  duration: number;
+  columns: Columns;
+  keyframes?: { time: number; position: Vec3; tolerance?: number }[];
+  looks?: { time?: number; position: Vec3 }[];
+  subjects?: SubjectTrack[];
+  camera?: CameraOptics;
+  passages?: Passage[];
+  objective?: { term: string; cost: number }[];
+}
+
+export type AnswerGrade = "step" | "converged" | "certified" | "rejected" | "refused";
+
+export interface Answer {
+  type: "answer";
+  revision: number;
+  edit: number | null;
+  tab?: string | null;
+  grade: AnswerGrade;
+  plan?: Plan | null;
+  certificate?: Certificate | null;
+  message?: string;
+  ms?: number;
+}
+
+export interface WorldObstacle {
+  name: string;
+  shape: string;
+  blob?: string;
+}
+
+export interface World {
+  obstacles?: WorldObstacle[];
+  subjects?: SubjectTrack[];
+  bounds?: { lower: Vec3; upper: Vec3 } | null;
+}
+
+export interface Choices {
+  vehicle?: Choice[];
+  camera?: Choice[];
+  solver?: Choice[];
+  style?: Choice[];
+  exporters?: Choice[];
+  [other: string]: Choice[] | undefined;
+}
+
+export interface Welcome {
+  type: "welcome";
+  mission: MissionInfo;
+  document: JsonObject;
+  revision: number;
+  can_undo: boolean;
+  can_redo: boolean;
+  schema: Option[];
+  choices: Choices;
+  world?: World;
+  answer?: Answer | null;
+}
+
+export interface DocumentMessage {
+  type: "document";
+  revision: number;
+  patch: Patch;
+  by: string;
+  label: string;
+  can_undo: boolean;
+  can_redo: boolean;
+}
+
+export interface Flown {
+  type: "flown";
+  edit: number | null;
+  samples: { columns: Columns } | Columns;
+  lost?: boolean | string | number | null;
+  worst?: number | { distance: number; time?: number } | null;
+}
+
+export type ServerMessage =
+  | Welcome
+  | DocumentMessage
+  | Answer
+  | Flown
+  | ({ type: "world" } & World)
+  | { type: "refused"; id?: string; edit?: number; why: string }
+  | { type: "failed"; id?: string; edit?: number; why: string }
+  | { type: "script_changed"; conflict: boolean; message: string }
+  | { type: "script_error"; message: string; line?: number }
+  | { type: "worker"; state: "started" | "crashed" | "message"; message?: string }
+  | { type: "picture"; edit: number | null; time: number; blob: string }
+  | { type: "wrote"; id: string; files: string[]; loss?: string | string[] };
+
+export interface Gesture {
+  type: "gesture" | "undo" | "redo";
+  id: string;
+  base: number;
+  label?: string;
+  patch?: Patch;
+}
