@@ -43,6 +43,10 @@ export function inWords(value: number, unit: string): string {
 export function verdict(check: Check): string {
   if (typeof check.worst !== "number" || typeof check.limit !== "number") return check.detail ?? "";
   const unit = check.unit ?? "";
+  const least = Math.abs(check.limit) * 1e-3;
+  if (Math.abs(check.worst) < least && check.sense === "at_most") {
+    return `almost 0, at most ${inWords(check.limit, unit)} allowed`;
+  }
   const bound = check.sense === "at_least" ? "at least" : "at most";
   return `${inWords(check.worst, unit)}, ${bound} ${inWords(check.limit, unit)} allowed`;
 }
@@ -153,10 +157,15 @@ function beyond(columns: Columns, check: Check): [number, number][] {
   return spans;
 }
 
-// First what fails, then what is required, then what is only reported, then what did not apply.
+// Whether the numbers of the plan fit each other: of interest where they do not.
+const sums = /^(document|provenance|drift|stated_acceleration|defect_.*|force_up|flight_time)$/;
+
+// First what fails, then what is required, then what is only reported, then the sums, then what did
+// not apply.
 export function sortedChecks(certificate: Certificate): Check[] {
   const rank = (check: Check): number =>
-    check.skipped ? 3 : !check.passed && check.required ? 0 : check.required ? 1 : 2;
+    check.skipped ? 4 : !check.passed && check.required ? 0 : sums.test(check.name) ? 3
+      : check.required ? 1 : 2;
   return certificate.checks
     .map((check, i) => ({ check, i }))
     .sort((a, b) => rank(a.check) - rank(b.check) || a.i - b.i)

@@ -62,33 +62,68 @@ export interface Lane {
   name: string;
   unit: string;
   values: number[];
-  limits: string[];     // checks of the certificate whose limit belongs to it
+  limits: { name: string; value: number; most: boolean }[];
 }
 
 const G = 9.81;   // m/s^2, for the sight of it; the certificate has its own
 
-// What is plotted below the time line, as far as the plan has it.
-export function lanesOf(plan: Plan): Lane[] {
-  const c = plan.columns;
-  const each = (f: (i: number) => number): number[] => c.time.map((_, i) => f(i));
-  const v = (name: string, i: number): number => c[name]?.[i] ?? 0;
-  const lanes: Lane[] = [];
-  if (c.vx) {
-    lanes.push({ name: "speed across", unit: "m/s", limits: ["speed_across"],
-      values: each((i) => Math.hypot(v("vx", i), v("vy", i))) });
-    lanes.push({ name: "climb", unit: "m/s", limits: ["climb_speed", "descent_speed"],
-      values: each((i) => v("vz", i)) });
-  }
-  if (c.ax) {
-    lanes.push({ name: "acceleration across", unit: "m/s\u00b2", limits: ["acceleration_across"],
-      values: each((i) => Math.hypot(v("ax", i), v("ay", i))) });
-  }
-  if (c.thrust) {
-    lanes.push({ name: "thrust", unit: "N", limits: ["thrust_max", "thrust_min"],
-      values: c.thrust });
-  } else if (c.ax) {
-    lanes.push({ name: "thrust per mass", unit: "m/s\u00b2", limits: [],
-      values: each((i) => Math.hypot(v("ax", i), v("ay", i), v("az", i) + G)) });
-  }
-  return lanes;
+interface LaneKind {
+  name: string;
+  unit: string;
+  needs: string[];
+  value(at: (column: string) => number): number;
+  limits: { key: string; sign: 1 | -1; most: boolean }[];
+}
+
+const kinds: LaneKind[] = [
+  { name: "Speed", unit: "m/s", needs: ["vx", "vy"], value: (at) => Math.hypot(at("vx"), at("vy")),
+    limits: [{ key: "speed_across", sign: 1, most: true }] },
+  { name: "Climb", unit: "m/s", needs: ["vz"], value: (at) => at("vz"),
+    limits: [{ key: "climb_speed", sign: 1, most: true },
+             { key: "descent_speed", sign: -1, most: false }] },
+  { name: "Acceleration", unit: "m/s\u00b2", needs: ["ax", "ay"],
+    value: (at) => Math.hypot(at("ax"), at("ay")),
+    limits: [{ key: "acceleration_across", sign: 1, most: true }] },
+  { name: "Thrust", unit: "N", needs: ["thrust"], value: (at) => at("thrust"),
+    limits: [{ key: "thrust_max", sign: 1, most: true },
+             { key: "thrust_min", sign: 1, most: false }] },
+  { name: "Obstacles", unit: "m", needs: ["distance"], value: (at) => at("distance"),
+    limits: [{ key: "margin", sign: 1, most: false }] },
+  { name: "Gimbal", unit: "\u00b0", needs: ["gimbal_pitch"],
+    value: (at) => (at("gimbal_pitch") * 180) / Math.PI, limits: [] },
+];
+// Where the plan has no thrust, for lack of a mass.
+const pull = (mass: number | null): LaneKind => ({
+  name: "Thrust", unit: mass === null ? "g" : "N", needs: ["ax", "ay", "az"],
+  value: (at) => Math.hypot(at("ax"), at("ay"), at("az") + G) * (mass ?? 1 / G),
+  limits: mass === null ? [] : [{ key: "thrust_max", sign: 1, most: true },
+                                { key: "thrust_min", sign: 1, most: false }],
+});
+
+// kg, as a plan tells it: its thrust over its acceleration against gravity.
+export function massOf({ columns: c }: Plan): number | null {
+  const { thrust, ax, ay, az } = c;
+  if (!thrust || !ax || !ay || !az || thrust.length === 0) return null;
+  const ratios = thrust.map((t, i) =>
+    t / Math.hypot(ax[i] as number, ay[i] as number, (az[i] as number) + G));
+  const middle = ratios.sort((a, b) => a - b)[ratios.length >> 1] as number;
+  return Number.isFinite(middle) && middle > 0 ? middle : null;
+}
+
+// What is plotted below the time line, as far as the plan has it. `limits` of the vehicle come with
+// an answer and hold for the guess as well.
+export function lanesOf(plan: Plan, limits: Plan["limits"] = plan.limits,
+                        mass: number | null = null): Lane[] {
+  const { columns } = plan;
+  const has = (kind: LaneKind): boolean => kind.needs.every((name) => columns[name]);
+  return kinds.map((kind) => (kind.name === "Thrust" && !has(kind) ? pull(mass) : kind))
+    .filter(has).map((kind) => ({
+      name: kind.name, unit: kind.unit,
+      values: columns.time.map((_, i) => kind.value((name) => columns[name]?.[i] ?? NaN)),
+      limits: kind.limits.flatMap(({ key, sign, most }) => {
+        const value = limits?.[key];
+        return typeof value === "number" && Number.isFinite(value)
+          ? [{ name: key, value: sign * value, most }] : [];
+      }),
+    }));
 }

@@ -2,10 +2,11 @@
 // The conversation with the server: greeting, gestures with their replay, drags, answers, and the
 // way back after a lost connection. It knows no browser: sockets and clocks are handed in.
 import { applied, equal } from "./document";
+import { choicesIn, optionsIn } from "./installed";
 import { Grades, type Standing } from "./grades";
 import { GestureQueue, tryPatch } from "./queue";
 import type {
-  Answer, Choices, Gesture, Json, JsonObject, MissionInfo, Option, Patch, ServerMessage,
+  Answer, Choices, Gesture, JsonObject, MissionInfo, Option, Patch, ServerMessage,
   Welcome, World,
 } from "./types";
 
@@ -55,6 +56,8 @@ export class Session {
   revision = 0;
   canUndo = false;
   canRedo = false;
+  undoLabel = "";
+  redoLabel = "";
   welcomed = false;
   scriptError: { message: string; line?: number } | null = null;
   private stored: JsonObject = {};
@@ -65,7 +68,7 @@ export class Session {
   private socket: Socket | null = null;
   private attempts = 0;
   private watch: number | null = null;
-  private acknowledged = new Set<string>();
+  private steps: ("undo" | "redo")[] = [];   // asked for while gestures were on their way
   private readonly listeners: ((event: Event) => void)[] = [];
 
   constructor(private readonly parts: SessionParts) {
@@ -182,8 +185,24 @@ export class Session {
       this.tell({ what: "note", text: `Nothing to ${type}.` });
       return;
     }
-    this.endDrag();
-    this.queued({ type, id: this.parts.unique(), base: this.revision });
+    if (this.drag) {
+      this.rest();
+      return;                      // a drag is what there is to undo
+    }
+    this.steps.push(type);
+    this.nextStep();
+  }
+
+  // Undo and redo are of the newest revision: they wait for the gestures before them.
+  private nextStep(): void {
+    if (this.pending > 0) return;
+    const type = this.steps.shift();
+    if (!type) return;
+    if (type === "undo" ? this.canUndo : this.canRedo) {
+      this.queued({ type, id: this.parts.unique(), base: this.revision });
+    } else {
+      this.steps = [];
+    }
   }
 
   private queued(gesture: Gesture): string {
@@ -284,6 +303,7 @@ export class Session {
       case "picture": return this.tell({ what: "picture", message });
       case "wrote": return this.tell({ what: "wrote", message });
       case "worker": return this.tell({ what: "worker", message });
+      case "remark": return this.tell({ what: "note", text: message.message });
       case "script_changed":
         this.scriptError = null;
         return this.tell({ what: "script", message });
@@ -296,13 +316,15 @@ export class Session {
   }
 
   private welcome(message: Welcome): void {
-    this.stored = message.document;
+    this.stored = message.document ?? {};
+    this.undoLabel = message.undo_label ?? "";
+    this.redoLabel = message.redo_label ?? "";
     this.revision = message.revision;
     this.canUndo = message.can_undo;
     this.canRedo = message.can_redo;
     this.mission = message.mission;
-    this.schema = message.schema ?? [];
-    this.choices = message.choices ?? {};
+    this.schema = optionsIn(message.schema);
+    this.choices = choicesIn(message.schema, message.choices);
     if (message.world) this.world = message.world;
     this.link = "open";
     this.attempts = 0;
@@ -323,6 +345,10 @@ export class Session {
     const mine = this.parts.queue.settle(message.by);
     // A gesture that was applied before the connection was lost is acknowledged once more, with the
     // revision that we have already.
+    if (message.revision > this.revision + 1) {
+      this.socket?.close();        // something was missed: greet again
+      return;
+    }
     if (message.revision > this.revision) {
       try {
         this.stored = applied(this.stored, message.patch);
@@ -335,25 +361,31 @@ export class Session {
     }
     this.canUndo = message.can_undo;
     this.canRedo = message.can_redo;
-    if (mine) this.acknowledged.add(message.by);
+    this.undoLabel = message.undo_label ?? "";
+    this.redoLabel = message.redo_label ?? "";
+    this.scriptError = null;
     this.moment();
     this.tell({ what: "document", message });
     if (mine) this.tell({ what: "settled", text: message.by });
+    this.nextStep();
   }
 
   private answered(message: Answer): void {
+    if (this.scriptError) {
+      this.scriptError = null;
+      this.tell({ what: "script" });
+    }
     this.grades.take(message);
     this.tell({ what: "standing", message });
   }
 
   private refused(message: ServerMessage & { type: "refused" | "failed" }): void {
-    if (message.id !== undefined && this.parts.queue.settle(message.id)) this.moment();
+    if (message.id !== undefined && this.parts.queue.settle(message.id)) {
+      this.steps = [];
+      this.moment();
+    }
     this.tell({ what: "document" });
     if (message.edit !== undefined && this.drag && message.edit < this.drag.edit) return;
     this.tell({ what: "note", text: message.why, message });
   }
-}
-
-export function plainDocument(value: Json): JsonObject {
-  return typeof value === "object" && value !== null && !Array.isArray(value) ? value : {};
 }

@@ -98,6 +98,9 @@ export interface Plan {
   camera?: CameraOptics;
   passages?: Passage[];
   objective?: { term: string; cost: number }[];
+  limits?: Record<string, number | [number, number]>;
+  gates?: { name: string; position: Vec3; direction: Vec3; up: Vec3; radius: number;
+            corners?: [number, number][] }[];
 }
 
 export type AnswerGrade = "step" | "converged" | "certified" | "rejected" | "refused";
@@ -117,13 +120,16 @@ export interface Answer {
 export interface WorldObstacle {
   name: string;
   shape: string;
+  side?: string;
+  opaque?: boolean;
+  track?: { time: number; move: Vec3 }[];
   blob?: string;
 }
 
 export interface World {
   obstacles?: WorldObstacle[];
   subjects?: SubjectTrack[];
-  bounds?: { lower: Vec3; upper: Vec3 } | null;
+  bounds?: { lower?: Vec3; upper?: Vec3 } | null;
 }
 
 export interface Choices {
@@ -138,13 +144,15 @@ export interface Choices {
 export interface Welcome {
   type: "welcome";
   mission: MissionInfo;
-  document: JsonObject;
+  document: JsonObject | null;  // null: the script has an error
   revision: number;
   can_undo: boolean;
   can_redo: boolean;
-  schema: Option[];
-  choices: Choices;
-  world?: World;
+  undo_label?: string;
+  redo_label?: string;
+  schema: unknown;              // read by installed.ts
+  choices: unknown;
+  world?: World | null;
   answer?: Answer | null;
 }
 
@@ -156,14 +164,18 @@ export interface DocumentMessage {
   label: string;
   can_undo: boolean;
   can_redo: boolean;
+  undo_label?: string;
+  redo_label?: string;
 }
 
 export interface Flown {
   type: "flown";
   edit: number | null;
   samples: { columns: Columns } | Columns;
-  lost?: boolean | string | number | null;
-  worst?: number | { distance: number; time?: number } | null;
+  lost?: boolean;
+  finished?: boolean;
+  kept?: boolean;           // within the tolerance
+  worst?: { position_error: number; time?: number; limit?: number; mean?: number } | null;
 }
 
 export type ServerMessage =
@@ -176,7 +188,8 @@ export type ServerMessage =
   | { type: "failed"; id?: string; edit?: number; why: string }
   | { type: "script_changed"; conflict: boolean; message: string }
   | { type: "script_error"; message: string; line?: number }
-  | { type: "worker"; state: "started" | "crashed" | "message"; message?: string }
+  | { type: "remark"; message: string }
+  | { type: "worker"; role?: string; state: "started" | "crashed" | "message"; message?: string }
   | { type: "picture"; edit: number | null; time: number; blob: string }
   | { type: "wrote"; id: string; files: string[]; loss?: string | string[] };
 

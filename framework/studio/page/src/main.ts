@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the page together.
+import "./app.css";
+import * as THREE from "three";
+import { Actions } from "./actions";
+import { CertificateList } from "./panel/certificate";
+import { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
+import { Feel } from "./panel/feel";
+import { FilmList } from "./panel/film_list";
+import { Hints, Notices, recall } from "./panel/notices";
+import { Selected } from "./panel/selected";
+import { Setup } from "./panel/setup";
+import { showTab, wireTabs } from "./panel/tabs";
+import { Timeline } from "./panel/timeline";
+import { TopBar } from "./panel/topbar";
+import { trianglesIn } from "./state/blob";
+import { entries } from "./state/film";
+import { GestureQueue } from "./state/queue";
+import { pathOf } from "./state/samples";
+import { Session, type Socket } from "./state/session";
+import { trianglesOf } from "./state/shapes";
+import type { JsonObject, Vec3 } from "./state/types";
+import { Studio } from "./studio";
+import { byId } from "./view/dom";
+import { Gizmo } from "./view/gizmo";
+import { Ground } from "./view/ground";
+import { keyframeHere } from "./view/look_through";
+import { Navigation } from "./view/navigate";
+import { Paths } from "./view/paths";
+import { Pick } from "./view/pick";
+import { Pins } from "./view/pins";
+import { Preview, previewControls } from "./view/preview";
+import { Solids } from "./view/solids";
+import { Stage } from "./view/stage";
+
+const theme = recall("lapwing-theme");
+if (theme === "light" || theme === "dark") document.documentElement.dataset.theme = theme;
+
+function unique(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(12));
+  return Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join("");
+}
+
+function kept(key: string): string | null {
+  try {
+    return sessionStorage.getItem(key);
+  } catch {
+    return null;
+  }
+}
+
+function keep(key: string, value: string): void {
+  try {
+    sessionStorage.setItem(key, value);
+  } catch {
+    // Then a reload forgets what was not sent yet.
+  }
+}
+
+const tab = kept("lapwing-tab") ?? unique();
+keep("lapwing-tab", tab);
+const token = decodeURIComponent(location.hash.slice(1)).replace(/^token=/, "");
+const session = new Session({
+  token, tab, unique,
+  queue: new GestureQueue({
+    read: () => kept("lapwing-queue"), write: (text) => keep("lapwing-queue", text),
+  }),
+  clock: {
+    now: () => performance.now(),
+    later: (ms, then) => window.setTimeout(then, ms),
+    cancel: (id) => window.clearTimeout(id),
+  },
+  connect: () => new WebSocket(
+    `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/session`) as Socket,
+});
+
+const studio = new Studio(session);
+const stage = new Stage(byId<HTMLCanvasElement>("stage"), byId("world"), byId("picture"));
+const ground = new Ground();
+const solids = new Solids();
+stage.scene.add(ground.group, solids.group);
+const navigation = new Navigation(studio, stage);
+const gizmo = new Gizmo(studio, stage);
+gizmo.controls.addEventListener("dragging-changed", () => {
+  navigation.orbit.enabled = !gizmo.controls.dragging && studio.mode !== "camera";
+});
+new Paths(studio, stage);
+new Pins(studio, stage, byId("pins"));
+const pick = new Pick(studio, stage, solids, gizmo);
+new Preview(studio, stage);
+byId("picture-controls").append(previewControls(studio));
+
+new TopBar(studio);
+new Timeline(studio);
+new CertificateList(studio);
+new Feel(studio);
+new Setup(studio);
+const notices = new Notices(studio);
+new Hints(studio);
+wireTabs();
+
+function bounds(): THREE.Box3 {
+  const box = new THREE.Box3();
+  for (const p of pathOf(studio.plan.columns)) box.expandByPoint(new THREE.Vector3(...p));
+  for (const k of studio.film.keyframes) box.expandByPoint(new THREE.Vector3(...k.position));
+  const things = solids.bounds();
+  // A large map must not make the film small.
+  if (box.isEmpty() || things.getSize(new THREE.Vector3()).length() <
+      4 * box.getSize(new THREE.Vector3()).length()) box.union(things);
+  return box;
+}
+
+function centre(): Vec3 {
+  const { x, y } = navigation.orbit.target;
+  return [Math.round(x), Math.round(y), 0];
+}
+
+const list = new FilmList(studio, centre);
+const selected = new Selected(studio);
+new Actions({
+  studio, selected, list, notices, exports: new ExportDialog(studio),
+  flying: new FlyDialog(studio), help: new HelpDialog(),
+  frame: () => navigation.frame(bounds()),
+  keyframeHere: () => keyframeHere(studio, stage, pick),
+  showFilmTab: () => showTab("film"),
+});
+
+// ---- what is drawn of the document -----------------------------------------------------------
+
+let framed = false;
+// The document's obstacles, and what only the server knows: flight zones, the walls of a race.
+function obstacles(): JsonObject[] {
+  const own = entries(studio.document, "obstacles");
+  const more = (session.world.obstacles ?? []).slice(own.length);
+  return [...own, ...more.map((one) => ({ ...one, type: one.shape }) as unknown as JsonObject)];
+}
+
+studio.on(["document", "world", "standing"], () => {
+  solids.set(obstacles());
+  const { subjects } = studio.film;
+  solids.setSubjects(subjects.length > 0 ? subjects : studio.plan.subjects ?? [], studio.time);
+  if (!framed && session.welcomed) {
+    framed = pathOf(studio.plan.columns).length > 1;
+    navigation.frame(bounds());
+  }
+  stage.invalidate();
+});
+studio.on(["time"], () => solids.moveTo(studio.time));
+studio.on(["selection"], () => {
+  solids.choose(studio.selection?.kind === "obstacle" ? studio.selection.index : null);
+  if (studio.selection) showTab("film");
+  stage.invalidate();
+});
+studio.on(["mode"], () => {
+  document.body.dataset.mode = studio.mode;
+  byId("fly-camera").setAttribute("aria-pressed", String(studio.mode === "camera"));
+});
+studio.on(["playing"], () => {
+  const button = byId("play");
+  button.setAttribute("aria-pressed", String(studio.playing));
+  button.setAttribute("aria-label", studio.playing ? "Pause" : "Play");
+  for (const [id, rate] of [["rate-half", 0.5], ["rate-one", 1], ["rate-two", 2]] as const) {
+    byId(id).setAttribute("aria-checked", String(studio.rate === rate));
+  }
+});
+
+const fetched = new Map<number, string>();
+studio.on(["world"], () => {
+  const all = obstacles();
+  session.world.obstacles?.forEach(({ blob }, i) => {
+    const own = all[i];
+    if (!blob || (own && trianglesOf(own)) || fetched.get(i) === blob) return;
+    fetched.set(i, blob);
+    fetch(blob.startsWith("/") ? blob : `/blob/${blob}`)
+      .then((response) => {
+        if (!response.ok) throw new Error(`answer ${response.status}`);
+        return response.arrayBuffer();
+      })
+      .then((buffer) => {
+        solids.setBlob(i, trianglesIn(buffer));
+        solids.set(obstacles());
+        stage.invalidate();
+      })
+      .catch((error: Error) => {
+        fetched.delete(i);
+        notices.say(`An obstacle cannot be drawn: ${error.message}`, "bad");
+      });
+  });
+});
+
+function paint(): void {
+  const p = stage.readPalette();
+  ground.paint(p.ground, p.grid, p.ink);
+  solids.paint({ solid: p.solid, closed: p.closed, subject: p.subject, chosen: p.chosen });
+  stage.invalidate();
+}
+studio.on(["look"], paint);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => studio.tell("look"));
+paint();
+
+session.on((event) => {
+  if (event.what === "wrote" && event.message?.type === "wrote" &&
+      !byId<HTMLDialogElement>("export-dialog").open) {
+    notices.say(`Written: ${event.message.files.join(", ")}`, "good");
+  }
+});
+window.addEventListener("beforeunload", (event) => {
+  if (session.pending > 0 && session.link !== "open") event.preventDefault();
+});
+
+// For the tests of the page and for those who look into it: what is on display, nothing to change.
+Object.defineProperty(window, "lapwing", {
+  value: Object.freeze({
+    get revision() { return session.revision; },
+    get pending() { return session.pending; },
+    get grade() { return studio.standing.grade; },
+    get document() { return studio.document; },
+    get frames() { return stage.frames; },
+    get frameMs() { return stage.frameMs; },
+    get time() { return studio.time; },
+    measure(on: boolean) { stage.measuring = on; },
+    redraw() { stage.invalidate(); },
+  }),
+});
+
+session.start();

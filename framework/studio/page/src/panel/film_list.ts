@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The film as a list: keyframes, subjects, obstacles; a click selects, the buttons add.
+import { addedObstacle, addedSubject, inserted, nameOf, sameItem, type Item } from "../state/edits";
+import { entries } from "../state/film";
+import { positionAt } from "../state/samples";
+import { show } from "../state/units";
+import type { Vec3 } from "../state/types";
+import type { Studio } from "../studio";
+import { byId, el, refill } from "../view/dom";
+
+export class FilmList {
+  constructor(private readonly studio: Studio, private readonly centre: () => Vec3) {
+    studio.on(["document", "standing", "selection", "mode"], () => this.show());
+  }
+
+  private show(): void {
+    const { studio } = this;
+    const { document, film } = studio;
+    const rows = film.keyframes.map((keyframe, index) => this.row(
+      { kind: "keyframe", index }, `${index + 1}`,
+      keyframe.position.map((v) => show(v)).join(", "), `${show(studio.timeOf(index), 4)} s`));
+    refill(byId("keyframe-list"), ...rows);
+    const others: HTMLElement[] = [];
+    entries(document, "subjects").forEach((entry, index) => {
+      others.push(this.row({ kind: "subject", index }, "\u25b2",
+        String(entry.name || (index === 0 ? "Subject" : `Subject ${index + 1}`)), ""));
+    });
+    entries(document, "obstacles").forEach((entry, index) => {
+      others.push(this.row({ kind: "obstacle", index }, "\u25a0",
+        String(entry.name || `Obstacle ${index + 1}`), String(entry.type ?? "")));
+    });
+    refill(byId("thing-list"), ...others);
+    byId("place").setAttribute("aria-pressed", String(studio.mode === "place"));
+  }
+
+  private row(item: Item, mark: string, text: string, more: string): HTMLElement {
+    const { studio } = this;
+    const chosen = sameItem(item, studio.selection);
+    return el("li", {}, el("button", {
+      type: "button", class: `item ${item.kind}`, "aria-pressed": String(chosen),
+      "data-key": `${item.kind}-${item.index}`,
+      "aria-label": `${nameOf(studio.document, item)} ${more}`,
+      onclick: () => {
+        studio.select(item);
+        if (item.kind === "keyframe") studio.seek(studio.timeOf(item.index));
+      },
+    }, el("span", { class: "badge" }, mark), el("span", { class: "what" }, text),
+    el("span", { class: "when" }, more)));
+  }
+
+  insertAtHead(): void {
+    const { studio } = this;
+    const at = positionAt(studio.plan.columns, studio.time);
+    if (!at) return;
+    const made = inserted(studio.document, studio.time, at);
+    if (studio.edit(made)) studio.select({ kind: "keyframe", index: made.index });
+  }
+
+  addObstacle(type: "sphere" | "box" = "box"): void {
+    const count = entries(this.studio.document, "obstacles").length;
+    if (this.studio.edit(addedObstacle(this.studio.document, type, this.centre()))) {
+      this.studio.select({ kind: "obstacle", index: count });
+    }
+  }
+
+  addSubject(): void {
+    const count = entries(this.studio.document, "subjects").length;
+    if (this.studio.edit(addedSubject(this.studio.document, this.centre()))) {
+      this.studio.select({ kind: "subject", index: count });
+    }
+  }
+}

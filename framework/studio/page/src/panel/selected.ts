@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is selected, as numbers to type.
+import { entryOf, nameOf, pathOfItem, retimed, without, deleted, duplicated, reordered, moved,
+         placeOfItem, type Item } from "../state/edits";
+import { entries } from "../state/film";
+import { labelOf, type Field } from "../state/schema";
+import { isObject } from "../state/document";
+import { vec } from "../state/vector";
+import type { Json, JsonObject, Option, Vec3 } from "../state/types";
+import type { Studio } from "../studio";
+import { byId, el } from "../view/dom";
+import { Form } from "./form";
+
+const axes = ["East", "North", "Up"];
+const metres = (name: string): Option =>
+  ({ name, type: "number", unit: "m", required: true, minimum: -1e6, maximum: 1e6 });
+
+function placeFields(path: string, value: Vec3, prefix = ""): Field[] {
+  return axes.map((label, i) => ({
+    path: `${path}#${i}`, label: prefix ? `${prefix} ${label.toLowerCase()}` : label,
+    option: { ...metres(label), summary: "position in the world" }, value: value[i] as number,
+    stated: true,
+  }));
+}
+
+const AS_BEFORE = "as before";
+const A_POINT = "a point";
+
+export class Selected {
+  private readonly title = byId("selected-title");
+  private readonly form: Form;
+  private readonly buttons = byId("selected-buttons");
+
+  constructor(private readonly studio: Studio) {
+    this.form = new Form((field, value) => this.commit(field, value), true);
+    byId("selected-form").append(this.form.root);
+    studio.on(["document", "standing", "selection"], () => this.show());
+    studio.on(["selection"], () => this.showButtons());
+    this.show();
+    this.showButtons();
+  }
+
+  focus(): void {
+    this.form.focus();
+  }
+
+  private show(): void {
+    const { selection, document } = this.studio;
+    const box = byId("selected");
+    const entry = selection && entryOf(document, selection);
+    box.hidden = !entry;
+    if (!selection || !entry) {
+      this.form.show([]);
+      return;
+    }
+    const name = nameOf(document, selection);
+    this.title.textContent = name.charAt(0).toUpperCase() + name.slice(1);
+    this.form.show(this.fields(selection, entry));
+  }
+
+  private fields(item: Item, entry: JsonObject): Field[] {
+    const { document, session } = this.studio;
+    if (item.kind === "obstacle") return obstacleFields(item.index, entry);
+    const path = pathOfItem(document, item);
+    const place = placeOfItem(document, item);
+    const fields = place ? placeFields(path ?? `subjects[${item.index + 1}]#all`, place) : [];
+    if (item.kind === "keyframe") {
+      const keyframe = this.studio.film.keyframes[item.index];
+      const base = `keyframes[${item.index + 1}]`;
+      fields.push({
+        path: `${base}.time`, label: "Time", value: keyframe ? this.studio.timeOf(item.index) : 0, stated: true,
+        option: { name: "time", type: "number", unit: "s", minimum: 0, required: true,
+                  summary: "when the camera passes here" },
+      });
+      fields.push(this.lookField(base, entry));
+      const declared = session.schema.find((o) => o.name === "keyframes")?.table ?? [];
+      for (const name of ["speed", "yaw_deg", "earliest", "latest", "time_weight"]) {
+        const option = declared.find((o) => o.name === name);
+        // Only what the keyframe states or what its timing uses.
+        const used = entry[name] !== undefined ||
+          (document.timing === "free" && ["earliest", "latest", "time_weight"].includes(name));
+        if (option && used) {
+          fields.push({ path: `${base}.${name}`, label: labelOf(name), option, value: entry[name],
+                        stated: entry[name] !== undefined });
+        }
+      }
+    }
+    if (item.kind === "subject") {
+      const declared = session.schema.find((o) => o.name === "subjects")?.table ?? [];
+      for (const option of declared) {
+        if (!["name", "height", "width", "distance", "place", "size"].includes(option.name)) continue;
+        fields.push({
+          path: `subjects[${item.index + 1}].${option.name}`, label: labelOf(option.name), option,
+          value: entry[option.name] ?? option.default, stated: entry[option.name] !== undefined,
+        });
+      }
+    }
+    return fields;
+  }
+
+  private lookField(base: string, entry: JsonObject): Field {
+    const names = this.studio.film.subjects.map((s) => s.name);
+    const single = names.length === 1 && !entries(this.studio.document, "subjects")[0]?.name;
+    const choices = [AS_BEFORE, A_POINT, ...(single ? [] : names)];
+    const value = vec(entry.look_at) ? A_POINT
+      : typeof entry.subject === "string" ? entry.subject : AS_BEFORE;
+    return { path: `${base}#look`, label: "Looks at", value, stated: true,
+             option: { name: "look", type: "choice", choices,
+                       summary: "what the camera looks at from here on" } };
+  }
+
+  private commit(field: Field, value: Json): void {
+    const { studio } = this;
+    const item = studio.selection;
+    if (!item) return;
+    const [path, part] = field.path.split("#") as [string, string | undefined];
+    if (part === "look") return this.look(item.index, String(value));
+    if (part !== undefined) {
+      const place = placeOfItem(studio.document, item);
+      if (place && /^[012]$/.test(part)) {
+        const to = place.slice() as Vec3;
+        to[Number(part)] = Number(value);
+        studio.edit(item.kind === "obstacle" ? this.corner(path, Number(part), Number(value))
+          : moved(studio.document, item, to));
+      } else if (place) {
+        const to = place.slice() as Vec3;
+        to[axes.findIndex((a) => field.label.endsWith(a))] = Number(value);
+        studio.edit(moved(studio.document, item, to));
+      }
+      return;
+    }
+    if (item.kind === "keyframe" && path.endsWith(".time")) {
+      studio.edit(retimed(studio.document, item.index, Number(value)));
+      return;
+    }
+    const name = nameOf(studio.document, item);
+    const label = `${field.label} of ${name}`;
+    if (value === null && item.kind === "keyframe") {
+      studio.edit(without(studio.document, label, item.index, path.slice(path.lastIndexOf(".") + 1)));
+    } else {
+      studio.edit({ label, patch: [value === null ? { path, remove: true } : { path, value }] });
+    }
+  }
+
+  private corner(path: string, axis: number, value: number): { label: string;
+    patch: { path: string; value: Json }[] } {
+    const found = path.match(/\.([a-z]+)$/)?.[1] ?? "";
+    const entry = this.studio.selection && entryOf(this.studio.document, this.studio.selection);
+    const point = (vec(entry?.[found]) ?? [0, 0, 0]).slice() as Vec3;
+    point[axis] = value;
+    return { label: `Change ${found} of an obstacle`, patch: [{ path, value: point }] };
+  }
+
+  private look(index: number, value: string): void {
+    const { studio } = this;
+    const base = `keyframes[${index + 1}]`;
+    if (value === A_POINT) {
+      studio.setMode("aim");
+      this.show();
+      return;
+    }
+    const list = entries(studio.document, "keyframes").map((entry, i) => {
+      if (i !== index) return entry;
+      const { look_at: _l, subject: _s, ...rest } = entry;
+      return value === AS_BEFORE ? rest : { ...rest, subject: value };
+    });
+    void base;
+    studio.edit({ label: `Aim keyframe ${index + 1}`, patch: [{ path: "keyframes", value: list }] });
+  }
+
+  private showButtons(): void {
+    const { studio } = this;
+    const item = studio.selection;
+    if (!item) return this.buttons.replaceChildren();
+    const button = (text: string, title: string, then: () => void): HTMLButtonElement =>
+      el("button", { type: "button", title, onclick: then }, text);
+    const list: HTMLButtonElement[] = [];
+    if (item.kind === "keyframe") {
+      list.push(button("Duplicate", "Duplicate this keyframe (D)", () => duplicate(studio)));
+      list.push(button("\u2191", "Swap with the keyframe before (Alt + up)", () => order(studio, -1)));
+      list.push(button("\u2193", "Swap with the keyframe after (Alt + down)", () => order(studio, 1)));
+      list.push(button("Aim", "Click a place for the camera to look at (L)",
+                       () => studio.setMode("aim")));
+    }
+    if (item.kind !== "track") {
+      list.push(button("Delete", "Delete (Del)", () => remove(studio)));
+    }
+    this.buttons.replaceChildren(...list);
+  }
+}
+
+export function duplicate(studio: Studio): void {
+  if (studio.selection?.kind !== "keyframe") return;
+  const made = duplicated(studio.document, studio.selection.index);
+  if (made && studio.edit(made)) studio.select({ kind: "keyframe", index: made.index });
+}
+
+export function order(studio: Studio, by: -1 | 1): void {
+  const item = studio.selection;
+  if (item?.kind !== "keyframe") return;
+  const edit = reordered(studio.document, item.index, by);
+  if (edit && studio.edit(edit)) studio.select({ kind: "keyframe", index: item.index + by });
+}
+
+// Says why not, where something cannot go.
+export function remove(studio: Studio): string | null {
+  const item = studio.selection;
+  if (!item) return null;
+  const edit = deleted(studio.document, item);
+  if (!edit) return "A film needs at least two keyframes.";
+  studio.edit(edit);
+  return null;
+}
+
+function obstacleFields(index: number, entry: JsonObject): Field[] {
+  const base = `obstacles[${index + 1}]`;
+  const fields: Field[] = [];
+  for (const [name, value] of Object.entries(entry)) {
+    const place = vec(value);
+    if (name === "type" || name === "track" || name === "sha256" || isObject(value)) continue;
+    if (place) fields.push(...placeFields(`${base}.${name}`, place, labelOf(name)));
+    else if (typeof value === "number") {
+      const positive = name === "radius" || name === "height";
+      fields.push({ path: `${base}.${name}`, label: labelOf(name), value, stated: true,
+                    option: { name, type: "number", unit: "m", required: true,
+                              ...(positive ? { above: 0 } : {}) } });
+    } else if (typeof value === "boolean") {
+      fields.push({ path: `${base}.${name}`, label: labelOf(name), value, stated: true,
+                    option: { name, type: "boolean", summary: "hides subjects behind it" } });
+    } else if (name === "side") {
+      fields.push({ path: `${base}.${name}`, label: "Fly", value, stated: true,
+                    option: { name, type: "choice", choices: ["keep_out", "keep_inside"] } });
+    } else if (typeof value === "string") {
+      fields.push({ path: `${base}.${name}`, label: labelOf(name), value, stated: true,
+                    option: { name, type: "text" } });
+    }
+  }
+  return fields;
+}

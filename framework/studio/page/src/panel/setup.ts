@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the film is flown with: vehicle, camera, solver of those installed, and every option of the
+// mission with a single value, as a form by its declaration.
+import { isObject } from "../state/document";
+import { fieldsOf, labelOf, pluginFields, type Field } from "../state/schema";
+import type { Choice, Json, JsonObject } from "../state/types";
+import type { Studio } from "../studio";
+import { byId } from "../view/dom";
+import { Form } from "./form";
+
+// Kinds of choices, and where the document has them.
+const kinds = ["vehicle", "camera", "model", "solver", "planner", "controller"];
+
+export class Setup {
+  private readonly chosen: Form;
+  private readonly solver: Form;
+  private readonly film: Form;
+
+  constructor(private readonly studio: Studio) {
+    const commit = (field: Field, value: Json): void => this.commit(field, value);
+    this.chosen = new Form(commit);
+    this.solver = new Form(commit);
+    this.film = new Form(commit);
+    byId("setup-choices").append(this.chosen.root);
+    byId("setup-solver").append(this.solver.root);
+    byId("setup-film").append(this.film.root);
+    studio.on(["document"], () => this.show());
+  }
+
+  private show(): void {
+    const { schema, choices } = this.studio.session;
+    const { document } = this.studio;
+    this.chosen.show(kinds.flatMap((kind): Field[] => {
+      const list = choices[kind];
+      if (!list || list.length === 0) return [];
+      const vehicle = this.vehicleTable();
+      if (kind === "camera" && !vehicle) return [];
+      const value = kind === "camera" ? vehicle?.camera : document[kind];
+      const name = typeof value === "string" ? value
+        : isObject(value) && typeof value.type === "string" ? value.type
+          : kind === "vehicle" && isObject(value) ? "own" : "";
+      const names = list.map((choice) => choice.name);
+      if (name !== "" && !names.includes(name)) names.unshift(name);
+      return [{
+        path: kind, label: labelOf(kind), value: name, stated: value !== undefined,
+        option: { name: kind, type: "choice", choices: names, summary: summaries(list) },
+      }];
+    }));
+    const solver = pluginFields(choices.solver, document.solver, "solver");
+    this.solver.show(solver);
+    byId("solver-box").hidden = solver.length === 0;
+    const shown = new Set(kinds);
+    this.film.show(fieldsOf(schema.filter((o) => !shown.has(o.name) && o.name !== "weights"),
+                            document));
+  }
+
+  // A camera belongs to its vehicle: another one makes a vehicle of its own of it.
+  private vehicleTable(): JsonObject | null {
+    const { vehicle } = this.studio.document;
+    if (isObject(vehicle)) return vehicle;
+    const named = this.studio.session.choices.vehicle?.find((choice) => choice.name === vehicle);
+    return named?.values ?? null;
+  }
+
+  private commit(field: Field, value: Json): void {
+    const label = `Change ${field.label.toLowerCase()}`;
+    const vehicle = this.vehicleTable();
+    if (field.path === "camera" && vehicle) {
+      this.studio.edit({ label, patch: [{ path: "vehicle", value: { ...vehicle, camera: value } }] });
+      return;
+    }
+    const { path } = field;
+    this.studio.edit({ label, patch: [value === null ? { path, remove: true } : { path, value }] });
+  }
+}
+
+const summaries = (list: Choice[]): string =>
+  list.filter((c) => c.summary).map((c) => `${c.name}: ${c.summary}`).join("\n");

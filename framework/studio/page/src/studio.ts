@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the parts of the page share: the session, and what is a tab's own: selection, play head,
+// mode, view. Parts listen; nobody calls another part.
+import { filmOf, type Film } from "./state/film";
+import { guessOf } from "./state/spline";
+import { passagesOf } from "./state/failures";
+import type { Edit, Item } from "./state/edits";
+import { entryOf, sameItem } from "./state/edits";
+import type { Session } from "./state/session";
+import type { Flown, JsonObject, Passage, Plan } from "./state/types";
+import type { Standing } from "./state/grades";
+import { clamp } from "./state/vector";
+
+export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
+  "flown" | "look" | "playing";
+export type Mode = "orbit" | "place" | "aim" | "camera";
+export type Rate = 0.5 | 1 | 2;
+
+export class Studio {
+  selection: Item | null = null;
+  time = 0;
+  playing = false;
+  rate: Rate = 1;
+  mode: Mode = "orbit";
+  guides = true;
+  rendered = true;             // a picture by the server while paused
+  flown: Flown | null = null;
+  private readonly listeners: { topics: Topic[]; then: (topic: Topic) => void }[] = [];
+  private cached: { document: JsonObject; film: Film; guess: Plan } | null = null;
+  private lastFrame = 0;
+
+  constructor(readonly session: Session) {
+    session.on((event) => {
+      switch (event.what) {
+        case "welcome":
+          this.refresh();
+          this.tell("document");
+          this.tell("standing");
+          this.tell("world");
+          break;
+        case "document":
+          this.refresh();
+          this.tell("document");
+          this.tell("standing");
+          break;
+        case "standing": this.tell("standing"); break;
+        case "link": this.tell("link"); break;
+        case "world": this.tell("world"); break;
+        case "flown":
+          this.flown = event.message as Flown;
+          this.tell("flown");
+          break;
+        default:
+      }
+    });
+  }
+
+  on(topics: Topic[], then: (topic: Topic) => void): void {
+    this.listeners.push({ topics, then });
+  }
+
+  tell(topic: Topic): void {
+    for (const { topics, then } of this.listeners) if (topics.includes(topic)) then(topic);
+  }
+
+  private refresh(): void {
+    const document = this.session.document();
+    this.cached = { document, film: filmOf(document), guess: guessOf(document) };
+    if (this.flown) {
+      this.flown = null;
+      this.tell("flown");
+    }
+    if (this.selection && !entryOf(document, this.selection)) this.select(null);
+    this.time = clamp(this.time, 0, this.duration);
+  }
+
+  private get state(): { document: JsonObject; film: Film; guess: Plan } {
+    if (!this.cached) this.refresh();
+    return this.cached as { document: JsonObject; film: Film; guess: Plan };
+  }
+
+  get document(): JsonObject {
+    return this.state.document;
+  }
+
+  get film(): Film {
+    return this.state.film;
+  }
+
+  get guess(): Plan {
+    return this.state.guess;
+  }
+
+  get standing(): Standing {
+    return this.session.standing();
+  }
+
+  // The best curve for the document as it is now.
+  get plan(): Plan {
+    return this.standing.plan ?? this.guess;
+  }
+
+  get duration(): number {
+    return this.cached ? Math.max(this.plan.duration, this.cached.film.duration) : 0;
+  }
+
+  // Passages of the curve on display that fail.
+  get passages(): Passage[] {
+    const { plan, certificate } = this.standing;
+    return plan ? passagesOf(plan, certificate) : [];
+  }
+
+  get editable(): boolean {
+    return this.session.mission.editable;
+  }
+
+  // When a keyframe is passed: as the plan says, where there is one.
+  timeOf(keyframe: number): number {
+    const { keyframes } = this.film;
+    const planned = this.standing.plan?.keyframes;
+    const own = planned && planned.length === keyframes.length ? planned[keyframe]?.time : undefined;
+    return own ?? keyframes[keyframe]?.time ?? 0;
+  }
+
+  select(item: Item | null): void {
+    if (sameItem(item, this.selection) || (item === null && this.selection === null)) return;
+    this.selection = item;
+    this.tell("selection");
+  }
+
+  seek(time: number): void {
+    const next = clamp(time, 0, this.duration);
+    if (next === this.time) return;
+    this.time = next;
+    this.tell("time");
+  }
+
+  setMode(mode: Mode): void {
+    if (mode === this.mode) return;
+    this.mode = mode;
+    this.tell("mode");
+  }
+
+  play(playing: boolean): void {
+    if (playing === this.playing) return;
+    if (playing && this.time >= this.duration - 1e-3) this.seek(0);
+    this.playing = playing;
+    this.lastFrame = performance.now();
+    this.tell("playing");
+    if (playing) requestAnimationFrame(this.frame);
+  }
+
+  setRate(rate: Rate): void {
+    this.rate = rate;
+    this.tell("playing");
+  }
+
+  private readonly frame = (now: number): void => {
+    if (!this.playing) return;
+    const next = this.time + ((now - this.lastFrame) / 1000) * this.rate;
+    this.lastFrame = now;
+    this.seek(next);
+    if (next >= this.duration) this.play(false);
+    else requestAnimationFrame(this.frame);
+  };
+
+  // One finished edit.
+  edit(edit: Edit | null): string | null {
+    return edit ? this.session.gesture(edit.label, edit.patch) : null;
+  }
+
+  // A drag under way.
+  drag(edit: Edit | null): void {
+    if (edit) this.session.preview(edit.patch);
+  }
+}

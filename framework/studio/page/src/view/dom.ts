@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elements, in few words.
+
+type Child = Node | string | null | undefined | false;
+type Props = Record<string, unknown>;
+
+// Properties that an element has are set as such, `on...` are listeners, the rest are attributes.
+export function el<K extends keyof HTMLElementTagNameMap>(
+  tag: K, props: Props = {}, ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(props)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on") && typeof value === "function") {
+      element.addEventListener(name.slice(2), value as EventListener);
+    } else if (name === "class") {
+      element.className = String(value);
+    } else if (name in element && !name.includes("-") && name !== "list" && name !== "role") {
+      (element as unknown as Props)[name] = value;
+    } else {
+      element.setAttribute(name, value === true ? "" : String(value));
+    }
+  }
+  for (const child of children) if (child) element.append(child);
+  return element;
+}
+
+export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`no element ${id}`);
+  return found as T;
+}
+
+// Replaces the children, keeping the focus on the element of the same key where there is one.
+export function refill(parent: HTMLElement, ...children: Child[]): void {
+  const active = document.activeElement;
+  const key = active instanceof HTMLElement && parent.contains(active)
+    ? active.dataset.key : undefined;
+  parent.replaceChildren(...children.filter((c): c is Node | string => Boolean(c)));
+  if (!key) return;
+  const again = parent.querySelector(`[data-key="${CSS.escape(key)}"]`);
+  if (again instanceof HTMLElement) again.focus({ preventScroll: true });
+}
+
+export function typing(target: EventTarget | null): boolean {
+  return (target instanceof HTMLInputElement && target.type !== "range" &&
+    target.type !== "checkbox" && target.type !== "radio") ||
+    target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement;
+}
+
+export function colour(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+// A canvas as large as its element, in device pixels; its context draws in CSS pixels.
+export function sized(canvas: HTMLCanvasElement): CanvasRenderingContext2D | null {
+  const scale = Math.min(window.devicePixelRatio || 1, 2);
+  const width = Math.round(canvas.clientWidth * scale);
+  const height = Math.round(canvas.clientHeight * scale);
+  if (canvas.width !== width) canvas.width = width;
+  if (canvas.height !== height) canvas.height = height;
+  const context = canvas.getContext("2d");
+  context?.setTransform(scale, 0, 0, scale, 0, 0);
+  context?.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
+  return context;
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moving through the world: around what is looked at, or as the film camera itself.
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { axesOf, defaultOptics } from "../state/camera";
+import { viewAt } from "../state/samples";
+import type { Vec3 } from "../state/types";
+import type { Studio } from "../studio";
+import { typing } from "./dom";
+import type { Stage } from "./stage";
+
+const SPEED = 8;          // m/s of the virtual camera
+const TURN = 1.1;         // rad/s by the arrows
+const MOUSE = 0.0035;     // rad per pixel
+const held = ["w", "a", "s", "d", "q", "e", "arrowleft", "arrowright", "arrowup", "arrowdown"];
+
+export class Navigation {
+  readonly orbit: OrbitControls;
+  private readonly keys = new Set<string>();
+  private yaw = 0;
+  private pitch = 0;
+  private last = 0;
+  private running = false;
+  private before: { position: THREE.Vector3; fov: number } | null = null;
+
+  constructor(private readonly studio: Studio, private readonly stage: Stage) {
+    this.orbit = new OrbitControls(stage.worldCamera, stage.world);
+    this.orbit.enableDamping = false;
+    this.orbit.target.set(0, 0, 3);
+    this.orbit.maxPolarAngle = Math.PI * 0.52;
+    this.orbit.minDistance = 1;
+    this.orbit.maxDistance = 1500;
+    this.orbit.addEventListener("change", () => stage.invalidate());
+    studio.on(["mode"], () => this.switch());
+    window.addEventListener("keydown", (event) => this.press(event));
+    window.addEventListener("keyup", (event) => this.keys.delete(event.key.toLowerCase()));
+    window.addEventListener("blur", () => this.keys.clear());
+    stage.world.addEventListener("pointermove", (event) => {
+      if (studio.mode !== "camera" || !(event.buttons & 1)) return;
+      this.yaw -= event.movementX * MOUSE;
+      this.turn(-event.movementY * MOUSE);
+      this.apply();
+    });
+    stage.world.addEventListener("wheel", (event) => {
+      if (studio.mode !== "camera") return;
+      this.step([0, 0, 0], -event.deltaY * 0.01);
+      this.apply();
+    }, { passive: true });
+  }
+
+  private turn(by: number): void {
+    this.pitch = Math.min(1.5, Math.max(-1.5, this.pitch + by));
+  }
+
+  // Everything of the film in the view.
+  frame(box: THREE.Box3): void {
+    const center = box.isEmpty() ? new THREE.Vector3(0, 0, 3) : box.getCenter(new THREE.Vector3());
+    const size = box.isEmpty() ? 30 : Math.max(8, box.getSize(new THREE.Vector3()).length());
+    const camera = this.stage.worldCamera;
+    const away = new THREE.Vector3(-0.55, -0.75, 0.55).normalize();
+    const fit = size * 0.5 / Math.tan((camera.fov * Math.PI) / 360);
+    camera.position.copy(center).addScaledVector(away, fit * 0.95);
+    this.orbit.target.copy(center);
+    this.orbit.update();
+    this.stage.invalidate();
+  }
+
+  private switch(): void {
+    const camera = this.stage.worldCamera;
+    const flying = this.studio.mode === "camera";
+    this.orbit.enabled = !flying;
+    this.keys.clear();
+    if (flying && !this.before) {
+      this.before = { position: camera.position.clone(), fov: camera.fov };
+      const view = viewAt(this.studio.plan.columns, this.studio.time);
+      const optics = this.studio.plan.camera ?? defaultOptics;
+      camera.fov = (2 * Math.atan(optics.height / 2 / optics.fy) * 180) / Math.PI;
+      camera.updateProjectionMatrix();
+      if (view) {
+        camera.position.set(...view.position);
+        this.yaw = Math.atan2(view.forward[1], view.forward[0]);
+        this.pitch = Math.asin(Math.min(1, Math.max(-1, view.forward[2])));
+      } else {
+        const d = camera.getWorldDirection(new THREE.Vector3());
+        this.yaw = Math.atan2(d.y, d.x);
+        this.pitch = Math.asin(d.z);
+      }
+      this.apply();
+    } else if (!flying && this.before) {
+      camera.fov = this.before.fov;
+      camera.position.copy(this.before.position);
+      camera.updateProjectionMatrix();
+      this.before = null;
+      this.orbit.update();
+      this.stage.invalidate();
+    }
+  }
+
+  private press(event: KeyboardEvent): void {
+    const key = event.key.toLowerCase();
+    if (this.studio.mode !== "camera" || !held.includes(key)) return;
+    if (typing(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    this.keys.add(key);
+    if (this.running) return;
+    this.running = true;
+    this.last = performance.now();
+    requestAnimationFrame(this.tick);
+  }
+
+  private readonly tick = (now: number): void => {
+    const seconds = Math.min(0.1, (now - this.last) / 1000);
+    this.last = now;
+    if (this.keys.size === 0 || this.studio.mode !== "camera") {
+      this.running = false;
+      return;
+    }
+    const on = (key: string): number => (this.keys.has(key) ? 1 : 0);
+    this.yaw += (on("arrowleft") - on("arrowright")) * TURN * seconds;
+    this.turn((on("arrowup") - on("arrowdown")) * TURN * seconds);
+    const metres = SPEED * seconds;
+    this.step([(on("d") - on("a")) * metres, 0, (on("e") - on("q")) * metres],
+              (on("w") - on("s")) * metres);
+    this.apply();
+    requestAnimationFrame(this.tick);
+  };
+
+  // To the right and up in m, and forward.
+  private step(by: Vec3, forward: number): void {
+    const axes = axesOf(this.yaw, this.pitch);
+    const p = this.stage.worldCamera.position;
+    p.x += axes.right[0] * by[0] + axes.forward[0] * forward;
+    p.y += axes.right[1] * by[0] + axes.forward[1] * forward;
+    p.z += by[2] + axes.forward[2] * forward;
+  }
+
+  private apply(): void {
+    const camera = this.stage.worldCamera;
+    const { forward } = axesOf(this.yaw, this.pitch);
+    camera.lookAt(camera.position.x + forward[0], camera.position.y + forward[1],
+                  camera.position.z + forward[2]);
+    this.stage.invalidate();
+  }
+}

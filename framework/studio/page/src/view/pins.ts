@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pins of the world: a button at each keyframe, look-at point, subject and obstacle. A drag
+// moves it on the level where it is; with Shift, up and down.
+import * as THREE from "three";
+import { moved, nameOf, placeOfItem, sameItem, type Item } from "../state/edits";
+import { isObject } from "../state/document";
+import { entries } from "../state/film";
+import type { JsonObject, Vec3 } from "../state/types";
+import type { Studio } from "../studio";
+import { el } from "./dom";
+import type { Stage } from "./stage";
+
+const THRESHOLD = 3;     // px before a press is a drag
+
+interface Pin {
+  item: Item;
+  button: HTMLButtonElement;
+  place: Vec3;
+}
+
+export function itemsOf(document: JsonObject): Item[] {
+  const items: Item[] = [];
+  entries(document, "obstacles").forEach((_, index) => items.push({ kind: "obstacle", index }));
+  entries(document, "subjects").forEach((entry, index) => {
+    items.push({ kind: "subject", index });
+    if (!Array.isArray(entry.track)) return;
+    entry.track.filter(isObject).forEach((_, point) => {
+      if (point > 0) items.push({ kind: "track", index, point });
+    });
+  });
+  entries(document, "keyframes").forEach((entry, index) => {
+    if (Array.isArray(entry.look_at)) items.push({ kind: "look", index });
+  });
+  entries(document, "keyframes").forEach((_, index) => items.push({ kind: "keyframe", index }));
+  return items;
+}
+
+const keyOfItem = (item: Item): string =>
+  `${item.kind}-${item.index}${item.kind === "track" ? `-${item.point}` : ""}`;
+const glyphs: Record<Item["kind"], string> = {
+  keyframe: "", look: "\u25ce", subject: "\u25b2", obstacle: "\u25a0", track: "\u2022",
+};
+
+export class Pins {
+  private pins: Pin[] = [];
+
+  constructor(
+    private readonly studio: Studio, private readonly stage: Stage,
+    private readonly layer: HTMLElement,
+  ) {
+    studio.on(["document", "selection", "mode"], () => this.refresh());
+    stage.before(() => this.place());
+  }
+
+  private refresh(): void {
+    const { document } = this.studio;
+    const wanted = this.studio.mode === "camera" ? [] : itemsOf(document);
+    const next: Pin[] = [];
+    for (const item of wanted) {
+      const place = placeOfItem(document, item);
+      if (!place) continue;
+      const had = this.pins.find((pin) => sameItem(pin.item, item));
+      const button = had?.button ?? this.made(item);
+      const name = nameOf(document, item);
+      if (button.title !== name) {
+        button.title = name;
+        const where = place.map((v) => v.toFixed(1)).join(", ");
+        button.setAttribute("aria-label", `${name} at ${where} m`);
+      }
+      const chosen = sameItem(item, this.studio.selection);
+      button.setAttribute("aria-pressed", String(chosen));
+      next.push({ item, button, place });
+    }
+    for (const pin of this.pins) {
+      if (!next.some((other) => other.button === pin.button)) pin.button.remove();
+    }
+    this.pins = next;
+    this.stage.invalidate();
+  }
+
+  private made(item: Item): HTMLButtonElement {
+    const button = el("button", {
+      class: `pin ${item.kind}`, type: "button", "data-pin": keyOfItem(item),
+      onclick: () => this.studio.select(item),
+      onfocus: () => this.studio.select(item),
+    }, item.kind === "keyframe" ? String(item.index + 1) : glyphs[item.kind]);
+    button.addEventListener("pointerdown", (event) => this.press(event, item, button));
+    // The gizmo beneath is not meant.
+    button.addEventListener("pointermove", (event) => event.stopPropagation());
+    this.layer.append(button);
+    return button;
+  }
+
+  private place(): void {
+    this.stage.worldCamera.updateMatrixWorld();
+    for (const { button, place } of this.pins) {
+      const at = this.stage.onScreen(place);
+      const { clientWidth, clientHeight } = this.stage.world;
+      const shown = at !== null && at.x > -20 && at.y > -20 && at.x < clientWidth + 20 &&
+        at.y < clientHeight + 20;
+      button.hidden = !shown;
+      if (shown) button.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`;
+    }
+  }
+
+  private press(event: PointerEvent, item: Item, button: HTMLButtonElement): void {
+    if (event.button !== 0) return;
+    event.stopPropagation();
+    const start = placeOfItem(this.studio.session.settled(), item);
+    this.studio.select(item);
+    if (!start || !this.studio.editable) return;
+    button.setPointerCapture(event.pointerId);
+    const drag = new PinDrag(this.stage, start, event);
+    let dragging = false, last: Vec3 = start;
+    const base = this.studio.session.settled();
+    const move = (e: PointerEvent): void => {
+      if (!dragging && Math.hypot(e.clientX - event.clientX, e.clientY - event.clientY) < THRESHOLD) {
+        return;
+      }
+      dragging = true;
+      last = drag.at(e, last);
+      this.studio.drag(moved(base, item, last));
+    };
+    const end = (keep: boolean): void => {
+      button.removeEventListener("pointermove", move);
+      button.removeEventListener("pointerup", up);
+      button.removeEventListener("pointercancel", cancel);
+      window.removeEventListener("keydown", escape, true);
+      if (!dragging) return;
+      if (keep) this.studio.edit(moved(base, item, last));
+      else this.studio.session.rest();
+    };
+    const up = (): void => end(true);
+    const cancel = (): void => end(false);
+    const escape = (e: KeyboardEvent): void => {
+      if (e.key !== "Escape") return;
+      e.stopPropagation();
+      end(false);
+    };
+    button.addEventListener("pointermove", move);
+    button.addEventListener("pointerup", up);
+    button.addEventListener("pointercancel", cancel);
+    window.addEventListener("keydown", escape, true);
+  }
+}
+
+// What a pointer means for a point that it took hold of.
+class PinDrag {
+  private readonly offset = new THREE.Vector3();
+
+  constructor(private readonly stage: Stage, start: Vec3, event: PointerEvent) {
+    const hit = this.level(event, start[2]);
+    if (hit) this.offset.set(...start).sub(hit);
+  }
+
+  private level(event: PointerEvent, height: number): THREE.Vector3 | null {
+    const ray = this.stage.rayAt(event.clientX, event.clientY);
+    return this.hit(ray, new THREE.Plane(new THREE.Vector3(0, 0, 1), -height));
+  }
+
+  private hit(ray: THREE.Ray, plane: THREE.Plane): THREE.Vector3 | null {
+    const found = ray.intersectPlane(plane, new THREE.Vector3());
+    return found && found.distanceTo(ray.origin) < 2000 ? found : null;
+  }
+
+  at(event: PointerEvent, now: Vec3): Vec3 {
+    const ray = this.stage.rayAt(event.clientX, event.clientY);
+    const from = new THREE.Vector3(...now);
+    if (event.shiftKey) {
+      const normal = this.stage.worldCamera.getWorldDirection(new THREE.Vector3()).setZ(0);
+      if (normal.lengthSq() < 1e-6) return now;
+      const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal.normalize(), from);
+      const hit = this.hit(ray, plane);
+      return hit ? [now[0], now[1], hit.z] : now;
+    }
+    const hit = this.level(event, now[2]);
+    return hit ? [hit.x + this.offset.x, hit.y + this.offset.y, now[2]] : now;
+  }
+}

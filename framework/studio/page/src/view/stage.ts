@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// One canvas behind the whole page, drawn through two openings: the world, and the picture of the
+// film camera. A frame is drawn when something has changed, never otherwise.
+import * as THREE from "three";
+import { colour } from "./dom";
+
+THREE.ColorManagement.enabled = false;
+
+// Colours as they are written, no curves: what the style sheet says is what is seen.
+export interface Palette {
+  sky: string;
+  ground: string;
+  grid: string;
+  solid: string;
+  closed: string;
+  subject: string;
+  chosen: string;
+  ink: string;
+  flown: string;
+  fail: string;
+  guess: string;
+  step: string;
+  converged: string;
+  certified: string;
+}
+
+export class Stage {
+  readonly scene = new THREE.Scene();
+  readonly tools = new THREE.Group();         // drawn in the world alone
+  readonly worldCamera = new THREE.PerspectiveCamera(55, 1, 0.3, 4000);
+  readonly filmCamera = new THREE.PerspectiveCamera(62, 16 / 9, 0.1, 5000);
+  palette: Palette;
+  frameMs = 0;                                // of the last frame, drawn to its end
+  frames = 0;
+  private readonly renderer: THREE.WebGLRenderer;
+  private waiting = false;
+  private beforeFrame: (() => void)[] = [];
+  private afterFrame: (() => void)[] = [];
+  private resized: ((width: number, height: number) => void)[] = [];
+  measuring = false;
+
+  constructor(
+    canvas: HTMLCanvasElement, readonly world: HTMLElement, readonly picture: HTMLElement,
+  ) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+    this.renderer.setScissorTest(true);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.worldCamera.up.set(0, 0, 1);
+    this.worldCamera.position.set(-28, -34, 24);
+    this.worldCamera.lookAt(0, 0, 3);
+    this.scene.add(this.tools);
+    this.palette = this.readPalette();
+    const watch = new ResizeObserver(() => this.resize());
+    watch.observe(world);
+    watch.observe(picture);
+    window.addEventListener("resize", () => this.resize());
+    this.resize();
+  }
+
+  before(then: () => void): void {
+    this.beforeFrame.push(then);
+  }
+
+  after(then: () => void): void {
+    this.afterFrame.push(then);
+  }
+
+  onResize(then: (width: number, height: number) => void): void {
+    this.resized.push(then);
+    const { width, height } = this.world.getBoundingClientRect();
+    then(width, height);
+  }
+
+  readPalette(): Palette {
+    const names = ["sky", "ground", "grid", "solid", "closed", "subject", "chosen", "ink", "flown",
+                   "fail", "guess", "step", "converged", "certified"] as const;
+    const found = {} as Palette;
+    for (const name of names) found[name] = colour(name);
+    this.palette = found;
+    return found;
+  }
+
+  private resize(): void {
+    this.renderer.setSize(window.innerWidth, window.innerHeight, false);
+    const { width, height } = this.world.getBoundingClientRect();
+    this.worldCamera.aspect = width / Math.max(height, 1);
+    this.worldCamera.updateProjectionMatrix();
+    for (const then of this.resized) then(width, height);
+    this.invalidate();
+  }
+
+  invalidate(): void {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.draw();
+    });
+  }
+
+  private draw(): void {
+    const start = performance.now();
+    for (const then of this.beforeFrame) then();
+    this.renderer.setClearColor(this.palette.sky);
+    this.tools.visible = true;
+    this.through(this.world, this.worldCamera);
+    this.tools.visible = false;
+    this.through(this.picture, this.filmCamera);
+    this.tools.visible = true;
+    // The drawing itself is done elsewhere; reading a pixel waits for it.
+    if (this.measuring) {
+      const gl = this.renderer.getContext();
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    }
+    this.frameMs = performance.now() - start;
+    this.frames += 1;
+    for (const then of this.afterFrame) then();
+  }
+
+  private through(opening: HTMLElement, camera: THREE.PerspectiveCamera): void {
+    const rect = opening.getBoundingClientRect();
+    if (rect.width < 1 || rect.height < 1) return;
+    const bottom = window.innerHeight - rect.bottom;
+    this.renderer.setViewport(rect.left, bottom, rect.width, rect.height);
+    this.renderer.setScissor(rect.left, bottom, rect.width, rect.height);
+    this.renderer.render(this.scene, camera);
+  }
+
+  // Where a point of the world is in the opening, in pixels; null when it is behind the eye.
+  onScreen(point: readonly [number, number, number]): { x: number; y: number } | null {
+    const p = new THREE.Vector3(...point).applyMatrix4(this.worldCamera.matrixWorldInverse);
+    if (p.z > -this.worldCamera.near) return null;
+    p.applyMatrix4(this.worldCamera.projectionMatrix);
+    const { clientWidth: width, clientHeight: height } = this.world;
+    return { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height };
+  }
+
+  // The ray under a place on the page.
+  rayAt(clientX: number, clientY: number): THREE.Ray {
+    const rect = this.world.getBoundingClientRect();
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(new THREE.Vector2(
+      ((clientX - rect.left) / rect.width) * 2 - 1, 1 - ((clientY - rect.top) / rect.height) * 2),
+    this.worldCamera);
+    return caster.ray;
+  }
+}
