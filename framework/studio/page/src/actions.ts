@@ -21,6 +21,7 @@ export interface Parts {
   help: HelpDialog;
   frame(): void;
   keyframeHere(): void;
+  clickMiddle(): void;
   showFilmTab(): void;
 }
 
@@ -78,7 +79,7 @@ export class Actions {
       undo: "undo", redo: "redo", fly: "fly", export: "export", report: "report", theme: "theme",
       help: "help", place: "place", insert: "insert", "add-subject": "subject",
       "add-obstacle": "obstacle", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
-      frame: "frame", play: "play", cut: "cut",
+      frame: "frame", play: "play", cut: "cut", draw: "draw",
     };
     for (const [id, action] of Object.entries(simple)) {
       byId(id).addEventListener("click", () => this.run(action, ""));
@@ -132,6 +133,11 @@ export class Actions {
       case "order": order(studio, key === "Alt+ArrowUp" ? -1 : 1); return true;
       case "insert": parts.list.insertAtHead(); return true;
       case "place": studio.setMode(studio.mode === "place" ? "orbit" : "place"); return true;
+      case "draw": studio.setMode(studio.mode === "draw" ? "orbit" : "draw"); return true;
+      case "shot":
+        parts.showFilmTab();
+        byId("shot").focus();
+        return true;
       case "duplicate": duplicate(studio); return true;
       case "delete": {
         const why = remove(studio);
@@ -143,6 +149,10 @@ export class Actions {
         else parts.notices.say("Select a keyframe first.");
         return true;
       case "type":
+        if (studio.mode === "place" || studio.mode === "aim") {
+          parts.clickMiddle();
+          return true;
+        }
         if (!studio.selection) return false;
         parts.showFilmTab();
         parts.selected.focus();
@@ -160,6 +170,7 @@ export class Actions {
       case "keyframe-here": parts.keyframeHere(); return true;
       case "frame": studio.setMode("orbit"); parts.frame(); return true;
       case "guides": studio.guides = !studio.guides; studio.tell("look"); return true;
+      case "framing": studio.framing = !studio.framing; studio.tell("look"); return true;
       case "theme": this.theme(); return true;
       case "fly": parts.flying.open(); return true;
       case "export": parts.exports.open(); return true;

@@ -22,6 +22,7 @@ import { trianglesOf } from "./state/shapes";
 import type { JsonObject, Vec3 } from "./state/types";
 import { Studio } from "./studio";
 import { byId } from "./view/dom";
+import { wireFraming } from "./view/framing";
 import { Gizmo } from "./view/gizmo";
 import { Ground } from "./view/ground";
 import { keyframeHere } from "./view/look_through";
@@ -88,6 +89,7 @@ new Paths(studio, stage);
 new Pins(studio, stage, byId("pins"));
 const pick = new Pick(studio, stage, solids, gizmo);
 new Preview(studio, stage);
+wireFraming(studio);
 byId("picture-controls").append(previewControls(studio));
 
 new TopBar(studio);
@@ -122,6 +124,7 @@ new Actions({
   flying: new FlyDialog(studio), help: new HelpDialog(),
   frame: () => navigation.frame(bounds()),
   keyframeHere: () => keyframeHere(studio, stage, pick),
+  clickMiddle: () => pick.clickMiddle(),
   showFilmTab: () => showTab("film"),
 });
 

@@ -13,7 +13,7 @@ import { clamp } from "./state/vector";
 
 export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
   "flown" | "look" | "playing";
-export type Mode = "orbit" | "place" | "aim" | "camera";
+export type Mode = "orbit" | "place" | "aim" | "draw" | "camera";
 export type Rate = 0.5 | 1 | 2;
 
 export class Studio {
@@ -24,6 +24,7 @@ export class Studio {
   mode: Mode = "orbit";
   guides = true;
   rendered = true;             // a picture by the server while paused
+  framing = false;             // clicks in the picture place the subject
   flown: Flown | null = null;
   private readonly listeners: { topics: Topic[]; then: (topic: Topic) => void }[] = [];
   private cached: { document: JsonObject; film: Film; guess: Plan } | null = null;

@@ -47,9 +47,8 @@ export class ExportDialog {
                  { name: REPORT, summary: "a folder with plan, report, pictures and log, as " +
                    "lapwing run writes it" }];
     if (this.choice.options.length !== all.length) {
-      this.choice.replaceChildren(...all.map((one) =>
-        el("option", { value: one.name }, one.name === LUA || one.name === REPORT
-          ? one.name : one.name)));
+      this.choice.replaceChildren(...all.map((one) => el("option", { value: one.name },
+        [one.name, one.summary?.replace(/[,(].*$/, "").trim()].filter(Boolean).join(" \u2013 "))));
     }
     this.result.replaceChildren();
     this.showForm();

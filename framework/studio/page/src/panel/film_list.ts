@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The film as a list: keyframes, subjects, obstacles; a click selects, the buttons add.
 import { addedObstacle, addedSubject, inserted, nameOf, sameItem, type Item } from "../state/edits";
-import { entries } from "../state/film";
+import { entries, targetAt } from "../state/film";
+import { shots, withShot, type Shot } from "../state/shots";
 import { positionAt } from "../state/samples";
 import { show } from "../state/units";
 import type { Vec3 } from "../state/types";
@@ -11,6 +12,14 @@ import { byId, el, refill } from "../view/dom";
 export class FilmList {
   constructor(private readonly studio: Studio, private readonly centre: () => Vec3) {
     studio.on(["document", "standing", "selection", "mode"], () => this.show());
+    const choice = byId<HTMLSelectElement>("shot");
+    choice.append(...shots.map((shot) =>
+      el("option", { value: shot.name }, `${shot.name}: ${shot.text}`)));
+    choice.addEventListener("change", () => {
+      const shot = shots.find((one) => one.name === choice.value);
+      choice.value = "";
+      if (shot) this.addShot(shot);
+    });
   }
 
   private show(): void {
@@ -30,7 +39,9 @@ export class FilmList {
         String(entry.name || `Obstacle ${index + 1}`), String(entry.type ?? "")));
     });
     refill(byId("thing-list"), ...others);
-    byId("place").setAttribute("aria-pressed", String(studio.mode === "place"));
+    for (const mode of ["place", "draw"]) {
+      byId(mode).setAttribute("aria-pressed", String(studio.mode === mode));
+    }
   }
 
   private row(item: Item, mark: string, text: string, more: string): HTMLElement {
@@ -53,6 +64,14 @@ export class FilmList {
     const at = positionAt(studio.plan.columns, studio.time);
     if (!at) return;
     const made = inserted(studio.document, studio.time, at);
+    if (studio.edit(made)) studio.select({ kind: "keyframe", index: made.index });
+  }
+
+  // Around what is filmed, else around the middle of the view.
+  private addShot(shot: Shot): void {
+    const { studio } = this;
+    const about = targetAt(studio.film, studio.film.duration) ?? this.centre();
+    const made = withShot(studio.document, shot, about);
     if (studio.edit(made)) studio.select({ kind: "keyframe", index: made.index });
   }
 

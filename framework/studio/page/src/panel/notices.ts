@@ -122,8 +122,11 @@ export class Hints {
   private show(): void {
     const text = byId("hint-text");
     const modes: Partial<Record<string, string>> = {
-      place: "Click on the ground to place keyframes. Esc ends it.",
-      aim: "Click what the camera is to look at. Esc ends it.",
+      place: "Click on the ground to place keyframes, or press Enter for the middle of the view. " +
+        "Esc ends it.",
+      aim: "Click what the camera is to look at, or press Enter for the middle of the view. " +
+        "Esc ends it.",
+      draw: "Draw the path with the mouse, from where the film ends. Esc ends it.",
       camera: "You are the camera: W A S D moves, Q E down and up, drag or arrows turn. K makes a " +
         "keyframe of what you see, Esc ends it.",
     };

@@ -2,6 +2,7 @@
 // Clicks in the world: on the path, on an obstacle, on the ground, by the mode of the page.
 import * as THREE from "three";
 import { appended, inserted, lookedAt } from "../state/edits";
+import { withStroke } from "../state/shots";
 import { pathOf, positionAt } from "../state/samples";
 import type { Vec3 } from "../state/types";
 import type { Studio } from "../studio";
@@ -10,24 +11,33 @@ import type { Solids } from "./solids";
 import type { Stage } from "./stage";
 
 const NEAR = 9;          // px from the path
+const FAR = 120;         // px, of a drag along it
 const STILL = 4;         // px that a click may move
 const HEIGHT = 3;        // m above the ground, of a first keyframe
 const FARTHEST = 1500;   // m
 
 export class Pick {
+  private down: PointerEvent | null = null;
+
   constructor(
     private readonly studio: Studio, private readonly stage: Stage,
     private readonly solids: Solids, gizmo: Gizmo,
   ) {
-    let down: PointerEvent | null = null;
+    // Before the controls of the view see it: what begins on the path is not a turn.
     stage.world.addEventListener("pointerdown", (event) => {
-      down = event.button === 0 && !gizmo.busy ? event : null;
-    });
+      this.down = null;
+      if (event.button !== 0 || gizmo.busy || event.target !== stage.world) return;
+      this.down = event;
+      if (studio.mode === "draw") return this.draw(event);
+      const time = studio.mode === "orbit" ? this.pathTime(event) : null;
+      if (time !== null) this.alongPath(event, time);
+    }, { capture: true });
     stage.world.addEventListener("pointerup", (event) => {
+      const { down } = this;
+      this.down = null;
       if (!down || Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > STILL) {
         return;
       }
-      down = null;
       this.click(event);
     });
     stage.world.addEventListener("dblclick", (event) => {
@@ -39,18 +49,106 @@ export class Pick {
     });
   }
 
-  private click(event: PointerEvent): void {
+  // A drag that begins on the path: the drone follows along it; with Shift it is pulled off it, by a
+  // new keyframe at this time.
+  private alongPath(event: PointerEvent, time: number): void {
     const { studio } = this;
-    if (studio.mode === "camera") return;
+    event.stopImmediatePropagation();
+    this.down = null;
+    studio.play(false);
+    studio.seek(time);
+    const base = studio.session.settled();
+    const start = positionAt(studio.plan.columns, time);
+    const pulls = event.shiftKey && start !== null && studio.editable;
+    let pulled: ReturnType<typeof inserted> | null = null;
+    this.follow(event, (e) => {
+      if (!pulls || !start) {
+        const next = this.pathTime(e, FAR);
+        if (next !== null) studio.seek(next);
+        return;
+      }
+      const at = this.onLevel(e, start[2]);
+      if (!at) return;
+      pulled = inserted(base, time, at);
+      studio.drag(pulled);
+    }, (kept) => {
+      if (!pulled) return;
+      if (!kept) studio.session.rest();
+      else if (studio.edit(pulled)) studio.select({ kind: "keyframe", index: pulled.index });
+    });
+  }
+
+  // A stroke on the level of the last keyframe.
+  private draw(event: PointerEvent): void {
+    const { studio } = this;
+    event.stopImmediatePropagation();
+    this.down = null;
+    const last = studio.film.keyframes[studio.film.keyframes.length - 1];
+    const height = last ? last.position[2] : HEIGHT;
+    const base = studio.session.settled();
+    const stroke: Vec3[] = [];
+    const step = (e: PointerEvent): void => {
+      const at = this.onLevel(e, height);
+      if (at) stroke.push(at);
+      studio.drag(withStroke(base, stroke));
+    };
+    step(event);
+    this.follow(event, step, (kept) => {
+      const made = withStroke(base, stroke);
+      studio.setMode("orbit");
+      if (!kept || !made) studio.session.rest();
+      else if (studio.edit(made)) studio.select({ kind: "keyframe", index: made.index });
+    });
+  }
+
+  private follow(
+    event: PointerEvent, move: (e: PointerEvent) => void, end: (kept: boolean) => void,
+  ): void {
+    const { world } = this.stage;
+    world.setPointerCapture(event.pointerId);
+    const done = (kept: boolean): void => {
+      world.removeEventListener("pointermove", move);
+      world.removeEventListener("pointerup", up);
+      world.removeEventListener("pointercancel", cancel);
+      window.removeEventListener("keydown", escape, true);
+      end(kept);
+    };
+    const up = (): void => done(true);
+    const cancel = (): void => done(false);
+    const escape = (e: KeyboardEvent): void => {
+      if (e.key !== "Escape") return;
+      e.stopPropagation();
+      done(false);
+    };
+    world.addEventListener("pointermove", move);
+    world.addEventListener("pointerup", up);
+    world.addEventListener("pointercancel", cancel);
+    window.addEventListener("keydown", escape, true);
+  }
+
+  private onLevel(event: MouseEvent, height: number): Vec3 | null {
+    const ray = this.stage.rayAt(event.clientX, event.clientY);
+    const hit = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), -height),
+                                   new THREE.Vector3());
+    return hit && hit.distanceTo(ray.origin) < FARTHEST ? [hit.x, hit.y, height] : null;
+  }
+
+  private click(event: { clientX: number; clientY: number }): void {
+    const { studio } = this;
     if (studio.mode === "place") return this.place(event);
     if (studio.mode === "aim") return this.aim(event);
-    const time = this.pathTime(event);
-    if (time !== null) return studio.seek(time);
+    if (studio.mode !== "orbit") return;
     const solid = this.solidAt(event);
     studio.select(solid ? { kind: "obstacle", index: solid.index } : null);
   }
 
-  private place(event: PointerEvent): void {
+  // The same without a mouse: the middle of the view is meant.
+  clickMiddle(): void {
+    const rect = this.stage.world.getBoundingClientRect();
+    this.click({ clientX: rect.left + rect.width / 2, clientY: rect.top + rect.height / 2 });
+  }
+
+  private place(event: { clientX: number; clientY: number }): void {
     const { studio } = this;
     const hit = this.surfaceAt(event);
     if (!hit) return;
@@ -61,21 +159,22 @@ export class Pick {
     if (studio.edit(made)) studio.select({ kind: "keyframe", index: made.index });
   }
 
-  private aim(event: PointerEvent): void {
+  private aim(event: { clientX: number; clientY: number }): void {
     const { studio } = this;
     const hit = this.surfaceAt(event);
     const { selection } = studio;
     if (!hit || selection?.kind !== "keyframe") return;
     studio.setMode("orbit");
     studio.edit(lookedAt(studio.document, selection.index, hit));
+    studio.select({ kind: "look", index: selection.index });
   }
 
   // The time of the path under the pointer, or null.
-  private pathTime(event: MouseEvent): number | null {
+  private pathTime(event: MouseEvent, reach = NEAR): number | null {
     const { columns } = this.studio.plan;
     const rect = this.stage.world.getBoundingClientRect();
     const x = event.clientX - rect.left, y = event.clientY - rect.top;
-    let best = NEAR, found: number | null = null;
+    let best = reach, found: number | null = null;
     let before: { x: number; y: number } | null = null;
     pathOf(columns).forEach((point, i) => {
       const here = this.stage.onScreen(point);
@@ -96,7 +195,7 @@ export class Pick {
     return found;
   }
 
-  private solidAt(event: MouseEvent): { index: number; point: Vec3 } | null {
+  private solidAt(event: { clientX: number; clientY: number }): { index: number; point: Vec3 } | null {
     if (!this.solids.opaque.visible) return null;
     const ray = this.stage.rayAt(event.clientX, event.clientY);
     const hits = new THREE.Raycaster(ray.origin, ray.direction).intersectObject(this.solids.opaque);
@@ -108,7 +207,7 @@ export class Pick {
 
   // What is seen there: an obstacle, else the ground.
   surfaceAt(event: { clientX: number; clientY: number }): Vec3 | null {
-    const solid = this.solidAt(event as MouseEvent);
+    const solid = this.solidAt(event);
     if (solid) return solid.point;
     const ray = this.stage.rayAt(event.clientX, event.clientY);
     const hit = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0),

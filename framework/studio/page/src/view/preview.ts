@@ -3,7 +3,7 @@
 // own while the film stands still. Above it: thirds, the horizon, the box of the subject.
 import * as THREE from "three";
 import { boxOf, defaultOptics, horizonOf, scaled, type View } from "../state/camera";
-import { subjectAt } from "../state/film";
+import { entries, subjectAt } from "../state/film";
 import { viewAt } from "../state/samples";
 import type { CameraOptics } from "../state/types";
 import type { Studio } from "../studio";
@@ -128,6 +128,17 @@ export class Preview {
                         subject.width ?? 0);
       if (!box) continue;
       const inside = box.left >= 0 && box.top >= 0 && box.right <= width && box.bottom <= height;
+      const place = this.placeOf(subject.name);
+      if (place) {
+        const [px, py] = [place[0] * width, place[1] * height];
+        context.strokeStyle = "#f0a030";
+        context.beginPath();
+        context.moveTo(px - 7, py);
+        context.lineTo(px + 7, py);
+        context.moveTo(px, py - 7);
+        context.lineTo(px, py + 7);
+        context.stroke();
+      }
       context.strokeStyle = inside ? "#ffffff" : "#ffb066";
       context.strokeRect(box.left, box.top, Math.max(2, box.right - box.left),
                          Math.max(2, box.bottom - box.top));
@@ -135,6 +146,14 @@ export class Preview {
       context.fillText(inside ? subject.name : `${subject.name}: partly outside`,
                        Math.max(2, box.left), Math.max(11, box.top - 4));
     }
+  }
+
+  // Where in the picture the film wants it.
+  private placeOf(name: string): [number, number] | null {
+    const index = this.studio.film.subjects.findIndex((s) => s.name === name);
+    const place = entries(this.studio.document, "subjects")[index]?.place;
+    return Array.isArray(place) && typeof place[0] === "number" && typeof place[1] === "number"
+      ? [place[0], place[1]] : null;
   }
 }
 
@@ -148,7 +167,16 @@ export function previewControls(studio: Studio): HTMLElement {
     studio.on(["look"], () => { input.checked = get(); });
     return el("label", { title }, input, label);
   };
-  return el("div", { class: "row" },
+  const framing = el("button", {
+    type: "button", id: "framing", "aria-pressed": "false",
+    title: "Then click in the picture where the subject is to be, or draw a box for its size (M)",
+    onclick: () => {
+      studio.framing = !studio.framing;
+      studio.tell("look");
+    },
+  }, "Frame");
+  studio.on(["look"], () => framing.setAttribute("aria-pressed", String(studio.framing)));
+  return el("div", { class: "row" }, framing,
     box("Guides", "Thirds, horizon and the subject's box (G)", () => studio.guides,
         (on) => { studio.guides = on; }),
     box("Render on pause", "Ask the server for a real picture when the film stands still",
