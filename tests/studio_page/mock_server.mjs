@@ -15,7 +15,13 @@ const { build } = createRequire(join(page, "package.json"))("esbuild");
 const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css" };
 
 // The page's own modules of films, as plain JavaScript.
+let modules = null;
 async function pageModules() {
+  modules ??= await bundled();
+  return modules;
+}
+
+async function bundled() {
   mkdirSync(join(here, ".cache"), { recursive: true });
   const outfile = join(here, ".cache/modules.mjs");
   await build({
@@ -67,7 +73,7 @@ export async function startMock(options = {}) {
   const state = {
     document: options.document ?? fixture.document, revision: 0, past: [], future: [],
     seen: new Set(), delays: { step: 15, converged: 40, certified: 60 }, silent: false,
-    received: [], foreign: [], writes: 0, shuffle: null, mission: options.mission,
+    received: [], previews: {}, writes: 0, shuffle: null, mission: options.mission,
   };
   const blobs = new Map();
   const put = (bytes) => {
@@ -79,7 +85,7 @@ export async function startMock(options = {}) {
 
   const server = createServer((request, response) => {
     const path = request.url.split("?")[0];
-    const policy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; " +
+    const policy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; " +
       `connect-src 'self' ws://${request.headers.host}`;
     const send = (bytes, type) => response.writeHead(200, {
       "Content-Type": type, "Content-Security-Policy": policy, "Cache-Control": "no-store" })
@@ -179,7 +185,8 @@ export async function startMock(options = {}) {
       return changed(message.id, `Redo: ${entry.label}`, patch);
     },
     preview(message, socket) {
-      solve(applied(state.document, message.patch),
+      state.previews[message.edit] = applied(state.document, message.patch);
+      solve(state.previews[message.edit],
             { revision: state.revision, edit: message.edit, tab: socket.tab });
     },
     rest() {
@@ -216,6 +223,10 @@ export async function startMock(options = {}) {
   };
 
   sockets.on("connection", (socket) => {
+    if (state.gone) {
+      socket.terminate();
+      return;
+    }
     socket.on("message", (data) => {
       const message = JSON.parse(String(data));
       state.received.push(message);

@@ -4,7 +4,7 @@ import { cutAt, moved, placeOfItem, retimed } from "./state/edits";
 import { actionOf } from "./state/keys";
 import type { Vec3 } from "./state/types";
 import type { Rate, Studio } from "./studio";
-import { byId, typing } from "./view/dom";
+import { byId, forgetColours, typing } from "./view/dom";
 import { duplicate, order, remove, type Selected } from "./panel/selected";
 import type { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
 import type { FilmList } from "./panel/film_list";
@@ -240,6 +240,7 @@ export class Actions {
     const next = dark ? "light" : "dark";
     document.documentElement.dataset.theme = next;
     remember("lapwing-theme", next);
+    forgetColours();
     this.parts.studio.tell("look");
   }
 }

@@ -16,12 +16,12 @@ import { TopBar } from "./panel/topbar";
 import { trianglesIn } from "./state/blob";
 import { entries } from "./state/film";
 import { GestureQueue } from "./state/queue";
-import { pathOf } from "./state/samples";
+import { pathOf, positionAt } from "./state/samples";
 import { Session, type Socket } from "./state/session";
 import { trianglesOf } from "./state/shapes";
 import type { JsonObject, Vec3 } from "./state/types";
 import { Studio } from "./studio";
-import { byId } from "./view/dom";
+import { byId, forgetColours } from "./view/dom";
 import { wireFraming } from "./view/framing";
 import { Gizmo } from "./view/gizmo";
 import { Ground } from "./view/ground";
@@ -198,7 +198,10 @@ function paint(): void {
   stage.invalidate();
 }
 studio.on(["look"], paint);
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => studio.tell("look"));
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  forgetColours();
+  studio.tell("look");
+});
 paint();
 
 session.on((event) => {
@@ -221,7 +224,17 @@ Object.defineProperty(window, "lapwing", {
     get frames() { return stage.frames; },
     get frameMs() { return stage.frameMs; },
     get time() { return studio.time; },
+    // Where the path is at a time, on the page.
+    onScreen(time: number) {
+      const at = positionAt(studio.plan.columns, time);
+      const seen = at && stage.onScreen(at);
+      const rect = stage.world.getBoundingClientRect();
+      return seen ? { x: rect.left + seen.x, y: rect.top + seen.y } : null;
+    },
     measure(on: boolean) { stage.measuring = on; },
+    get edit() { return session.dragging ? session.edit : null; },
+    // Resolves when the next frame is drawn.
+    drawn: () => new Promise<number>((done) => stage.once(() => done(stage.frameMs))),
     redraw() { stage.invalidate(); },
   }),
 });

@@ -48,8 +48,21 @@ export function typing(target: EventTarget | null): boolean {
     target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement;
 }
 
+const colours = new Map<string, string>();
+
+// A colour of the style sheet, as the theme has it.
 export function colour(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  let found = colours.get(name);
+  if (found === undefined) {
+    found = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+    colours.set(name, found);
+  }
+  return found;
+}
+
+// The theme is another one.
+export function forgetColours(): void {
+  colours.clear();
 }
 
 // A canvas as large as its element, in device pixels; its context draws in CSS pixels.

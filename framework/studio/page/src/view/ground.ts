@@ -2,7 +2,7 @@
 // The ground at height 0 with a line every ten metres, north marked.
 import * as THREE from "three";
 
-const HALF = 250;    // m
+const HALF = 160;    // m
 const EVERY = 10;    // m
 
 export class Ground {

@@ -16,6 +16,7 @@ interface Pin {
   item: Item;
   button: HTMLButtonElement;
   place: Vec3;
+  where: string;      // its place on the screen; "": it is not there
 }
 
 export function itemsOf(document: JsonObject): Item[] {
@@ -43,6 +44,8 @@ const glyphs: Record<Item["kind"], string> = {
 
 export class Pins {
   private pins: Pin[] = [];
+  private width = 0;
+  private height = 0;
 
   constructor(
     private readonly studio: Studio, private readonly stage: Stage,
@@ -50,6 +53,10 @@ export class Pins {
   ) {
     studio.on(["document", "selection", "mode"], () => this.refresh());
     stage.before(() => this.place());
+    stage.onResize((width, height) => {
+      this.width = width;
+      this.height = height;
+    });
   }
 
   private refresh(): void {
@@ -69,7 +76,7 @@ export class Pins {
       }
       const chosen = sameItem(item, this.studio.selection);
       button.setAttribute("aria-pressed", String(chosen));
-      next.push({ item, button, place });
+      next.push({ item, button, place, where: had?.where ?? "new" });
     }
     for (const pin of this.pins) {
       if (!next.some((other) => other.button === pin.button)) pin.button.remove();
@@ -93,13 +100,15 @@ export class Pins {
 
   private place(): void {
     this.stage.worldCamera.updateMatrixWorld();
-    for (const { button, place } of this.pins) {
-      const at = this.stage.onScreen(place);
-      const { clientWidth, clientHeight } = this.stage.world;
-      const shown = at !== null && at.x > -20 && at.y > -20 && at.x < clientWidth + 20 &&
-        at.y < clientHeight + 20;
-      button.hidden = !shown;
-      if (shown) button.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`;
+    for (const pin of this.pins) {
+      const at = this.stage.onScreen(pin.place);
+      const seen = at !== null && at.x > -20 && at.y > -20 && at.x < this.width + 20 &&
+        at.y < this.height + 20;
+      const where = seen ? `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)` : "";
+      if (where === pin.where) continue;
+      pin.where = where;
+      pin.button.hidden = !seen;
+      if (seen) pin.button.style.transform = where;
     }
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One canvas behind the whole page, drawn through two openings: the world, and the picture of the
+// One canvas behind the page, drawn through two openings: the world, and the picture of the
 // film camera. A frame is drawn when something has changed, never otherwise.
 import * as THREE from "three";
 import { colour } from "./dom";
@@ -34,6 +34,8 @@ export class Stage {
   frames = 0;
   private readonly renderer: THREE.WebGLRenderer;
   private waiting = false;
+  private whole = new DOMRect();      // of the canvas
+  private rects: [DOMRect, DOMRect] = [new DOMRect(), new DOMRect()];
   private beforeFrame: (() => void)[] = [];
   private afterFrame: (() => void)[] = [];
   private resized: ((width: number, height: number) => void)[] = [];
@@ -42,7 +44,9 @@ export class Stage {
   constructor(
     canvas: HTMLCanvasElement, readonly world: HTMLElement, readonly picture: HTMLElement,
   ) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+    this.renderer = new THREE.WebGLRenderer({
+      canvas, antialias: !drawnInSoftware(), stencil: false, alpha: false,
+    });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.setScissorTest(true);
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
@@ -62,7 +66,8 @@ export class Stage {
     this.beforeFrame.push(then);
   }
 
-  after(then: () => void): void {
+  // Once, after the next frame.
+  once(then: () => void): void {
     this.afterFrame.push(then);
   }
 
@@ -82,8 +87,19 @@ export class Stage {
   }
 
   private resize(): void {
-    this.renderer.setSize(window.innerWidth, window.innerHeight, false);
-    const { width, height } = this.world.getBoundingClientRect();
+    const [world, picture] = this.rects =
+      [this.world.getBoundingClientRect(), this.picture.getBoundingClientRect()];
+    // No larger than what holds both openings: every pixel costs.
+    const left = Math.min(world.left, picture.left), top = Math.min(world.top, picture.top);
+    this.whole = new DOMRect(left, top, Math.max(world.right, picture.right) - left,
+                             Math.max(world.bottom, picture.bottom) - top);
+    this.renderer.setSize(Math.max(1, this.whole.width), Math.max(1, this.whole.height), false);
+    const { style } = this.renderer.domElement;
+    style.left = `${left}px`;
+    style.top = `${top}px`;
+    style.width = `${this.whole.width}px`;
+    style.height = `${this.whole.height}px`;
+    const { width, height } = world;
     this.worldCamera.aspect = width / Math.max(height, 1);
     this.worldCamera.updateProjectionMatrix();
     for (const then of this.resized) then(width, height);
@@ -104,9 +120,9 @@ export class Stage {
     for (const then of this.beforeFrame) then();
     this.renderer.setClearColor(this.palette.sky);
     this.tools.visible = true;
-    this.through(this.world, this.worldCamera);
+    this.through(this.rects[0], this.worldCamera);
     this.tools.visible = false;
-    this.through(this.picture, this.filmCamera);
+    this.through(this.rects[1], this.filmCamera);
     this.tools.visible = true;
     // The drawing itself is done elsewhere; reading a pixel waits for it.
     if (this.measuring) {
@@ -115,15 +131,14 @@ export class Stage {
     }
     this.frameMs = performance.now() - start;
     this.frames += 1;
-    for (const then of this.afterFrame) then();
+    for (const then of this.afterFrame.splice(0)) then();
   }
 
-  private through(opening: HTMLElement, camera: THREE.PerspectiveCamera): void {
-    const rect = opening.getBoundingClientRect();
+  private through(rect: DOMRect, camera: THREE.PerspectiveCamera): void {
     if (rect.width < 1 || rect.height < 1) return;
-    const bottom = window.innerHeight - rect.bottom;
-    this.renderer.setViewport(rect.left, bottom, rect.width, rect.height);
-    this.renderer.setScissor(rect.left, bottom, rect.width, rect.height);
+    const left = rect.left - this.whole.left, bottom = this.whole.bottom - rect.bottom;
+    this.renderer.setViewport(left, bottom, rect.width, rect.height);
+    this.renderer.setScissor(left, bottom, rect.width, rect.height);
     this.renderer.render(this.scene, camera);
   }
 
@@ -132,17 +147,27 @@ export class Stage {
     const p = new THREE.Vector3(...point).applyMatrix4(this.worldCamera.matrixWorldInverse);
     if (p.z > -this.worldCamera.near) return null;
     p.applyMatrix4(this.worldCamera.projectionMatrix);
-    const { clientWidth: width, clientHeight: height } = this.world;
+    const { width, height } = this.rects[0];
     return { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height };
   }
 
   // The ray under a place on the page.
   rayAt(clientX: number, clientY: number): THREE.Ray {
-    const rect = this.world.getBoundingClientRect();
+    const [rect] = this.rects;
     const caster = new THREE.Raycaster();
     caster.setFromCamera(new THREE.Vector2(
       ((clientX - rect.left) / rect.width) * 2 - 1, 1 - ((clientY - rect.top) / rect.height) * 2),
     this.worldCamera);
     return caster.ray;
   }
+}
+
+// Smooth edges cost a processor most of a frame.
+function drawnInSoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return true;
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }

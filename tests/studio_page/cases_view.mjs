@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looking, playing, judging and writing, each once by mouse and once by keyboard.
+import assert from "node:assert/strict";
+import { centreOf, drag, studioState, type, waitGrade } from "./browser.mjs";
+import { keys, next } from "./cases_edit.mjs";
+
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+const shown = (page, selector) => page.$eval(selector, (e) => !e.hidden && e.offsetParent !== null);
+const text = (page, selector) => page.$eval(selector, (e) => e.textContent);
+
+export const views = [
+  ["played, scrubbed and sped up by mouse", async ({ page }) => {
+    await page.click("#rate-two");
+    await page.click("#play");
+    await wait(300);
+    await page.click("#play");
+    const { time } = await studioState(page);
+    assert.ok(time > 0.3 && time < 1.6, String(time));
+    const box = await (await page.$("#lanes")).boundingBox();
+    await page.mouse.click(box.x + 92 + (box.width - 106) / 2, box.y + 40);
+    assert.ok(Math.abs((await studioState(page)).time - 10) < 0.2);
+    await page.click("#to-start");
+    assert.equal((await studioState(page)).time, 0);
+  }],
+  ["played, scrubbed and slowed down by keyboard", async ({ page }) => {
+    await page.focus("#world");
+    await keys(page, "1", "Space");
+    await wait(300);
+    await keys(page, "Space");
+    const { time } = await studioState(page);
+    assert.ok(time > 0.05 && time < 0.5, String(time));
+    await keys(page, "End");
+    assert.equal((await studioState(page)).time, 20);
+    await keys(page, "Home", ".", ".", ",");
+    assert.ok(Math.abs((await studioState(page)).time - 0.1) < 1e-9);
+    await keys(page, "ArrowRight");
+    assert.ok(Math.abs((await studioState(page)).time - 0.2) < 1e-9);
+  }],
+  ["a time dragged by mouse, and moved by keyboard", async ({ page }) => {
+    await next(page, () => drag(page, ".mark-keyframe:nth-of-type(2)", 60, 0));
+    const { document } = await studioState(page);
+    assert.ok(document.keyframes[1].time > 11, String(document.keyframes[1].time));
+    await page.focus(".mark-keyframe:nth-of-type(3)");
+    const later = await next(page, () => keys(page, "Alt+ArrowRight"));
+    assert.equal(later.document.keyframes[2].time, 20.1);
+    assert.equal(later.document.duration, 20.1);
+  }],
+  ["cut and uncut by mouse, and by keyboard", async ({ page }) => {
+    let now = await next(page, () => page.click("#cut"));
+    assert.deepEqual(now.document.cuts, [{ start: 0, finish: 1 }]);
+    now = await next(page, () => page.click(".mark-cut"));
+    assert.deepEqual(now.document.cuts, []);
+    await page.focus("#world");
+    now = await next(page, () => keys(page, "c"));
+    assert.equal(now.document.cuts.length, 1);
+    await page.focus(".mark-cut");
+    now = await next(page, () => keys(page, "Enter"));
+    assert.deepEqual(now.document.cuts, []);
+  }],
+  ["what fails is red, told, gone to and mended, by mouse", async ({ page, shot }) => {
+    await page.click('[data-pin="keyframe-1"]');
+    await next(page, () => type(page, '[data-key="keyframes[2].time"]', "3"));
+    await waitGrade(page, "rejected");
+    assert.match(await text(page, "#grade-text"), /places? on the path/);
+    await page.click('#checks .check.fail[data-key="climb_speed"]');
+    const { time } = await studioState(page);
+    assert.ok(time > 0.5 && time < 4, String(time));
+    assert.match(await text(page, ".mend"), /times slower/);
+    await shot("rejected");
+    const before = (await studioState(page)).document.duration;
+    const mended = await next(page, () => page.click("#checks .mend button"));
+    assert.ok(mended.document.duration > before);
+  }],
+  ["the certificate gone through by keyboard", async ({ page }) => {
+    await page.focus('#checks [data-key="speed_across"]');
+    await keys(page, "Enter");
+    assert.ok((await studioState(page)).time > 1);
+  }],
+  ["flown with wind by mouse, the ghost beside it", async ({ page, mock, shot }) => {
+    await page.click("#fly");
+    await page.click("#fly-go");
+    await page.waitForFunction("document.querySelector('#fly-result').textContent.includes('m beside')");
+    const flight = mock.state.received.filter((m) => m.type === "fly").pop();
+    assert.deepEqual(flight.wind.map(Math.round), [0, -3, 0]);
+    await shot("flown");
+    await page.click("#fly-dialog .close");
+  }],
+  ["flown with wind by keyboard", async ({ page, mock }) => {
+    await page.focus("#world");
+    await keys(page, "f");
+    await keys(page, "ArrowRight", "Tab", "Tab", "ArrowRight");
+    await page.focus("#fly-go");
+    await keys(page, "Enter");
+    await page.waitForFunction("document.querySelector('#fly-result').textContent.includes('m beside')");
+    const flight = mock.state.received.filter((m) => m.type === "fly").pop();
+    assert.equal(flight.wind[1], -3.5);
+    assert.equal(flight.gust, 0.5);
+    await keys(page, "Escape");
+    assert.equal(await page.$eval("#fly-dialog", (d) => d.open), false);
+  }],
+  ["an uncertified film is not flown", async ({ page, mock }) => {
+    await page.click('[data-pin="keyframe-1"]');
+    await next(page, () => type(page, '[data-key="keyframes[2].time"]', "2"));
+    await waitGrade(page, "rejected");
+    await page.click("#fly");
+    assert.equal(await page.$eval("#fly-go", (b) => b.disabled), true);
+    assert.ok(await shown(page, "#fly-warning"));
+    await page.click("#fly-dialog .close");
+    await page.click("#export");
+    assert.equal(await page.$eval("#export-go", (b) => b.disabled), true);
+    await page.click("#export-uncertified");
+    await page.click("#export-go");
+    await page.waitForSelector("#export-result .written");
+    assert.equal(mock.state.received.filter((m) => m.type === "export").pop().uncertified, true);
+    await page.click("#export-dialog .close");
+  }],
+  ["weights by mouse and by keyboard, a style", async ({ page, shot }) => {
+    await page.click("#tab-feel");
+    const slider = await centreOf(page, '[data-key="weight-smoothness"]');
+    let now = await next(page, () => page.mouse.click(slider.x + 60, slider.y));
+    assert.ok(now.document.weights.smoothness > 10);
+    await page.focus('[data-key="weight-yaw"]');
+    now = await next(page, () => keys(page, "ArrowRight"));
+    assert.ok(now.document.weights.yaw > 0.02);
+    await waitGrade(page, "certified");
+    assert.ok((await page.$$("#costs li")).length >= 3);
+    await shot("weights");
+    now = await next(page, () => page.click("#styles button:nth-child(2)"));
+    assert.equal(now.document.weights.yaw, 1);
+  }],
+  ["drone, camera, solver and forms, by mouse and by keyboard", async ({ page }) => {
+    await page.focus("#tab-film");
+    await keys(page, "ArrowRight", "ArrowRight");
+    assert.ok(await shown(page, "#panel-setup"));
+    let now = await next(page, () => page.select('[data-key="vehicle"]', "vehicles/phantom"));
+    assert.equal(now.document.vehicle, "vehicles/phantom");
+    now = await next(page, () => page.select('[data-key="camera"]', "cameras/one_inch"));
+    assert.equal(now.document.vehicle.camera, "cameras/one_inch");
+    await page.click("#solver-box summary");
+    now = await next(page, () => type(page, '[data-key="solver.iterations"]', "30"));
+    assert.equal(now.document.solver.iterations, 30);
+    now = await next(page, () => type(page, '[data-key="margin"]', "80 cm"));
+    assert.equal(now.document.margin, 0.8);
+    await type(page, '[data-key="margin"]', "-1");
+    assert.match(await text(page, "#setup-film .field-error:not([hidden])"), /at least 0/);
+  }],
+  ["exported by mouse, with the loss", async ({ page, mock, shot }) => {
+    await page.click("#export");
+    await page.select("#export-format", "chan");
+    await type(page, '#export-form [data-key="rate"]', "30");
+    await page.click("#export-go");
+    await page.waitForSelector("#export-result .written");
+    assert.match(await text(page, "#export-result"), /castle\.chan.*ground is left out/s);
+    assert.deepEqual(mock.state.received.filter((m) => m.type === "export").pop().parameters,
+                     { rate: 30 });
+    await shot("exported");
+    await page.select("#export-format", "csv");
+    await type(page, '#export-form [data-key="rate"]', "13");
+    await page.click("#export-go");
+    await page.waitForFunction("document.querySelector('#export-result').textContent.includes('disk')");
+    await page.click("#export-dialog .close");
+  }],
+  ["exported, reported and written as a script by keyboard", async ({ page, mock }) => {
+    await page.focus("#world");
+    await keys(page, "x");
+    await page.select("#export-format", "gltf");
+    await page.focus("#export-go");
+    await keys(page, "Enter");
+    await page.waitForSelector("#export-result .written");
+    await page.select("#export-format", "Lua script");
+    await page.focus("#export-go");
+    await keys(page, "Enter");
+    await page.waitForFunction("document.querySelector('#export-result').textContent.includes('lua')");
+    await keys(page, "Escape");
+    await page.focus("#world");
+    await keys(page, "r");
+    await page.waitForFunction("document.querySelector('#notes').textContent.includes('report.html')");
+    assert.ok(mock.state.received.some((m) => m.type === "export_lua"));
+  }],
+  ["the sheet of keys by mouse and by keyboard", async ({ page, shot }) => {
+    await page.click("#help");
+    assert.ok((await page.$$("#help-keys dt")).length > 25);
+    await shot("help");
+    await keys(page, "Escape");
+    await page.focus("#world");
+    await keys(page, "?");
+    assert.equal(await page.$eval("#help-dialog", (d) => d.open), true);
+    await page.click("#help-dialog .close");
+  }],
+  ["light and dark, guides, everything in view, by mouse and by keyboard", async ({ page, shot }) => {
+    const dark = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    const before = await dark();
+    await page.click("#theme");
+    assert.notEqual(await dark(), before);
+    await wait(100);
+    await shot("dark");
+    await page.focus("#world");
+    await keys(page, "t");
+    assert.equal(await dark(), before);
+    const ink = () => page.evaluate(() => {
+      const c = document.getElementById("guides");
+      return c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some((v) => v > 0);
+    });
+    assert.equal(await ink(), true);
+    await keys(page, "g");
+    assert.equal(await ink(), false);
+    await page.click("#picture-controls label:nth-of-type(1) input");
+    assert.equal(await ink(), true);
+    const { x, y } = await centreOf(page, "#world");
+    const at = () => page.$eval('[data-pin="keyframe-1"]', (e) => e.style.transform);
+    const home = await at();
+    await page.mouse.move(x - 150, y + 60);
+    await page.mouse.wheel({ deltaY: 600 });
+    await wait(150);
+    assert.notEqual(await at(), home);
+    await page.click("#frame");
+    await wait(150);
+    assert.equal(await at(), home);
+    await page.mouse.move(x - 150, y + 60);
+    await page.mouse.wheel({ deltaY: 600 });
+    await wait(150);
+    await page.focus("#world");
+    await keys(page, "z");
+    await wait(150);
+    assert.equal(await at(), home);
+  }],
+  ["a picture is asked for on pause, and put away when the head moves", async ({ page, mock }) => {
+    await page.waitForFunction("!document.querySelector('#photo').hidden", { timeout: 3000 });
+    const asked = mock.state.received.filter((m) => m.type === "picture").pop();
+    assert.ok(asked.width > 200 && asked.height > 100);
+    await page.focus("#world");
+    await keys(page, ".");
+    assert.equal(await page.$eval("#photo", (p) => p.hidden), true);
+  }],
+  ["every control has a name", async ({ page }) => {
+    await page.click('[data-pin="keyframe-1"]');
+    const tree = await page.accessibility.snapshot({ interestingOnly: false });
+    const bad = [], roles = new Set(["button", "textbox", "combobox", "slider", "checkbox", "radio",
+                                     "tab", "link", "listbox", "Canvas"]);
+    let count = 0;
+    const walk = (node) => {
+      if (roles.has(node.role)) {
+        count += 1;
+        if (!node.name?.trim()) bad.push(node);
+      }
+      for (const child of node.children ?? []) walk(child);
+    };
+    walk(tree);
+    assert.deepEqual(bad, []);
+    assert.ok(count > 40, String(count));
+  }],
+  ["nothing is cut off at 1280 x 720", async ({ page }) => {
+    const out = await page.evaluate(() => [...document.querySelectorAll(
+      ".top *, .transport *, .tools *, .list-head *, #selected-buttons *")]
+      .filter((e) => {
+        const r = e.getBoundingClientRect();
+        return r.width > 0 && (r.right > innerWidth + 1 || r.bottom > innerHeight + 1 || r.left < -1);
+      }).map((e) => e.id || e.textContent));
+    assert.deepEqual(out, []);
+  }],
+];

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drives the page in a browser: node run.mjs [--only WORDS] [--shots DIR]. Prints a row per case and
+// the figures; exit status 1 if one fails, 77 where there is no Chromium.
+import { mkdirSync, readdirSync, statSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium, openPage, startBrowser, waitGrade } from "./browser.mjs";
+import { edits } from "./cases_edit.mjs";
+import { links } from "./cases_link.mjs";
+import { views } from "./cases_view.mjs";
+import { figures } from "./figures.mjs";
+import { startMock } from "./mock_server.mjs";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const option = (name) => {
+  const at = process.argv.indexOf(name);
+  return at < 0 ? null : process.argv[at + 1];
+};
+const only = option("--only"), shots = option("--shots");
+const MOST_SECONDS = 90;
+
+if (!chromium()) {
+  console.log("skipped: no Chromium; apt-get install chromium, or name one in CHROMIUM");
+  process.exit(77);
+}
+if (shots) mkdirSync(shots, { recursive: true });
+
+const start = Date.now();
+const browser = await startBrowser();
+let failed = 0, foreign = 0;
+
+async function run(name, then) {
+  const began = Date.now();
+  const mock = await startMock();
+  let page = null;
+  try {
+    page = await openPage(browser, mock.address);
+    await page.evaluate(() => localStorage.setItem("lapwing-hints", "off"));
+    await waitGrade(page, "certified");
+    const shot = async (file) => {
+      if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
+    };
+    await then({ browser, page, mock, shot });
+    foreign += page.foreign.length;
+    if (page.foreign.length > 0) throw new Error(`foreign requests: ${page.foreign}`);
+    if (page.faults.length > 0) throw new Error(`faults of the page: ${page.faults.join("\n")}`);
+    console.log(`ok      ${String(Date.now() - began).padStart(5)} ms  ${name}`);
+  } catch (error) {
+    failed += 1;
+    console.log(`FAILED  ${String(Date.now() - began).padStart(5)} ms  ${name}\n        ${
+      String(error.stack ?? error).split("\n").slice(0, 6).join("\n        ")}`);
+    if (shots && page) await page.screenshot({ path: join(shots, `failed_${failed}.png`) });
+  } finally {
+    await page?.close({ runBeforeUnload: false });
+    await mock.stop();
+  }
+}
+
+try {
+  for (const [name, then] of [...edits, ...views, ...links]) {
+    if (!only || name.includes(only)) await run(name, then);
+  }
+  if (!only || only === "figures") failed += await figures(browser);
+} finally {
+  await browser.close();
+}
+
+const dist = join(here, "../../framework/studio/page/dist");
+const bytes = readdirSync(dist).reduce((sum, file) => sum + statSync(join(dist, file)).size, 0);
+const seconds = (Date.now() - start) / 1000;
+const rows = [["bytes of the page", bytes, 1.2e6], ["foreign requests", foreign, 0],
+              ["seconds of the whole run", Math.round(seconds * 10) / 10, MOST_SECONDS]];
+for (const [what, value, most] of rows) {
+  console.log(`${what.padEnd(44)} ${value}   at most ${most}`);
+  if (value > most) failed += 1;
+}
+console.log(failed === 0 ? "all passed" : `${failed} failed`);
+process.exit(failed === 0 ? 0 : 1);
