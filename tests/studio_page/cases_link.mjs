@@ -152,7 +152,7 @@ export const links = [
     await waitRevision(other, 2);
     await page.waitForFunction("window.lapwing.revision === 2", { polling: 10 });
     await other.close();
-  }],
+  }, "alone"],
   ["what cannot be read does no harm", async ({ page, mock }) => {
     mock.tell("nonsense");
     mock.tell({ type: "unknown" });

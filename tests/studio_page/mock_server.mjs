@@ -17,7 +17,7 @@ const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "t
 // The page's own modules of films, as plain JavaScript.
 let modules = null;
 async function pageModules() {
-  modules ??= await bundled();
+  modules ??= bundled();
   return modules;
 }
 
@@ -197,7 +197,9 @@ export async function startMock(options = {}) {
       const off = 0.06 * Math.hypot(...message.wind);
       const samples = { ...columns, x: columns.x.map((v, i) => v + off * Math.sin(i / 9)) };
       setTimeout(() => tell({ type: "flown", edit: message.edit, samples, lost: false,
-                              worst: { distance: off, time: 4.2 } }, [socket]), 30);
+                              finished: true, kept: off < 0.25,
+                              worst: { position_error: off, time: 4.2, limit: 0.25, mean: off / 2,
+                                       rotor_speed: 0.6 } }, [socket]), 30);
     },
     picture(message, socket) {
       state.photo = put(readFileSync(join(here, "fixtures/photo.png")));

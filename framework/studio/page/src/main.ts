@@ -77,6 +77,8 @@ const session = new Session({
 
 const studio = new Studio(session);
 const stage = new Stage(byId<HTMLCanvasElement>("stage"), byId("world"), byId("picture"));
+// Before all that draws with them.
+studio.on(["look"], () => stage.readPalette());
 const ground = new Ground();
 const solids = new Solids();
 stage.scene.add(ground.group, solids.group);

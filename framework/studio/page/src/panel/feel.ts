@@ -15,10 +15,19 @@ const words: Record<string, string> = {
   speed: "Keep the stated speed", time: "Be quick",
 };
 
+// The weight that each part of the objective belongs to, where they are not named alike.
+const weightOfTerm: Record<string, string> = {
+  target_keyframe: "target", target_derivative: "target_smoothness", gimbal_derivative: "gimbal",
+  camera_angle: "camera", flight_time: "time", yaw_derivative: "yaw", derivative: "smoothness",
+  input_effort: "effort",
+};
+
 interface Row {
   option: Option;
   slider: HTMLInputElement;
   value: HTMLElement;
+  bar: HTMLElement;
+  share: HTMLElement;
 }
 
 export class Feel {
@@ -88,28 +97,27 @@ export class Feel {
       slider.addEventListener("keydown", (event) => {
         if (event.key === "Escape" && this.studio.session.dragging) this.studio.session.rest();
       });
-      return { option, slider, value: el("output", {}) };
+      return { option, slider, value: el("output", {}), bar: el("span", { class: "bar" }),
+               share: el("span", { class: "share" }) };
     });
-    byId("weights").replaceChildren(...this.rows.map(({ option, slider, value }) =>
+    byId("weights").replaceChildren(...this.rows.map(({ option, slider, value, bar, share }) =>
       el("label", { class: "weight", title: `${option.name}: ${option.summary ?? ""}` },
-        el("span", {}, words[option.name] ?? labelOf(option.name)), value, slider)));
+        el("span", {}, words[option.name] ?? labelOf(option.name)), value, slider,
+        el("span", { class: "track" }, bar), share)));
+    this.showCosts();
   }
 
   private showCosts(): void {
     const objective = this.studio.standing.plan?.objective ??
       this.studio.session.grades.lastPlan()?.objective ?? [];
     const total = objective.reduce((sum, part) => sum + Math.max(0, part.cost), 0);
-    const parts = objective.filter((part) => part.cost > total * 1e-4)
-      .sort((a, b) => b.cost - a.cost).slice(0, 8);
-    byId("cost-box").hidden = parts.length === 0;
-    byId("costs").replaceChildren(...parts.map((part) => {
-      const share = total > 0 ? part.cost / total : 0;
-      const bar = el("span", { class: "bar" });
-      bar.style.width = `${(100 * share).toFixed(1)}%`;
-      return el("li", { title: `${part.term}: ${show(part.cost)}` },
-        el("span", { class: "what" }, words[part.term] ?? labelOf(part.term)),
-        el("span", { class: "track" }, bar), el("span", { class: "when" },
-          `${Math.round(100 * share)} %`));
-    }));
+    byId("cost-note").hidden = total <= 0;
+    for (const { option, bar, share } of this.rows) {
+      const cost = objective.filter(({ term }) => (weightOfTerm[term] ?? term) === option.name)
+        .reduce((sum, part) => sum + Math.max(0, part.cost), 0);
+      const part = total > 0 ? cost / total : 0;
+      bar.style.width = `${(100 * part).toFixed(1)}%`;
+      share.textContent = part >= 0.005 ? `${Math.round(100 * part)} %` : "";
+    }
   }
 }

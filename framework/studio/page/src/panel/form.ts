@@ -76,7 +76,8 @@ function textual(first: Field, commit: Commit, compact: boolean): Entry {
     }
   });
   const root = frame(field, id, input);
-  if (compact) root.classList.add("compact");
+  // Three numbers of a place stand side by side.
+  if (compact && /#[012]$/.test(field.path)) root.classList.add("third");
   root.append(error);
   return {
     root,

@@ -17,7 +17,7 @@ const metres = (name: string): Option =>
 
 function placeFields(path: string, value: Vec3, prefix = ""): Field[] {
   return axes.map((label, i) => ({
-    path: `${path}#${i}`, label: prefix ? `${prefix} ${label.toLowerCase()}` : label,
+    path: `${path}#${i}`, label: `${prefix ? `${prefix} ${label.toLowerCase()}` : label}, m`,
     option: { ...metres(label), summary: "position in the world" }, value: value[i] as number,
     stated: true,
   }));
@@ -61,9 +61,9 @@ export class Selected {
   private fields(item: Item, entry: JsonObject): Field[] {
     const { document, session } = this.studio;
     if (item.kind === "obstacle") return obstacleFields(item.index, entry);
-    const path = pathOfItem(document, item);
+    const path = pathOfItem(document, item) ?? `subjects[${item.index + 1}]`;
     const place = placeOfItem(document, item);
-    const fields = place ? placeFields(path ?? `subjects[${item.index + 1}]#all`, place) : [];
+    const fields = place ? placeFields(path, place) : [];
     if (item.kind === "keyframe") {
       const keyframe = this.studio.film.keyframes[item.index];
       const base = `keyframes[${item.index + 1}]`;
@@ -122,10 +122,6 @@ export class Selected {
         to[Number(part)] = Number(value);
         studio.edit(item.kind === "obstacle" ? this.corner(path, Number(part), Number(value))
           : moved(studio.document, item, to));
-      } else if (place) {
-        const to = place.slice() as Vec3;
-        to[axes.findIndex((a) => field.label.endsWith(a))] = Number(value);
-        studio.edit(moved(studio.document, item, to));
       }
       return;
     }
@@ -153,7 +149,6 @@ export class Selected {
 
   private look(index: number, value: string): void {
     const { studio } = this;
-    const base = `keyframes[${index + 1}]`;
     if (value === A_POINT) {
       studio.setMode("aim");
       this.show();
@@ -164,7 +159,6 @@ export class Selected {
       const { look_at: _l, subject: _s, ...rest } = entry;
       return value === AS_BEFORE ? rest : { ...rest, subject: value };
     });
-    void base;
     studio.edit({ label: `Aim keyframe ${index + 1}`, patch: [{ path: "keyframes", value: list }] });
   }
 

@@ -271,8 +271,7 @@ export function addedSubject(document: JsonObject, at: Vec3): Edit {
   return { label: "Add a subject", patch: [{ path: "subjects", value: [...named, made] }] };
 }
 
-export function lookedAt(document: JsonObject, index: number, point: Vec3): Edit {
-  void document;
+export function lookedAt(index: number, point: Vec3): Edit {
   return {
     label: `Aim keyframe ${index + 1}`,
     patch: [{ path: `keyframes[${index + 1}].look_at`, value: rounded(point) }],

@@ -165,7 +165,7 @@ export class Pick {
     const { selection } = studio;
     if (!hit || selection?.kind !== "keyframe") return;
     studio.setMode("orbit");
-    studio.edit(lookedAt(studio.document, selection.index, hit));
+    studio.edit(lookedAt(selection.index, hit));
     studio.select({ kind: "look", index: selection.index });
   }
 

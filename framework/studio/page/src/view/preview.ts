@@ -101,17 +101,22 @@ export class Preview {
     if (!this.studio.guides || width < 10) return;
     const small = scaled(optics, width);
     context.lineWidth = 1;
-    context.strokeStyle = "rgba(255, 255, 255, 0.55)";
-    context.shadowColor = "rgba(0, 0, 0, 0.7)";
-    context.shadowBlur = 2;
-    context.beginPath();
-    for (const third of [1 / 3, 2 / 3]) {
-      context.moveTo(width * third, 0);
-      context.lineTo(width * third, height);
-      context.moveTo(0, height * third);
-      context.lineTo(width, height * third);
+    // A dark line beside each light one: seen on any picture.
+    for (const [by, tint] of [[1.5, "rgba(0, 0, 0, 0.35)"], [0.5, "rgba(255, 255, 255, 0.75)"]] as
+         const) {
+      context.strokeStyle = tint;
+      context.beginPath();
+      for (const third of [1 / 3, 2 / 3]) {
+        const x = Math.round(width * third) + by, y = Math.round(height * third) + by;
+        context.moveTo(x, 0);
+        context.lineTo(x, height);
+        context.moveTo(0, y);
+        context.lineTo(width, y);
+      }
+      context.stroke();
     }
-    context.stroke();
+    context.shadowColor = "rgba(0, 0, 0, 0.8)";
+    context.shadowBlur = 2;
     const horizon = horizonOf(view, small);
     if (horizon) {
       context.strokeStyle = "#7fd3ff";

@@ -45,9 +45,9 @@ void main() {
   float u = vAlong / dash;
   if (pattern == 0 && fract(u) > 0.55) discard;
   if (pattern == 2 && abs(vSide) < 0.4) discard;
-  if (pattern == 4 && fract(u * 2.0 + vSide * 0.35) > 0.6) discard;
+  bool pale = pattern == 4 && fract(u * 1.4 + vSide * 0.35) > 0.65;
   if (pattern == 5 && fract(u * 2.0) > 0.4) discard;
-  gl_FragColor = vec4(tint, alpha);
+  gl_FragColor = vec4(pale ? mix(tint, vec3(1.0), 0.75) : tint, alpha);
 }`;
 
 export class Ribbon {
