@@ -6,6 +6,7 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium, openPage, startBrowser, waitGrade } from "./browser.mjs";
 import { edits } from "./cases_edit.mjs";
+import { film } from "./cases_film.mjs";
 import { links } from "./cases_link.mjs";
 import { views } from "./cases_view.mjs";
 import { figures } from "./figures.mjs";
@@ -70,6 +71,11 @@ try {
     await run(browsers[0], name, then);
   }
   await Promise.all(browsers.slice(1).map((browser) => browser.close()));
+  if (!only || only === "film") {
+    failed += await film(browsers[0], async (page, file) => {
+      if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
+    });
+  }
   if (!only || only === "figures") failed += await figures(browsers[0]);
 } finally {
   await Promise.all(browsers.map((browser) => browser.close()));

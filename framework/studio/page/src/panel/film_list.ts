@@ -22,9 +22,21 @@ export class FilmList {
     });
   }
 
+  private shown = "";
+
   private show(): void {
     const { studio } = this;
     const { document, film } = studio;
+    for (const mode of ["place", "draw"]) {
+      byId(mode).setAttribute("aria-pressed", String(studio.mode === mode));
+    }
+    // Rows that say the same stay: one that is made again under the pointer loses the click.
+    const text = JSON.stringify([
+      film.keyframes.map((k) => [k.position, studio.timeOf(k.index)]), studio.selection,
+      entries(document, "subjects").map((s) => s.name),
+      entries(document, "obstacles").map((o) => [o.name, o.type])]);
+    if (text === this.shown) return;
+    this.shown = text;
     const rows = film.keyframes.map((keyframe, index) => this.row(
       { kind: "keyframe", index }, `${index + 1}`,
       keyframe.position.map((v) => show(v)).join(", "), `${show(studio.timeOf(index), 4)} s`));
@@ -39,9 +51,6 @@ export class FilmList {
         String(entry.name || `Obstacle ${index + 1}`), String(entry.type ?? "")));
     });
     refill(byId("thing-list"), ...others);
-    for (const mode of ["place", "draw"]) {
-      byId(mode).setAttribute("aria-pressed", String(studio.mode === mode));
-    }
   }
 
   private row(item: Item, mark: string, text: string, more: string): HTMLElement {

@@ -20,6 +20,7 @@ export class Timeline {
   private limits: Plan["limits"];
   private mass: number | null = null;
   private waiting = false;
+  private shownCuts = "";
   private scale = 10;      // s in the width
 
   constructor(private readonly studio: Studio) {
@@ -94,7 +95,7 @@ export class Timeline {
   // ---- keyframes and cuts ----------------------------------------------------------------------
 
   private refreshMarks(): void {
-    const { film, selection, document } = this.studio;
+    const { film, selection } = this.studio;
     const wanted = film.keyframes.length;
     const buttons = [...this.marks.querySelectorAll<HTMLButtonElement>(".mark-keyframe")];
     while (buttons.length > wanted) buttons.pop()?.remove();
@@ -108,13 +109,21 @@ export class Timeline {
       button.setAttribute("aria-pressed", String(chosen));
       button.classList.toggle("untimed", !keyframe.timed);
     });
+    this.refreshCuts();
+  }
+
+  private refreshCuts(): void {
+    const { film } = this.studio;
+    const text = JSON.stringify([film.cuts, this.scale, this.width, film.duration]);
+    if (text === this.shownCuts) return;
+    this.shownCuts = text;
     for (const old of this.marks.querySelectorAll(".mark-cut")) old.remove();
     film.cuts.forEach((cut, i) => {
       const finish = cut.finish ?? Math.min(cut.start + 1, film.duration);
       const button = el("button", {
         class: "mark-cut", type: "button", title: "Footage left out. Click to remove this cut.",
         "aria-label": `Remove cut ${i + 1}, ${show(cut.start)} to ${show(finish)} s`,
-        onclick: () => this.studio.edit(uncut(document, i)),
+        onclick: () => this.studio.edit(uncut(this.studio.document, i)),
       }, "cut \u2715");
       button.style.transform = `translateX(${this.x(cut.start).toFixed(1)}px)`;
       button.style.width = `${Math.max(14, this.x(finish) - this.x(cut.start)).toFixed(1)}px`;
