@@ -2,6 +2,7 @@
 // A plan as a file for something else to read: the plugin kind `exporter`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,14 @@
 #include "framework/trajectory/plan.h"
 
 namespace lapwing {
+
+// What a vehicle makes of a file: the flight that it would fly, without take-off and landing.
+struct FlownFile {
+  Trajectory trajectory;                 // of the motion `path`, world of the plan, from time 0 on
+  double start = 0, finish = 0;          // s of the plan, the part that the file is of
+  std::vector<double> photographs = {};  // s of the flight, when images are taken
+  std::vector<double> reached = {};      // s of the flight, when each of its waypoints is
+};
 
 class Exporter : public PluginObject {
  public:
@@ -38,6 +47,13 @@ class Exporter : public PluginObject {
   // than that which wrote it, and compared with the plan.
   virtual std::vector<std::string> losses(const Plan&, const std::string& /*written*/) const {
     return {};
+  }
+
+  // Of a format that vehicles fly: the flight, read from the bytes as a vehicle would. The caller
+  // compares it with the plan (flown_comparison.h), says how far it is from it, and refuses a file
+  // that would break what the plan keeps.
+  virtual std::optional<FlownFile> flown(const Plan&, const std::string& /*written*/) const {
+    return std::nullopt;
   }
 
   // Sentences for the user on what the file is not good for, though it can be written.

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/export/flown_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "framework/core/number_text.h"
+#include "framework/core/units.h"
+#include "framework/geometry/camera_axes.h"
+#include "framework/trajectory/interpolate.h"
+#include "framework/verify/verify.h"
+
+namespace lapwing {
+namespace {
+
+constexpr std::size_t kPlaces = 2000;  // of plan and flight, that are brought together
+constexpr double kWait =
+    4e-4;                    // m^2 that it counts as where one of them stands and the other goes on
+constexpr double kNear = 1;  // s of the plan before and behind, that are compared
+
+// Of every sample of the flight, the time of the plan whose place it has come to, never falling:
+// the alignment with the least squared distances (dynamic time warping).
+class PlanProgress {
+ public:
+  PlanProgress(const Plan& plan, const FlownFile& flown) : plan_(plan), flown_(flown) {
+    const auto& samples = flown.trajectory.samples;
+    std::vector<Eigen::Vector3d> wanted, shown;
+    std::vector<double> planned;
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+      const double share = static_cast<double>(i) / (kPlaces - 1);
+      planned.push_back(flown.start + share * (flown.finish - flown.start));
+      wanted.push_back(sample_at(plan.trajectory, planned.back()).position);
+      shown.push_back(sample_at(flown.trajectory, share * samples.back().time).position);
+    }
+    const std::vector<std::size_t> matches = align(wanted, shown);
+    for (const Sample& s : samples) {
+      const double at = samples.back().time > 0 ? s.time / samples.back().time * (kPlaces - 1) : 0;
+      const std::size_t i = std::min(static_cast<std::size_t>(at), kPlaces - 2);
+      const double before = planned[matches[i]], after = planned[matches[i + 1]];
+      reached_.push_back(before + (at - static_cast<double>(i)) * (after - before));
+    }
+  }
+
+  const std::vector<double>& times() const { return reached_; }
+
+  // The distance of the flight's sample of that number from the plan near the place it has come to.
+  double across(std::size_t number) const {
+    constexpr int kParts = 40;
+    const Eigen::Vector3d& place = flown_.trajectory.samples[number].position;
+    const double from = std::max(flown_.start, reached_[number] - kNear);
+    const double to = std::min(flown_.finish, reached_[number] + kNear);
+    Eigen::Vector3d before = sample_at(plan_.trajectory, from).position;
+    double least = (before - place).norm();
+    for (int k = 1; k <= kParts; ++k) {
+      const Eigen::Vector3d after =
+          sample_at(plan_.trajectory, from + (to - from) * k / kParts).position;
+      const Eigen::Vector3d way = after - before;
+      const double length = way.squaredNorm();
+      const double share = length > 0 ? std::clamp(way.dot(place - before) / length, 0.0, 1.0) : 0;
+      least = std::min(least, (before + share * way - place).norm());
+      before = after;
+    }
+    return least;
+  }
+
+  // The time of the flight at which it has come to a time of the plan.
+  double flown_time(double planned) const {
+    const auto found = std::lower_bound(reached_.begin(), reached_.end(), planned);
+    const auto& samples = flown_.trajectory.samples;
+    if (found == reached_.end()) return samples.back().time;
+    return samples[static_cast<std::size_t>(found - reached_.begin())].time;
+  }
+
+ private:
+  // Of each place that is shown, the nearest of the wanted ones that the alignment gives it.
+  static std::vector<std::size_t> align(const std::vector<Eigen::Vector3d>& wanted,
+                                        const std::vector<Eigen::Vector3d>& shown) {
+    enum : char { both, flight, plan };
+    std::vector<char> steps(kPlaces * kPlaces, both);
+    std::vector<double> row(kPlaces, INFINITY), next(kPlaces);
+    const auto cost = [&](std::size_t i, std::size_t j) {
+      return (shown[i] - wanted[j]).squaredNorm();
+    };
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+      for (std::size_t j = 0; j < kPlaces; ++j) {
+        const double diagonal = i == 0 && j == 0 ? 0 : i > 0 && j > 0 ? row[j - 1] : INFINITY;
+        const double up = i > 0 ? row[j] + kWait : INFINITY;
+        const double left = j > 0 ? next[j - 1] + kWait : INFINITY;
+        const double least = std::min({diagonal, up, left});
+        steps[i * kPlaces + j] = least == diagonal ? both : least == up ? flight : plan;
+        next[j] = least + cost(i, j);
+      }
+      row.swap(next);
+    }
+    std::vector<std::size_t> matches(kPlaces, kPlaces - 1);
+    std::size_t i = kPlaces - 1, j = kPlaces - 1;
+    std::vector<double> least(kPlaces, INFINITY);
+    while (true) {
+      if (cost(i, j) < least[i]) least[i] = cost(i, j), matches[i] = j;
+      if (i == 0 && j == 0) return matches;
+      const char step = steps[i * kPlaces + j];
+      if (step != plan) --i;
+      if (step != flight) --j;
+    }
+  }
+
+  const Plan& plan_;
+  const FlownFile& flown_;
+  std::vector<double> reached_;
+};
+
+Eigen::Vector3d axis_of(const Sample& s) {
+  return camera_axes(s.yaw + s.gimbal_yaw, s.gimbal_pitch).forward;
+}
+
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0));
+}
+
+void compare_samples(const Plan& plan, const FlownFile& flown, const PlanProgress& progress,
+                     FlownComparison& result) {
+  const auto& samples = flown.trajectory.samples;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double time = progress.times()[i];
+    const Sample wanted = sample_at(plan.trajectory, time);
+    const double across = progress.across(i);
+    if (across > result.across) result.across = across, result.across_time = time;
+    const double late = samples[i].time - (time - flown.start);
+    if (std::abs(late) > std::abs(result.late)) result.late = late, result.late_time = time;
+    const double heading = std::abs(std::remainder(samples[i].yaw - wanted.yaw, 2 * M_PI));
+    if (heading > result.heading) result.heading = heading, result.heading_time = time;
+    if (!plan.trajectory.has_gimbal) continue;
+    const double camera = angle_between(axis_of(samples[i]), axis_of(wanted));
+    if (camera > result.camera) result.camera = camera, result.camera_time = time;
+  }
+  result.longer = samples.back().time - (flown.finish - flown.start);
+}
+
+// Views of the part of the file, with the images nearest to them in order.
+void compare_images(const Plan& plan, const FlownFile& flown, FlownComparison& result) {
+  std::size_t wanted = 0;
+  for (const PlannedView& view : plan.task.scan->views)
+    if (view.time >= flown.start - 1e-6 && view.time <= flown.finish + 1e-6) {
+      const std::size_t number = wanted++;
+      if (number >= flown.photographs.size()) continue;
+      const Sample s = sample_at(flown.trajectory, flown.photographs[number]);
+      result.image_distance = std::max(result.image_distance, (s.position - view.position).norm());
+      result.image_angle = std::max(
+          result.image_angle, angle_between(axis_of(s), camera_axes(view.yaw, view.pitch).forward));
+    }
+  result.images_missed = wanted - std::min(wanted, flown.photographs.size());
+}
+
+// The plan with the flight in the place of its own: what was asked for at times, at their times.
+Plan plan_as_flown(const Plan& plan, const FlownFile& flown, const PlanProgress& progress) {
+  Plan made;
+  made.mission = plan.mission;
+  made.kind = plan.kind;
+  made.vehicle = plan.vehicle;
+  made.environment = plan.environment;
+  made.trajectory = flown.trajectory;
+  made.task.framing_share = plan.task.framing_share;
+  made.task.line_of_sight_required = plan.task.line_of_sight_required;
+  made.task.closed_loop_required = false;
+  const auto& samples = plan.trajectory.samples;
+  if (flown.start <= samples.front().time && flown.finish >= samples.back().time)
+    made.task.gates = plan.task.gates;
+  const double end = flown.trajectory.samples.back().time;
+  if (plan.trajectory.has_gimbal)
+    for (const FramingTask& task : plan.task.framing) {
+      TimeSpan span{std::min(end, progress.flown_time(task.span.start)),
+                    std::min(end, progress.flown_time(task.span.finish))};
+      if (span.finish > span.start + 1e-3) made.task.framing.push_back({task.subject, span});
+    }
+  return made;
+}
+
+std::set<std::string> failed_checks(const Value& certificate) {
+  std::set<std::string> names;
+  if (!certificate.is_map()) return names;
+  for (const Check& check : Certificate::from_value(certificate).failures())
+    names.insert(check.name);
+  return names;
+}
+
+void judge_flight(const Plan& plan, const Plan& flown, const std::filesystem::path& folder,
+                  FlownComparison& result) {
+  const Certificate certificate = verify(flown, {.folder = folder});
+  const std::set<std::string> known = failed_checks(plan.certificate);
+  for (const Check& check : certificate.checks) {
+    if (!check.required || !check.skipped.empty() || check.pass || known.count(check.name)) {
+      const bool told = check.name == "clearance" || check.name == "subject_distance" ||
+                        check.name == "flight_zone" || check.name == "framing";
+      if (told && check.skipped.empty()) result.sentences.push_back("flown so: " + to_line(check));
+      continue;
+    }
+    (check.group == CheckGroup::safety ? result.refusals : result.sentences)
+        .push_back("flown so: " + to_line(check));
+  }
+}
+
+std::string at_time(double time) {
+  return " (at " + plain_number(time, 4) + " s)";
+}
+
+void say(const Plan& plan, FlownComparison& r) {
+  std::string line = "as a vehicle joins its waypoints, the flight is at most " +
+                     plain_number(r.across, 3) + " m across the path of the plan" +
+                     at_time(r.across_time) + " and " + plain_number(std::abs(r.late), 3) +
+                     (r.late < 0 ? " s early" : " s late") + at_time(r.late_time);
+  if (plan.trajectory.has_gimbal)
+    line += "; its camera is at most " + plain_number(degrees(r.camera), 3) +
+            " deg from that of the plan" + at_time(r.camera_time);
+  else
+    line += "; its heading is at most " + plain_number(degrees(r.heading), 3) +
+            " deg from that of the plan" + at_time(r.heading_time);
+  r.sentences.push_back(line);
+  r.sentences.push_back("it takes " + plain_number(std::abs(r.longer), 3) + " s " +
+                        (r.longer < 0 ? "less" : "more") +
+                        " than the plan, without take-off and landing");
+  if (!plan.task.scan) return;
+  std::string images = "its images are at most " + plain_number(r.image_distance, 3) + " m and " +
+                       plain_number(degrees(r.image_angle), 3) + " deg from their views";
+  if (r.images_missed > 0) images += "; " + std::to_string(r.images_missed) + " are not taken";
+  r.sentences.push_back(images);
+}
+
+}  // namespace
+
+FlownComparison compare_flown(const Plan& plan, const FlownFile& flown,
+                              const std::filesystem::path& folder) {
+  FlownComparison result;
+  const PlanProgress progress(plan, flown);
+  compare_samples(plan, flown, progress, result);
+  if (plan.task.scan) compare_images(plan, flown, result);
+  say(plan, result);
+  judge_flight(plan, plan_as_flown(plan, flown, progress), folder, result);
+  return result;
+}
+
+}  // namespace lapwing

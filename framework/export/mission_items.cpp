@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/export/mission_items.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/core/number_text.h"
+#include "framework/core/units.h"
+#include "framework/export/mission_fences.h"
+#include "framework/export/waypoint_timing.h"
+
+namespace lapwing {
+namespace {
+
+constexpr std::size_t kMostPx4 = 2000, kMostArduPilot = 700;  // items, of a file
+constexpr std::size_t kFrame = 8;  // items around the waypoints: take-off, video, landing ...
+constexpr double kColumn = 0.25;   // m, between places of a climb that are tried
+constexpr double kSameAngle = 0.0035, kSameSpeed = 0.01;  // rad, m/s: not ordered again
+
+double heading_deg(double yaw) {
+  const double heading = std::fmod(90 - degrees(yaw), 360);
+  return heading < 0 ? heading + 360 : heading;
+}
+
+// In (-180, 180], clockwise.
+double turn_deg(double angle) {
+  return -degrees(std::remainder(angle, 2 * M_PI));
+}
+
+double rounded(double value, double scale) {
+  return std::round(value * scale) / scale + 0.0;
+}
+
+MissionItem order(int command, std::array<double, 7> params) {
+  return {command, mav::kNoPlace, params};
+}
+
+class Builder {
+ public:
+  Builder(const Plan& plan, const MissionOptions& options, const std::string& format)
+      : plan_(plan),
+        options_(options),
+        format_(format),
+        frame_(plan, std::nullopt, format),
+        vehicle_(vehicle_from_value(plan.vehicle)),
+        waypoints_(fewest_waypoints(plan, options.tolerance, format)) {
+    mission_.home_z = home_z_of(plan, options);
+    time_waypoints(waypoints_, vehicle_, options.tolerance.across);
+  }
+
+  PlannedMission build() {
+    const auto [first, last] = chosen_part();
+    const PlannedWaypoint& begin = waypoints_[first];
+    mission_.home = frame_.at({begin.position.x(), begin.position.y(), mission_.home_z});
+    mission_.start = begin.time;
+    mission_.finish = waypoints_[last].time;
+    mission_.waypoints = last - first + 1;
+    add_start(first, last);
+    for (std::size_t k = first; k <= last; ++k) add_waypoint(k, k == first);
+    add_end(last);
+    for (std::size_t k = first; k <= last; ++k)
+      mission_.cruise = std::max(mission_.cruise, waypoints_[k].speed);
+    mission_.fences = mission_fences(plan_, mission_.said);
+    say(first, last);
+    return std::move(mission_);
+  }
+
+ private:
+  // Items that a waypoint takes at most.
+  std::size_t items_of(std::size_t k) const {
+    return 1 + 2 + (plan_.trajectory.has_gimbal ? 1 : 0) + (options_.ardupilot ? 1 : 0) +
+           (waypoints_[k].photograph ? 1 : 0);
+  }
+
+  // First and last waypoint of the part that was asked for.
+  std::pair<std::size_t, std::size_t> chosen_part() {
+    const std::size_t most = options_.ardupilot ? kMostArduPilot : kMostPx4;
+    std::vector<std::size_t> ends{0};
+    std::size_t items = kFrame, all = kFrame;
+    for (std::size_t k = 1; k < waypoints_.size(); ++k) {
+      items += items_of(k);
+      all += items_of(k);
+      if (items > most) {
+        ends.push_back(k - 1);
+        items = kFrame + items_of(k);
+      }
+    }
+    ends.push_back(waypoints_.size() - 1);
+    const int parts = static_cast<int>(ends.size()) - 1;
+    if (options_.part == 0 && parts > 1)
+      throw InputError(format_ + ": up to " + std::to_string(all) + " items, and " +
+                       (options_.ardupilot ? "ArduPilot" : "PX4") + " holds " +
+                       std::to_string(most) + ": a larger `tolerance`, or " +
+                       std::to_string(parts) + " files: part=1 to part=" + std::to_string(parts));
+    if (options_.part > parts)
+      throw InputError(format_ + ": part=" + std::to_string(options_.part) + ", and the plan has " +
+                       std::to_string(parts) + " parts");
+    mission_.parts = parts;
+    mission_.part = std::max(1, options_.part);
+    const auto place = static_cast<std::size_t>(mission_.part);
+    return {ends[place - 1], ends[place]};
+  }
+
+  std::array<double, 7> at(const Eigen::Vector3d& p, std::array<double, 4> first) const {
+    const EarthPoint point = frame_.at(p);
+    return {first[0],
+            first[1],
+            first[2],
+            first[3],
+            rounded(point.latitude_deg, 1e7),
+            rounded(point.longitude_deg, 1e7),
+            rounded(point.height - mission_.home.height, 1e3)};
+  }
+
+  void add(MissionItem item) { mission_.items.push_back(item); }
+
+  void add_start(std::size_t first, std::size_t last) {
+    const PlannedWaypoint& w = waypoints_[first];
+    if (options_.take_off) {
+      check_column(w.position, "take-off", "`take_off=false`", w.time);
+      add({mav::kTakeOff, mav::kRelative, at(w.position, {0, 0, 0, rounded(yaw_of(first), 100)})});
+    }
+    if (!plan_.trajectory.has_gimbal) return;
+    if (options_.gimbal == mav::kGimbal) add(order(mav::kGimbalOwner, {-2, -2, -1, -1, 0, 0, 0}));
+    order_camera(std::min(first + 1, last));
+    if (!plan_.task.scan) add(order(mav::kVideoStart, {0, 0, 0, 0, 0, 0, 0}));
+  }
+
+  // Clockwise from north, of the line that ends at a waypoint; of the first, that of the next one.
+  double yaw_of(std::size_t k) const { return heading_deg(waypoints_[k].yaw); }
+
+  void add_waypoint(std::size_t k, bool first) {
+    const PlannedWaypoint& w = waypoints_[k];
+    if (!first) order_line(k);
+    // A rest is the same place again, with a time to hold: it turns the vehicle too.
+    add({mav::kWaypoint, mav::kRelative,
+         at(w.position, {rounded(first ? 0 : w.hold, 100), rounded(w.radius, 1000), 0,
+                         rounded(yaw_of(k), 100)})});
+    if (w.photograph) add(order(mav::kPhotograph, {0, 0, 1, ++photographs_, 0, 0, 0}));
+  }
+
+  // What holds for the line to a waypoint, ordered at the one before.
+  void order_line(std::size_t k) {
+    const PlannedWaypoint& w = waypoints_[k];
+    if (!w.rests() && std::abs(w.speed - speed_) > std::max(kSameSpeed, 0.02 * speed_)) {
+      add(order(mav::kChangeSpeed, {1, rounded(w.speed, 1000), -1, 0, 0, 0, 0}));
+      speed_ = w.speed;
+    }
+    if (options_.ardupilot && std::abs(std::remainder(w.yaw - heading_, 2 * M_PI)) > kSameAngle) {
+      add(order(mav::kConditionYaw, {rounded(yaw_of(k), 100), 0, 0, 0, 0, 0, 0}));
+      heading_ = w.yaw;
+    }
+    if (plan_.trajectory.has_gimbal) order_camera(k);
+  }
+
+  void order_camera(std::size_t k) {
+    const PlannedWaypoint& w = waypoints_[k];
+    if (w.subject >= 0) {
+      if (w.subject == subject_) return;
+      subject_ = w.subject;
+      const Subject& subject = plan_.environment.subjects[static_cast<std::size_t>(subject_)];
+      add({mav::kRoi, mav::kRelative, at(subject.positions.front(), {0, 0, 0, 0})});
+      return;
+    }
+    if (subject_ >= 0) add(order(mav::kRoiNone, {0, 0, 0, 0, 0, 0, 0}));
+    const bool known = subject_ < 0 && ordered_;
+    subject_ = -1;
+    const bool turns = turns_to_the_side();
+    const double yaw = options_.gimbal == mav::kGimbal ? w.camera_yaw : w.camera_yaw - w.yaw;
+    if (known && std::abs(w.camera_pitch - pitch_) < kSameAngle &&
+        (!turns || std::abs(std::remainder(yaw - yaw_, 2 * M_PI)) < kSameAngle))
+      return;
+    ordered_ = true;
+    pitch_ = w.camera_pitch;
+    yaw_ = yaw;
+    const double pitch = rounded(degrees(pitch_), 100);
+    const double side =
+        turns ? rounded(turn_deg(yaw_ - (options_.gimbal == mav::kGimbal ? M_PI / 2 : 0)), 100) : 0;
+    if (options_.gimbal == mav::kGimbal)  // roll and pitch locked to the horizon, yaw to north
+      add(order(mav::kGimbal, {pitch, side, 0, 0, turns ? 28.0 : 12.0, 0, 0}));
+    else
+      add(order(mav::kMountControl, {pitch, 0, side, 0, 0, 0, 2}));
+  }
+
+  bool turns_to_the_side() const {
+    return vehicle_.gimbal && vehicle_.gimbal->yaw_max > vehicle_.gimbal->yaw_min;
+  }
+
+  void add_end(std::size_t last) {
+    const PlannedWaypoint& w = waypoints_[last];
+    if (plan_.trajectory.has_gimbal) {
+      if (!plan_.task.scan) add(order(mav::kVideoStop, {0, 0, 0, 0, 0, 0, 0}));
+      if (subject_ >= 0) add(order(mav::kRoiNone, {0, 0, 0, 0, 0, 0, 0}));
+    }
+    if (options_.finish == "return") add(order(mav::kReturn, {0, 0, 0, 0, 0, 0, 0}));
+    if (options_.finish != "land") return;
+    check_column(w.position, "landing", "`finish=return` or `finish=hover`", w.time);
+    add({mav::kLand, mav::kRelative,
+         at({w.position.x(), w.position.y(), mission_.home_z},
+            {0, 0, 0, rounded(yaw_of(last), 100)})});
+    mission_.items.back().params[6] = 0;
+  }
+
+  // The way up or down, as far as shapes are open, to the margin above the take-off place.
+  void check_column(const Eigen::Vector3d& top, const char* what, const char* help,
+                    double time) const {
+    const double margin = plan_.environment.margin;
+    for (double z = top.z() - kColumn; z > mission_.home_z + margin + kColumn; z -= kColumn) {
+      const NearestObstacle nearest =
+          nearest_obstacle(plan_.environment, {top.x(), top.y(), z}, time);
+      if (nearest.distance < margin - 1e-3)
+        throw InputError(format_ + ": " + what +
+                         ": straight up from or down to z = " + plain_number(mission_.home_z) +
+                         " m, the way comes within " + plain_number(nearest.distance, 3) +
+                         " m of '" + nearest.name + "' (at z = " + plain_number(z, 3) + " m); " +
+                         help + " leaves it to the pilot");
+    }
+  }
+
+  void say(std::size_t first, std::size_t last) {
+    std::vector<EarthPoint> points;
+    for (std::size_t k = first; k <= last; ++k) points.push_back(frame_.at(waypoints_[k].position));
+    std::vector<std::string> said{frame_.sentence(points)};
+    said.push_back(sentence_of_heights(mission_.items, mission_.home_z));
+    std::string count = std::to_string(mission_.waypoints) + " waypoints, " +
+                        std::to_string(mission_.items.size()) + " items for " +
+                        (options_.ardupilot ? "ArduPilot" : "PX4");
+    if (mission_.parts > 1)
+      count += "; part " + std::to_string(mission_.part) + " of " + std::to_string(mission_.parts) +
+               ", " + plain_number(mission_.start, 5) + " s to " +
+               plain_number(mission_.finish, 5) + " s of the plan";
+    said.push_back(count);
+    if (!plan_.lights.empty())
+      said.emplace_back("the light is not in the file: nothing switches it");
+    if (!plan_.cuts.empty()) said.emplace_back("cuts are not marked: the video runs on");
+    said.emplace_back("take-off and landing are not compared with the plan, which has none");
+    mission_.said.insert(mission_.said.begin(), said.begin(), said.end());
+  }
+
+  const Plan& plan_;
+  const MissionOptions& options_;
+  const std::string& format_;
+  EarthFrame frame_;
+  Vehicle vehicle_;
+  std::vector<PlannedWaypoint> waypoints_;
+  PlannedMission mission_;
+  double speed_ = 0, heading_ = 0, pitch_ = 0, yaw_ = 0, photographs_ = 0;
+  int subject_ = -1;
+  bool ordered_ = false;
+};
+
+}  // namespace
+
+ParameterTable mission_parameters() {
+  return ParameterTable{}
+      .number("tolerance", 0.25, "m", "largest distance of the lines from the path",
+              between(0.05, 10))
+      .number("time_tolerance", 1, "s", "largest difference in time on a line at even speed",
+              between(0.05, 1000))
+      .number("angle_tolerance", 5, "deg", "largest error of camera or heading on a line",
+              between(0.5, 180))
+      .choice("autopilot", "px4", {"px4", "ardupilot"}, "autopilot that the commands are for")
+      .integer("gimbal", 1000, "command that turns the gimbal: 1000, or 205 for older autopilots",
+               between(205, 1000))
+      .optional_number("home_z", "m",
+                       "height of the take-off place, world; absent: the ground of the origin if "
+                       "its height is above it, else 0")
+      .boolean("take_off", true, "whether the mission begins with a take-off")
+      .choice("finish", "land", {"land", "return", "hover"}, "what follows the last waypoint")
+      .integer("part", 0, "part of a plan that is too long for one file; 0: it must fit",
+               between(0, 1000));
+}
+
+MissionOptions mission_options(const Parameters& given) {
+  MissionOptions options;
+  options.tolerance = {given.number("tolerance"), given.number("time_tolerance"),
+                       radians(given.number("angle_tolerance"))};
+  options.ardupilot = given.text("autopilot") == "ardupilot";
+  options.gimbal = static_cast<int>(given.integer("gimbal"));
+  if (options.gimbal != mav::kGimbal && options.gimbal != mav::kMountControl)
+    throw InputError(given.origin("gimbal"), "gimbal: expected 1000 or 205");
+  if (given.has("home_z")) options.home_z = given.number("home_z");
+  options.take_off = given.boolean("take_off");
+  options.finish = given.text("finish");
+  options.part = static_cast<int>(given.integer("part"));
+  return options;
+}
+
+double home_z_of(const Plan& plan, const MissionOptions& options) {
+  const auto& origin = plan.geodetic_origin;
+  const bool known = origin && origin->height_of == HeightOf::ground;
+  return options.home_z.value_or(known ? 0.0 - origin->height : 0);
+}
+
+std::optional<double> home_above_sea(const EarthFrame& frame, const EarthPoint& home,
+                                     std::vector<std::string>* said) {
+  if (frame.heights() == HeightOf::sea) return home.height;
+  if (frame.heights() == HeightOf::ellipsoid) {
+    try {
+      return home.height - geoid_height_at(home.latitude_deg, home.longitude_deg, "home");
+    } catch (const InputError&) {  // said below: nothing in the flight depends on it
+    }
+  }
+  if (said)
+    said->push_back(
+        "the height of the take-off place above the sea is not known, and is written "
+        "as 0; heights of waypoints do not depend on it");
+  return std::nullopt;
+}
+
+PlannedMission mission_of(const Plan& plan, const MissionOptions& options,
+                          const std::string& format) {
+  return Builder(plan, options, format).build();
+}
+
+std::string sentence_of_heights(const std::vector<MissionItem>& items, double home_z) {
+  double lowest = INFINITY, highest = -INFINITY;
+  for (const MissionItem& item : items)
+    if (item.command == mav::kWaypoint && item.frame == mav::kRelative) {
+      lowest = std::min(lowest, item.params[6]);
+      highest = std::max(highest, item.params[6]);
+    }
+  return "heights in the file are above the take-off place, which is at z = " +
+         plain_number(home_z) + " m of the plan: from " + plain_number(lowest, 4) + " m to " +
+         plain_number(highest, 4) + " m";
+}
+
+}  // namespace lapwing

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// qgc_plan and waypoints: files that loaders take, and the flight that becomes of them.
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "framework/core/json.h"
+#include "framework/export/flown_comparison.h"
+#include "framework/verify/certificate.h"
+#include "tests/obstacles.h"
+#include "tests/plugins/exporters/mission_checker.h"
+#include "tests/plugins/exporters/placed_plan.h"
+
+namespace lapwing {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+Value parameters_of(std::initializer_list<std::pair<const char*, Value>> entries) {
+  Value given = Value::map();
+  for (const auto& [key, value] : entries) given.set(key, value);
+  return given;
+}
+
+// A certified film of 40 s: a half circle around a statue, then away from it.
+Plan film_plan() {
+  Plan plan = placed_plan();
+  plan.mission = "A & B";
+  plan.certificate = Certificate{{{.name = "clearance", .worst = 1, .pass = true}}}.to_value();
+  plan.trajectory.samples.clear();
+  Subject statue;
+  statue.name = "statue";
+  statue.times = {0};
+  statue.positions = {{0, 0, 1}};
+  plan.environment.subjects.push_back(statue);
+  plan.task.framing.push_back({"statue", {0, 20}});
+  for (int i = 0; i <= 400; ++i) {
+    const double t = 0.1 * i, a = std::min(t, 20.0) * M_PI / 20, away = std::max(0.0, t - 20);
+    Sample s;
+    s.time = t;
+    s.position = {20 * std::cos(a), 20 * std::sin(a) - 1.5 * away, 10};
+    s.velocity = t < 20 ? Eigen::Vector3d(-M_PI * std::sin(a), M_PI * std::cos(a), 0)
+                        : Eigen::Vector3d(0, -1.5, 0);
+    s.yaw = t <= 20 ? a + M_PI : 2 * M_PI - 0.05 * away;
+    s.gimbal_pitch = t <= 20 ? std::atan2(-9.0, 20.0) : -0.2;
+    plan.trajectory.samples.push_back(s);
+  }
+  return plan;
+}
+
+Plan scan_plan() {
+  Plan plan = film_plan();
+  plan.kind = "scan";
+  plan.task.framing.clear();
+  plan.environment.subjects.clear();
+  plan.task.scan.emplace();
+  for (const int i : {20, 100, 390}) {
+    const Sample& s = plan.trajectory.samples[static_cast<std::size_t>(i)];
+    plan.task.scan->views.push_back({s.time, s.position, s.yaw, s.gimbal_pitch});
+  }
+  return plan;
+}
+
+std::vector<int> commands_in(const std::string& text) {
+  std::vector<int> commands;
+  const Value document = from_json(text, "test");
+  for (const Value& item : document.at("mission").at("items").as_list())
+    commands.push_back(static_cast<int>(item.at("command").as_integer()));
+  return commands;
+}
+
+std::string file_of(const char* format, const Plan& plan, const Value& given = Value::map()) {
+  return exporter_named(format, given)->write(plan);
+}
+
+TEST(Missions, LoadersTakeThem) {
+  for (const Plan& plan : {film_plan(), scan_plan()})
+    for (const char* autopilot : {"px4", "ardupilot"})
+      for (const int gimbal : {1000, 205})
+        for (const char* finish : {"land", "return", "hover"}) {
+          const Value given =
+              parameters_of({{"autopilot", autopilot}, {"gimbal", gimbal}, {"finish", finish}});
+          EXPECT_THAT(plan_faults(file_of("qgc_plan", plan, given)), IsEmpty());
+          EXPECT_THAT(waypoints_faults(file_of("waypoints", plan, given)), IsEmpty());
+        }
+}
+
+TEST(Missions, HoldWhatIsFlownAndFilmed) {
+  const std::vector<int> film = commands_in(file_of("qgc_plan", film_plan()));
+  using testing::Contains;
+  for (const int command : {22, 1001, 195, 2500, 178, 16, 197, 1000, 2501, 21})
+    EXPECT_THAT(film, Contains(command)) << command;
+  EXPECT_EQ(film.front(), 22);
+  EXPECT_EQ(film.back(), 21);
+  const std::vector<int> scan = commands_in(file_of("qgc_plan", scan_plan()));
+  EXPECT_EQ(std::count(scan.begin(), scan.end(), 2000), 3);
+  EXPECT_THAT(scan, Not(Contains(2500)));
+  const std::vector<int> older = commands_in(file_of("qgc_plan", film_plan(), with("gimbal", 205)));
+  EXPECT_THAT(older, Contains(205));
+  EXPECT_THAT(older, Not(Contains(1000)));
+  EXPECT_THAT(commands_in(file_of("qgc_plan", film_plan(), with("autopilot", "ardupilot"))),
+              Contains(115));
+}
+
+TEST(Missions, HeightsCountFromTheTakeOffPlace) {
+  // z = 0 is 2 m above the ground of the origin.
+  const Value document = from_json(file_of("qgc_plan", film_plan()), "test");
+  EXPECT_NEAR(document.at("mission").at("items").as_list()[0].at("Altitude").as_number(), 12, 1e-3);
+  const Value raised = from_json(file_of("qgc_plan", film_plan(), with("home_z", 4)), "test");
+  EXPECT_NEAR(raised.at("mission").at("items").as_list()[0].at("Altitude").as_number(), 6, 1e-3);
+  const auto exporter = exporter_named("qgc_plan");
+  const auto said = exporter->losses(film_plan(), exporter->write(film_plan()));
+  EXPECT_TRUE(says(said, "origin 46.5191, 6.5668 at 2 m above the ground there"));
+  EXPECT_TRUE(says(said, "take-off place, which is at z = -2 m of the plan: from 12 m to 12 m"));
+  EXPECT_TRUE(says(said, "above the sea is not known"));
+  Plan sea = film_plan();
+  sea.geodetic_origin = GeodeticOrigin{kLatitude, kLongitude, 400, HeightOf::sea, 48};
+  const Value there = from_json(file_of("qgc_plan", sea), "test");
+  EXPECT_NEAR(there.at("mission").at("plannedHomePosition").as_list()[2].as_number(), 400, 0.01);
+}
+
+TEST(Missions, TheirFlightIsThatOfThePlan) {
+  for (const char* format : {"qgc_plan", "waypoints"})
+    for (const char* autopilot : {"px4", "ardupilot"})
+      for (const int gimbal : {1000, 205}) {
+        const Plan plan = film_plan();
+        const auto exporter =
+            exporter_named(format, parameters_of({{"autopilot", autopilot}, {"gimbal", gimbal}}));
+        const auto flown = exporter->flown(plan, exporter->write(plan));
+        ASSERT_TRUE(flown);
+        const FlownComparison compared = compare_flown(plan, *flown, {});
+        EXPECT_LE(compared.across, 0.25);
+        EXPECT_LT(std::abs(compared.late), 2);
+        EXPECT_LT(compared.camera, 0.35) << autopilot << gimbal;
+        EXPECT_THAT(compared.refusals, IsEmpty());
+      }
+  const Plan scan = scan_plan();
+  const auto exporter = exporter_named("qgc_plan");
+  const FlownComparison compared =
+      compare_flown(scan, *exporter->flown(scan, exporter->write(scan)), {});
+  EXPECT_EQ(compared.images_missed, 0u);
+  EXPECT_LT(compared.image_distance, 0.3);
+}
+
+TEST(Missions, TheFlightIsReadFromTheBytes) {
+  const Plan plan = film_plan();
+  const auto exporter = exporter_named("waypoints");
+  std::string text = exporter->write(plan);
+  const std::size_t place = text.find("46.51", text.find("\t16\t", text.find("\t16\t") + 4));
+  text.replace(place, 6, "46.511");
+  EXPECT_GT(compare_flown(plan, *exporter->flown(plan, text), {}).across, 100);
+  std::string unknown = exporter->write(plan);
+  unknown.replace(unknown.find("\t178\t"), 5, "\t179\t");
+  EXPECT_THROW(exporter->flown(plan, unknown), InputError);
+}
+
+TEST(Missions, AToleranceTradesPointsForLoss) {
+  const Plan plan = film_plan();
+  std::size_t before = 1000;
+  for (const double tolerance : {0.05, 0.5, 3.0}) {
+    const auto exporter = exporter_named(
+        "qgc_plan", parameters_of({{"tolerance", tolerance}, {"angle_tolerance", 30}}));
+    const std::string text = exporter->write(plan);
+    const auto commands = commands_in(text);
+    const auto count = static_cast<std::size_t>(std::count(commands.begin(), commands.end(), 16));
+    EXPECT_LT(count, before);
+    before = count;
+    EXPECT_LE(compare_flown(plan, *exporter->flown(plan, text), {}).across, tolerance);
+  }
+}
+
+TEST(Missions, ZonesAreFences) {
+  Plan plan = film_plan();
+  const auto prism = [](const char* name, Side side, Value::List corners) {
+    Obstacle zone;
+    zone.name = name;
+    zone.type = "prism";
+    zone.side = side;
+    zone.parameters.set("corners", Value(std::move(corners)));
+    return zone;
+  };
+  plan.environment.obstacles = {
+      prism("park", Side::keep_inside, {-90.0, -90.0, 90.0, -90.0, 90.0, 90.0, -90.0, 90.0}),
+      prism("far", Side::keep_out, {50.0, 0.0, 60.0, 0.0, 60.0, 9.0}),
+      prism("below", Side::keep_out, {-30.0, -30.0, 30.0, -30.0, 30.0, 30.0, -30.0, 30.0}),
+      sphere_at("tree", {40, 0, 3}, 2)};
+  const auto exporter = exporter_named("qgc_plan");
+  const std::string text = exporter->write(plan);
+  EXPECT_THAT(plan_faults(text), IsEmpty());
+  const Value document = from_json(text, "test");
+  const Value& fence = document.at("geoFence");
+  EXPECT_EQ(fence.at("polygons").as_list().size(), 2u);
+  EXPECT_EQ(fence.at("circles").as_list().size(), 1u);
+  EXPECT_TRUE(says(exporter->losses(plan, text), "passes above or below: zone 'below'"));
+  EXPECT_TRUE(says(exporter_named("waypoints")->losses(plan, ""), "fences are not in this format"));
+}
+
+TEST(Missions, TooLongAPlanIsWrittenInParts) {
+  Plan plan = film_plan();
+  for (Sample& s : plan.trajectory.samples) s.gimbal_pitch = -0.5 + 0.4 * std::sin(4 * s.time);
+  plan.task.framing.clear();
+  Value given = parameters_of({{"autopilot", "ardupilot"}, {"angle_tolerance", 0.5}});
+  EXPECT_THAT(refusal_of(*exporter_named("qgc_plan", given), plan),
+              testing::AllOf(HasSubstr("ArduPilot holds 700"),
+                             HasSubstr("a larger `tolerance`, or"), HasSubstr("part=1 to part=")));
+  given.set("part", 2);
+  const auto exporter = exporter_named("qgc_plan", given);
+  const std::string text = exporter->write(plan);
+  EXPECT_LE(commands_in(text).size(), 700u);
+  EXPECT_TRUE(says(exporter->losses(plan, text), "part 2 of "));
+  const auto flown = exporter->flown(plan, text);
+  EXPECT_GT(flown->start, 0);
+  EXPECT_LE(compare_flown(plan, *flown, {}).across, 0.25);
+  given.set("part", 99);
+  EXPECT_THAT(refusal_of(*exporter_named("qgc_plan", given), plan), HasSubstr("part=99, and the"));
+}
+
+TEST(Missions, RefuseWhatTheyCannotHold) {
+  for (const char* format : {"qgc_plan", "waypoints"}) {
+    const auto exporter = exporter_named(format);
+    Plan homeless = film_plan();
+    homeless.geodetic_origin.reset();
+    EXPECT_THAT(refusal_of(*exporter, homeless), HasSubstr("has no origin on the earth"));
+    Plan still = film_plan();
+    still.trajectory.samples.resize(1);
+    EXPECT_THAT(refusal_of(*exporter, still), HasSubstr("has no length"));
+    Plan lost = film_plan();
+    lost.trajectory.samples[3].position.x() = std::nan("");
+    EXPECT_THAT(refusal_of(*exporter, lost), HasSubstr("not finite"));
+    Plan roofed = film_plan();
+    roofed.environment.margin = 0.5;
+    roofed.environment.obstacles.push_back(sphere_at("roof", {20, 0, 4}, 2));
+    roofed.environment = with_shapes(roofed.environment);
+    EXPECT_THAT(
+        refusal_of(*exporter, roofed),
+        testing::AllOf(HasSubstr("take-off"), HasSubstr("'roof'"), HasSubstr("take_off=false")));
+    EXPECT_THROW(exporter_named(format, with("gimbal", 300)), InputError);
+    EXPECT_THROW(exporter_named(format, with("tolerance", 0)), InputError);
+    EXPECT_THROW(exporter_named(format, with("autopilot", "betaflight")), InputError);
+  }
+  Plan uncertified = film_plan();
+  uncertified.certificate.set("feasible", false);
+  EXPECT_THAT(file_of("qgc_plan", uncertified), HasSubstr("Lapwing (not certified)"));
+  EXPECT_THAT(file_of("qgc_plan", film_plan()), Not(HasSubstr("not certified")));
+  EXPECT_THAT(refusal_of(*exporter_named("waypoints"), uncertified),
+              HasSubstr("no place to say so"));
+}
+
+// Each rule with a file that breaks it: what is replaced by what, and what is found.
+TEST(MissionChecker, EveryRuleOfPlansHasAFileThatBreaksIt) {
+  Plan plan = film_plan();
+  Obstacle zone;
+  zone.name = "far";
+  zone.type = "prism";
+  zone.parameters.set("corners", Value(Value::List{50.0, 0.0, 60.0, 0.0, 60.0, 9.0}));
+  plan.environment.obstacles = {zone, sphere_at("tree", {40, 0, 3}, 2)};
+  const Value good = from_json(file_of("qgc_plan", plan), "test");
+  ASSERT_THAT(plan_faults(to_json(good)), IsEmpty());
+  const auto broken = [&](const std::function<void(Value&)>& change) {
+    Value document = good;
+    change(document);
+    return plan_faults(to_json(document));
+  };
+  const auto without = [](Value& map, const std::string& key) {
+    Value kept = Value::map();
+    for (const auto& [name, value] : map.as_map())
+      if (name != key) kept.set(name, value);
+    map = kept;
+  };
+  EXPECT_THAT(plan_faults("{"), ElementsAre("no JSON"));
+  for (const char* key :
+       {"fileType", "version", "groundStation", "mission", "geoFence", "rallyPoints"})
+    EXPECT_THAT(broken([&](Value& d) { without(d, key); }), Not(IsEmpty())) << key;
+  const auto mission = [](Value& d) -> Value& { return *d.find("mission"); };
+  for (const char* key : {"version", "firmwareType", "vehicleType", "cruiseSpeed", "hoverSpeed",
+                          "globalPlanAltitudeMode", "plannedHomePosition", "items"})
+    EXPECT_THAT(broken([&](Value& d) { without(mission(d), key); }), Not(IsEmpty())) << key;
+  EXPECT_THAT(broken([&](Value& d) { mission(d).set("items", Value::list()); }),
+              ElementsAre("items"));
+  const auto item = [&](Value& d) -> Value& { return mission(d).find("items")->as_list()[0]; };
+  for (const char* key : {"type", "autoContinue", "command", "frame", "params"})
+    EXPECT_THAT(broken([&](Value& d) { without(item(d), key); }), Not(IsEmpty())) << key;
+  for (const char* key : {"AltitudeMode", "Altitude", "AMSLAltAboveTerrain"})
+    EXPECT_THAT(broken([&](Value& d) { without(item(d), key); }),
+                ElementsAre("altitude: all three or none"));
+  EXPECT_THAT(broken([&](Value& d) { item(d).set("AltitudeMode", 2); }),
+              ElementsAre("AltitudeMode of another frame"));
+  EXPECT_THAT(broken([&](Value& d) { item(d).set("Altitude", 99.0); }),
+              ElementsAre("Altitude is not that of the params"));
+  EXPECT_THAT(broken([&](Value& d) {
+                for (const char* key : {"AltitudeMode", "Altitude", "AMSLAltAboveTerrain"})
+                  without(item(d), key);
+                item(d).set("frame", 10);
+              }),
+              ElementsAre("altitude above terrain becomes one above the sea"));
+  EXPECT_THAT(broken([&](Value& d) { item(d).set("doJumpId", 7); }), ElementsAre("doJumpId"));
+  EXPECT_THAT(broken([&](Value& d) { item(d).set("command", 4711); }),
+              testing::Contains("command 4711"));
+  EXPECT_THAT(broken([&](Value& d) { item(d).find("params")->as_list().pop_back(); }),
+              ElementsAre("params must contain 7 values"));
+  EXPECT_THAT(broken([&](Value& d) { item(d).find("params")->as_list()[0] = Value("x"); }),
+              ElementsAre("param 1"));
+  EXPECT_THAT(broken([&](Value& d) { item(d).find("params")->as_list()[3] = Value(); }), IsEmpty());
+  EXPECT_THAT(broken([&](Value& d) { item(d).find("params")->as_list()[4] = Value(); }),
+              ElementsAre("param 5"));
+  EXPECT_THAT(broken([&](Value& d) { item(d).find("params")->as_list()[4] = Value(91.0); }),
+              ElementsAre("no place on the earth"));
+  const auto fence = [](Value& d) -> Value& { return *d.find("geoFence"); };
+  for (const char* key : {"version", "circles", "polygons"})
+    EXPECT_THAT(broken([&](Value& d) { without(fence(d), key); }), Not(IsEmpty())) << key;
+  const auto polygon = [&](Value& d) -> Value& { return fence(d).find("polygons")->as_list()[0]; };
+  for (const char* key : {"polygon", "inclusion", "version"})
+    EXPECT_THAT(broken([&](Value& d) { without(polygon(d), key); }), Not(IsEmpty())) << key;
+  EXPECT_THAT(broken([&](Value& d) {
+                auto& corners = polygon(d).find("polygon")->as_list();
+                std::reverse(corners.begin(), corners.end());
+              }),
+              ElementsAre("polygon is not clockwise"));
+  EXPECT_THAT(broken([&](Value& d) {
+                fence(d).find("circles")->as_list()[0].find("circle")->set("radius", -1.0);
+              }),
+              ElementsAre("circle"));
+  EXPECT_THAT(broken([&](Value& d) { d.find("rallyPoints")->set("version", 1); }),
+              ElementsAre("rallyPoints.version"));
+}
+
+TEST(MissionChecker, EveryRuleOfWaypointsHasAFileThatBreaksIt) {
+  const std::string good = file_of("waypoints", film_plan());
+  const auto broken = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return waypoints_faults(text.replace(at, from.size(), to));
+  };
+  EXPECT_THAT(waypoints_faults(good), IsEmpty());
+  EXPECT_THAT(broken("QGC WPL 110", "QGC WPL 120"), ElementsAre("first line"));
+  EXPECT_THAT(waypoints_faults("QGC WPL 110\n"), ElementsAre("no items"));
+  EXPECT_THAT(broken("\n1\t0", "\n# a comment\n1\t0"), Not(IsEmpty()));
+  EXPECT_THAT(broken("\n1\t0\t3\t22\t", "\n1 0 3 22 "),
+              ElementsAre("line 3: expected 12 words between tabs"));
+  EXPECT_THAT(broken("\n1\t0\t3\t22", "\n2\t0\t3\t22"), ElementsAre("line 3: number"));
+  EXPECT_THAT(broken("\n1\t0\t3\t22", "\n1\t1\t3\t22"), ElementsAre("line 3: current"));
+  EXPECT_THAT(broken("\n1\t0\t3\t22", "\n1\t0\t10\t22"), ElementsAre("line 3: frame"));
+  EXPECT_THAT(broken("\n1\t0\t3\t22", "\n1\t0\t0\t22"),
+              ElementsAre("line 3: height above the sea"));
+  EXPECT_THAT(broken("\n1\t0\t3\t22", "\n1\t0\t2\t22"),
+              ElementsAre("line 3: frame of the command"));
+  EXPECT_THAT(broken("\n1\t0\t3\t22", "\n1\t0\t3\t4711"), ElementsAre("line 3: command"));
+  EXPECT_THAT(broken("\n0\t1\t0\t16", "\n0\t1\t3\t16"), ElementsAre("line 2: home"));
+  EXPECT_THAT(broken("\n1\t0\t3\t22\t0.0000", "\n1\t0\t3\t22\tnan"), ElementsAre("line 3: word 5"));
+  EXPECT_THAT(broken("46.519100", "46.5"), Not(IsEmpty()));
+  EXPECT_THAT(broken("46.519100", "96.519100"), ElementsAre("line 2: place"));
+}
+
+}  // namespace
+}  // namespace lapwing
