@@ -6,12 +6,21 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
 . scripts/build.sh
+# Kind, example and options of its run.
 readonly examples=(
-  filming/castle_flyover filming/two_actors racing/seven_gates light_painting/hello
-  "scan/church --config scan/small" "explore/office"
+  "film filming/castle_flyover" "film filming/two_actors" "race racing/seven_gates"
+  "painting light_painting/hello" "scan scan/church --config scan/small" "explore explore/office"
 )
-# Each format with its parameters; the judge of NAME is tests/judges/NAME.js.
-readonly formats=(gltf kml gpx:heights=ground geojson:heights=ground)
+# Each format with its parameters. The judge of NAME is tests/judges/NAME.js; a format without one
+# is written, and judged by the program itself where vehicles fly it.
+readonly formats=(
+  csv gltf chan kml gpx:heights=ground geojson:heights=ground qgc_plan waypoints srt edl
+)
+# What missions of MAVLink need: a race lands on its floor, a reconstructed surface has bumps where
+# the take-off is, an exploration is long.
+readonly -A flown=(
+  [race]=home_z=0.3 [scan]=finish=hover [explore]=angle_tolerance=20,take_off=false,finish=hover,part=1
+)
 # Where the examples are flown: z = 0 is the ground.
 readonly origin=46.5191,6.5668,0,ground
 
@@ -28,30 +37,60 @@ npm ci --prefix "$judges" --no-audit --no-fund >"$judges/npm.log" 2>&1 ||
   { tail -n 20 "$judges/npm.log" >&2; exit 1; }
 
 lapwing=build/release/bin/lapwing failed=0
-printf '%-28s %-10s %s\n' example format verdict
+declare -A verdicts
+
+# Verdict of one export: judge_file KIND FORMAT PLAN.
+judge_file() {
+  local kind=$1 format=$2 plan=$3 short=${2%%:*} file found
+  file=${plan%.json}.$short
+  [[ $short != qgc_plan && $short != waypoints ]] || format=$short${flown[$kind]:+:${flown[$kind]}}
+  if ! "$lapwing" export "$plan" --format "$format" -o "$file" --uncertified \
+    --origin "$origin" >"$judges/export.log" 2>&1; then
+    found=$(tail -n 1 "$judges/export.log")
+    # Refused for good: a camera track of a flight without a camera.
+    [[ $found != *"without a camera"* ]] || { echo "no camera"; return; }
+    echo "BAD: not written: $found"
+  elif [ ! -e "$judges/$short.js" ]; then
+    echo written
+  elif ! found=$(node "$judges/$short.js" "$file" "$plan" "$origin" 2>&1); then
+    echo "BAD: $(head -n 1 <<<"$found")"
+  else
+    echo good
+  fi
+}
+
 for example in "${examples[@]}"; do
   read -r -a words <<<"$example"
-  name=${words[0]} out=$judges/plans/${words[0]}
+  kind=${words[0]} name=${words[1]} out=$judges/plans/${words[1]}
   # A plan that is not certified has a file to judge too.
   status=0
-  "$lapwing" run "examples/$name.lua" "${words[@]:1}" -o "$out" --quiet >"$judges/run.log" 2>&1 ||
+  "$lapwing" run "examples/$name.lua" "${words[@]:2}" -o "$out" --quiet >"$judges/run.log" 2>&1 ||
     status=$?
   if [ "$status" -gt 1 ]; then
-    printf '%-28s %-10s %s\n' "$name" - "not planned: $(tail -n 1 "$judges/run.log")"
+    echo "$name: not planned: $(tail -n 1 "$judges/run.log")"
     failed=1
     continue
   fi
   for format in "${formats[@]}"; do
-    short=${format%%:*}
-    file=$out/plan.$short verdict=good
-    if ! "$lapwing" export "$out/plan.json" --format "$format" -o "$file" --uncertified \
-      --origin "$origin" >"$judges/export.log" 2>&1; then
-      verdict="not written: $(tail -n 1 "$judges/export.log")"
-    elif ! found=$(node "$judges/$short.js" "$file" "$out/plan.json" "$origin" 2>&1); then
-      verdict="BAD: $(head -n 1 <<<"$found")"
+    verdict=$(judge_file "$kind" "$format" "$out/plan.json")
+    if [[ $verdict == BAD* ]]; then
+      echo "$name ${format%%:*}: $verdict"
+      failed=1 verdict=BAD
     fi
-    [ "$verdict" = good ] || failed=1
-    printf '%-28s %-10s %s\n' "$name" "$short" "$verdict"
+    verdicts[$name ${format%%:*}]=$verdict
   done
+done
+
+printf '%-10s' format
+for example in "${examples[@]}"; do read -r _ name _ <<<"$example"; printf ' %-15s' "${name##*/}"; done
+echo
+for format in "${formats[@]}"; do
+  short=${format%%:*}
+  printf '%-10s' "$short"
+  for example in "${examples[@]}"; do
+    read -r _ name _ <<<"$example"
+    printf ' %-15s' "${verdicts[$name $short]:--}"
+  done
+  echo
 done
 exit "$failed"
