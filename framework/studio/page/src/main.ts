@@ -212,6 +212,8 @@ session.on((event) => {
     notices.say(`Written: ${event.message.files.join(", ")}`, "good");
   }
 });
+// Another token in the same tab: greet with it.
+window.addEventListener("hashchange", () => location.reload());
 window.addEventListener("beforeunload", (event) => {
   if (session.pending > 0 && session.link !== "open") event.preventDefault();
 });

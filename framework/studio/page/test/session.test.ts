@@ -227,3 +227,16 @@ test("what cannot be read is told and survived", () => {
   assert.equal(notes(events).length, 1);
   assert.equal(session.link, "open");
 });
+
+test("a server with another token is told from one that is away", () => {
+  const { session, wire, pass } = world();
+  wire().onclose?.();
+  pass(5000);
+  assert.equal(session.strange, false);
+  for (let i = 0; i < 3; ++i) {
+    wire().onopen?.();
+    wire().onclose?.();
+    pass(1500);
+  }
+  assert.equal(session.strange, true);
+});

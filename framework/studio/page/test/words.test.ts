@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { passagesOf, mendOf, plainName, sortedChecks, verdict } from "../src/state/failures";
+import { legAt, mendOf, passagesOf, plainName, slowerBy, sortedChecks, verdict } from "../src/state/failures";
 import { choicesIn, optionsIn } from "../src/state/installed";
 import { actionOf, bindings, keyOf, keyText } from "../src/state/keys";
 import { lanesOf, massOf } from "../src/state/samples";
@@ -154,4 +154,19 @@ test("no key does two things, and every key is found again", () => {
   assert.equal(keyOf({ key: " ", ctrlKey: false, metaKey: false, altKey: false, shiftKey: false }),
                "Space");
   for (const key of all) assert.ok(keyText(key).length > 0);
+});
+
+test("the leg to be slowed is the one at that time, beside a keyframe the faster", () => {
+  const keyframes = [{ time: 0, position: [0, 0, 0] as [number, number, number] },
+                     { time: 10, position: [10, 0, 0] as [number, number, number] },
+                     { time: 12, position: [20, 0, 0] as [number, number, number] }];
+  assert.equal(legAt(keyframes, 0), 1);
+  assert.equal(legAt(keyframes, 5), 1);
+  assert.equal(legAt(keyframes, 10), 2);
+  assert.equal(legAt(keyframes, 11), 2);
+  assert.equal(legAt(keyframes, 99), 2);
+  assert.equal(legAt(keyframes.slice(0, 1), 0), null);
+  assert.equal(legAt([], 0), null);
+  assert.equal(slowerBy(check({ name: "keyframe_miss", worst: 1, limit: 0.5 })), 1.25);
+  assert.equal(slowerBy(check({ name: "clearance", worst: 0, limit: 0.5 })), null);
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certificate as a list: what fails first, with its mend; a click goes to the place and second.
-import { plainName, sortedChecks, verdict, mendOf } from "../state/failures";
+import { legAt, mendOf, plainName, slowerBy, sortedChecks, verdict } from "../state/failures";
 import { slowed } from "../state/edits";
 import { show } from "../state/units";
 import type { Certificate, Check } from "../state/types";
@@ -60,9 +60,9 @@ export class CertificateList {
   private mend(check: Check): HTMLElement {
     const text = mendOf(check);
     const row = el("div", { class: "mend" }, el("span", {}, text || check.detail || ""));
-    const factor = Number(/Fly this leg ([\d.]+) times slower/.exec(text)?.[1] ?? NaN);
-    const leg = this.studio.film.keyframes.findIndex((k) => k.time >= (check.time ?? 0) - 1e-6);
-    if (Number.isFinite(factor) && leg > 0 && this.studio.editable) {
+    const factor = slowerBy(check);
+    const leg = legAt(this.studio.film.keyframes, check.time ?? 0);
+    if (factor !== null && leg !== null && this.studio.editable) {
       row.append(el("button", {
         type: "button", class: "primary", "data-key": `mend-${check.name}`,
         onclick: () => this.studio.edit(slowed(this.studio.document, leg, factor)),

@@ -47,7 +47,9 @@ export class Notices {
     const box = byId("link");
     box.hidden = !lost;
     const waiting = session.pending;
-    box.textContent = lost ? "Connection lost. Trying again\u2026 " +
+    box.textContent = lost && session.strange
+      ? "The studio does not know this page any more. Open the address that it printed."
+      : lost ? "Connection lost. Trying again\u2026 " +
       (waiting > 0 ? `${waiting} ${waiting === 1 ? "edit is" : "edits are"} kept and will be sent.`
         : "Nothing is lost.") : "";
   }
@@ -57,7 +59,7 @@ export class Notices {
     if (session.scriptError) {
       const { message: text, line } = session.scriptError;
       this.banner.replaceChildren(el("strong", {}, "The script has an error"),
-        el("span", {}, `${line ? `Line ${line}: ` : ""}${text} The film stays as it was; save the ` +
+        el("span", {}, `${line && !text.includes(`:${line}:`) ? `Line ${line}: ` : ""}${text}. The film stays as it was; save the ` +
           "script again to go on."));
       this.banner.hidden = false;
       this.ofError = true;
@@ -134,6 +136,12 @@ export class Hints {
     if (special) {
       text.textContent = special;
       this.box.hidden = false;
+      return;
+    }
+    if (this.studio.standing.grade === "rejected" && this.at < 3) {
+      text.textContent = "The red parts cannot be flown. Take the advice in the list at the right, " +
+        "or undo.";
+      this.box.hidden = recall("lapwing-hints") === "off";
       return;
     }
     while (this.at < steps.length && steps[this.at]?.done(this.studio)) this.at += 1;

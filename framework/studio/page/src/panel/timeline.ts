@@ -75,6 +75,10 @@ export class Timeline {
     const known = plan ?? this.studio.session.grades.lastPlan();
     if (known?.limits) this.limits = { ...known.limits };
     if (known) this.mass = massOf(known) ?? this.mass;
+    // A limit that the certificate does not ask for is none.
+    for (const check of this.studio.standing.certificate?.checks ?? []) {
+      if (check.skipped && this.limits) delete this.limits[check.name];
+    }
     const margin = this.studio.document.margin;
     if (typeof margin === "number") this.limits = { ...this.limits, margin };
     // While a time is dragged the scale stays, or the mark would run from the hand.

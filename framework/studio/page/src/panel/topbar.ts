@@ -51,6 +51,7 @@ export class TopBar {
     button("undo", "Undo", "Ctrl + Z", session.canUndo || session.pending > 0, session.undoLabel);
     button("redo", "Redo", "Ctrl + Shift + Z", session.canRedo, session.redoLabel);
     const banner = byId("read-only");
+    document.body.classList.toggle("read-only", session.welcomed && !session.mission.editable);
     banner.hidden = !session.welcomed || session.mission.editable;
     banner.textContent = session.mission.why_not || "This mission can be looked at, not edited.";
   }

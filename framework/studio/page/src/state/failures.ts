@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What fails, where on the path, and the smallest mend.
 import { show } from "./units";
-import type { Certificate, Check, Columns, Passage, Plan } from "./types";
+import type { Certificate, Check, Columns, Passage, Plan, Vec3 } from "./types";
+import { distance } from "./vector";
 
 // What a check means to who has never read about it.
 const plainNames: Record<string, string> = {
@@ -43,8 +44,8 @@ export function inWords(value: number, unit: string): string {
 export function verdict(check: Check): string {
   if (typeof check.worst !== "number" || typeof check.limit !== "number") return check.detail ?? "";
   const unit = check.unit ?? "";
-  const least = Math.abs(check.limit) * 1e-3;
-  if (Math.abs(check.worst) < least && check.sense === "at_most") {
+  const least = Math.max(Math.abs(check.limit) * 1e-3, 1e-6);
+  if (check.worst !== 0 && Math.abs(check.worst) < least && check.sense === "at_most") {
     return `almost 0, at most ${inWords(check.limit, unit)} allowed`;
   }
   const bound = check.sense === "at_least" ? "at least" : "at most";
@@ -79,14 +80,40 @@ function series(columns: Columns, check: string): number[] | null {
 
 const AROUND = 0.5;      // s, drawn around a moment where no column tells more
 const SLACK = 1.0001;
+const A_LITTLE = 1.25;
+const BESIDE = 0.3;      // s
 
-// Slower by `factor` along a leg: how much, in words.
+// How much slower a leg should be; null where that does not help or how much is not known.
+export function slowerBy(check: Check): number | null {
+  if (typeof check.worst !== "number" || typeof check.limit !== "number") return null;
+  const power = quantities[check.name]?.power;
+  const over = check.limit !== 0 ? check.worst / check.limit : Infinity;
+  if (power && over > 1 && Number.isFinite(over)) {
+    return Math.ceil(Math.pow(over, 1 / power) * 20) / 20;
+  }
+  return ["thrust_max", "thrust_min", "keyframe_miss"].includes(check.name) ? A_LITTLE : null;
+}
+
+// The leg at a time, by the keyframe that it leads to: beside a keyframe, the faster of both.
+export function legAt(keyframes: { time: number; position: Vec3 }[], time: number): number | null {
+  const speed = (i: number): number => {
+    const a = keyframes[i - 1], b = keyframes[i];
+    return a && b ? distance(a.position, b.position) / Math.max(b.time - a.time, 1e-3) : -1;
+  };
+  const at = keyframes.findIndex((k) => k.time >= time - BESIDE);
+  const leg = at < 0 ? keyframes.length - 1 : at;
+  const here = keyframes[leg];
+  if (!here) return null;
+  const best = Math.abs(here.time - time) <= BESIDE && speed(leg + 1) > speed(leg) ? leg + 1 : leg;
+  return speed(best) < 0 ? null : best;
+}
+
+// What to do about it, in words.
 export function mendOf(check: Check): string {
   if (typeof check.worst !== "number" || typeof check.limit !== "number") return "";
   const over = check.limit !== 0 ? check.worst / check.limit : Infinity;
-  const power = quantities[check.name]?.power;
-  if (power && over > 1) {
-    const factor = Math.ceil(Math.pow(over, 1 / power) * 20) / 20;
+  const factor = slowerBy(check);
+  if (quantities[check.name]?.power && factor !== null) {
     return `Fly this leg ${show(factor)} times slower: give it more seconds.`;
   }
   switch (check.name) {

@@ -4,43 +4,14 @@
 import { applied, equal } from "./document";
 import { choicesIn, optionsIn } from "./installed";
 import { Grades, type Standing } from "./grades";
-import { GestureQueue, tryPatch } from "./queue";
+import { tryPatch } from "./queue";
+import type { Event, Link, SessionParts, Socket } from "./session_parts";
 import type {
   Answer, Choices, Gesture, JsonObject, MissionInfo, Option, Patch, ServerMessage,
   Welcome, World,
 } from "./types";
 
-export interface Socket {
-  send(text: string): void;
-  close(): void;
-  onopen: (() => void) | null;
-  onmessage: ((event: { data: unknown }) => void) | null;
-  onclose: (() => void) | null;
-}
-
-export interface Clock {
-  now(): number;                                       // ms
-  later(ms: number, then: () => void): number;
-  cancel(id: number): void;
-}
-
-export type Link = "connecting" | "open" | "lost";
-
-export interface Event {
-  what: "link" | "welcome" | "document" | "standing" | "world" | "note" | "flown" | "picture" |
-    "wrote" | "script" | "worker" | "settled";
-  message?: ServerMessage;
-  text?: string;
-}
-
-export interface SessionParts {
-  connect(): Socket;
-  clock: Clock;
-  queue: GestureQueue;
-  token: string;
-  tab: string;
-  unique(): string;
-}
+export type { Clock, Event, Link, SessionParts, Socket } from "./session_parts";
 
 const PREVIEW_EVERY = 40;                              // ms
 const WAITS = [100, 200, 400, 800, 1500];              // ms, between attempts to connect
@@ -67,6 +38,8 @@ export class Session {
   private timer: number | null = null;
   private socket: Socket | null = null;
   private attempts = 0;
+  private greeted = false;
+  private hungUp = 0;
   private watch: number | null = null;
   private steps: ("undo" | "redo")[] = [];   // asked for while gestures were on their way
   private readonly listeners: ((event: Event) => void)[] = [];
@@ -100,6 +73,11 @@ export class Session {
 
   get pending(): number {
     return this.parts.queue.size;
+  }
+
+  // Whether the server refuses the token of this page: it was started anew.
+  get strange(): boolean {
+    return this.hungUp >= 3;
   }
 
   get dragging(): boolean {
@@ -251,9 +229,12 @@ export class Session {
     this.watch = clock.later(CONNECT_LIMIT, () => {
       if (this.link !== "open") this.dropped(socket);
     });
-    socket.onopen = () => socket.send(JSON.stringify({
-      type: "hello", token: this.parts.token, tab: this.parts.tab, seen: this.revision,
-    }));
+    socket.onopen = () => {
+      this.greeted = true;
+      socket.send(JSON.stringify({
+        type: "hello", token: this.parts.token, tab: this.parts.tab, seen: this.revision,
+      }));
+    };
     socket.onmessage = (event) => {
       if (socket === this.socket) this.receive(String(event.data));
     };
@@ -267,7 +248,10 @@ export class Session {
     socket.close();
     if (this.watch !== null) this.parts.clock.cancel(this.watch);
     this.watch = null;
-    if (this.link !== "lost") {
+    // A server that takes the greeting and hangs up knows another token.
+    this.hungUp = this.greeted && this.link !== "open" ? this.hungUp + 1 : 0;
+    this.greeted = false;
+    if (this.link !== "lost" || this.hungUp === 3) {
       this.link = "lost";
       this.tell({ what: "link" });
     }
@@ -327,6 +311,8 @@ export class Session {
     this.choices = choicesIn(message.schema, message.choices);
     if (message.world) this.world = message.world;
     this.link = "open";
+    this.hungUp = 0;
+    this.greeted = false;
     this.attempts = 0;
     this.welcomed = true;
     if (this.watch !== null) this.parts.clock.cancel(this.watch);

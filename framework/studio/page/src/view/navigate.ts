@@ -12,6 +12,7 @@ import type { Stage } from "./stage";
 const SPEED = 8;          // m/s of the virtual camera
 const TURN = 1.1;         // rad/s by the arrows
 const MOUSE = 0.0035;     // rad per pixel
+const FILLED = 0.85;      // of the view by a film that is shown whole
 const held = ["w", "a", "s", "d", "q", "e", "arrowleft", "arrowright", "arrowup", "arrowdown"];
 
 export class Navigation {
@@ -52,14 +53,27 @@ export class Navigation {
     this.pitch = Math.min(1.5, Math.max(-1.5, this.pitch + by));
   }
 
-  // Everything of the film in the view.
+  // Everything of the film in the view, seen from the south-west and above.
   frame(box: THREE.Box3): void {
-    const center = box.isEmpty() ? new THREE.Vector3(0, 0, 3) : box.getCenter(new THREE.Vector3());
-    const size = box.isEmpty() ? 30 : Math.max(8, box.getSize(new THREE.Vector3()).length());
+    const shown = box.isEmpty()
+      ? new THREE.Box3(new THREE.Vector3(-10, -10, 0), new THREE.Vector3(10, 10, 5))
+      : box.clone().expandByScalar(0.5);
+    const center = shown.getCenter(new THREE.Vector3());
     const camera = this.stage.worldCamera;
-    const away = new THREE.Vector3(-0.55, -0.75, 0.55).normalize();
-    const fit = size * 0.5 / Math.tan((camera.fov * Math.PI) / 360);
-    camera.position.copy(center).addScaledVector(away, fit * 0.95);
+    const away = new THREE.Vector3(-0.55, -0.75, 0.6).normalize();
+    const high = Math.tan((camera.fov * Math.PI) / 360) * FILLED, across = high * camera.aspect;
+    const up = new THREE.Vector3(0, 0, 1).addScaledVector(away, -away.z).normalize();
+    const right = new THREE.Vector3().crossVectors(up, away);
+    // As far away as the corner that needs most.
+    let distance = 3;
+    for (let corner = 0; corner < 8; ++corner) {
+      const p = new THREE.Vector3(
+        corner & 1 ? shown.max.x : shown.min.x, corner & 2 ? shown.max.y : shown.min.y,
+        corner & 4 ? shown.max.z : shown.min.z).sub(center);
+      distance = Math.max(distance, p.dot(away) + Math.abs(p.dot(right)) / across,
+                          p.dot(away) + Math.abs(p.dot(up)) / high);
+    }
+    camera.position.copy(center).addScaledVector(away, distance);
     this.orbit.target.copy(center);
     this.orbit.update();
     this.stage.invalidate();

@@ -92,9 +92,21 @@ export class Paths {
     replace(this.stems, points);
   }
 
+  // Of the drone and its view, fit for the film.
+  private get size(): number {
+    const { columns } = this.studio.plan;
+    const extent = ["x", "y", "z"].map((axis) => {
+      const list = columns[axis] ?? [];
+      return list.length > 0 ? Math.max(...list) - Math.min(...list) : 0;
+    });
+    return Math.min(6, Math.max(0.5, 0.075 * Math.hypot(...extent)));
+  }
+
   private drawMarker(): void {
     const { studio, stage } = this;
     const { columns } = studio.plan;
+    this.drone.scale.setScalar(this.size / 3);
+    this.ghostMark.scale.setScalar(this.size / 3);
     const view = viewAt(columns, studio.time);
     this.frame.visible = this.drone.visible = view !== null && studio.mode !== "camera";
     const ghost = columnsOf(studio);
@@ -106,7 +118,7 @@ export class Paths {
       const optics = studio.plan.camera;
       const across = optics ? optics.width / optics.fx / 2 : 1.08;
       const high = optics ? optics.height / optics.fy / 2 : 0.61;
-      const depth = 3;
+      const depth = this.size;
       const corner = (sx: number, sy: number): Vec3 => [0, 1, 2].map((k) =>
         (view.position[k] as number) + depth * ((view.forward[k] as number) +
         sx * across * (view.right[k] as number) + sy * high * (view.down[k] as number))) as Vec3;

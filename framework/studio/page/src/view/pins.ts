@@ -11,6 +11,7 @@ import { el } from "./dom";
 import type { Stage } from "./stage";
 
 const THRESHOLD = 3;     // px before a press is a drag
+const MOST_OBSTACLES = 12;
 
 interface Pin {
   item: Item;
@@ -19,9 +20,14 @@ interface Pin {
   where: string;      // its place on the screen; "": it is not there
 }
 
-export function itemsOf(document: JsonObject): Item[] {
+export function itemsOf(document: JsonObject, selection: Item | null): Item[] {
   const items: Item[] = [];
-  entries(document, "obstacles").forEach((_, index) => items.push({ kind: "obstacle", index }));
+  // A forest of pins hides the film: then obstacles are selected by a click on them, or in the list.
+  const obstacles = entries(document, "obstacles");
+  obstacles.forEach((_, index) => {
+    const item: Item = { kind: "obstacle", index };
+    if (obstacles.length <= MOST_OBSTACLES || sameItem(item, selection)) items.push(item);
+  });
   entries(document, "subjects").forEach((entry, index) => {
     items.push({ kind: "subject", index });
     if (!Array.isArray(entry.track)) return;
@@ -61,7 +67,7 @@ export class Pins {
 
   private refresh(): void {
     const { document } = this.studio;
-    const wanted = this.studio.mode === "camera" ? [] : itemsOf(document);
+    const wanted = this.studio.mode === "camera" ? [] : itemsOf(document, this.studio.selection);
     const next: Pin[] = [];
     for (const item of wanted) {
       const place = placeOfItem(document, item);

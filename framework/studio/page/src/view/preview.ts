@@ -51,7 +51,11 @@ export class Preview {
     window.clearTimeout(this.timer);
     const { studio } = this;
     if (studio.playing || !studio.rendered || !studio.session.welcomed) return;
-    if (!studio.standing.plan || studio.session.dragging) return;
+    // The server draws what has converged.
+    const { grade } = studio.standing;
+    if (studio.session.dragging || grade === "guess" || grade === "step" || grade === "refused") {
+      return;
+    }
     this.timer = window.setTimeout(() => {
       const width = Math.round(this.overlay.clientWidth);
       const height = Math.round((width * this.optics.height) / this.optics.width);
