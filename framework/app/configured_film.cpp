@@ -40,8 +40,15 @@ class ConfiguredFilm {
       fault(otherwise("the budget", "not stated", plain_number(*battery) + " s"));
     else if (plan_.budget)
       compare_number("the budget", *plan_.budget, battery, " s", Than::above, found_);
-    if (stated_text(asked_, "input") != "")
-      left_out("keyframes and subjects of the file '" + stated_text(asked_, "input") + "'");
+    if (stated_text(asked_, "input") != "") {
+      const bool keyframes = stated_tables(asked_, "keyframes").empty(),
+                 subjects = stated_tables(asked_, "subjects").empty();
+      const std::string what = keyframes && subjects ? "keyframes and subjects"
+                               : keyframes           ? "keyframes"
+                                                     : "subjects";
+      if (keyframes || subjects)
+        left_out(what + " of the file '" + stated_text(asked_, "input") + "'");
+    }
     left_out("how the flight begins and ends");
   }
 

@@ -34,7 +34,7 @@ struct SessionSettings {
   std::chrono::milliseconds glance{250};  // between looks at the script
   std::chrono::milliseconds pause{150};   // after a gesture, before the layer is written
   // How long a drag waits for the first answer of the move before, so that quick moves are drawn.
-  std::chrono::milliseconds patience{200};
+  std::chrono::milliseconds patience{1000};
 };
 
 enum class WorkerRole { solver, checker, errands };

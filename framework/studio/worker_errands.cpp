@@ -114,7 +114,7 @@ Frame WorkerErrands::check(const Frame& asked) const {
   if (asked.header.at("judge").as_boolean()) mission->judge();
   Frame frame;
   frame.header.set("said", "checked");
-  frame.header.set("document", mission->configuration());
+  frame.header.set("document", options_with_file(*mission));
   Value& about = frame.header.set("mission", Value::map());
   about.set("name", mission->name());
   about.set("kind", mission->kind());

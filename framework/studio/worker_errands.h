@@ -18,6 +18,10 @@ int line_in(const std::string& message, const std::filesystem::path& script);
 std::unique_ptr<Mission> configured_mission(const std::filesystem::path& script,
                                             MissionSettings settings, const Value& layer);
 
+// Its options, with keyframes and subjects of the file that a film reads written out where it has
+// none of its own, so that they can be edited: film.from_file takes them in place of the file's.
+Value options_with_file(Mission& mission);
+
 class WorkerErrands {
  public:
   WorkerErrands(std::filesystem::path script, const MissionSettings& settings)

@@ -98,18 +98,24 @@ local common = {
     summary = "number of passages that are tried if the first flight fails; 0: none" },
   own.declared[1], own.declared[2],
 }
+local subjects = { name = "subjects", type = "tables", table = input.subject,
+                   summary = "filmed subjects; a single one may be given as `subject`; of a file "
+                   .. "absent: the points that it looks at" }
+local subject = { name = "subject", type = "text",
+  refused = "a script's `subject` is the first of `subjects`: write subjects[1], as in "
+  .. "--set subjects[1].distance=3" }
 local of_shot = {
   { name = "duration", type = "number", unit = "s", above = 0, maximum = 1e5,
     summary = "duration of the flight; absent: time of the last keyframe" },
   { name = "keyframes", type = "tables", required = true, table = input.keyframe,
     summary = "places of the camera, with times or without" },
-  { name = "subjects", type = "tables", table = input.subject,
-    summary = "filmed subjects; a single one may be given as `subject`" },
-  { name = "subject", type = "text",
-    refused = "a script's `subject` is the first of `subjects`: write subjects[1], as in "
-    .. "--set subjects[1].distance=3" },
+  subjects, subject,
 }
-local of_file = { { name = "input", type = "text", summary = "JSON file of a designed shot" } }
+local of_file = {
+  { name = "input", type = "text", summary = "JSON file of a designed shot" },
+  { name = "keyframes", type = "tables", table = input.keyframe,
+    summary = "places of the camera in place of those of the file" },
+  subjects, subject }
 
 -- ---- what scripts call --------------------------------------------------------------------------
 
@@ -149,7 +155,12 @@ function film.from_file(given)
     for key, value in pairs(given) do options[key == "file" and "input" or key] = value end
     given = options
   end
-  return mission("film.from_file", given, of_file, shot_file.read)
+  return mission("film.from_file", given, of_file, function(run)
+    local o, shot = run.options, shot_file.read(run)
+    if #o.keyframes > 0 then shot.keyframes = o.keyframes end
+    if #o.subjects > 0 then shot.subjects = o.subjects end
+    return shot
+  end)
 end
 
 return film

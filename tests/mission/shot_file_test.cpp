@@ -44,6 +44,26 @@ TEST_F(ShotFiles, NorthEastDownBecomesEastNorthUp) {
   EXPECT_LT((plan.environment.subjects[0].position(3) - Eigen::Vector3d(2, 30, 0)).norm(), 1e-9);
 }
 
+TEST_F(ShotFiles, OptionsStandInPlaceOfTheFile) {
+  shot(std::string("{\n") + kReference + ",\n\"keyframeTimes\": [0, 6],\n\"keyFrameList\": [\n" +
+       keyframe(R"({"n": 1, "e": 2, "d": -10})", R"({"n": 30, "e": 2, "d": 0})") + ",\n" +
+       keyframe(R"({"n": 4, "e": 7, "d": -12})", R"({"n": 30, "e": 2, "d": 0})") + "]}");
+  const auto mission = load(script());
+  mission->configure(
+      {}, std::vector<std::string>{"keyframes=[{time: 0, position: [1, 2, 9]}, {time: 4, position: "
+                                   "[3, 2, 9]}, {time: 6, position: [5, 2, 9]}]"});
+  Plan plan = mission->plan().plan;
+  ASSERT_EQ(plan.task.keyframes.size(), 3u);
+  EXPECT_EQ(plan.task.keyframes[2].position, Eigen::Vector3d(5, 2, 9));
+  EXPECT_EQ(plan.environment.subjects[0].name, "look-at");  // the file's, where none is given
+  EXPECT_TRUE(plan.geodetic_origin);
+  mission->configure({}, std::vector<std::string>{"subjects=[{name: tree, position: [0, 9, 1]}]"});
+  plan = mission->plan().plan;
+  ASSERT_EQ(plan.environment.subjects.size(), 1u);
+  EXPECT_EQ(plan.environment.subjects[0].name, "tree");
+  EXPECT_EQ(plan.task.keyframes.size(), 2u);
+}
+
 TEST_F(ShotFiles, BrokenFilesAreRefusedWithLineAndKey) {
   const std::string good = keyframe(R"({"n": 1, "e": 2, "d": -10})", R"({"n": 9, "e": 2, "d": 0})");
   const auto with = [&](const std::string& frames, const std::string& times) {

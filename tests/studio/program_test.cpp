@@ -261,6 +261,39 @@ TEST_F(StudioProgram, TheLayerPlansTheSameFlightByteForByte) {
   EXPECT_FALSE(fs::exists(folder_ / "castle_flyover.studio.yaml"));
 }
 
+// A film of a file: its keyframes stand in the document, and what is edited in the layer.
+TEST_F(StudioProgram, FilmsOfFilesAreEditedLikeOthers) {
+  write_file_atomically(folder_ / "file.json", R"({"refLLH": {"lat": 47, "lng": 8, "altitude": 400},
+    "keyframeTimes": [0, 8, 16], "keyFrameList": [
+    {"lookFromNED": {"n": -20, "e": 0, "d": -8}, "lookAtNED": {"n": 0, "e": 0, "d": -2}},
+    {"lookFromNED": {"n": -14, "e": 12, "d": -10}, "lookAtNED": {"n": 0, "e": 1, "d": -2}},
+    {"lookFromNED": {"n": 0, "e": 20, "d": -8}, "lookAtNED": {"n": 0, "e": 2, "d": -2}}]})");
+  write_file_atomically(folder_ / "film.lua", R"(local film = require "mission.film"
+return film.from_file { name = "film", input = "file.json" }
+)");
+  script_ = "film.lua";
+  PageClient page(serve(), "a");
+  EXPECT_EQ(page.welcome.at("document").at("subjects").as_list()[0].at("name"), Value("look-at"));
+  ASSERT_EQ(page.welcome.at("document").at("keyframes").as_list().size(), 3u);
+  EXPECT_EQ(page.until_judged(0).at("grade"), Value("certified"));
+  page.send(gesture("g", 0, {change("keyframes[2].position", place(12, -13, 12))}));
+  EXPECT_EQ(page.until_type("document").at("patch").as_list().size(), 1u);
+  EXPECT_EQ(page.until_judged(1).at("grade"), Value("certified"));
+  page.send_text(R"({"type": "save_report", "id": "s"})");
+  EXPECT_EQ(page.until_type("wrote").at("status"), Value("ok"));
+  ASSERT_EQ(run({"run", "film.lua", "--config", "film.studio.yaml", "-o", "layer", "--quiet"}), 0)
+      << errors_;
+  EXPECT_TRUE(read_file(folder_ / "layer/plan.json") == read_file(folder_ / "out/film/plan.json"));
+  page.send_text(R"({"type": "export_lua", "id": "l"})");
+  page.until_type("wrote");
+  ASSERT_EQ(run({"run", "film.studio.lua", "-o", "lua", "--quiet"}), 0) << errors_;
+  EXPECT_TRUE(read_file(folder_ / "layer/plan.json") == read_file(folder_ / "lua/plan.json"));
+  page.send_text(R"({"type": "undo", "id": "u", "base": 1})");
+  page.until_judged(2);
+  server_->end(SIGTERM);
+  EXPECT_FALSE(fs::exists(folder_ / "film.studio.yaml"));
+}
+
 TEST_F(StudioProgram, FliesPicturesAndExports) {
   use("filming/castle_flyover.lua");
   const StudioAddress address = serve();
