@@ -56,7 +56,10 @@ class StudioSession {
   void opened(const std::shared_ptr<PageSocket>& page);
   void received(PageSocket& page, std::string_view text);
   void closed(PageSocket& page);
-  std::shared_ptr<const std::string> blob(std::string_view name) { return blobs_.find(name); }
+  std::shared_ptr<const std::string> blob(std::string_view name) {
+    const auto surface = surfaces_.find(name);
+    return surface ? surface : pictures_.find(name);
+  }
 
   // Workers.
   void heard(WorkerRole role, Frame frame);
@@ -196,7 +199,7 @@ class StudioSession {
   std::string document_answer_;  // the last one of the document as it is
   int document_rank_ = -1;
   std::string world_, settled_world_;  // the last one told, and the one of the document's answer
-  BlobStore blobs_{std::size_t{512} << 20};
+  BlobStore surfaces_{std::size_t{512} << 20}, pictures_{std::size_t{64} << 20};
   std::deque<Errand> errand_queue_;
   bool errand_under_way_ = false;
   std::int64_t serial_ = 0;

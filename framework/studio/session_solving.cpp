@@ -185,7 +185,7 @@ void StudioSession::settle(const Frame& frame) {
 void StudioSession::world(const Frame& frame) {
   const Value::List& names = frame.header.at("blobs").as_list();
   for (std::size_t i = 0; i < names.size() && i + 1 < frame.parts.size(); ++i)
-    blobs_.put(names[i].as_text(), frame.parts[i + 1]);
+    surfaces_.put(names[i].as_text(), frame.parts[i + 1]);
   world_ = frame.parts.at(0);
   tell_all(world_);
 }
@@ -297,7 +297,7 @@ void StudioSession::errand_done(Frame frame) {
     message.set("type", "picture");
     message.set("edit", static_cast<std::int64_t>(errand.message.edit));
     message.set("time", errand.message.time);
-    message.set("blob", blobs_.put(std::move(frame.parts.at(0))));
+    message.set("blob", pictures_.put(std::move(frame.parts.at(0))));
   } else {
     message.set("type", "wrote");
     message.set("id", errand.message.id);

@@ -99,6 +99,8 @@ struct WorkerLink::Run {
       closing = true;
     }
     changed.notify_all();
+    // With what it started itself, which holds the pipes open as well.
+    ::kill(-process, SIGKILL);
     ::kill(process, SIGKILL);
     int status = 0;
     while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {

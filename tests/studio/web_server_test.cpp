@@ -5,6 +5,9 @@
 #include <atomic>
 #include <thread>
 
+#include "framework/core/files.h"
+#include "framework/studio/embedded_page.h"
+#include "framework/studio/page_assets.h"
 #include "tests/studio/page_client.h"
 
 namespace lapwing {
@@ -234,6 +237,45 @@ TEST_F(Web, OfReplaceableTextsTheNewestIsSent) {
   for (std::string one; page.receive_text(one); one.clear()) heard.push_back(one);
   EXPECT_EQ(heard, (std::vector<std::string>{"first", "step 4", "last"}));
   EXPECT_EQ(page.close_reason, "done");
+}
+
+TEST(PageFiles, AreAnExactTable) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / ("lapwing_page_files_" + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  EXPECT_THROW(PageAssets::of_folder(folder), InputError);
+  write_file_atomically(folder / "page/index.html", "index");
+  write_file_atomically(folder / "page/parts/app.js", "app");
+  write_file_atomically(folder / "page/key.pem", "secret");
+  write_file_atomically(folder / "secret.js", "secret");
+  fs::create_symlink(folder / "secret.js", folder / "page/linked.js");
+  const PageAssets assets = PageAssets::of_folder(folder / "page");
+  EXPECT_EQ(*assets.find("/")->bytes, "index");
+  EXPECT_EQ(assets.find("/index.html")->type, "text/html; charset=utf-8");
+  EXPECT_EQ(*assets.find("/parts/app.js")->bytes, "app");
+  write_file_atomically(folder / "page/late.js", "late");
+  for (const char* path : {"/key.pem", "/linked.js", "/late.js", "/../secret.js", "/parts",
+                           "/parts/", "/parts/../index.html", "", "index.html"})
+    EXPECT_FALSE(assets.find(path)) << path;
+  write_file_atomically(folder / "page/parts/app.js", "newer");  // for who works on the page
+  EXPECT_EQ(*assets.find("/parts/app.js")->bytes, "newer");
+  fs::remove_all(folder);
+  EXPECT_FALSE(assets.find("/parts/app.js"));
+}
+
+// What the build embeds is the files of the page, byte for byte; or nothing, which is said.
+TEST(PageFiles, AreThoseThatTheBuildEmbeds) {
+  if (embedded_page().empty()) {
+    EXPECT_THROW(PageAssets::built_in(), InputError);
+    return;
+  }
+  const PageAssets assets = PageAssets::built_in();
+  for (const EmbeddedFile& file : embedded_page()) {
+    const std::string on_disk = read_file(std::string(LAPWING_SOURCE_DIR) +
+                                          "/framework/studio/page/dist" + std::string(file.path));
+    EXPECT_TRUE(*assets.find(file.path)->bytes == on_disk) << file.path;
+  }
 }
 
 TEST_F(Web, APortInUseIsSaid) {
