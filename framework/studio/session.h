@@ -47,6 +47,8 @@ class StudioSession {
                 std::string why_not);
   ~StudioSession();
 
+  // In place of the settings' one, before a page comes.
+  void set_token(std::string token) { settings_.token = std::move(token); }
   // Asks for the script's options. The workers outlive the session.
   void begin(Worker& solver, Worker& checker, Worker& errands);
   // Writes the layer if it waits.

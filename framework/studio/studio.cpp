@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "framework/core/error.h"
+#include "framework/studio/address_memory.h"
 #include "framework/studio/embedded_page.h"
 #include "framework/studio/layer_file.h"
 #include "framework/studio/page_assets.h"
@@ -42,6 +43,24 @@ std::unique_ptr<Journal> open_journal(const fs::path& script, std::string& why) 
   return std::make_unique<Journal>(beside_script(script, ".studio.journal"));
 }
 
+// At the place of a studio of this script that was killed, where that is free, so that its pages
+// find this one; else at the port that is asked for, with a token of its own. `place.token` must be
+// known before anybody connects: on one thread nobody is heard before the loop runs.
+std::unique_ptr<WebServer> listen(EventLoop& loop, std::uint16_t port, const WebHandlers& handlers,
+                                  const AddressMemory& memory, std::string& token) {
+  const std::optional<StudioPlace> before = memory.find();
+  if (before && (port == 0 || port == before->port)) {
+    try {
+      auto server = std::make_unique<WebServer>(loop, before->port, "/session", handlers);
+      token = before->token;
+      return server;
+    } catch (const InputError&) {  // somebody else's by now
+    }
+  }
+  token = new_token();
+  return std::make_unique<WebServer>(loop, port, "/session", handlers);
+}
+
 constexpr std::string_view kBlobs = "/blob/";
 
 WebContent blob_content(std::shared_ptr<const std::string> bytes) {
@@ -70,10 +89,11 @@ void run_studio(const StudioSettings& settings, const CancellationToken& token,
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error to be told
   std::string why_not;
   std::unique_ptr<Journal> journal = open_journal(settings.script, why_not);
+  // Behind the journal: that one studio alone has the script.
+  const AddressMemory memory(settings.script);
   EventLoop loop;
   SessionSettings own;
   own.script = settings.script;
-  own.token = new_token();
   own.run_words = settings.run_words;
   StudioSession session(loop, own, std::move(journal), why_not);
   WebHandlers handlers;
@@ -88,7 +108,10 @@ void run_studio(const StudioSettings& settings, const CancellationToken& token,
     session.received(page, text);
   };
   handlers.closed = [&](PageSocket& page) { session.closed(page); };
-  const WebServer server(loop, settings.port, "/session", handlers);
+  std::string secret;
+  const auto server = listen(loop, settings.port, handlers, memory, secret);
+  session.set_token(secret);
+  memory.keep({server->port(), secret});
   const auto link = [&](WorkerRole role) {
     return std::make_unique<WorkerLink>(
         loop, settings.worker,
@@ -99,7 +122,7 @@ void run_studio(const StudioSettings& settings, const CancellationToken& token,
   const auto solver = link(WorkerRole::solver), checker = link(WorkerRole::checker),
              errands = link(WorkerRole::errands);
   session.begin(*solver, *checker, *errands);
-  ready("http://127.0.0.1:" + std::to_string(server.port()) + "/#" + own.token);
+  ready("http://127.0.0.1:" + std::to_string(server->port()) + "/#" + secret);
   watch_token(loop, token);
   loop.run();
   session.finish();

@@ -88,6 +88,7 @@ class StudioProgram : public testing::Test {
   void SetUp() override {
     static int count = 0;
     ::unsetenv("LAPWING_DATA");
+    ::unsetenv("XDG_RUNTIME_DIR");
     folder_ = fs::temp_directory_path() /
               ("lapwing_studio_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
     fs::create_directories(folder_ / "page");
@@ -473,6 +474,43 @@ std::optional<Value> value_at(const Value& document, const std::string& path) {
   const OptionPath parsed = option_path(path);
   const Value* found = find_at(document, parsed, parsed.size());
   return found ? std::optional<Value>(*found) : std::nullopt;
+}
+
+// Pages of a studio that was killed find the next one, where the user's runtime folder is private.
+TEST_F(StudioProgram, AfterAKillTheNextOneHasTheSameAddress) {
+  use("filming/castle_flyover.lua");
+  const fs::path runtime = folder_ / "runtime";
+  fs::create_directory(runtime);
+  fs::permissions(runtime, fs::perms::owner_all);
+  ::setenv("XDG_RUNTIME_DIR", runtime.c_str(), 1);
+  const StudioAddress first = serve();
+  const fs::path kept = fs::directory_iterator(runtime)->path();
+  EXPECT_EQ(fs::status(kept).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  server_->end(SIGKILL);
+  const StudioAddress second = serve();
+  EXPECT_EQ(second.port, first.port);
+  EXPECT_EQ(second.token, first.token);
+  PageClient(second, "a").until_judged(0);
+  server_->end(SIGTERM);  // in order: the next one has another token
+  EXPECT_TRUE(fs::is_empty(runtime));
+  EXPECT_NE(serve().token, first.token);
+  server_->end(SIGKILL);
+  // What others could have written, and what is none, is not used.
+  const auto with_file = [&](const std::string& text, fs::perms mode) {
+    write_file_atomically(kept, text);
+    fs::permissions(kept, mode);
+    const std::string token = serve().token;
+    server_->end(SIGKILL);
+    return token;
+  };
+  const std::string token(32, 'a'),
+      text = R"({"port": )" + std::to_string(first.port) + R"(, "token": ")" + token + R"("})";
+  const fs::perms own = fs::perms::owner_read | fs::perms::owner_write;
+  EXPECT_EQ(with_file(text, own), token);
+  EXPECT_NE(with_file(text, own | fs::perms::others_write), token);
+  EXPECT_NE(with_file(R"({"port": 1, "token": ""})", own), "");
+  EXPECT_EQ(with_file("nonsense", own).size(), 32u);
+  ::unsetenv("XDG_RUNTIME_DIR");
 }
 
 // Killed at random moments of a stream of edits: what was acknowledged is there, all of it can be
