@@ -91,9 +91,11 @@ class StudioWorker {
     // With the lock: from here on `take` ends this one.
     serial_ = frame.header.at("serial").as_integer();
     whole_ = std::make_shared<CancellationToken>();
-    if (kind_ == "film") editor_.edit({{frame.header.at("layer")}, {}});
+    if (kind_ == "film") edit(frame.header.at("layer"));
     return frame;
   }
+
+  void edit(const Value& layer) { editor_.edit({{layer_of_page(layer, script_)}, {}}); }
 
   void do_work(const Frame& frame) {
     try {
@@ -139,7 +141,7 @@ class StudioWorker {
       kind_ = Mission(script_, settings_).kind();
       if (kind_ == "film") {
         const std::lock_guard lock(mutex_);
-        if (!solve_ && !whole_->cancelled()) editor_.edit({{layer}, {}});
+        if (!solve_ && !whole_->cancelled()) edit(layer);
       }
     }
     if (kind_ == "film") {

@@ -87,9 +87,16 @@ int line_in(const std::string& message, const fs::path& script) {
   return line;
 }
 
+Value layer_of_page(Value layer, const fs::path& script) {
+  if (Value* input = layer.find("input")) input->with_origin({script.string(), 0});
+  if (layer.is_map())  // nor does it change the limits of scripts
+    std::erase_if(layer.as_map(), [](const auto& entry) { return entry.first == "sandbox"; });
+  return layer;
+}
+
 std::unique_ptr<Mission> configured_mission(const fs::path& script, MissionSettings settings,
                                             const Value& layer) {
-  const std::vector<Value> layers{layer};
+  const std::vector<Value> layers{layer_of_page(layer, script)};
   settings.limits = sandbox_limits(layers, {});
   auto mission = std::make_unique<Mission>(script, std::move(settings));
   mission->configure(layers, {});

@@ -14,6 +14,10 @@ namespace lapwing {
 // "shot.lua:12: ..." is line 12 of the script; 0 where it is of no line of it.
 int line_in(const std::string& message, const std::filesystem::path& script);
 
+// A layer that a page made of the document, as if the script said it: whoever types a file behind
+// `--set input=` may read it, a page only what the script may.
+Value layer_of_page(Value layer, const std::filesystem::path& script);
+
 // A mission of the script with this configuration on it.
 std::unique_ptr<Mission> configured_mission(const std::filesystem::path& script,
                                             MissionSettings settings, const Value& layer);

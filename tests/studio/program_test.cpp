@@ -291,6 +291,25 @@ return film.from_file { name = "film", input = "file.json" }
   EXPECT_TRUE(read_file(folder_ / "layer/plan.json") == read_file(folder_ / "lua/plan.json"));
   page.send_text(R"({"type": "undo", "id": "u", "base": 1})");
   page.until_judged(2);
+  // A page reads what the script may read, and no other file.
+  const fs::path elsewhere = folder_.string() + "_elsewhere.json";
+  fs::copy_file(folder_ / "file.json", elsewhere);
+  page.send(gesture("read", 2, {change("input", elsewhere.string())}));
+  EXPECT_EQ(page.until_type("refused").at("id"), Value("read"));
+  page.send(preview(1, {change("input", elsewhere.string())}));
+  const Value refused = page.until(
+      [](const Value& m) { return m.at("type") == Value("answer") && m.at("edit") == Value(1); });
+  EXPECT_EQ(refused.at("grade"), Value("refused"));
+  EXPECT_NE(refused.at("message").as_text().find("not found"), std::string::npos)
+      << refused.at("message").as_text();
+  fs::remove(elsewhere);
+  page.send(preview(2, {change("sandbox", Value(Value::Map{{"memory", Value(1)}}))}));
+  EXPECT_EQ(page.until([](const Value& m) {
+                  return m.at("type") == Value("answer") && m.at("edit") == Value(2) &&
+                         m.at("grade") != Value("step") && m.at("grade") != Value("converged");
+                })
+                .at("grade"),
+            Value("certified"));
   server_->end(SIGTERM);
   EXPECT_FALSE(fs::exists(folder_ / "film.studio.yaml"));
 }
