@@ -3,7 +3,7 @@
 # Builds everything and runs the tests: scripts/test.sh [--long] [--sources] [ctest options]. Checks
 # the time budgets: cold build 10 minutes, tests 5 minutes, on two free cores. With --sources, and
 # with --long, check_sources.sh checks the sources too, which takes minutes.
-# --long also has judge.sh judge exported files.
+# --long also has judge.sh judge exported files, and page_test.sh drive the studio's page.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
@@ -57,4 +57,5 @@ echo "Tests ran in $took s"
 bash scripts/skipped_tests.sh build/release/Testing/Temporary/LastTest.log
 [ "$status" -eq 0 ] || exit "$status"
 [ ${#labels[@]} -gt 0 ] || bash scripts/judge.sh
+[ ${#labels[@]} -gt 0 ] || bash scripts/page_test.sh || [ $? -eq 77 ]
 [ ${#labels[@]} -eq 0 ] || within_budget tests "$took" "$test_budget"

@@ -149,8 +149,8 @@ export const edits = [
     await next(page, async () => {
       await page.mouse.move(x - 150, y + 40);
       await page.mouse.down();
-      for (let i = 1; i <= 20; ++i) {
-        await page.mouse.move(x - 150 + 8 * i, y + 40 + 30 * Math.sin(i / 3));
+      for (let i = 1; i <= 10; ++i) {
+        await page.mouse.move(x - 150 + 16 * i, y + 40 + 30 * Math.sin(i / 1.5));
       }
       await page.mouse.up();
     });
@@ -225,8 +225,8 @@ export const edits = [
     await next(page, () => drag(page, '[data-key="obstacle-0"]', 0, 0).then(() =>
       type(page, '[data-key="obstacles[1].radius"]', "4")));
     assert.equal((await obstacles(page))[0].radius, 4);
-    await next(page, () => page.click("#add-obstacle"));
-    assert.equal((await obstacles(page)).length, 2);
+    await next(page, () => page.select("#add-obstacle", "no_fly_zone"));
+    assert.equal((await obstacles(page))[1].corners.length, 8);
     await next(page, () => page.click("#add-subject"));
     assert.equal((await subjects(page)).length, 2);
   }],

@@ -77,8 +77,7 @@ export class Actions {
     window.addEventListener("keydown", (event) => this.key(event));
     const simple: Record<string, string> = {
       undo: "undo", redo: "redo", fly: "fly", export: "export", report: "report", theme: "theme",
-      help: "help", place: "place", insert: "insert", "add-subject": "subject",
-      "add-obstacle": "obstacle", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
+      help: "help", place: "place", insert: "insert", "add-subject": "subject", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
       frame: "frame", play: "play", cut: "cut", draw: "draw",
     };
     for (const [id, action] of Object.entries(simple)) {

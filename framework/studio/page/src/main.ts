@@ -58,7 +58,9 @@ function keep(key: string, value: string): void {
   }
 }
 
-const tab = kept("lapwing-tab") ?? unique();
+// A duplicated tab inherits what this one kept; it is another tab all the same.
+const how = performance.getEntriesByType("navigation")[0] as PerformanceNavigationTiming | undefined;
+const tab = (how?.type === "reload" ? kept("lapwing-tab") : null) ?? unique();
 keep("lapwing-tab", tab);
 const token = decodeURIComponent(location.hash.slice(1)).replace(/^token=/, "");
 const session = new Session({

@@ -3,9 +3,10 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { applied, valueAt } from "../src/state/document";
 import {
-  addedObstacle, addedSubject, appended, cutAt, deleted, duplicated, inserted, moved, nameOf,
+  addedObstacle, addedSubject, obstacleKinds, appended, cutAt, deleted, duplicated, inserted, moved, nameOf,
   placeOfItem, reordered, retimed, slowed, uncut, type Edit,
 } from "../src/state/edits";
+import { trianglesOf } from "../src/state/shapes";
 import { shots, simplified, withShot, withStroke } from "../src/state/shots";
 import type { JsonObject, Vec3 } from "../src/state/types";
 
@@ -119,6 +120,11 @@ test("cuts, obstacles and subjects come and go", () => {
   assert.deepEqual(applied(cut, uncut(cut, 0).patch).cuts, [{ start: 9 }]);
   assert.deepEqual(valueAt(after(addedObstacle(film, "box", [0, 0, 0])), "obstacles[5].upper"),
                    [2, 2, 4]);
+  for (const { type } of obstacleKinds) {
+    const list = after(addedObstacle(film, type, [1, 2, 0])).obstacles as JsonObject[];
+    assert.ok(trianglesOf(list[4] as JsonObject), type);
+  }
+  assert.equal(addedObstacle(film, "mesh", [0, 0, 0]), null);
   const two = after(addedSubject(film, [0, 0, 0])).subjects as JsonObject[];
   assert.deepEqual(two.map((s) => s.name), ["subject 1", "b", "subject 3"]);
   assert.equal((after(addedSubject({ ...film, subjects: [] }, [0, 0, 0])).subjects as JsonObject[])

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The film as a list: keyframes, subjects, obstacles; a click selects, the buttons add.
-import { addedObstacle, addedSubject, inserted, nameOf, sameItem, type Item } from "../state/edits";
+import { obstacleKinds, addedObstacle, addedSubject, inserted, nameOf, sameItem, type Item } from "../state/edits";
 import { entries, targetAt } from "../state/film";
 import { shots, withShot, type Shot } from "../state/shots";
 import { positionAt } from "../state/samples";
@@ -12,6 +12,13 @@ import { byId, el, refill } from "../view/dom";
 export class FilmList {
   constructor(private readonly studio: Studio, private readonly centre: () => Vec3) {
     studio.on(["document", "standing", "selection", "mode"], () => this.show());
+    const kind = byId<HTMLSelectElement>("add-obstacle");
+    kind.append(...obstacleKinds.map((one) => el("option", { value: one.type }, one.text)));
+    kind.addEventListener("change", () => {
+      const { value } = kind;
+      kind.value = "";
+      if (value) this.addObstacle(value);
+    });
     const choice = byId<HTMLSelectElement>("shot");
     choice.append(...shots.map((shot) =>
       el("option", { value: shot.name }, `${shot.name}: ${shot.text}`)));
@@ -84,7 +91,7 @@ export class FilmList {
     if (studio.edit(made)) studio.select({ kind: "keyframe", index: made.index });
   }
 
-  addObstacle(type: "sphere" | "box" = "box"): void {
+  addObstacle(type = "box"): void {
     const count = entries(this.studio.document, "obstacles").length;
     if (this.studio.edit(addedObstacle(this.studio.document, type, this.centre()))) {
       this.studio.select({ kind: "obstacle", index: count });

@@ -252,14 +252,25 @@ export function uncut(document: JsonObject, index: number): Edit {
   return { label: `Remove cut ${index + 1}`, patch: [{ path: "cuts", value: list }] };
 }
 
-export function addedObstacle(document: JsonObject, type: "sphere" | "box", at: Vec3): Edit {
+// What a new obstacle can be, and how it begins: four metres wide, on the ground at `p`.
+export const obstacleKinds: { type: string; text: string; shape(p: Vec3): JsonObject }[] = [
+  { type: "box", text: "Box", shape: (p) => ({
+    lower: [p[0] - 2, p[1] - 2, p[2]], upper: [p[0] + 2, p[1] + 2, p[2] + 4] }) },
+  { type: "sphere", text: "Ball", shape: (p) => ({ center: [p[0], p[1], p[2] + 2], radius: 2 }) },
+  { type: "cylinder", text: "Column", shape: (p) => ({ base: p, radius: 2, height: 8 }) },
+  { type: "cone", text: "Tent", shape: (p) => ({ base: p, radius: 2, height: 4 }) },
+  { type: "no_fly_zone", text: "No-fly zone", shape: (p) => ({
+    corners: [p[0] - 4, p[1] - 4, p[0] + 4, p[1] - 4, p[0] + 4, p[1] + 4, p[0] - 4, p[1] + 4],
+    floor: 0, ceiling: 30, opaque: false }) },
+];
+
+export function addedObstacle(document: JsonObject, type: string, at: Vec3): Edit | null {
+  const kind = obstacleKinds.find((one) => one.type === type);
+  if (!kind) return null;
   const list = entries(document, "obstacles");
-  const name = `${type} ${list.length + 1}`;
-  const p = rounded(at);
-  const shape: JsonObject = type === "sphere"
-    ? { type, name, center: [p[0], p[1], p[2] + 2], radius: 2 }
-    : { type, name, lower: [p[0] - 2, p[1] - 2, p[2]], upper: [p[0] + 2, p[1] + 2, p[2] + 4] };
-  return { label: `Add obstacle ${name}`, patch: [{ path: "obstacles", value: [...list, shape] }] };
+  const name = `${kind.text.toLowerCase()} ${list.length + 1}`;
+  const made: JsonObject = { type, name, ...kind.shape(rounded(at)) };
+  return { label: `Add ${name}`, patch: [{ path: "obstacles", value: [...list, made] }] };
 }
 
 export function addedSubject(document: JsonObject, at: Vec3): Edit {
