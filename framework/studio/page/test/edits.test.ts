@@ -7,6 +7,7 @@ import {
   placeOfItem, reordered, retimed, slowed, uncut, type Edit,
 } from "../src/state/edits";
 import { trianglesOf } from "../src/state/shapes";
+import { freeGround, lifted } from "../src/state/room";
 import { shots, simplified, withShot, withStroke } from "../src/state/shots";
 import type { JsonObject, Vec3 } from "../src/state/types";
 
@@ -25,6 +26,7 @@ const after = (edit: Edit | null): JsonObject => {
   assert.ok(edit);
   return applied(film, edit.patch);
 };
+const near = (a: number, b: number): void => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
 const times = (document: JsonObject): unknown[] =>
   (document.keyframes as JsonObject[]).map((k) => k.time);
 
@@ -118,8 +120,8 @@ test("cuts, obstacles and subjects come and go", () => {
   const cut = after(cutAt({ ...film, cuts: [{ start: 9 }] }, 3, 4));
   assert.deepEqual(cut.cuts, [{ start: 3, finish: 4 }, { start: 9 }]);
   assert.deepEqual(applied(cut, uncut(cut, 0).patch).cuts, [{ start: 9 }]);
-  assert.deepEqual(valueAt(after(addedObstacle(film, "box", [0, 0, 0])), "obstacles[5].upper"),
-                   [2, 2, 4]);
+  const box = (after(addedObstacle(film, "box", [50, 0, 0])).obstacles as JsonObject[])[4];
+  assert.deepEqual(box?.upper, [52, 2, 4]);
   for (const { type } of obstacleKinds) {
     const list = after(addedObstacle(film, type, [1, 2, 0])).obstacles as JsonObject[];
     assert.ok(trianglesOf(list[4] as JsonObject), type);
@@ -127,9 +129,31 @@ test("cuts, obstacles and subjects come and go", () => {
   assert.equal(addedObstacle(film, "mesh", [0, 0, 0]), null);
   const two = after(addedSubject(film, [0, 0, 0])).subjects as JsonObject[];
   assert.deepEqual(two.map((s) => s.name), ["subject 1", "b", "subject 3"]);
+  const second = applied({ ...film, keyframes: [{ position: [0, 0, 0] }, { position: [1, 0, 0] }] },
+    addedSubject({ ...film, keyframes: [{ position: [0, 0, 0] }, { position: [1, 0, 0] }] },
+                 [0, 0, 0]).patch);
+  assert.equal(valueAt(second, "keyframes[1].subject"), "subject 1");
   assert.equal((after(addedSubject({ ...film, subjects: [] }, [0, 0, 0])).subjects as JsonObject[])
     .length, 1);
   assert.equal(nameOf(film, { kind: "obstacle", index: 0 }), "obstacle ball");
+});
+
+test("new places have room", () => {
+  const world: JsonObject = { margin: 0.5, keyframes: [{ time: 0, position: [0, 0, 5] },
+    { time: 9, position: [9, 0, 5] }], obstacles: [
+    { type: "sphere", center: [0, 0, 2], radius: 5 }, { type: "box", lower: [4, -1, 0],
+      upper: [6, 1, 8] }, { type: "no_fly_zone", corners: [20, 0, 24, 0, 24, 4, 20, 4] }] };
+  near(lifted(world, [0, 0, 3])[2], 7.7);
+  near(lifted(world, [5, 0, 3])[2], 8.7);
+  assert.deepEqual(lifted(world, [0, 0, 9]), [0, 0, 9]);
+  assert.deepEqual(lifted(world, [30, 0, 1]), [30, 0, 1]);
+  assert.deepEqual(lifted(world, [22, 2, 1]), [22, 2, 1]);      // nothing is above
+  const free = freeGround(world, [0, 0, 0], 6);
+  assert.ok(Math.hypot(free[0], free[1]) > 7 && Math.hypot(free[0] - 9, free[1]) > 7);
+  assert.deepEqual(freeGround(world, [40, 0, 0], 6), [40, 0, 0]);
+  const drawn = withStroke(world, [[9, 0, 5], [5, 0, 5], [-9, 0, 5]]);
+  const made = applied(world, drawn?.patch ?? []).keyframes as JsonObject[];
+  for (const { position } of made.slice(2)) assert.deepEqual(lifted(world, position as Vec3), position);
 });
 
 test("every shot goes on from where the film ends", () => {

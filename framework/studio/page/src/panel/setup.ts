@@ -3,7 +3,7 @@
 // mission with a single value, as a form by its declaration.
 import { isObject } from "../state/document";
 import { fieldsOf, labelOf, pluginFields, type Field } from "../state/schema";
-import type { Choice, Json, JsonObject } from "../state/types";
+import type { Choice, Json, JsonObject, Patch } from "../state/types";
 import type { Studio } from "../studio";
 import { byId } from "../view/dom";
 import { Form } from "./form";
@@ -62,11 +62,31 @@ export class Setup {
     return named?.values ?? null;
   }
 
+  // How another vehicle moves, where it cannot move as the one before.
+  private modelFor(vehicle: string): string | null {
+    const { session, document } = this.studio;
+    const values = session.choices.vehicle?.find((choice) => choice.name === vehicle)?.values;
+    const model = isObject(document.model) ? document.model.type : document.model;
+    const installed = (name: string): string | null =>
+      session.choices.model?.some((choice) => choice.name === name) && model !== name ? name : null;
+    if (!values) return null;
+    if (isObject(values.wing)) return installed("fixed_wing");
+    if (!isObject(values.rotors)) return installed("velocity");
+    return model === "velocity" || model === "fixed_wing" ? installed("quadrotor") : null;
+  }
+
   private commit(field: Field, value: Json): void {
     const label = `Change ${field.label.toLowerCase()}`;
     const vehicle = this.vehicleTable();
     if (field.path === "camera" && vehicle) {
       this.studio.edit({ label, patch: [{ path: "vehicle", value: { ...vehicle, camera: value } }] });
+      return;
+    }
+    if (field.path === "vehicle") {
+      const patch: Patch = [{ path: "vehicle", value }];
+      const model = this.modelFor(String(value));
+      if (model) patch.push({ path: "model", value: model });
+      this.studio.edit({ label, patch });
       return;
     }
     const { path } = field;

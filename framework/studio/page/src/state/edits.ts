@@ -2,6 +2,7 @@
 // Edits of a film as patches with a label. A list that keeps its length is changed entry by entry,
 // any other is set whole.
 import { entries, filmOf } from "./film";
+import { freeGround, lifted } from "./room";
 import { handleOf, movedObstacle } from "./shapes";
 import type { Json, JsonObject, Patch, Vec3 } from "./types";
 import { add, minus, mix, rounded, vec } from "./vector";
@@ -128,7 +129,7 @@ export function appended(
   });
   const speed = last.time > first.time ? Math.max(0.5, way / (last.time - first.time)) : 2;
   const leg = Math.max(2, Math.hypot(...minus(position, last.position)) / speed);
-  return inserted(document, last.time + leg, position, lookAt);
+  return inserted(document, last.time + leg, lifted(document, position), lookAt);
 }
 
 function longer(document: JsonObject, time: number): number | undefined {
@@ -253,13 +254,15 @@ export function uncut(document: JsonObject, index: number): Edit {
 }
 
 // What a new obstacle can be, and how it begins: four metres wide, on the ground at `p`.
-export const obstacleKinds: { type: string; text: string; shape(p: Vec3): JsonObject }[] = [
-  { type: "box", text: "Box", shape: (p) => ({
+export const obstacleKinds: {
+  type: string; text: string; radius: number; shape(p: Vec3): JsonObject;
+}[] = [
+  { type: "box", text: "Box", radius: 3, shape: (p) => ({
     lower: [p[0] - 2, p[1] - 2, p[2]], upper: [p[0] + 2, p[1] + 2, p[2] + 4] }) },
-  { type: "sphere", text: "Ball", shape: (p) => ({ center: [p[0], p[1], p[2] + 2], radius: 2 }) },
-  { type: "cylinder", text: "Column", shape: (p) => ({ base: p, radius: 2, height: 8 }) },
-  { type: "cone", text: "Tent", shape: (p) => ({ base: p, radius: 2, height: 4 }) },
-  { type: "no_fly_zone", text: "No-fly zone", shape: (p) => ({
+  { type: "sphere", text: "Ball", radius: 2, shape: (p) => ({ center: [p[0], p[1], p[2] + 2], radius: 2 }) },
+  { type: "cylinder", text: "Column", radius: 2, shape: (p) => ({ base: p, radius: 2, height: 8 }) },
+  { type: "cone", text: "Tent", radius: 2, shape: (p) => ({ base: p, radius: 2, height: 4 }) },
+  { type: "no_fly_zone", text: "No-fly zone", radius: 6, shape: (p) => ({
     corners: [p[0] - 4, p[1] - 4, p[0] + 4, p[1] - 4, p[0] + 4, p[1] + 4, p[0] - 4, p[1] + 4],
     floor: 0, ceiling: 30, opaque: false }) },
 ];
@@ -269,7 +272,7 @@ export function addedObstacle(document: JsonObject, type: string, at: Vec3): Edi
   if (!kind) return null;
   const list = entries(document, "obstacles");
   const name = `${kind.text.toLowerCase()} ${list.length + 1}`;
-  const made: JsonObject = { type, name, ...kind.shape(rounded(at)) };
+  const made: JsonObject = { type, name, ...kind.shape(freeGround(document, rounded(at), kind.radius)) };
   return { label: `Add ${name}`, patch: [{ path: "obstacles", value: [...list, made] }] };
 }
 
@@ -278,8 +281,18 @@ export function addedSubject(document: JsonObject, at: Vec3): Edit {
   // With one subject the film needs no name for it; with two every one does.
   const named = list.map((entry, i) => (entry.name ? entry : { ...entry, name: `subject ${i + 1}` }));
   const made: JsonObject = { position: rounded(add(at, [0, 0, 0.9])), height: 1.8, width: 0.6 };
-  if (list.length > 0) made.name = `subject ${list.length + 1}`;
-  return { label: "Add a subject", patch: [{ path: "subjects", value: [...named, made] }] };
+  const patch: Patch = [{ path: "subjects", value: [...named, made] }];
+  if (list.length > 0) {
+    made.name = `subject ${list.length + 1}`;
+    // Of several, the first keyframe selects one; those after it keep it.
+    const keyframes = entries(document, "keyframes");
+    const [first, ...rest] = keyframes;
+    if (first && !keyframes.some((k) => k.subject || k.look_at)) {
+      patch.push({ path: "keyframes",
+                   value: [{ ...first, subject: (named[0] as JsonObject).name as Json }, ...rest] });
+    }
+  }
+  return { label: "Add a subject", patch };
 }
 
 export function lookedAt(index: number, point: Vec3): Edit {

@@ -3,6 +3,7 @@
 // a drawn stroke as keyframes.
 import { entries, filmOf } from "./film";
 import type { Edit } from "./edits";
+import { lifted } from "./room";
 import type { JsonObject, Patch, Vec3 } from "./types";
 import { add, distance, minus, mix, rounded } from "./vector";
 
@@ -82,7 +83,7 @@ function extended(
   });
   const index = list.length;
   for (const { after, position } of places) {
-    list.push({ time: tenth(start + after), position: rounded(position) });
+    list.push({ time: tenth(start + after), position: rounded(lifted(document, position)) });
   }
   const patch: Patch = [{ path: "keyframes", value: list }];
   const end = list[list.length - 1]?.time as number;
