@@ -118,7 +118,7 @@ test("what fails is shown where it fails, with its mend", () => {
 
 test("checks are read by people", () => {
   assert.equal(plainName("speed_across"), "Speed across");
-  assert.equal(plainName("a_new_one"), "a new one");
+  assert.equal(plainName("a_new_one"), "A new one");
   assert.equal(verdict(check({})), "14 m/s, at most 10 m/s allowed");
   assert.equal(verdict(check({ worst: 0.5, limit: Math.PI / 2, unit: "rad/s" })),
                "28.6 \u00b0/s, at most 90 \u00b0/s allowed");

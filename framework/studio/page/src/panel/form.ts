@@ -94,9 +94,10 @@ function select(first: Field, commit: Commit): Entry {
   const id = `field-${++made}`;
   const input = el("select", { id, "data-key": field.path },
     ...(field.option.choices ?? []).map((choice) =>
-      el("option", { value: choice }, choice.replace(/_/g, " "))));
+      el("option", { value: choice },
+        choice === "" ? "as the drone has it" : choice.replace(/^.*\//, "").replace(/_/g, " "))));
   input.value = String(field.value ?? "");
-  input.addEventListener("change", () => commit(field, input.value));
+  input.addEventListener("change", () => commit(field, input.value === "" ? null : input.value));
   return {
     root: frame(field, id, input),
     update(next) {

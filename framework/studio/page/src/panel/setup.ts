@@ -40,7 +40,7 @@ export class Setup {
         : isObject(value) && typeof value.type === "string" ? value.type
           : kind === "vehicle" && isObject(value) ? "own" : "";
       const names = list.map((choice) => choice.name);
-      if (name !== "" && !names.includes(name)) names.unshift(name);
+      if (!names.includes(name)) names.unshift(name);
       return [{
         path: kind, label: labelOf(kind), value: name, stated: value !== undefined,
         option: { name: kind, type: "choice", choices: names, summary: summaries(list) },

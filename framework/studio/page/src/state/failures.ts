@@ -29,7 +29,8 @@ const plainNames: Record<string, string> = {
 };
 
 export function plainName(check: string): string {
-  return plainNames[check] ?? check.replace(/_/g, " ");
+  const words = check.replace(/_/g, " ");
+  return plainNames[check] ?? words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 // Radians mean nothing to most people.
