@@ -14,12 +14,13 @@ readonly examples=(
 # Each format with its parameters. The judge of NAME is tests/judges/NAME.js; a format without one
 # is written, and judged by the program itself where vehicles fly it.
 readonly formats=(
-  csv gltf chan kml gpx:heights=ground geojson:heights=ground qgc_plan waypoints srt edl
+  csv gltf chan kml gpx:heights=ground geojson:heights=ground qgc_plan waypoints litchi:part=1 wpml:part=1
+  srt edl
 )
 # What missions of MAVLink need: a race lands on its floor, a reconstructed surface has bumps where
 # the take-off is, an exploration is long.
 readonly -A flown=(
-  [race]=home_z=0.3 [scan]=finish=hover [explore]=angle_tolerance=20,take_off=false,finish=hover,part=1
+  [race]=home_z=0.3 [scan]=take_off=false,finish=hover [explore]=angle_tolerance=20,take_off=false,finish=hover,part=1
 )
 # Where the examples are flown: z = 0 is the ground.
 readonly origin=46.5191,6.5668,0,ground

@@ -135,11 +135,20 @@ class Attitude {
     const double most = begun_ ? vehicle_.yaw_rate_max * seconds : INFINITY;
     yaw_ += std::clamp(wrapped(wish - yaw_), -most, most);
     sample.yaw = yaw_;
-    if (vehicle_.gimbal) turn_gimbal(sample, *vehicle_.gimbal, seconds);
+    if (vehicle_.gimbal) turn_gimbal(sample, *vehicle_.gimbal, towards, seconds);
     begun_ = true;
   }
 
  private:
+  // Of the line to a point, how much of it lies behind a place.
+  double share(const Eigen::Vector3d& place, std::size_t towards) const {
+    if (towards == 0) return 1;
+    const Eigen::Vector3d& from = flight_.points[towards - 1].position;
+    const Eigen::Vector3d way = flight_.points[towards].position - from;
+    const double length = way.squaredNorm();
+    return length > 0 ? std::clamp(way.dot(place - from) / length, 0.0, 1.0) : 1;
+  }
+
   double wished_yaw(const Eigen::Vector3d& place, std::size_t towards,
                     const Eigen::Vector3d& way) const {
     if (order_.target) {
@@ -147,13 +156,24 @@ class Attitude {
       if (to.head<2>().norm() > 0.05) return std::atan2(to.y(), to.x());
       return yaw_;
     }
+    if (flight_.evenly) {
+      const double to = flight_.points[towards].yaw.value_or(0);
+      if (towards == 0) return to;
+      const double from = flight_.points[towards - 1].yaw.value_or(0);
+      return from + share(place, towards) * wrapped(to - from);
+    }
     if (flight_.points[towards].yaw) return *flight_.points[towards].yaw;
     return way.head<2>().norm() > 1e-3 ? std::atan2(way.y(), way.x()) : yaw_;
   }
 
-  void turn_gimbal(Sample& sample, const GimbalLimits& limits, double seconds) {
+  void turn_gimbal(Sample& sample, const GimbalLimits& limits, std::size_t towards,
+                   double seconds) {
     double pitch = order_.pitch.value_or(0), yaw = 0;
-    if (order_.target) {
+    if (flight_.evenly) {
+      const double to = flight_.points[towards].pitch;
+      const double from = towards > 0 ? flight_.points[towards - 1].pitch : to;
+      pitch = from + share(sample.position, towards) * (to - from);
+    } else if (order_.target) {
       const Eigen::Vector3d to = *order_.target - sample.position;
       pitch = std::atan2(to.z(), to.head<2>().norm());
       yaw = wrapped(std::atan2(to.y(), to.x()) - yaw_);

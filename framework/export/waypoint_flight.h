@@ -22,6 +22,7 @@ struct FlownPoint {
   double hold = 0;                                     // s of rest there
   double radius = 0;          // m, within which it counts as reached; 0: it is flown over
   std::optional<double> yaw;  // rad; absent: along the way
+  double pitch = 0;           // rad, of the gimbal, where they are joined evenly
 };
 
 // An order to the camera, carried out when a point is reached and the time to hold there is over;
@@ -37,6 +38,8 @@ struct WaypointFlight {
   std::vector<FlownPoint> points;
   std::vector<CameraOrder> orders;       // in the order of their points
   std::vector<std::size_t> photographs;  // points at which one is taken
+  // Yaw and pitch go evenly along each line from those of its start to those of its end.
+  bool evenly = false;
 };
 
 // From rest at the first point to rest at the last one. InputError for fewer than two points.
