@@ -14,7 +14,7 @@ readonly examples=(
 # Each format with its parameters. The judge of NAME is tests/judges/NAME.js; a format without one
 # is written, and judged by the program itself where vehicles fly it.
 readonly formats=(
-  csv gltf chan kml gpx:heights=ground geojson:heights=ground qgc_plan waypoints litchi:part=1 wpml:part=1
+  csv gltf chan mcap poly4d kml gpx:heights=ground geojson:heights=ground qgc_plan waypoints litchi:part=1 wpml:part=1
   srt edl
 )
 # What missions of MAVLink need: a race lands on its floor, a reconstructed surface has bumps where

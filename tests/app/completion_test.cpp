@@ -178,7 +178,8 @@ TEST_F(Completing, BashPutsItsPiecesTogether) {
   EXPECT_EQ(in_bash_line("lapwing run shot.lua --set=weights.sk"), "weights.skewness=\n");
   EXPECT_EQ(in_bash_line("lapwing run shot.lua --set timing=given --qu"), "--quiet\n");
   EXPECT_EQ(in_bash_line("lapwing export --format="),
-            "chan\ncolmap\ncsv\nedl\ngeojson\ngltf\ngpx\nkml\nlitchi\nqgc_plan\nsrt\nwaypoints\nwpml\n");
+            "chan\ncolmap\ncsv\nedl\ngeojson\ngltf\ngpx\nkml\nlitchi\nmcap\npoly4d\nqgc_plan\nsrt\n"
+            "waypoints\nwpml\n");
   write("a=b.lua", "");
   write("c:d.lua", "");
   EXPECT_EQ(in_bash_line("lapwing run a=b"), "b.lua\n");
