@@ -39,6 +39,7 @@ constexpr double kSmallestStep = 1e-10;  // shorter steps are a stall
 constexpr double kProgress = 0.9;        // factor on the residual that counts as progress
 constexpr int kPatience = 15;            // iterations without progress before a proof is sought
 constexpr int kStalls = 3;               // stalls in a row that end a solve
+constexpr double kNear = 1e-3;           // primal residual of a point that is worth drawing
 // The second-order correction can go round in circles (Cartis, Optim. Methods Softw. 24(1), 2009).
 // A careful solve leaves it out after so many iterations without progress, and its target then
 // stays this share of mu.
@@ -331,6 +332,7 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
   int stalls = 0, progress_at = 0;
   double progress = std::numeric_limits<double>::infinity();
   double best_merit = std::numeric_limits<double>::infinity();
+  bool drawn = false;
   for (int iteration = 0;; ++iteration) {
     QuadraticResiduals r;
     QuadraticResult now = unscaled(problem, r);
@@ -354,6 +356,10 @@ QuadraticStatus InteriorPoint::Impl::iterate(const QuadraticProgram& problem,
     if (is_unbounded_ray(problem, now.x)) {
       best = now;
       return QuadraticStatus::unbounded;
+    }
+    if (options.early && !drawn && iteration > 0 && now.primal_residual <= kNear) {
+      options.early(now.x);
+      drawn = true;
     }
     if (options.cancellation && options.cancellation->cancelled())
       return QuadraticStatus::cancelled;

@@ -12,6 +12,7 @@
 // to the next while the sparsity stays the same.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -24,6 +25,8 @@ struct InteriorPointOptions {
   int iteration_limit = 100;
   double tolerance = 1e-9;  // on all three relative residuals
   const CancellationToken* cancellation = nullptr;
+  // Gets, before the end, the first point that is near the rows and bounds: to be drawn.
+  std::function<void(const Eigen::VectorXd& x)> early = {};
 };
 
 // Where to begin instead of cold: an earlier solution of a similar problem. One that does not fit,

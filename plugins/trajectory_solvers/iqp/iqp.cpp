@@ -294,6 +294,8 @@ Solve::Step Solve::quadratic_step() {
   InteriorPointOptions options;
   options.cancellation = request_.cancellation;
   options.tolerance = program_tolerance_;
+  if (problem_.quadratic() && request_.moved)  // whose one program is all there is to be seen
+    options.early = [this](const VectorXd& x) { request_.moved(problem_.retract(at_, x)); };
   std::optional<QuadraticWarmStart> warm;
   if (rows_.size() == problem_.rows() && bounds_.size() == problem_.columns())
     warm = QuadraticWarmStart{VectorXd::Zero(problem_.columns()), rows_, bounds_};

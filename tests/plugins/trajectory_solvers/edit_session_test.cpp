@@ -23,6 +23,7 @@ struct Edited {
   Eigen::Vector3d ball = {4.5, -0.5, 3};  // below the way
   double radius = 0.8;
   bool with_ball = false;
+  bool limited = true;  // without limits the problem is quadratic
 };
 
 Problem stated(const Edited& film, const Problem& last = nullptr) {
@@ -54,9 +55,11 @@ Problem stated(const Edited& film, const Problem& last = nullptr) {
       registry.create<CostTerm>("derivative", table({{"block", "force"}, {"order", 2}})));
   problem->add_cost("yaw", 1.0, registry.create<CostTerm>("yaw_derivative"));
   problem->add_cost("effort", 0.01, registry.create<CostTerm>("input_effort"));
-  problem->add_constraint("input_limits",
-                          registry.create<Constraint>("input_limits", table({{"norm", true}})));
-  problem->add_constraint("state_limits", registry.create<Constraint>("state_limits"));
+  if (film.limited) {
+    problem->add_constraint("input_limits",
+                            registry.create<Constraint>("input_limits", table({{"norm", true}})));
+    problem->add_constraint("state_limits", registry.create<Constraint>("state_limits"));
+  }
   problem->add_constraint(
       "boundary_state", registry.create<Constraint>("boundary_state", table({{"start_yaw", 0.0}})));
   if (film.with_ball) problem->add_constraint("obstacle", registry.create<Constraint>("obstacle"));
@@ -201,6 +204,26 @@ TEST(EditSession, StepsComeFirstAndTheVerifierLast) {
     return answer.result.point.stages.col(33).head<3>();
   };
   EXPECT_LT((at(heard.answers[0]) - at(heard.answers[count - 1])).norm(), 0.3);
+}
+
+// Of its one program an early point is drawn, which keeps the film's equations.
+TEST(EditSession, AQuadraticFilmIsDrawnBeforeItConverges) {
+  Heard heard;
+  Edited film;
+  film.limited = false;
+  ASSERT_TRUE(stated(film)->quadratic());
+  heard.after(film);
+  film.keyframes[1].position.x() += 1;
+  heard.answers.clear();
+  expect_as_cold(heard.after(film), film, "after an edit");
+  ASSERT_EQ(heard.answers.size(), 3u);  // the last step is the converged one
+  const EditAnswer &early = heard.answers.front(), &last = heard.answers.back();
+  EXPECT_EQ(early.grade, AnswerGrade::step);
+  const auto at = [](const EditAnswer& answer) -> Eigen::Vector3d {
+    return answer.result.point.stages.col(33).head<3>();
+  };
+  EXPECT_LT((at(early) - at(last)).norm(), 0.5);
+  EXPECT_LT(early.problem->leg_defects(early.result.point.stages).at(0), 1e-2);
 }
 
 TEST(EditSession, WhereNothingChangesTwoProgramsProveIt) {
