@@ -252,6 +252,7 @@ MeshFile read_mesh(const fs::path& path, const MeshFileOptions& options) {
     for (Eigen::Vector3d& v : file.mesh.vertices) v = file.unit * z_up(v, file.up);
   } else {
     if (file.format == "STL") check_stl(bytes, name);
+    if (file.format == "glTF") check_gltf(bytes, name);
     if (file.format == "Collada") check_collada(bytes, name);
     file.mesh = read_by_assimp(file, bytes, name);
   }

@@ -91,6 +91,15 @@ void for_each_text(std::string_view text, std::string_view element, See see) {
 
 }  // namespace
 
+void check_gltf(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with("glTF")) return;  // the binary form
+  std::string_view text = bytes;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && text[first] == '{') return;
+  fail(name, "it is not glTF, which begins with '{', or with 'glTF' if it is binary");
+}
+
 void check_collada(std::string_view text, const std::string& name) {
   const auto only = [&](std::string_view element, std::string_view allowed) {
     for_each_text(text, element, [&](std::string_view body) {

@@ -29,6 +29,9 @@ struct ColladaFrame {
   std::optional<UpAxis> up;
 };
 ColladaFrame collada_frame(const std::string& text);
+// Throws InputError naming the file where it is neither JSON nor binary glTF: assimp then asks all
+// its other readers, and some take minutes over a few bytes.
+void check_gltf(std::string_view bytes, const std::string& name);
 // Throws InputError naming the file where a list of numbers holds something else, or a count is
 // more than the text could hold: assimp does not come back from those.
 void check_collada(std::string_view text, const std::string& name);

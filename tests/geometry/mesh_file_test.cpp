@@ -182,7 +182,7 @@ TEST_F(MeshFiles, HostileFilesAreRefusedByName) {
   EXPECT_NE(refusal("words.ply", "this is not a mesh"), "");
   EXPECT_NE(refusal("words.stl", "this is not a mesh"), "");
   EXPECT_NE(refusal("words.dae", "this is not a mesh"), "");
-  EXPECT_NE(refusal("words.gltf", "this is not a mesh"), "");
+  EXPECT_THAT(refusal("words.gltf", "this is not a mesh"), testing::HasSubstr("begins with '{'"));
   EXPECT_NE(refusal("words.glb", "this is not a mesh"), "");
   EXPECT_NE(refusal("wall.step", "x").find("expected .obj"), std::string::npos);
 
