@@ -100,7 +100,9 @@ export async function startMock(options = {}) {
     }
     return response.writeHead(path === "/favicon.ico" ? 204 : 404).end();
   });
-  const sockets = new WebSocketServer({ server, path: "/session" });
+  const sockets = new WebSocketServer({
+    server, path: "/session", verifyClient: () => !state.gone,
+  });
   const open = new Set();
   let newest = 0;
 
@@ -225,10 +227,6 @@ export async function startMock(options = {}) {
   };
 
   sockets.on("connection", (socket) => {
-    if (state.gone) {
-      socket.terminate();
-      return;
-    }
     socket.on("message", (data) => {
       const message = JSON.parse(String(data));
       state.received.push(message);

@@ -47,11 +47,12 @@ export class Notices {
     const box = byId("link");
     box.hidden = !lost;
     const waiting = session.pending;
-    box.textContent = lost && session.strange
+    const kept = waiting > 0 ? `${waiting} ${waiting === 1 ? "edit is" : "edits are"} kept and will ` +
+      "be sent." : "Nothing is lost.";
+    const what = session.strange
       ? "The studio does not know this page any more. Open the address that it printed."
-      : lost ? "Connection lost. Trying again\u2026 " +
-      (waiting > 0 ? `${waiting} ${waiting === 1 ? "edit is" : "edits are"} kept and will be sent.`
-        : "Nothing is lost.") : "";
+      : "Connection lost. Trying again\u2026";
+    box.textContent = lost ? `${what} ${kept}` : "";
   }
 
   private script(message: unknown): void {
@@ -59,8 +60,8 @@ export class Notices {
     if (session.scriptError) {
       const { message: text, line } = session.scriptError;
       this.banner.replaceChildren(el("strong", {}, "The script has an error"),
-        el("span", {}, `${line && !text.includes(`:${line}:`) ? `Line ${line}: ` : ""}${text}. The film stays as it was; save the ` +
-          "script again to go on."));
+        el("span", {}, `${line && !text.includes(`:${line}:`) ? `Line ${line}: ` : ""}${text}. The ` +
+          "film stays as it was; save the script again to go on."));
       this.banner.hidden = false;
       this.ofError = true;
       return;
