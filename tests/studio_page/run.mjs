@@ -31,6 +31,12 @@ const start = Date.now();
 const LANES = 2;
 const browsers = await Promise.all(Array.from({ length: LANES }, startBrowser));
 let failed = 0, foreign = 0;
+// No browser outlives its tests.
+process.on("uncaughtException", async (error) => {
+  console.error(error);
+  await Promise.all(browsers.map((browser) => browser.close().catch(() => {})));
+  process.exit(1);
+});
 
 async function run(browser, name, then) {
   const began = Date.now();
