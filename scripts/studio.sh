@@ -22,16 +22,7 @@ fi
       scripts/setup.sh --for studio || exit 2
     mkdir -p build
     echo "Building the page, log in build/page.log ..." >&2
-    (
-      cd $page
-      # Once for every state of the lock file.
-      sum=$(sha256sum package-lock.json)
-      if [ "$(cat node_modules/.lapwing_lock 2>/dev/null)" != "$sum" ]; then
-        npm ci --no-audit --no-fund
-        printf '%s\n' "$sum" >node_modules/.lapwing_lock
-      fi
-      npm run build
-    ) >build/page.log 2>&1 || { tail -n 30 build/page.log >&2; exit 1; }
+    bash scripts/page.sh >build/page.log 2>&1 || { tail -n 30 build/page.log >&2; exit 1; }
     option=-DLAPWING_STUDIO=ON
   else
     scripts/setup.sh --for build || exit 2
