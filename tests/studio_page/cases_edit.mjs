@@ -92,6 +92,9 @@ export const edits = [
     await type(page, '[data-key="keyframes[1].time"]', "3 kg");
     const text = await page.$eval("#selected .field-error:not([hidden])", (e) => e.textContent);
     assert.match(text, /no unit here; use s/);
+    await type(page, '[data-key="keyframes[1].time"]', "25");
+    await page.waitForFunction(
+      () => document.body.textContent.includes("Keyframe 1 must be between 0 s and 9.8 s"));
     assert.equal((await studioState(page)).revision, revision);
   }],
   ["keyframes placed by clicks on the ground", async ({ page }) => {

@@ -9,6 +9,21 @@ const shown = (page, selector) => page.$eval(selector, (e) => !e.hidden && e.off
 const text = (page, selector) => page.$eval(selector, (e) => e.textContent);
 
 export const views = [
+  ["guides that are drawn again are the same", async ({ page }) => {
+    const drawn = async (reset) => {
+      await page.evaluate((anew) => {
+        const canvas = document.getElementById("guides");
+        // Drops what earlier drawings have left.
+        if (anew) canvas.setAttribute("width", String(canvas.width));
+      }, reset);
+      await keys(page, "g");
+      await keys(page, "g");
+      return page.evaluate(() => document.getElementById("guides").toDataURL());
+    };
+    const first = await drawn(true);
+    assert.equal(await drawn(false), first);
+    assert.equal(await drawn(false), first);
+  }],
   ["played, scrubbed and sped up by mouse", async ({ page }) => {
     await page.click("#rate-two");
     await page.click("#play");

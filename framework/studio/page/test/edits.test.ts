@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { applied, valueAt } from "../src/state/document";
 import {
   addedObstacle, addedSubject, obstacleKinds, appended, cutAt, deleted, duplicated, inserted, moved, nameOf,
-  placeOfItem, reordered, retimed, slowed, uncut, type Edit,
+  placeOfItem, reordered, retimed, slowed, timeRange, uncut, type Edit,
 } from "../src/state/edits";
 import { trianglesOf } from "../src/state/shapes";
 import { freeGround, lifted } from "../src/state/room";
@@ -84,6 +84,8 @@ test("a time stays between its neighbours, the film ends with its last keyframe"
   assert.deepEqual(times(after(retimed(film, 1, 14.26))), [0, 14.3, 20]);
   assert.deepEqual(times(after(retimed(film, 1, -5))), [0, 0.2, 20]);
   assert.deepEqual(times(after(retimed(film, 1, 50))), [0, 19.8, 20]);
+  assert.deepEqual(timeRange(film, 1), [0.2, 19.8]);
+  assert.deepEqual(timeRange(film, 2), [10.2, Infinity]);
   const longer = after(retimed(film, 2, 31));
   assert.equal(longer.duration, 31);
   assert.equal(after(retimed(film, 0, -2)).duration, 20);

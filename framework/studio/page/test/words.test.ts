@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { legAt, mendOf, passagesOf, plainName, slowerBy, sortedChecks, verdict } from "../src/state/failures";
+import { legAt, mendOf, passagesOf, plainName, slowerBy, sortedChecks, unhurried, verdict } from
+  "../src/state/failures";
 import { choicesIn, optionsIn } from "../src/state/installed";
 import { actionOf, bindings, keyOf, keyText } from "../src/state/keys";
 import { lanesOf, massOf } from "../src/state/samples";
@@ -169,4 +170,14 @@ test("the leg to be slowed is the one at that time, beside a keyframe the faster
   assert.equal(legAt([], 0), null);
   assert.equal(slowerBy(check({ name: "keyframe_miss", worst: 1, limit: 0.5 })), 1.25);
   assert.equal(slowerBy(check({ name: "clearance", worst: 0, limit: 0.5 })), null);
+});
+
+test("a leg beyond the drone is slowed to a pace that it keeps", () => {
+  const at = (time: number, east: number): { time: number; position: [number, number, number] } =>
+    ({ time, position: [east, 0, 5] });
+  assert.equal(unhurried(at(0, 0), at(10, 30), 10), 1);    // 3 m/s
+  assert.equal(unhurried(at(0, 0), at(10, 120), 10), 2);   // 12 m/s, to 6 m/s
+  assert.equal(unhurried(at(0, 0), at(10, 120), undefined), 1);
+  assert.match(mendOf({ name: "keyframe_miss", worst: 4, limit: 0.5, detail: "keyframe 3" } as never),
+               /beside keyframe 3 more/);
 });

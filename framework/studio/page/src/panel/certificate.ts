@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certificate as a list: what fails first, with its mend; a click goes to the place and second.
-import { legAt, mendOf, plainName, slowerBy, sortedChecks, verdict } from "../state/failures";
+import { legAt, mendOf, plainName, slowerBy, sortedChecks, unhurried, verdict } from
+  "../state/failures";
 import { slowed } from "../state/edits";
 import { show } from "../state/units";
 import type { Certificate, Check } from "../state/types";
@@ -63,10 +64,13 @@ export class CertificateList {
     const factor = slowerBy(check);
     const leg = legAt(this.studio.film.keyframes, check.time ?? 0);
     if (factor !== null && leg !== null && this.studio.editable) {
+      const [from, to] = [leg - 1, leg].map((i) => this.studio.film.keyframes[i]);
+      const pace = from && to ? unhurried(from, to, this.studio.plan.limits?.speed_across) : 1;
+      const by = Math.max(factor, pace);
       row.append(el("button", {
         type: "button", class: "primary", "data-key": `mend-${check.name}`,
-        onclick: () => this.studio.edit(slowed(this.studio.document, leg, factor)),
-      }, `Slow leg ${leg}\u2009\u2192\u2009${leg + 1}`));
+        onclick: () => this.studio.edit(slowed(this.studio.document, leg, by)),
+      }, `Slow leg ${leg}\u2009\u2192\u2009${leg + 1} by ${by.toFixed(2)}`));
     }
     return row;
   }

@@ -48,7 +48,7 @@ export class ExportDialog {
                    "lapwing run writes it" }];
     if (this.choice.options.length !== all.length) {
       this.choice.replaceChildren(...all.map((one) => el("option", { value: one.name },
-        [one.name, one.summary?.replace(/[,(].*$/, "").trim()].filter(Boolean).join(" \u2013 "))));
+        [one.name, one.summary].filter(Boolean).join(" \u2013 "))));
     }
     this.result.replaceChildren();
     this.showForm();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is selected, as numbers to type.
-import { entryOf, nameOf, pathOfItem, retimed, without, deleted, duplicated, reordered, moved,
-         placeOfItem, type Item } from "../state/edits";
+import { entryOf, nameOf, pathOfItem, retimed, timeRange, without, deleted, duplicated, reordered,
+         moved, placeOfItem, type Item } from "../state/edits";
 import { entries } from "../state/film";
 import { labelOf, type Field } from "../state/schema";
 import { isObject } from "../state/document";
@@ -126,7 +126,7 @@ export class Selected {
       return;
     }
     if (item.kind === "keyframe" && path.endsWith(".time")) {
-      studio.edit(retimed(studio.document, item.index, Number(value)));
+      this.retime(item.index, Number(value));
       return;
     }
     const name = nameOf(studio.document, item);
@@ -136,6 +136,20 @@ export class Selected {
     } else {
       studio.edit({ label, patch: [value === null ? { path, remove: true } : { path, value }] });
     }
+  }
+
+  // A typed time that has no place between its neighbours is refused, not changed.
+  private retime(index: number, time: number): void {
+    const { studio } = this;
+    const [earliest, latest] = timeRange(studio.document, index);
+    if (time >= earliest && time <= latest) {
+      studio.edit(retimed(studio.document, index, time));
+      return;
+    }
+    const range = Number.isFinite(latest) ? `between ${earliest} s and ${latest} s`
+      : `${earliest} s or later`;
+    studio.session.note(`Keyframe ${index + 1} must be ${range}: beside its neighbours.`);
+    studio.tell("selection");
   }
 
   private corner(path: string, axis: number, value: number): { label: string;

@@ -206,16 +206,22 @@ export function reordered(document: JsonObject, index: number, by: -1 | 1): Edit
     `${Math.max(index, other) + 1}`, list);
 }
 
-// Between its neighbours; the film grows with its last keyframe and shrinks with it.
+// The earliest and the latest time of a keyframe, between its neighbours, s.
+export function timeRange(document: JsonObject, index: number): [number, number] {
+  const { keyframes } = filmOf(document);
+  const before = keyframes[index - 1], after = keyframes[index + 1];
+  return [before ? tenth(before.time + 0.2) : 0, after ? tenth(after.time - 0.2) : Infinity];
+}
+
+// As near to a time as its neighbours allow; the film grows with its last keyframe and shrinks with
+// it.
 export function retimed(document: JsonObject, index: number, time: number): Edit | null {
   const film = filmOf(document);
   const stretch = typeof document.stretch === "number" ? document.stretch : 1;
-  const before = film.keyframes[index - 1], after = film.keyframes[index + 1];
+  const after = film.keyframes[index + 1];
   if (!film.keyframes[index]) return null;
-  let wanted = tenth(time);
-  if (before) wanted = Math.max(wanted, tenth(before.time + 0.2));
-  if (after) wanted = Math.min(wanted, tenth(after.time - 0.2));
-  wanted = tenth(Math.max(0, wanted) / stretch);
+  const [earliest, latest] = timeRange(document, index);
+  const wanted = tenth(Math.min(Math.max(tenth(time), earliest), latest) / stretch);
   const label = `Time of keyframe ${index + 1}`;
   const all = entries(document, "keyframes");
   const patch: Patch = all.every((entry) => typeof entry.time === "number")

@@ -95,6 +95,19 @@ export function slowerBy(check: Check): number | null {
   return ["thrust_max", "thrust_min", "keyframe_miss"].includes(check.name) ? A_LITTLE : null;
 }
 
+const UNHURRIED = 0.6;   // of the fastest speed, over a whole leg: it starts and ends slower
+
+// How much slower a leg is at a pace that the drone can keep from keyframe to keyframe; 1 where it
+// is slow enough.
+export function unhurried(
+  from: { time: number; position: Vec3 }, to: { time: number; position: Vec3 }, fastest: unknown,
+): number {
+  if (typeof fastest !== "number" || !(fastest > 0)) return 1;
+  const seconds = Math.max(to.time - from.time, 1e-3);
+  const wanted = distance(from.position, to.position) / (UNHURRIED * fastest);
+  return Math.max(1, Math.ceil((wanted / seconds) * 20) / 20);
+}
+
 // The leg at a time, by the keyframe that it leads to: beside a keyframe, the faster of both.
 export function legAt(keyframes: { time: number; position: Vec3 }[], time: number): number | null {
   const speed = (i: number): number => {
@@ -133,7 +146,8 @@ export function mendOf(check: Check): string {
       return `Move the path ${show(Math.abs(check.limit - check.worst))} m ` +
         `${check.name === "flight_zone" ? "inwards" : "away"} here.`;
     case "keyframe_miss":
-      return "Give the legs beside this keyframe more seconds, or move it nearer to the path.";
+      return `Give the legs beside ${/keyframe \d+/.exec(check.detail ?? "")?.[0] ?? "this keyframe"} ` +
+        "more seconds, or move it nearer to the path.";
     case "framing":
     case "line_of_sight":
       return "Move the keyframes here so that the subject is in the picture and nothing hides it.";

@@ -210,6 +210,11 @@ export class Session {
     });
   }
 
+  // A sentence for the user.
+  note(text: string): void {
+    this.tell({ what: "note", text });
+  }
+
   private tell(event: Event): void {
     for (const listener of this.listeners) listener(event);
   }

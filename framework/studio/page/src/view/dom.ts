@@ -70,10 +70,10 @@ export function sized(canvas: HTMLCanvasElement): CanvasRenderingContext2D | nul
   const scale = Math.min(window.devicePixelRatio || 1, 2);
   const width = Math.round(canvas.clientWidth * scale);
   const height = Math.round(canvas.clientHeight * scale);
-  if (canvas.width !== width) canvas.width = width;
+  // Setting the width clears all pixels, and every state that the drawing before has left.
+  canvas.width = width;
   if (canvas.height !== height) canvas.height = height;
   const context = canvas.getContext("2d");
   context?.setTransform(scale, 0, 0, scale, 0, 0);
-  context?.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
   return context;
 }
