@@ -27,7 +27,12 @@ double offset_between(const GeodeticOrigin& origin, HeightOf heights, const std:
                      ", and the origin states one above " + EarthFrame::in_words(origin.height_of) +
                      "; state an origin of that kind, or the parameter `heights`");
   if (heights == HeightOf::ellipsoid) return 0;
-  return geoid_height_at(origin.latitude_deg, origin.longitude_deg, format);
+  try {
+    return geoid_height_at(origin.latitude_deg, origin.longitude_deg, format);
+  } catch (const InputError& error) {
+    throw InputError(error.what() + std::string("; or write heights above the ellipsoid, as ") +
+                     "`--format gpx:heights=ellipsoid` and `--format geojson` do");
+  }
 }
 
 }  // namespace

@@ -34,6 +34,21 @@ Value feature(const char* type, Value coordinates, Value properties) {
   return made;
 }
 
+// The standard asks for lines and outlines that are cut at the date line (RFC 7946, 3.1.9): others
+// are drawn around the earth.
+void expect_no_date_line(const Value& line, const std::string& what) {
+  const auto& positions = line.as_list();
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    const double from = positions[i - 1].as_list()[0].as_number();
+    const double to = positions[i].as_list()[0].as_number();
+    if (std::abs(to - from) > 180)
+      throw InputError("geojson: " + what + " crosses the date line, from longitude " +
+                       plain_number(from, 10) + " to " + plain_number(to, 10) +
+                       " deg; programs would draw it around the earth (RFC 7946, 3.1.9). Expected "
+                       "an origin whose flight and zones lie on one side");
+  }
+}
+
 double heading_of(double yaw) {
   const double heading = std::fmod(90 - degrees(yaw), 360);
   return heading < 0 ? heading + 360 : heading;
@@ -100,6 +115,7 @@ class Geojson final : public Exporter {
     Value line = Value::list(), stated = Value::list(), properties = Value::map();
     for (const Eigen::Vector3d& p : path_at(plan, times, "geojson"))
       line.push_back(position(frame.at(p)));
+    expect_no_date_line(line, "the path");
     for (const double time : times) stated.push_back(time);
     properties.set("kind", "path");
     properties.set("times", std::move(stated));
@@ -123,6 +139,7 @@ class Geojson final : public Exporter {
       const Eigen::Vector2d& c = zone.corners[i % zone.corners.size()];
       ring.push_back(position(frame.at({c.x(), c.y(), level})));
     }
+    expect_no_date_line(ring, zone.name);
     rings.push_back(std::move(ring));
     properties.set("kind", zone.keep_inside ? "flight zone" : "zone");
     properties.set("name", as_utf8(zone.name));

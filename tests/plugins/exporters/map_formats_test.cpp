@@ -89,7 +89,11 @@ TEST(MapFormats, HeightsAreConvertedWhereTheOriginTells) {
   EXPECT_NEAR(height("geojson", ellipsoid, Value::map()), 451, 1e-3);
   // Between ellipsoid and sea lies the geoid, which is not guessed.
   setenv("GEOGRAPHICLIB_GEOID_PATH", "/nowhere", 1);
-  EXPECT_THAT(refusal_of(*exporter_named("gpx"), ellipsoid), HasSubstr("geographiclib-get-geoids"));
+  for (const char* format : {"gpx", "kml"})
+    EXPECT_THAT(refusal_of(*exporter_named(format), ellipsoid),
+                testing::AllOf(HasSubstr("geographiclib-get-geoids"),
+                               HasSubstr("`--format gpx:heights=ellipsoid`")));
+  EXPECT_EQ(refusal_of(*exporter_named("gpx", with("heights", "ellipsoid")), ellipsoid), "");
   unsetenv("GEOGRAPHICLIB_GEOID_PATH");
   for (const char* format : {"gpx", "geojson"})
     EXPECT_THAT(refusal_of(*exporter_named(format), placed_plan()),
@@ -141,6 +145,29 @@ TEST(MapFormats, HoldPlacesAndZonesByTheirNames) {
   EXPECT_LT(area, 0);
   plan.certificate = with("feasible", true);
   EXPECT_THAT(exporter_named("kml")->write(plan), Not(HasSubstr("not certified")));
+}
+
+TEST(MapFormats, GeojsonRefusesTheDateLine) {
+  const auto geojson = exporter_named("geojson", with("heights", "ground"));
+  Plan plan = placed_plan();  // within 10 m of the origin, on both sides of it
+  plan.geodetic_origin->longitude_deg = 180;
+  EXPECT_EQ(refusal_of(*geojson,
+                       [&] {
+                         Plan east = plan;
+                         for (Sample& s : east.trajectory.samples) s.position.x() += 20;
+                         return east;
+                       }()),
+            "");
+  EXPECT_THAT(refusal_of(*geojson, plan),
+              testing::AllOf(HasSubstr("the path crosses the date line"), HasSubstr("RFC 7946")));
+  plan.geodetic_origin->longitude_deg = 179.9;
+  EXPECT_EQ(refusal_of(*geojson, plan), "");
+  Obstacle zone;
+  zone.name = "bay";
+  zone.type = "prism";
+  zone.parameters.set("corners", Value(Value::List{0.0, 0.0, 20000.0, 0.0, 0.0, 900.0}));
+  plan.environment.obstacles.push_back(zone);
+  EXPECT_THAT(refusal_of(*geojson, plan), HasSubstr("zone 'bay' crosses the date line"));
 }
 
 TEST(MapFormats, ViewsHaveTheirDirection) {
