@@ -66,7 +66,7 @@ void time_points(std::vector<RoutePoint>& points, const Plan& plan, double acros
   }
   Vehicle vehicle = vehicle_from_value(plan.vehicle);
   vehicle.speed_across_max = std::min(vehicle.speed_across_max, kFastest);
-  time_waypoints(waypoints, vehicle, across);
+  time_waypoints(waypoints, vehicle, across, true);
   for (std::size_t k = 0; k < points.size(); ++k) points[k].at = waypoints[k];
 }
 
@@ -165,10 +165,28 @@ PlannedRoute route_of(const Plan& plan, const RouteOptions& options, const std::
   return route;
 }
 
+namespace {
+
+// A drone refuses, or cuts as it likes, curves that meet on their line.
+void check_curves(const std::vector<FlownPoint>& points) {
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    const double line = (points[k].position - points[k - 1].position).norm();
+    const double before = points[k - 1].radius, behind = points[k].radius;
+    if (before + behind <= line) continue;
+    throw InputError("points " + std::to_string(k) + " and " + std::to_string(k + 1) +
+                     ": curves of " + plain_number(before, 3) + " m and " +
+                     plain_number(behind, 3) + " m on a line of " + plain_number(line, 3) +
+                     " m; expected no more than the line together");
+  }
+}
+
+}  // namespace
+
 FlownFile fly_route(const ReadRoute& route, const Plan& plan) {
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   WaypointFlight flight;
   flight.evenly = true;
+  check_curves(route.points);
   for (std::size_t k = 0; k < route.points.size(); ++k) {
     flight.points.push_back(route.points[k]);
     const auto& images = route.images[k];

@@ -57,6 +57,7 @@ struct ReadRoute {
   std::vector<FlownPoint> points;
   std::vector<std::vector<RouteImage>> images;
 };
+// InputError where the radii at both ends of a line are more than the line together.
 FlownFile fly_route(const ReadRoute& route, const Plan& plan);
 
 // Degrees clockwise from north in [0, 360).

@@ -12,6 +12,7 @@ namespace {
 constexpr int kRounds = 20;
 constexpr double kSlowest = 0.02;      // m/s
 constexpr double kLeastRadius = 0.05;  // m
+constexpr double kCurveShare = 0.49;   // of a line, that a curve may take
 // Of a limit: places are rounded in files, which turns short lines a little.
 constexpr double kShare = 0.99;
 
@@ -26,6 +27,16 @@ void set_radii(std::vector<PlannedWaypoint>& waypoints, double across) {
     // A corner that is cut r before and behind it is r sin(turn / 2) / 2 away, or less.
     const double bend = std::max(1e-6, std::sin(turn / 4));
     waypoints[k].radius = std::clamp(0.3 * across / bend, kLeastRadius, across);
+  }
+}
+
+// Two curves on one line do not meet, after places and radii are rounded to centimetres.
+void part_curves(std::vector<PlannedWaypoint>& waypoints) {
+  for (std::size_t k = 1; k < waypoints.size(); ++k) {
+    const double line = (waypoints[k].position - waypoints[k - 1].position).norm();
+    const double most = std::floor(100 * kCurveShare * line) / 100;
+    for (const std::size_t end : {k - 1, k})
+      waypoints[end].radius = std::min(waypoints[end].radius, most);
   }
 }
 
@@ -50,9 +61,10 @@ WaypointFlight flight_along(const std::vector<PlannedWaypoint>& waypoints) {
   return flight;
 }
 
-void time_waypoints(std::vector<PlannedWaypoint>& waypoints, const Vehicle& vehicle,
-                    double across) {
+void time_waypoints(std::vector<PlannedWaypoint>& waypoints, const Vehicle& vehicle, double across,
+                    bool curves) {
   set_radii(waypoints, across);
+  if (curves) part_curves(waypoints);
   for (std::size_t k = 1; k < waypoints.size(); ++k)
     if (!waypoints[k].rests())
       waypoints[k].speed = std::min(
@@ -68,7 +80,8 @@ void time_waypoints(std::vector<PlannedWaypoint>& waypoints, const Vehicle& vehi
       const double taken = flown.reached[k] - begun;
       if (w.rests() || taken < 1e-9) continue;
       // A flight that is late, or early, makes up for it on the lines that follow.
-      const double line = w.time - waypoints[k - 1].time - w.hold;
+      // Holds that were rounded up may leave it no time.
+      const double line = std::max(1e-3, w.time - waypoints[k - 1].time - w.hold);
       const double late = begun - (waypoints[k - 1].time - waypoints[0].time);
       const double wanted = std::clamp(line - late / 2, 0.6 * line, 1.5 * line);
       w.speed = std::clamp(w.speed * std::sqrt(taken / wanted), std::max(kSlowest, planned[k] / 2),

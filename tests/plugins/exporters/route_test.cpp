@@ -263,6 +263,59 @@ TEST(Routes, TheirFlightIsThatOfThePlan) {
             100);
 }
 
+// Points of a row, or of a placemark: what stands behind a key.
+std::vector<double> numbers_after(const std::string& text, const std::string& key) {
+  std::vector<double> numbers;
+  for (std::size_t at = 0; (at = text.find(key, at)) != std::string::npos; ++at)
+    numbers.push_back(std::strtod(text.c_str() + at + key.size(), nullptr));
+  return numbers;
+}
+
+// Corners that turn little, on lines that are shorter than twice the tolerance.
+Plan fine_zigzag() {
+  Plan plan = quarter_circle();
+  for (std::size_t i = 0; i < plan.trajectory.samples.size(); ++i) {
+    Sample& s = plan.trajectory.samples[i];
+    const double along = 0.1 * static_cast<double>(i), phase = std::fmod(along, 8);
+    s.position = {along, 0.25 * std::abs(phase - 4), 10};
+    s.velocity = {1, phase < 4 ? -0.25 : 0.25, 0};
+  }
+  return plan;
+}
+
+TEST(Routes, CurvesFitTheirLines) {
+  Value given = with("tolerance", 8);
+  given.set("time_tolerance", 0.5);
+  given.set("angle_tolerance", 2);
+  const Plan plan = fine_zigzag();
+  const std::string kml = waylines_in(exporter_named("wpml", given)->write(plan));
+  const auto radii = numbers_after(kml, "<wpml:waypointTurnDampingDist>");
+  const auto longitudes = numbers_after(kml, "<coordinates>");
+  ASSERT_GT(radii.size(), 5u);
+  const double metres = 6378137 * M_PI / 180 * std::cos(kLatitude * M_PI / 180);
+  double most = 0;
+  for (std::size_t k = 1; k < radii.size(); ++k) {  // no line climbs; they lie nearly along x
+    const double line = metres * (longitudes[k] - longitudes[k - 1]) * 1.04;
+    EXPECT_LE(radii[k - 1] + radii[k], line) << k;
+    most = std::max(most, (radii[k - 1] + radii[k]) / line);
+  }
+  EXPECT_GT(most, 0.5);  // they are as long as their lines allow
+  const auto litchi = exporter_named("litchi", given);
+  std::string text = litchi->write(plan);
+  EXPECT_NO_THROW(litchi->flown(plan, text));
+  // The fifth word of the third row.
+  std::size_t at = text.find('\n', text.find('\n') + 1) + 1;
+  for (int word = 0; word < 4; ++word) at = text.find(',', at) + 1;
+  text.replace(at, text.find(',', at) - at, "40");
+  try {
+    litchi->flown(plan, text);
+    ADD_FAILURE() << "curves that meet were flown";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("points 1 and 2: curves of "),
+                                             HasSubstr("40 m on a line of ")));
+  }
+}
+
 TEST(Routes, RefuseWhatTheyCannotHold) {
   for (const char* format : {"litchi", "wpml"}) {
     const auto exporter = exporter_named(format);
