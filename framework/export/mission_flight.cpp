@@ -17,7 +17,8 @@ double yaw_of(double heading_deg) {
 
 class Reader {
  public:
-  Reader(const EarthFrame& frame, const EarthPoint& home) : frame_(frame), home_(home) {}
+  Reader(const EarthFrame& frame, const EarthPoint& home, bool ardupilot)
+      : frame_(frame), home_(home), ardupilot_(ardupilot) {}
 
   void take(const MissionItem& item) {
     const auto& p = item.params;
@@ -85,7 +86,7 @@ class Reader {
     FlownPoint point;
     point.position = place(item.params);
     point.speed = speed_;
-    point.hold = item.params[0];
+    point.hold = ardupilot_ ? std::floor(item.params[0]) : item.params[0];
     point.radius = item.params[1];
     point.yaw = heading_ ? heading_ : std::optional(yaw_of(item.params[3]));
     flight_.points.push_back(point);
@@ -93,6 +94,7 @@ class Reader {
 
   const EarthFrame& frame_;
   const EarthPoint& home_;
+  bool ardupilot_;
   WaypointFlight flight_;
   double speed_ = 5;  // m/s, of an autopilot that was told none
   std::optional<double> heading_;
@@ -101,11 +103,11 @@ class Reader {
 }  // namespace
 
 FlownFile flight_of(const std::vector<MissionItem>& items, const EarthFrame& frame, EarthPoint home,
-                    double home_z, const Plan& plan) {
+                    double home_z, bool ardupilot, const Plan& plan) {
   Eigen::Vector3d ground = frame.local(home);
   ground.z() = home_z;
   home.height = frame.at(ground).height;
-  Reader reader(frame, home);
+  Reader reader(frame, home, ardupilot);
   for (const MissionItem& item : items) reader.take(item);
   return fly_waypoints(reader.flight(), vehicle_from_value(plan.vehicle),
                        plan.trajectory.has_gimbal);

@@ -46,6 +46,8 @@ class Builder {
         vehicle_(vehicle_from_value(plan.vehicle)),
         waypoints_(fewest_waypoints(plan, options.tolerance, format)) {
     mission_.home_z = home_z_of(plan, options);
+    if (options.ardupilot)  // it holds whole seconds
+      for (PlannedWaypoint& w : waypoints_) w.hold = std::ceil(w.hold - 1e-6);
     time_waypoints(waypoints_, vehicle_, options.tolerance.across);
   }
 
@@ -56,6 +58,7 @@ class Builder {
     mission_.start = begin.time;
     mission_.finish = waypoints_[last].time;
     mission_.waypoints = last - first + 1;
+    check_heights(first, last);
     add_start(first, last);
     for (std::size_t k = first; k <= last; ++k) add_waypoint(k, k == first);
     add_end(last);
@@ -200,6 +203,42 @@ class Builder {
          at({w.position.x(), w.position.y(), mission_.home_z},
             {0, 0, 0, rounded(yaw_of(last), 100)})});
     mission_.items.back().params[6] = 0;
+  }
+
+  // A take-off climbs, a landing descends, and no waypoint lies in the ground where the origin
+  // tells where that is.
+  void check_heights(std::size_t first, std::size_t last) const {
+    const double begin = above_home(first), end = above_home(last);
+    if (options_.take_off && begin <= 0)
+      throw InputError(format_ + ": take-off: the first waypoint (z = " + z_of(first) + ") is " +
+                       plain_number(0 - begin, 4) +
+                       " m below the take-off place (z = " + plain_number(mission_.home_z, 4) +
+                       " m); expected one above it: a lower `home_z`, or `take_off=false`");
+    if (options_.finish == "land" && end < 0)
+      throw InputError(format_ + ": landing: the last waypoint (z = " + z_of(last) + ") is " +
+                       plain_number(0 - end, 4) +
+                       " m below the landing place (z = " + plain_number(mission_.home_z, 4) +
+                       " m); expected one above it: a lower `home_z`, `finish=return` or "
+                       "`finish=hover`");
+    if (frame_.heights() != HeightOf::ground) return;
+    for (std::size_t k = first; k <= last; ++k) {
+      const double height = rounded(frame_.at(waypoints_[k].position).height, 1e3);
+      if (height > 0) continue;
+      throw InputError(format_ + ": waypoint " + std::to_string(k - first + 1) + " (at " +
+                       plain_number(waypoints_[k].time, 4) + " s of the plan, z = " + z_of(k) +
+                       ") is " + plain_number(height, 4) +
+                       " m above the ground of the origin; expected more than 0 m: a higher "
+                       "flight, or an origin that states its true height above the ground");
+    }
+  }
+
+  // m, as the file has it.
+  double above_home(std::size_t k) const {
+    return rounded(frame_.at(waypoints_[k].position).height - mission_.home.height, 1e3);
+  }
+
+  std::string z_of(std::size_t k) const {
+    return plain_number(waypoints_[k].position.z(), 4) + " m";
   }
 
   // The way up or down, as far as shapes are open, to the margin above the take-off place.

@@ -66,9 +66,10 @@ struct PlannedMission {
   std::vector<std::string> said;  // for the user
 };
 
-// Throws InputError beginning with `format`: no origin, no length, climbing or descending through
-// an obstacle, more items than the autopilot holds (2000 of PX4, 700 of ArduPilot; it says how many
-// parts there are), a part that there is not.
+// Throws InputError beginning with `format`: no origin, no length, a take-off to a waypoint that is
+// not above its place, a landing from below, with an origin above the ground a waypoint that is
+// not above it, climbing or descending through an obstacle, more items than the autopilot holds
+// (2000 of PX4, 700 of ArduPilot; it says how many parts there are), a part that there is not.
 PlannedMission mission_of(const Plan& plan, const MissionOptions& options,
                           const std::string& format);
 
@@ -80,9 +81,10 @@ std::optional<double> home_above_sea(const EarthFrame& frame, const EarthPoint& 
                                      std::vector<std::string>* said);
 
 // The flight of items that were read from a file. Commands that it does not know are InputErrors.
-// Heights count from the ground of the take-off place, which is at `home_z` (m, world).
+// Heights count from the ground of the take-off place, which is at `home_z` (m, world). ArduPilot
+// drops fractions of the seconds to hold at a waypoint.
 FlownFile flight_of(const std::vector<MissionItem>& items, const EarthFrame& frame, EarthPoint home,
-                    double home_z, const Plan& plan);
+                    double home_z, bool ardupilot, const Plan& plan);
 
 // What every export says of heights: "heights in the file are above the take-off place ...".
 std::string sentence_of_heights(const std::vector<MissionItem>& items, double home_z);

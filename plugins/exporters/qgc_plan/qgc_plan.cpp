@@ -97,9 +97,10 @@ class QgcPlan final : public Exporter {
     const Value document = from_json(written, "qgc_plan");
     const auto& home = document.at("mission").at("plannedHomePosition").as_list();
     const EarthFrame frame(plan, std::nullopt, "qgc_plan");
+    const bool ardupilot = document.at("mission").at("firmwareType").as_integer() == kArduPilot;
     FlownFile flown =
         flight_of(items_in(document), frame, {home.at(0).as_number(), home.at(1).as_number(), 0},
-                  home_z_of(plan, options_), plan);
+                  home_z_of(plan, options_), ardupilot, plan);
     const PlannedMission mission = mission_of(plan, options_, "qgc_plan");
     flown.start = mission.start;
     flown.finish = mission.finish;

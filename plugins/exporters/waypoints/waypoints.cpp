@@ -80,8 +80,8 @@ class Waypoints final : public Exporter {
     const auto home = items.at(0).params;
     items.erase(items.begin());
     const EarthFrame frame(plan, std::nullopt, "waypoints");
-    FlownFile flown =
-        flight_of(items, frame, {home[4], home[5], 0}, home_z_of(plan, options_), plan);
+    FlownFile flown = flight_of(items, frame, {home[4], home[5], 0}, home_z_of(plan, options_),
+                                options_.ardupilot, plan);
     const PlannedMission mission = mission_of(plan, options_, "waypoints");
     flown.start = mission.start;
     flown.finish = mission.finish;

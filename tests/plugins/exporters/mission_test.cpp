@@ -249,6 +249,80 @@ TEST(Missions, RefuseWhatTheyCannotHold) {
               HasSubstr("no place to say so"));
 }
 
+// The film with a rest of 2.3 s after 10 s.
+Plan resting_plan() {
+  Plan plan = film_plan();
+  auto& samples = plan.trajectory.samples;
+  const Sample still = samples[100];
+  for (std::size_t i = 101; i < samples.size(); ++i) samples[i].time += 2.3;
+  for (int k = 1; k <= 23; ++k) {
+    Sample s = still;
+    s.velocity.setZero();
+    s.time = 10 + 0.1 * k;
+    samples.insert(samples.begin() + 100 + k, s);
+  }
+  plan.task.framing.clear();
+  return plan;
+}
+
+std::vector<double> holds_in(const std::string& text) {
+  std::vector<double> holds;
+  const Value document = from_json(text, "test");
+  for (const Value& item : document.at("mission").at("items").as_list())
+    if (item.at("command").as_integer() == 16 && item.at("params").as_list()[0].as_number() > 0)
+      holds.push_back(item.at("params").as_list()[0].as_number());
+  return holds;
+}
+
+TEST(Missions, ArduPilotHoldsWholeSeconds) {
+  const Plan plan = resting_plan();
+  EXPECT_THAT(holds_in(file_of("qgc_plan", plan)), ElementsAre(testing::DoubleNear(2.3, 0.21)));
+  const Value given = with("autopilot", "ardupilot");
+  for (const char* format : {"qgc_plan", "waypoints"}) {
+    const auto exporter = exporter_named(format, given);
+    std::string text = exporter->write(plan);
+    const FlownFile whole = *exporter->flown(plan, text);
+    EXPECT_LT(std::abs(compare_flown(plan, whole, {}).longer), 1);
+    // A fraction that another program wrote is dropped.
+    const std::string hold = std::string(format) == "qgc_plan" ? "3.0" : "\t16\t3.0000\t";
+    const std::string longer = std::string(format) == "qgc_plan" ? "3.9" : "\t16\t3.9000\t";
+    ASSERT_NE(text.find(hold), std::string::npos) << text;
+    text.replace(text.find(hold), hold.size(), longer);
+    EXPECT_EQ(exporter->flown(plan, text)->trajectory.samples.back().time,
+              whole.trajectory.samples.back().time);
+  }
+  for (const double hold : holds_in(file_of("qgc_plan", plan, given)))
+    EXPECT_EQ(hold, std::round(hold));
+  EXPECT_THAT(holds_in(file_of("qgc_plan", plan, given)), testing::Contains(3));
+}
+
+TEST(Missions, RefuseHeightsThatNobodyCanFly) {
+  using testing::AllOf;
+  for (const char* format : {"qgc_plan", "waypoints"}) {
+    const auto said = [&](const Plan& plan,
+                          std::initializer_list<std::pair<const char*, Value>> g) {
+      return refusal_of(*exporter_named(format, parameters_of(g)), plan);
+    };
+    const Plan plan = film_plan();  // at z = 10 m
+    EXPECT_THAT(said(plan, {{"home_z", 50}}),
+                AllOf(HasSubstr("take-off: the first waypoint (z = 10 m) is 40 m below"),
+                      HasSubstr("z = 50 m"), HasSubstr("`home_z`")));
+    EXPECT_THAT(said(plan, {{"home_z", 10}}), HasSubstr("is 0 m below the take-off place"));
+    EXPECT_EQ(said(plan, {{"home_z", 9.99}}), "");
+    EXPECT_THAT(said(plan, {{"home_z", 50}, {"take_off", false}}),
+                AllOf(HasSubstr("landing: the last waypoint"), HasSubstr("`finish=hover`")));
+    EXPECT_EQ(said(plan, {{"home_z", 50}, {"take_off", false}, {"finish", "hover"}}), "");
+    // The ground is at z = -2 m.
+    Plan low = film_plan();
+    for (std::size_t i = 100; i <= 200; ++i) low.trajectory.samples[i].position.z() = -2.5;
+    EXPECT_THAT(said(low, {}), AllOf(HasSubstr(": waypoint "), HasSubstr("is -0.5 m above the"),
+                                     HasSubstr("s of the plan, z = -2.5 m)")));
+    // Above the sea, nothing tells where the ground is.
+    low.geodetic_origin = GeodeticOrigin{kLatitude, kLongitude, 400, HeightOf::sea, 48};
+    EXPECT_EQ(said(low, {{"home_z", -5}}), "");
+  }
+}
+
 // Each rule with a file that breaks it: what is replaced by what, and what is found.
 TEST(MissionChecker, EveryRuleOfPlansHasAFileThatBreaksIt) {
   Plan plan = film_plan();
