@@ -152,7 +152,8 @@ void compare_images(const Plan& plan, const FlownFile& flown, FlownComparison& r
   result.images_missed = wanted - std::min(wanted, flown.photographs.size());
 }
 
-// The plan with the flight in the place of its own: what was asked for at times, at their times.
+// The plan with the flight in the place of its own. Its time begins with the part that the file is
+// of, so the times of what moves count from there. What was asked for at times, at their times.
 Plan plan_as_flown(const Plan& plan, const FlownFile& flown, const PlanProgress& progress) {
   Plan made;
   made.mission = plan.mission;
@@ -160,6 +161,10 @@ Plan plan_as_flown(const Plan& plan, const FlownFile& flown, const PlanProgress&
   made.vehicle = plan.vehicle;
   made.environment = plan.environment;
   made.trajectory = flown.trajectory;
+  for (Obstacle& obstacle : made.environment.obstacles)
+    for (double& time : obstacle.times) time -= flown.start;
+  for (Subject& subject : made.environment.subjects)
+    for (double& time : subject.times) time -= flown.start;
   made.task.framing_share = plan.task.framing_share;
   made.task.line_of_sight_required = plan.task.line_of_sight_required;
   made.task.closed_loop_required = false;

@@ -229,5 +229,73 @@ TEST(FlownComparison, RefusesWhatThePlanKeepsAndTheFlightDoesNot) {
   EXPECT_THAT(compare_flown(plan, flown, {}).refusals[0], HasSubstr("speed_across"));
 }
 
+// The second half of the straight flight, from x = 10 m at 6 s to its end.
+FlownFile second_half(const Plan& plan) {
+  FlownFile flown;
+  flown.start = 6;
+  flown.finish = 12;
+  flown.trajectory.motion = path_motion();
+  flown.trajectory.has_gimbal = true;
+  for (const Sample& s : plan.trajectory.samples)
+    if (s.time >= 6 - 1e-9) {
+      flown.trajectory.samples.push_back(s);
+      flown.trajectory.samples.back().time -= 6;
+    }
+  return flown;
+}
+
+Subject bystander_at(std::vector<double> times, std::vector<Eigen::Vector3d> positions) {
+  Subject bystander;
+  bystander.name = "walker";
+  bystander.filmed = false;
+  bystander.distance = 3;
+  bystander.times = std::move(times);
+  bystander.positions = std::move(positions);
+  return bystander;
+}
+
+TEST(FlownComparison, ALaterPartIsJudgedAgainstWhatMovesAtItsTimes) {
+  // Beside the second half until 5 s, and gone when it is flown, from 6 s on.
+  Plan gone = straight_flight();
+  gone.environment.subjects = {bystander_at({5, 6}, {{14, 1, 5}, {14, 40, 5}})};
+  EXPECT_TRUE(compare_flown(gone, second_half(gone), {}).refusals.empty());
+  // There only after 7 s: the flight of the second half passes at 8 s, 2 s after its start.
+  Plan comes = straight_flight();
+  comes.environment.subjects = {bystander_at({6, 7}, {{14, 40, 5}, {14, 1, 5}})};
+  const FlownComparison met = compare_flown(comes, second_half(comes), {});
+  ASSERT_EQ(met.refusals.size(), 1u);
+  EXPECT_THAT(met.refusals[0], HasSubstr("walker"));
+  // Obstacles likewise.
+  gone.environment.subjects.clear();
+  gone.environment.margin = 0.5;
+  gone.environment.obstacles = {sphere_at("door", {14, 0, 5}, 1)};
+  gone.environment.obstacles[0].times = {5, 6};
+  gone.environment.obstacles[0].moves = {{0, 0, 0}, {0, 40, 0}};
+  EXPECT_TRUE(compare_flown(gone, second_half(gone), {}).refusals.empty());
+  gone.environment.obstacles[0].times = {6.5, 7.5};  // it closes
+  gone.environment.obstacles[0].moves = {{0, 40, 0}, {0, 0, 0}};
+  EXPECT_FALSE(compare_flown(gone, second_half(gone), {}).refusals.empty());
+}
+
+TEST(FlownComparison, TheFramingOfALaterPartIsJudgedAtItsTimes) {
+  Plan plan = straight_flight();
+  Subject runner;
+  runner.name = "runner";
+  runner.height = 1.7;
+  runner.width = 0.6;
+  for (const Sample& s : plan.trajectory.samples) {
+    runner.times.push_back(s.time);
+    runner.positions.push_back(s.position + Eigen::Vector3d(8, 0, 0));
+  }
+  plan.environment.subjects = {runner};
+  plan.task.framing = {{"runner", {7, 11}}};
+  const FlownComparison compared = compare_flown(plan, second_half(plan), {});
+  std::string framing;
+  for (const std::string& sentence : compared.sentences)
+    if (sentence.find("framing") != std::string::npos) framing = sentence;
+  EXPECT_THAT(framing, HasSubstr("flown so: framing 1"));
+  EXPECT_TRUE(compared.refusals.empty());
+}
+
 }  // namespace
 }  // namespace lapwing
