@@ -14,7 +14,9 @@ namespace lapwing {
 
 // What a vehicle makes of a file: the flight that it would fly, without take-off and landing.
 struct FlownFile {
-  Trajectory trajectory;                 // of the motion `path`, world of the plan, from time 0 on
+  // Of the motion `path`, world of the plan, from time 0 on. Without a gimbal, where the file does
+  // not hold the camera: it is not compared then.
+  Trajectory trajectory;
   double start = 0, finish = 0;          // s of the plan, the part that the file is of
   std::vector<double> photographs = {};  // s of the flight, when images are taken
   std::vector<double> reached = {};      // s of the flight, when each of its waypoints is

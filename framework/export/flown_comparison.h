@@ -28,7 +28,8 @@ struct FlownComparison {
 
 // The verifier judges the flight in the place of the plan's: obstacles, flight zones, distances
 // from subjects, speeds, flight time. `folder`, the plan's, holds the meshes of its environment.
-// What the plan's own certificate states as failed is no reason to refuse.
+// What the plan's own certificate states as failed is no reason to refuse, nor is a limit of speed
+// or yaw rate that the plan itself passes.
 FlownComparison compare_flown(const Plan& plan, const FlownFile& flown,
                               const std::filesystem::path& folder);
 

@@ -15,11 +15,14 @@
 #include "framework/export/exporter.h"
 #include "framework/plugin/plugin.h"
 #include "framework/trajectory/interpolate.h"
+#include "framework/vehicle/vehicle.h"
 
 namespace lapwing {
 namespace {
 
 constexpr int kCoefficients = 8;
+constexpr double kStep = 0.02;         // s, at most, between samples of the flight
+constexpr double kRounding = 1e-6;     // m/s, rad/s
 constexpr int kTried = 24;             // places of a piece that are compared
 constexpr std::size_t kLongest = 600;  // samples of a piece
 
@@ -34,6 +37,48 @@ double value_of(const Coefficients& c, double t) {
   double value = 0;
   for (int i = kCoefficients; i-- > 0;) value = value * t + c[static_cast<std::size_t>(i)];
   return value;
+}
+
+double rate_of(const Coefficients& c, double t) {
+  double rate = 0;
+  for (int i = kCoefficients; i-- > 1;) rate = rate * t + i * c[static_cast<std::size_t>(i)];
+  return rate;
+}
+
+// The largest rates of a flight: m/s across, up and down, rad/s of yaw.
+struct Rates {
+  double across = 0, up = 0, down = 0, yaw = 0;
+
+  void take(const Eigen::Vector3d& velocity, double yaw_rate) {
+    across = std::max(across, velocity.head<2>().norm());
+    up = std::max(up, velocity.z());
+    down = std::max(down, -velocity.z());
+    yaw = std::max(yaw, std::abs(yaw_rate));
+  }
+  bool within(const Rates& most) const {
+    const auto fits = [](double rate, double limit) { return rate <= limit + kRounding; };
+    return fits(across, most.across) && fits(up, most.up) && fits(down, most.down) &&
+           fits(yaw, most.yaw);
+  }
+};
+
+// What pieces may have: the vehicle's limits, or what the plan itself has beyond them.
+Rates most_rates(const Plan& plan) {
+  const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+  Rates most{vehicle.speed_across_max, vehicle.climb_speed_max, vehicle.descent_speed_max,
+             vehicle.yaw_rate_max};
+  for (const Sample& s : plan.trajectory.samples) most.take(s.velocity, s.yaw_rate);
+  return most;
+}
+
+Rates rates_of(const Piece& piece) {
+  Rates rates;
+  for (int i = 0; i <= kTried; ++i) {
+    const double t = piece.duration * i / kTried;
+    rates.take({rate_of(piece.axes[0], t), rate_of(piece.axes[1], t), rate_of(piece.axes[2], t)},
+               rate_of(piece.axes[3], t));
+  }
+  return rates;
 }
 
 // The polynomial of fifth order with these values, rates and second rates at both ends.
@@ -120,7 +165,7 @@ class Poly4d final : public Exporter {
   }
 
   std::vector<std::string> losses(const Plan& plan, const std::string& written) const override {
-    const std::vector<Piece> pieces = yaml_ ? yaml_pieces(written) : csv_pieces(written);
+    const std::vector<Piece> pieces = pieces_in(written);
     PieceError worst;
     double at = plan.trajectory.samples.front().time, when = at;
     for (const Piece& piece : pieces) {
@@ -137,7 +182,35 @@ class Poly4d final : public Exporter {
             "the camera is not in it"};
   }
 
+  // The pieces, evaluated. The camera is not in them.
+  std::optional<FlownFile> flown(const Plan& plan, const std::string& written) const override {
+    FlownFile flown;
+    flown.start = plan.trajectory.samples.front().time;
+    flown.finish = plan.trajectory.samples.back().time;
+    flown.trajectory.motion = path_motion();
+    double start = 0;
+    for (const Piece& piece : pieces_in(written)) {
+      const int steps = std::max(1, static_cast<int>(std::ceil(piece.duration / kStep)));
+      for (int i = flown.trajectory.samples.empty() ? 0 : 1; i <= steps; ++i) {
+        const double t = piece.duration * i / steps;
+        Sample s;
+        s.time = start + t;
+        for (int axis = 0; axis < 3; ++axis)
+          s.position[axis] = value_of(piece.axes[static_cast<std::size_t>(axis)], t);
+        s.yaw = value_of(piece.axes[3], t);
+        flown.trajectory.samples.push_back(s);
+      }
+      start += piece.duration;
+    }
+    if (flown.trajectory.samples.empty()) throw InputError("poly4d: expected a piece, got none");
+    return flown;
+  }
+
  private:
+  std::vector<Piece> pieces_in(const std::string& written) const {
+    return yaml_ ? yaml_pieces(written) : csv_pieces(written);
+  }
+
   // Each as long as it holds the tolerances; ends are samples of the plan.
   std::vector<Piece> pieces_of(const Plan& plan) const {
     const auto& samples = plan.trajectory.samples;
@@ -148,41 +221,44 @@ class Poly4d final : public Exporter {
           (i > 0 && !(samples[i].time > samples[i - 1].time)))
         throw InputError("poly4d: expected finite numbers, at increasing times");
     std::vector<Piece> pieces;
+    const Rates most = most_rates(plan);
     for (std::size_t i = 0; i + 1 < samples.size();) {
-      const std::size_t end = last_end(plan.trajectory, i);
+      const std::size_t end = last_end(plan.trajectory, most, i);
       pieces.push_back(piece_between(samples[i], samples[end], plan.trajectory.motion.moves));
       i = end;
     }
     return pieces;
   }
 
-  bool holds(const Trajectory& trajectory, std::size_t from, std::size_t to) const {
+  // Between two samples the polynomial has the rates that it has.
+  bool holds(const Trajectory& trajectory, const Rates& most, std::size_t from,
+             std::size_t to) const {
     const auto& samples = trajectory.samples;
-    const PieceError error =
-        error_of(piece_between(samples[from], samples[to], trajectory.motion.moves), trajectory,
-                 samples[from].time);
+    const Piece piece = piece_between(samples[from], samples[to], trajectory.motion.moves);
+    const PieceError error = error_of(piece, trajectory, samples[from].time);
+    if (to > from + 1 && !rates_of(piece).within(most)) return false;
     return error.distance <= 0.9 * tolerance_ && error.yaw <= 0.9 * yaw_tolerance_;
   }
 
   // Doubles the length until it holds no more, then halves the rest. InputError where not even one
   // step holds.
-  std::size_t last_end(const Trajectory& trajectory, std::size_t from) const {
+  std::size_t last_end(const Trajectory& trajectory, const Rates& most, std::size_t from) const {
     const std::size_t last = std::min(trajectory.samples.size() - 1, from + kLongest);
-    if (!holds(trajectory, from, from + 1))
+    if (!holds(trajectory, most, from, from + 1))
       throw InputError("poly4d: between " + plain_number(trajectory.samples[from].time) +
                        " s and the next sample no polynomial is within the tolerance of " +
                        plain_number(1000 * tolerance_) + " mm; a larger `tolerance` is needed");
     std::size_t good = from + 1, bad = last + 1;
     for (std::size_t step = 2; good < last && bad > last; step *= 2) {
       const std::size_t next = std::min(from + step, last);
-      if (holds(trajectory, from, next))
+      if (holds(trajectory, most, from, next))
         good = next;
       else
         bad = next;
     }
     while (bad - good > 1 && bad <= last) {
       const std::size_t middle = (good + bad) / 2;
-      (holds(trajectory, from, middle) ? good : bad) = middle;
+      (holds(trajectory, most, from, middle) ? good : bad) = middle;
     }
     return good;
   }

@@ -3,7 +3,9 @@
 
 #include <sstream>
 
+#include "framework/export/flown_comparison.h"
 #include "framework/trajectory/interpolate.h"
+#include "tests/obstacles.h"
 #include "tests/plugins/exporters/placed_plan.h"
 
 namespace lapwing {
@@ -73,6 +75,70 @@ TEST(Poly4d, BothLayoutsHoldTheSameAndStateTheirError) {
   good.certificate = with("feasible", true);
   EXPECT_THAT(csv->write(good), Not(HasSubstr("not certified")));
   EXPECT_THAT(csv->write(plan), HasSubstr("yaw^7,not certified\n"));
+}
+
+TEST(Poly4d, TheEvaluatedFlightIsJudged) {
+  // Over a hill around a pole, whose shoulders a loose piece cuts.
+  Plan plan = planned_camera();
+  plan.environment.margin = 0.5;
+  for (Sample& s : plan.trajectory.samples) {
+    const double w = 2 * M_PI / 2.03, a = w * s.time;
+    s.position = {s.time, 1 - std::cos(a), 3};
+    s.velocity = {1, w * std::sin(a), 0};
+    s.acceleration = {0, w * w * std::cos(a), 0};
+    s.yaw = 0.1 * s.time;
+    s.yaw_rate = 0.1;
+  }
+  plan.environment.obstacles = {sphere_at("pole", {1.015, 0.55, 3}, 0.1)};
+  for (const char* layout : {"csv", "yaml"}) {
+    Value given = with("layout", layout);
+    const auto fine = exporter_named("poly4d", given);
+    const FlownFile flown = *fine->flown(plan, fine->write(plan));
+    EXPECT_NEAR(flown.trajectory.samples.back().time, 2.03, 1e-6);
+    const FlownComparison kept = compare_flown(plan, flown, {});
+    EXPECT_LT(kept.across, 0.006) << layout;
+    EXPECT_TRUE(kept.refusals.empty()) << kept.refusals.front();
+    EXPECT_FALSE(says(kept.sentences, "camera"));
+    given.set("tolerance", 1.0);
+    given.set("yaw_tolerance", 90.0);
+    const auto loose = exporter_named("poly4d", given);
+    const FlownComparison broken = compare_flown(plan, *loose->flown(plan, loose->write(plan)), {});
+    EXPECT_GT(broken.across, 0.05);
+    EXPECT_TRUE(says(broken.refusals, "flown so: clearance")) << layout;
+    EXPECT_THROW(fine->flown(plan, "duration\n"), InputError);
+  }
+}
+
+TEST(Poly4d, PiecesKeepTheLimitsThatThePlanKeeps) {
+  // Sped up at 2 m/s^2 to the largest speed of climbing, and held there.
+  Plan plan = planned_camera();
+  const double most = vehicle_from_value(plan.vehicle).climb_speed_max;
+  plan.trajectory.samples.clear();
+  for (int i = 0; i <= 400; ++i) {
+    const double t = 0.01 * i, turn = most / 2;
+    Sample s;
+    s.time = t;
+    s.position.z() = t < turn ? t * t : turn * turn + most * (t - turn);
+    s.velocity.z() = std::min(2 * t, most);
+    s.acceleration.z() = t < turn ? 2 : 0;
+    plan.trajectory.samples.push_back(s);
+  }
+  ASSERT_LT(most, 7);  // it is reached
+  for (const double tolerance : {0.005, 0.1}) {
+    const auto exporter = exporter_named("poly4d", with("tolerance", tolerance));
+    const FlownComparison compared =
+        compare_flown(plan, *exporter->flown(plan, exporter->write(plan)), {});
+    EXPECT_TRUE(compared.refusals.empty()) << tolerance << compared.refusals.front();
+  }
+}
+
+TEST(Poly4d, LimitsThatThePlanItselfPassesAreNoRefusal) {
+  const Plan plan = planned_camera();
+  ASSERT_LT(vehicle_from_value(plan.vehicle).yaw_rate_max, 3);  // it turns at 3 rad/s
+  const auto exporter = exporter_named("poly4d");
+  const FlownComparison compared =
+      compare_flown(plan, *exporter->flown(plan, exporter->write(plan)), {});
+  EXPECT_TRUE(compared.refusals.empty()) << compared.refusals.front();
 }
 
 TEST(Poly4d, PathsAreStraight) {
