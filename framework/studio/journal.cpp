@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -29,19 +30,34 @@ void sync_folder(const fs::path& file) {
   ::close(descriptor);
 }
 
+// Whether the file's name is still of what is open: whoever had it before may have removed it.
+bool has_name(int descriptor, const fs::path& file) {
+  struct stat open {
+  }, named{};
+  return ::fstat(descriptor, &open) == 0 && ::lstat(file.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
+int open_locked(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  if (descriptor < 0)
+    throw InputError("cannot write '" + file.string() + "', the journal of edits: " + reason());
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  const bool taken = errno == EWOULDBLOCK;
+  const std::string why = reason();
+  ::close(descriptor);
+  throw InputError(taken ? "another studio has this mission open ('" + file.string() +
+                               "' is in use); its address is where that was started"
+                         : "cannot lock '" + file.string() + "': " + why);
+}
+
 }  // namespace
 
 Journal::Journal(fs::path file) : file_(std::move(file)) {
-  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-  if (descriptor_ < 0)
-    throw InputError("cannot write '" + file_.string() + "', the journal of edits: " + reason());
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) < 0) {
-    const bool taken = errno == EWOULDBLOCK;
-    const std::string why = reason();
+  descriptor_ = open_locked(file_);
+  while (!has_name(descriptor_, file_)) {
     ::close(descriptor_);
-    throw InputError(taken ? "another studio has this mission open ('" + file_.string() +
-                                 "' is in use); its address is where that was started"
-                           : "cannot lock '" + file_.string() + "': " + why);
+    descriptor_ = open_locked(file_);
   }
   try {
     read();
@@ -52,7 +68,7 @@ Journal::Journal(fs::path file) : file_(std::move(file)) {
 }
 
 Journal::~Journal() {
-  if (lines_ <= 1) ::unlink(file_.c_str());
+  if (lines_ <= 1 && has_name(descriptor_, file_)) ::unlink(file_.c_str());
   ::close(descriptor_);
 }
 

@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
+#include <thread>
 
 #include "framework/core/files.h"
 #include "framework/core/json.h"
@@ -81,6 +83,31 @@ TEST_F(StudioFiles, AJournalWithoutAnEditGoesAway) {
 TEST_F(StudioFiles, AJournalIsOneProcessesAlone) {
   Journal journal(file_);
   EXPECT_THROW(Journal other(file_), InputError);
+}
+
+// One that ends takes its empty journal away; who opened that just before has the next one, with
+// its name.
+TEST_F(StudioFiles, AJournalThatGoesAwayIsNotHeld) {
+  std::atomic<int> holders = 0, shared = 0, nameless = 0, held = 0;
+  const auto work = [&] {
+    for (int i = 0; i < 20000; ++i) {
+      try {
+        const Journal journal(file_);
+        if (++holders > 1) ++shared;
+        if (!fs::exists(file_)) ++nameless;
+        ++held;
+        --holders;
+      } catch (const InputError&) {  // the other one has it
+      }
+    }
+  };
+  std::thread other(work);
+  work();
+  other.join();
+  EXPECT_GT(held, 20);
+  EXPECT_EQ(shared, 0);
+  EXPECT_EQ(nameless, 0);
+  EXPECT_FALSE(fs::exists(file_));
 }
 
 // At whatever byte the last line was cut off, all before it are there and the next ones are added.
