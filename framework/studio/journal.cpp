@@ -76,24 +76,25 @@ void Journal::read() {
   const std::string text = read_file(file_, kLargest);
   while (length_ < text.size()) {
     const std::size_t end = text.find('\n', length_);
-    const bool last = end == text.npos || end + 1 == text.size();
+    if (end == text.npos && lines_ > 0) return drop_rest(text.size() - length_);
     try {
       if (end == text.npos) throw InputError("it has no end");
       read_line(text.substr(length_, end - length_), lines_ + 1);
     } catch (const InputError& error) {
-      if (!last)
-        throw InputError("'" + file_.string() + "', line " + std::to_string(lines_ + 1) +
-                         ": not a journal's: " + error.what() +
-                         "; move it away to begin without its edits");
-      remark_ = "the last line of '" + file_.string() + "' was cut off (" +
-                std::to_string(text.size() - length_) + " bytes): what it said is lost";
-      if (::ftruncate(descriptor_, static_cast<off_t>(length_)) < 0)
-        throw InputError("cannot mend '" + file_.string() + "': " + reason());
-      break;
+      throw InputError("'" + file_.string() + "', line " + std::to_string(lines_ + 1) +
+                       ": not a journal's: " + error.what() +
+                       "; move it away to begin without its edits");
     }
     length_ = end + 1;
     ++lines_;
   }
+}
+
+void Journal::drop_rest(std::size_t bytes) {
+  if (::ftruncate(descriptor_, static_cast<off_t>(length_)) < 0)
+    throw InputError("cannot mend '" + file_.string() + "': " + reason());
+  remark_ = "the last line of '" + file_.string() + "' was cut off (" + std::to_string(bytes) +
+            " bytes): what it said is lost";
 }
 
 void Journal::read_line(const std::string& line, std::size_t number) {

@@ -2,7 +2,8 @@
 // A studio's journal: one line of JSON for every entry of a document's history, synced to disk.
 //
 // The first line names the format and holds the script's configuration that the document began
-// with. A line that a crash cut off is dropped when the journal is opened, and said.
+// with. A later line that a crash cut off, one without its end, is dropped when the journal is
+// opened, and said. Anything else that cannot be read is an error, and the file stays as it is.
 #pragma once
 
 #include <filesystem>
@@ -38,6 +39,7 @@ class Journal {
 
  private:
   void read();
+  void drop_rest(std::size_t bytes);
   void read_line(const std::string& line, std::size_t number);
   void write(std::string line);
 

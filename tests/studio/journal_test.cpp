@@ -131,7 +131,7 @@ TEST_F(StudioFiles, ALineThatWasCutOffIsDroppedAndSaid) {
     ASSERT_EQ(journal.document()->revision(), 4u) << cut;
   }
   // A file system may leave zeros where the line was to be.
-  replace(whole.substr(0, last) + std::string(100, '\0') + "\n");
+  replace(whole.substr(0, last) + std::string(100, '\0'));
   EXPECT_EQ(Journal(file_).document()->revision(), 2u);
 }
 
@@ -150,6 +150,37 @@ TEST_F(StudioFiles, ADamagedJournalIsNamedWithItsLine) {
     EXPECT_NE(std::string(error.what()).find("line 2"), std::string::npos) << error.what();
   }
   EXPECT_EQ(read_file(file_), text);
+}
+
+// What no crash of a studio leaves is not taken for a line that was cut off.
+TEST_F(StudioFiles, AFileThatIsNoJournalStaysAsItIs) {
+  {
+    Journal journal(file_);
+    write(journal, 2);
+  }
+  const std::string whole = read_file(file_), first = whole.substr(0, whole.find('\n'));
+  const auto stays = [&](const std::string& text, const std::string& line) {
+    replace(text);
+    try {
+      const Journal journal(file_);
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(line), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("move it away"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(read_file(file_), text);
+  };
+  stays("my notes", "line 1");
+  stays("my notes\n", "line 1");
+  stays("my notes\nmore of them", "line 1");
+  stays(first, "line 1");
+  stays(first.substr(0, first.size() / 2), "line 1");
+  stays(first + "\nmy notes\n", "line 2");
+  stays(whole + "my notes\n", "line 4");
+  stays(whole + std::string(100, '\0') + "\n", "line 4");
+  std::string newer = whole;
+  newer.replace(newer.find("journal\":") + 9, 1, "9");
+  stays(newer.substr(0, newer.find('\n') + 1), "line 1");
 }
 
 // A file may not grow: as with a full disk, what was written of the line is taken back.
