@@ -177,6 +177,7 @@ void StudioSession::advance() {
         continue;
       }
       try {
+        if (!proposal.quiet && !why_not_.empty()) throw InputError(why_not_);  // found meanwhile
         proposal.next = next_of(proposal);
         if (proposal.kind == EntryKind::script && !proposal.script)
           proposal.script = *pending_script_;
@@ -314,6 +315,7 @@ void StudioSession::layer_changed() {
 std::string StudioSession::write_layer_now() {
   if (!document_ || !journal_) return "";
   layer_waits_ = false;
+  if (!why_not_.empty()) return why_not_;  // a layer that is to be mended stays as it is
   try {
     write_layer(settings_.script, document_->revision(), document_layer(), base_options());
     return "";

@@ -61,6 +61,10 @@ class Session : public testing::Test {
   }
 
   void open(const std::string& kind = "film") {
+    open_unchecked(kind);
+    check_all();
+  }
+  void open_unchecked(const std::string& kind = "film") {
     session_.reset();
     for (WaitingWorker* worker : {&solver_, &checker_, &errands_}) worker->frames.clear();
     SessionSettings settings;
@@ -71,7 +75,6 @@ class Session : public testing::Test {
         loop_, settings, std::make_unique<Journal>(folder_ / "shot.studio.journal"), "");
     session_->begin(solver_, checker_, errands_);
     kind_ = kind;
-    check_all();
   }
   std::shared_ptr<HeardPage> page(const std::string& tab = "tab") {
     auto made = std::make_shared<HeardPage>();
@@ -494,6 +497,45 @@ TEST_F(Session, AnEditedLayerIsAnEdit) {
   EXPECT_EQ(session_->document()->revision(), 2u);
   EXPECT_EQ(session_->document()->current().at("weights").at("yaw").as_number(), 7);
   EXPECT_NE(session_->document()->undo_label().find("shot.studio.yaml"), std::string::npos);
+}
+
+// A layer that cannot be read, or that the mission refuses, is for its writer to mend.
+TEST_F(Session, ADamagedLayerStaysAsItIs) {
+  const fs::path file = folder_ / "shot.studio.yaml";
+  for (const std::string text : {"margin: [3\nweights: {yaw: 7}\n", "margin: -1\n", "- 3\n"}) {
+    write_file_atomically(file, text);
+    open();
+    const auto a = page("a");
+    const Value& mission = a->last("welcome").at("mission");
+    EXPECT_EQ(mission.at("editable"), Value(false)) << text;
+    const Value& why = mission.at("why_not");
+    EXPECT_NE(why.as_text().find("shot.studio.yaml"), std::string::npos) << why.as_text();
+    say(*a, R"({"type": "save_report", "id": "s"})");
+    ASSERT_EQ(a->of_type("failed").size(), 1u) << text;
+    EXPECT_EQ(a->last("failed").at("id"), Value("s"));
+    EXPECT_EQ(a->last("failed").at("why"), why);
+    EXPECT_TRUE(errands_.frames.empty());
+    say(*a, gesture("g", 0, {change("margin", 3)}));
+    check_all();
+    EXPECT_EQ(a->last("refused").at("id"), Value("g"));
+    session_->finish();
+    EXPECT_EQ(read_file(file), text);
+  }
+  // One who edits before the layer was judged: nothing is written over it either.
+  write_file_atomically(file, "margin: -1\n");
+  open_unchecked();
+  check_one();
+  const auto b = page("b");
+  say(*b, gesture("early", 0, {change("margin", 3)}));
+  check_all();
+  EXPECT_EQ(b->last("refused").at("id"), Value("early"));
+  EXPECT_EQ(session_->document()->revision(), 0u);
+  session_->finish();
+  EXPECT_EQ(read_file(file), "margin: -1\n");
+  // Mended, it is an edit.
+  write_file_atomically(file, "margin: 1\n");
+  open();
+  EXPECT_EQ(session_->document()->current().at("margin").as_number(), 1);
 }
 
 }  // namespace
