@@ -209,6 +209,7 @@ PageMessage page_message(std::string_view text) {
   const Value* type = value.find("type");
   if (!type || !type->is_text()) throw InputError("expected an object with a text `type`");
   PageMessage message;
+  message.bytes = text.size();
   message.type = type_named(type->as_text());
   MessageFields fields(value);
   read_fields(fields, message);

@@ -44,6 +44,7 @@ struct PageMessage {
   std::string format;               // of export
   Value parameters = Value::map();  // of the exporter
   bool uncertified = false;
+  std::size_t bytes = 0;  // of its text
 };
 
 // Of a picture, each way.

@@ -191,6 +191,7 @@ void StudioSession::take(PageSocket& page, const PageMessage& message) {
       if (!editable()) return refuse(&page, message, why_not());
       Proposal proposal;
       proposal.from = &page;
+      proposal.bytes = message.bytes;
       proposal.gesture = {message.id, message.base, message.label, message.patch};
       proposal.take = message.take;
       proposal.kind = message.type == Type::gesture ? EntryKind::gesture

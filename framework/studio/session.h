@@ -86,6 +86,7 @@ class StudioSession {
     std::optional<Value> script;  // of kind `script`
     StudioDocument::Take take = StudioDocument::Take::mine;
     PageSocket* from = nullptr;  // null: nobody, or gone
+    std::size_t bytes = 0;       // of the message that it came with
     bool quiet = false;          // a layer or a script that was found: no page waits for it
   };
   struct Check {
@@ -144,6 +145,7 @@ class StudioSession {
 
   // session_document.cpp: changes of the document and of the script
   void propose(Proposal proposal);
+  bool take_in(Proposal& proposal);  // or answered: as many wait as may
   void advance();
   Value next_of(const Proposal& proposal) const;
   void checked(const Frame& frame);

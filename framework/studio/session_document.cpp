@@ -9,6 +9,9 @@
 namespace lapwing {
 namespace {
 
+// Edits of pages that wait to be checked, all pages together (PROTOCOL.md).
+constexpr std::size_t kMostWaiting = 64, kMostWaitingBytes = std::size_t{8} << 20;
+
 // What a file looks like without reading it; "" where there is none.
 std::string look_of(const std::filesystem::path& file) {
   struct stat found {};
@@ -139,7 +142,33 @@ void StudioSession::found_script(const Value& options) {
 
 // ---- proposals ----------------------------------------------------------------------------------
 
+bool StudioSession::take_in(Proposal& proposal) {
+  std::size_t waiting = 1, bytes = proposal.bytes;
+  Proposal* same = nullptr;
+  for (Check& check : checks_) {
+    if (check.of_script || check.proposal.quiet) continue;
+    ++waiting;
+    bytes += check.proposal.bytes;
+    const std::string& id = check.proposal.gesture.id;
+    if (!id.empty() && id == proposal.gesture.id) same = &check.proposal;
+  }
+  if (waiting <= kMostWaiting && bytes <= kMostWaitingBytes) return true;
+  if (same) {  // said again: whoever said it last is answered
+    same->from = proposal.from;
+  } else if (!proposal.gesture.id.empty() && document_->has(proposal.gesture.id)) {
+    acknowledge(proposal);
+  } else {
+    const std::string most = waiting > kMostWaiting
+                                 ? std::to_string(kMostWaiting) + " edits"
+                                 : std::to_string(kMostWaitingBytes >> 20) + " MiB of edits";
+    refuse_gesture(proposal, "too many edits at once: " + most +
+                                 " may wait to be checked; try again when they are");
+  }
+  return false;
+}
+
 void StudioSession::propose(Proposal proposal) {
+  if (!proposal.quiet && !take_in(proposal)) return;
   Check check;
   check.proposal = std::move(proposal);
   checks_.push_back(std::move(check));

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <random>
 
 #include "framework/core/files.h"
@@ -231,6 +232,63 @@ TEST_F(Session, GesturesThatComeTogetherAreTakenInOrder) {
         gesture("h" + std::to_string(i), 1, {change(i % 2 ? "margin" : "weights.yaw", 1.0 + i)}));
   check_all();
   EXPECT_EQ(session_->document()->revision(), 3u);
+}
+
+TEST_F(Session, SoManyEditsMayWaitAndNoMore) {
+  const auto a = page("a"), b = page("b");
+  const auto edit = [&](HeardPage& page, int number) {
+    say(page, gesture("g" + std::to_string(number), session_->document()->revision(),
+                      {change("margin", 1.0)}));
+  };
+  edit(*a, 0);
+  check_all();
+  for (int i = 1; i <= 64; ++i) edit(*(i % 2 ? a : b), i);
+  EXPECT_TRUE(a->of_type("refused").empty());
+  EXPECT_TRUE(b->of_type("refused").empty());
+  edit(*a, 65);
+  say(*b, R"({"type": "undo", "id": "u", "base": 1})");
+  ASSERT_EQ(a->of_type("refused").size(), 1u);
+  EXPECT_EQ(a->last("refused").at("id"), Value("g65"));
+  EXPECT_NE(a->last("refused").at("why").as_text().find("64 edits"), std::string::npos);
+  ASSERT_EQ(b->of_type("refused").size(), 1u);
+  EXPECT_EQ(b->last("refused").at("id"), Value("u"));
+  // What was applied, or waits, is not refused where it is said again.
+  const std::size_t heard = b->of_type("document").size();
+  edit(*b, 0);
+  EXPECT_EQ(b->of_type("document").size(), heard + 1);
+  EXPECT_EQ(b->last("document").at("by"), Value("g0"));
+  edit(*b, 1);
+  EXPECT_EQ(b->of_type("refused").size(), 1u);
+  check_all();
+  const auto told = b->of_type("document");
+  EXPECT_TRUE(std::any_of(told.begin(), told.end(),
+                          [](const Value& m) { return m.at("by") == Value("g1"); }));
+  // There is room again.
+  say(*a, R"({"type": "undo", "id": "v", "base": 1})");
+  check_all();
+  EXPECT_EQ(session_->document()->revision(), 2u);
+}
+
+TEST_F(Session, SoManyBytesOfEditsMayWaitAndNoMore) {
+  const auto a = page("a");
+  const auto edit = [&](int number) {
+    std::string text = to_json(gesture("g" + std::to_string(number),
+                                       session_->document()->revision(), {change("margin", 1.0)}),
+                               -1);
+    text.resize(std::size_t{1} << 20, ' ');
+    say(*a, text);
+  };
+  for (int i = 0; i < 8; ++i) edit(i);
+  EXPECT_TRUE(a->of_type("refused").empty());
+  edit(8);
+  ASSERT_EQ(a->of_type("refused").size(), 1u);
+  EXPECT_EQ(a->last("refused").at("id"), Value("g8"));
+  EXPECT_NE(a->last("refused").at("why").as_text().find("8 MiB"), std::string::npos);
+  check_all();
+  const std::size_t refused = a->of_type("refused").size();
+  edit(9);
+  check_all();
+  EXPECT_EQ(a->of_type("refused").size(), refused);
 }
 
 TEST_F(Session, AGestureIsSolvedWhileItIsCheckedAndToldAfterwards) {
