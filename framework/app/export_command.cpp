@@ -12,7 +12,7 @@
 #include "framework/core/named_parameters.h"
 #include "framework/core/visible_text.h"
 #include "framework/export/exporter.h"
-#include "framework/export/flown_comparison.h"
+#include "framework/export/flight_judgement.h"
 #include "framework/mission/environment_source.h"
 
 namespace lapwing {
@@ -60,28 +60,13 @@ bool may_leave(const JudgedPlan& judged, const ExportRequest& asked) {
   return asked.uncertified;
 }
 
-// Of a file that vehicles fly: how far its flight is from the plan. InputError where it breaks what
-// the plan keeps.
-std::vector<std::string> sentences_of_flight(const Exporter& exporter, const Plan& plan,
-                                             const std::string& content,
-                                             const ExportRequest& asked) {
-  const std::optional<FlownFile> flown =
-      in_plugin(exporter, "flown", [&] { return exporter.flown(plan, content); });
-  if (!flown) return {};
-  const FlownComparison compared = compare_flown(plan, *flown, asked.plan.parent_path());
-  if (compared.refusals.empty()) return compared.sentences;
-  std::string all;
-  for (const std::string& refusal : compared.refusals) all += "\n  " + visible_line(refusal);
-  throw InputError("--format " + asked.format + ": the file would break what the plan keeps; a " +
-                   "smaller `tolerance` brings its flight nearer to the plan" + all);
-}
-
 // What is said of a file once it is written.
 std::string write_file(const Exporter& exporter, const Plan& plan, const ExportRequest& asked) {
   const std::string content = in_plugin(exporter, "write", [&] { return exporter.write(plan); });
   std::vector<std::string> losses =
       in_plugin(exporter, "losses", [&] { return exporter.losses(plan, content); });
-  for (std::string& sentence : sentences_of_flight(exporter, plan, content, asked))
+  for (std::string& sentence : judge_written_flight(
+           exporter, plan, content, asked.plan.parent_path(), "--format " + asked.format))
     losses.push_back(std::move(sentence));
   write_file_atomically(asked.target, content);
   for (const std::string& loss : losses) std::printf("%s\n", visible_line(loss).c_str());

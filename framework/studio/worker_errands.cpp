@@ -15,6 +15,7 @@
 #include "framework/core/json.h"
 #include "framework/export/exporter.h"
 #include "framework/export/film_strip.h"
+#include "framework/export/flight_judgement.h"
 #include "framework/export/run_folder.h"
 #include "framework/mission/controller_source.h"
 #include "framework/mission/environment_source.h"
@@ -172,7 +173,9 @@ Plan WorkerErrands::with_shapes(const Frame& asked) {
     stated_mission_.reset();
     try {
       auto mission = configured_mission(script_, settings_, layer);
-      stated_environment_ = mission->state().plan.environment;
+      MissionStatement statement = mission->state();
+      stated_environment_ = std::move(statement.plan.environment);
+      stated_folder_ = statement.obstacle_folder;
       stated_mission_ = std::move(mission);
     } catch (const InputError&) {  // a mission of several problems: what the plan records
     }
@@ -209,7 +212,8 @@ Frame WorkerErrands::export_plan(const Frame& asked) {
     if (!failures.empty()) throw InputError("the plan is not certified: " + failures);
   }
   const Value certificate = plan.certificate;
-  if (exporter->shows_surroundings()) plan = with_shapes(asked);
+  const bool surroundings = exporter->shows_surroundings();
+  if (surroundings) plan = with_shapes(asked);
   plan.certificate = certificate;
   const std::string extension = exporter->file_extension();
   const std::string name = run_folder_name(plan.mission);
@@ -224,6 +228,10 @@ Frame WorkerErrands::export_plan(const Frame& asked) {
   } else {
     const std::string bytes = exporter->write(plan);
     for (const std::string& loss : exporter->losses(plan, bytes)) losses.push_back(as_utf8(loss));
+    const fs::path folder = surroundings && stated_mission_ ? stated_folder_ : fs::path(".");
+    for (const std::string& sentence :
+         judge_written_flight(*exporter, plan, bytes, folder, "export " + format))
+      losses.push_back(as_utf8(sentence));
     write_file_atomically(target, bytes);
     files.push_back(target.string());
   }

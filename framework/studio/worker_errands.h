@@ -50,6 +50,7 @@ class WorkerErrands {
   std::string stated_layer_;  // whose environment is kept
   std::unique_ptr<Mission> stated_mission_;
   Environment stated_environment_;
+  std::filesystem::path stated_folder_;  // of the files that it names
 };
 
 // What a page shows in forms: declared options, parameters of plugins, names to choose from.

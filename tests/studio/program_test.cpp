@@ -379,6 +379,59 @@ TEST_F(StudioProgram, FliesPicturesAndExports) {
       std::string::npos);
 }
 
+// The plan keeps the battery's time; the flight along few waypoints past the castle takes longer.
+TEST_F(StudioProgram, AFileWhoseFlightBreaksWhatThePlanKeepsIsNotWritten) {
+  write_file_atomically(folder_ / "past.lua", R"(local film = require "mission.film"
+return film.shot {
+  name = "past", duration = 24,
+  origin = { latitude_deg = 46.5, longitude_deg = 6.6, height = 0, height_of = "ground" },
+  vehicle = { mass = 1.5, drag = 0.2, inertia = {0.015, 0.015, 0.025}, yaw_share = 0.2,
+    rotors = { thrust = {0.2, 8}, torque_coefficient = 0.016, arm_length = 0.23 },
+    limits = { speed_across = 10, climb_speed = 2.5, descent_speed = 2, acceleration_across = 4,
+               yaw_rate_deg = 90 },
+    gimbal = { yaw_deg = {0, 0}, yaw_rate_deg = 0, pitch_deg = {-90, 0}, pitch_rate_deg = 90 },
+    flight_time = 24.5, camera = "cameras/action" },
+  subject = { position = {0, 0, 2}, height = 4, width = 5 },
+  keyframes = { { time = 0, position = {-14, 0, 5} }, { time = 12, position = {0, 9, 6} },
+                { time = 24, position = {14, 0, 5} } },
+  obstacles = { { type = "sphere", name = "castle", center = {0, 0, 2}, radius = 6 },
+                { type = "mesh", name = "tent", file = "tent.obj" } },
+})");
+  write_file_atomically(folder_ / "tent.obj",
+                        "v 0 -20 0\nv 4 -20 0\nv 2 -16 0\nv 2 -18 3\n"
+                        "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  script_ = "past.lua";
+  PageClient page(serve(), "a");
+  ASSERT_EQ(page.until_judged(0).at("grade"), Value("certified"));
+  const auto ask = [&](const char* tolerances) {
+    page.send_text(R"({"type": "export", "id": "e", "format": "qgc_plan", "parameters": )" +
+                   std::string(tolerances) + "}");
+    return page.until([](const Value& m) {
+      return m.at("type") == Value("wrote") || m.at("type") == Value("failed");
+    });
+  };
+  const char* const coarse = R"({"tolerance": 10, "angle_tolerance": 180, "time_tolerance": 1000,
+                                "finish": "hover"})";
+  const Value refused = ask(coarse);
+  ASSERT_EQ(refused.at("type"), Value("failed")) << to_json(refused);
+  const std::string& why = refused.at("why").as_text();
+  EXPECT_NE(why.find("the file would break what the plan keeps"), std::string::npos) << why;
+  EXPECT_NE(why.find("flight_time"), std::string::npos) << why;
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  // `lapwing export` refuses the same file. Along more waypoints there is time.
+  ASSERT_EQ(run({"run", "past.lua", "-o", "run", "--quiet"}), 0) << errors_;
+  EXPECT_EQ(run({"export", "run/plan.json", "--format",
+                 "qgc_plan:tolerance=10,angle_tolerance=180,time_tolerance=1000,finish=hover", "-o",
+                 "past.plan"}),
+            2);
+  EXPECT_NE(errors_.find("the file would break what the plan keeps"), std::string::npos) << errors_;
+  const Value wrote = ask(R"({"finish": "hover"})");
+  ASSERT_EQ(wrote.at("type"), Value("wrote")) << to_json(wrote);
+  EXPECT_TRUE(fs::exists(folder_ / wrote.at("files").as_list()[0].as_text()));
+  EXPECT_NE(to_json(wrote.at("loss")).find("m across the path of the plan"), std::string::npos)
+      << to_json(wrote.at("loss"));
+}
+
 TEST_F(StudioProgram, FollowsItsScriptWithAndWithoutEdits) {
   use("filming/castle_flyover.lua");
   PageClient page(serve(), "a");
