@@ -531,6 +531,18 @@ TEST_F(Session, ErrandsAreDoneInTurnAndNeedWhatTheyAreAbout) {
   EXPECT_EQ(b->last("failed").at("id"), Value("m"));
 }
 
+TEST_F(Session, SoManyErrandsMayWaitAndNoMore) {
+  const auto a = page("a"), b = page("b");
+  const auto ask = [&](HeardPage& page, int number) {
+    say(page, R"({"type": "export_lua", "id": "l)" + std::to_string(number) + R"("})");
+  };
+  for (int i = 0; i < 32; ++i) ask(*(i % 2 ? a : b), i);
+  EXPECT_TRUE(a->of_type("failed").empty());
+  EXPECT_TRUE(b->of_type("failed").empty());
+  ask(*a, 32);
+  EXPECT_EQ(a->last("failed").at("id"), Value("l32"));
+}
+
 TEST_F(Session, OtherMissionsAreLookedAt) {
   open("race");
   const auto a = page("a");
