@@ -209,7 +209,7 @@ int main(int argc, char** argv) {
   const bool held =
       ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s", 8) &
       ratio(medians, "interior_point/flight_30s", "ipopt/flight_30s_mehrotra", 6) &
-      faster(medians, "to_half_a_percent/iqp", "to_half_a_percent/ipopt", 3) &
+      faster(medians, "to_half_a_percent/iqp", "to_half_a_percent/ipopt", 2) &
       faster(medians, "to_the_end/moved_warm", "to_the_end/moved_cold", 1.6) &
       fewer_programs(medians, "to_the_end/moved_warm", "to_the_end/moved_cold", 0.55) &
       growth(medians, "interior_point/flight_30s", "interior_point/flight_300s", 15) &
