@@ -6,7 +6,7 @@ import { lanesOf, massOf, type Lane } from "../state/samples";
 import { clock, show } from "../state/units";
 import type { Plan } from "../state/types";
 import type { Studio } from "../studio";
-import { byId, colour, el, sized } from "../view/dom";
+import { byId, colour, el, sized, whileHeld } from "../view/dom";
 
 const LEFT = 92;          // px, names of the lanes
 const RIGHT = 14;
@@ -155,7 +155,6 @@ export class Timeline {
     if (event.button !== 0 || !this.studio.editable) return;
     const { studio } = this;
     studio.select({ kind: "keyframe", index });
-    button.setPointerCapture(event.pointerId);
     const base = studio.session.settled();
     let time: number | null = null;
     const move = (e: PointerEvent): void => {
@@ -163,27 +162,11 @@ export class Timeline {
       time = this.timeAt(e.clientX);
       studio.drag(retimed(base, index, time));
     };
-    const end = (keep: boolean): void => {
-      button.removeEventListener("pointermove", move);
-      button.removeEventListener("pointerup", up);
-      button.removeEventListener("pointercancel", cancel);
-      window.removeEventListener("keydown", escape, true);
+    whileHeld(button, event.pointerId, move, (kept) => {
       if (time === null) return;
-      if (keep) studio.edit(retimed(base, index, time));
+      if (kept) studio.edit(retimed(base, index, time));
       else studio.session.rest();
-      time = null;
-    };
-    const up = (): void => end(true);
-    const cancel = (): void => end(false);
-    const escape = (e: KeyboardEvent): void => {
-      if (e.key !== "Escape") return;
-      e.stopPropagation();
-      end(false);
-    };
-    button.addEventListener("pointermove", move);
-    button.addEventListener("pointerup", up);
-    button.addEventListener("pointercancel", cancel);
-    window.addEventListener("keydown", escape, true);
+    });
   }
 
   // ---- drawing ---------------------------------------------------------------------------------

@@ -77,3 +77,30 @@ export function sized(canvas: HTMLCanvasElement): CanvasRenderingContext2D | nul
   context?.setTransform(scale, 0, 0, scale, 0, 0);
   return context;
 }
+
+// Calls `move` while a pointer is held on an element, then `end` once: true where it was let go,
+// false for Escape and for a pointer that is taken away.
+export function whileHeld(
+  element: HTMLElement, pointer: number, move: (event: PointerEvent) => void,
+  end: (kept: boolean) => void,
+): void {
+  element.setPointerCapture(pointer);
+  const finish = (kept: boolean): void => {
+    element.removeEventListener("pointermove", move);
+    element.removeEventListener("pointerup", up);
+    element.removeEventListener("pointercancel", cancel);
+    window.removeEventListener("keydown", escape, true);
+    end(kept);
+  };
+  const up = (): void => finish(true);
+  const cancel = (): void => finish(false);
+  const escape = (event: KeyboardEvent): void => {
+    if (event.key !== "Escape") return;
+    event.stopPropagation();
+    finish(false);
+  };
+  element.addEventListener("pointermove", move);
+  element.addEventListener("pointerup", up);
+  element.addEventListener("pointercancel", cancel);
+  window.addEventListener("keydown", escape, true);
+}

@@ -7,7 +7,7 @@ import { isObject } from "../state/document";
 import { entries } from "../state/film";
 import type { JsonObject, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
-import { el } from "./dom";
+import { el, whileHeld } from "./dom";
 import type { Stage } from "./stage";
 
 const THRESHOLD = 3;     // px before a press is a drag
@@ -124,7 +124,6 @@ export class Pins {
     const start = placeOfItem(this.studio.session.settled(), item);
     this.studio.select(item);
     if (!start || !this.studio.editable) return;
-    button.setPointerCapture(event.pointerId);
     const drag = new PinDrag(this.stage, start, event);
     let dragging = false, last: Vec3 = start;
     const base = this.studio.session.settled();
@@ -136,26 +135,11 @@ export class Pins {
       last = drag.at(e, last);
       this.studio.drag(moved(base, item, last));
     };
-    const end = (keep: boolean): void => {
-      button.removeEventListener("pointermove", move);
-      button.removeEventListener("pointerup", up);
-      button.removeEventListener("pointercancel", cancel);
-      window.removeEventListener("keydown", escape, true);
+    whileHeld(button, event.pointerId, move, (kept) => {
       if (!dragging) return;
-      if (keep) this.studio.edit(moved(base, item, last));
+      if (kept) this.studio.edit(moved(base, item, last));
       else this.studio.session.rest();
-    };
-    const up = (): void => end(true);
-    const cancel = (): void => end(false);
-    const escape = (e: KeyboardEvent): void => {
-      if (e.key !== "Escape") return;
-      e.stopPropagation();
-      end(false);
-    };
-    button.addEventListener("pointermove", move);
-    button.addEventListener("pointerup", up);
-    button.addEventListener("pointercancel", cancel);
-    window.addEventListener("keydown", escape, true);
+    });
   }
 }
 
