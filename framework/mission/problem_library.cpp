@@ -198,6 +198,29 @@ int guess_solution(lua_State* state) {
   return 0;
 }
 
+ParameterTable continued_table() {
+  return ParameterTable{}
+      .integer("stage", 0, "stage of the solution that is the first one here, from 0", at_least(0))
+      .integer("held", 1, "number of stages, from that one, that stay as they are", at_least(1));
+}
+
+// problem:continue_from(solution, {stage = 40, held = 4}): the flight begins as that solution goes
+// on from that stage.
+int continue_from(lua_State* state) {
+  TrajectoryProblem& problem = open_problem(state);
+  const SolutionObject& solution = object_argument<SolutionObject>(state, 2, kSolutionType);
+  const Parameters given = table_argument(state, 3, continued_table(), "continue_from");
+  const Stages& stages = solution.result.point.stages;
+  const std::int64_t first = given.integer("stage");
+  if (first >= stages.cols())
+    throw InputError(given.origin("stage"), "continue_from: the solution has " +
+                                                std::to_string(stages.cols()) + " stages");
+  const Eigen::Index count =
+      std::min<Eigen::Index>(stages.cols() - first, problem.horizon().stages);
+  problem.continue_from(stages.middleCols(first, count), static_cast<int>(given.integer("held")));
+  return 0;
+}
+
 int finish(lua_State* state) {
   TrajectoryProblem& problem = open_problem(state);
   ProblemObject& object = object_argument<ProblemObject>(state, 1, kProblemType);
@@ -340,6 +363,7 @@ ParameterTable problem_table() {
       .boolean("periodic", false, "the last state closes onto the first")
       .integer("turns", 0, "turns of yaw in one period, counter-clockwise", between(-1000, 1000))
       .number("step", 0.1, "s", "longest time between two stages", above(0))
+      .number("begin", 0, "s", "time of the first stage, of a part of a longer flight", at_least(0))
       .choice("step_mode", "fixed", {"fixed", "free"}, "free: the step is a variable")
       .table("environment", environment_table(), "obstacles, subjects and zones");
   return table;
@@ -360,6 +384,8 @@ int problem_of_run(lua_State* state) {
   const bool legs = !given.tables("legs").empty();
   if (legs == given.has("duration"))
     throw InputError(given.origin(), "problem: expected either a duration or legs");
+  if (legs && given.number("begin") != 0)
+    throw InputError(given.origin("begin"), "problem: a flight of legs begins at 0");
   const double intervals = legs ? 1 : given.number("duration") / given.number("step");
   if (intervals > kMostIntervals) {
     throw InputError(given.origin(), "problem: more than 100000 stages; raise the step");
@@ -370,6 +396,7 @@ int problem_of_run(lua_State* state) {
   } else {
     horizon.stages = std::max(1, static_cast<int>(std::ceil(intervals - kRounding))) + 1;
     horizon.step = given.number("duration") / (horizon.stages - 1);
+    horizon.begin = given.number("begin");
     horizon.step_free = given.text("step_mode") == "free";
     horizon.periodic = given.boolean("periodic");
     horizon.turns = static_cast<int>(given.integer("turns"));
@@ -434,6 +461,8 @@ void open_problem_library(lua_State* state) {
        kGuessedValues},
       {"guess_solution", &guarded<guess_solution>, "(solution: lapwing.solution)",
        "sets the initial guess, leg by leg, from the solution of a problem with the same legs"},
+      {"continue_from", &guarded<continue_from>, "(solution: lapwing.solution, from: @)",
+       "begins as the solution of another part of the flight goes on", &continued_table},
       {"nearest_obstacle", &guarded<nearest>, "(place: number[], time?: number): number, string",
        "distance of the nearest obstacle in m, negative inside, and its name"},
       {"flight_zone_distance", &guarded<flight_zone_distance>,

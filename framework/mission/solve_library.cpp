@@ -8,6 +8,7 @@
 
 #include "framework/core/log.h"
 #include "framework/mission/guard.h"
+#include "framework/mission/joined_solution.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
 #include "framework/mission/script_terms.h"
@@ -146,6 +147,43 @@ int solve(lua_State* state) {
                 std::to_string(report.iterations) + " iterations" +
                 (report.message.empty() ? "" : "; " + report.message));
   new_object(state, kSolutionType, std::move(solution));
+  return 1;
+}
+
+constexpr BoundField kSolutionPart[] = {
+    {"solution", "lapwing.solution", "solution of the part"},
+    {"first", "integer", "its first stage that is taken, counted from 0"},
+    {"last", "integer", "its last stage that is taken"}};
+
+int stage_number(lua_State* state, const char* field) {
+  lua_getfield(state, -1, field);
+  int is_integer = 0;
+  const lua_Integer number = lua_tointegerx(state, -1, &is_integer);
+  lua_pop(state, 1);
+  constexpr lua_Integer kMost = 1'000'000;
+  if (!is_integer || number < 0 || number > kMost)
+    throw InputError(std::string("join: expected a stage number as `") + field + "`");
+  return static_cast<int>(number);
+}
+
+// run:join(problem, {{solution = s, first = 0, last = 39}, ...})
+int join_parts(lua_State* state) {
+  const ProblemObject& whole = object_argument<ProblemObject>(state, 2, kProblemType);
+  if (!whole.finished) throw InputError("join: the problem is not finished; call problem:finish()");
+  if (!lua_istable(state, 3)) throw InputError("join: expected a list of parts");
+  std::vector<SolutionPart> parts(lua_rawlen(state, 3));
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (lua_rawgeti(state, 3, static_cast<lua_Integer>(k + 1)) != LUA_TTABLE)
+      throw InputError("join: expected {solution, first, last} as each part");
+    parts[k].first = stage_number(state, "first");
+    parts[k].last = stage_number(state, "last");
+    lua_getfield(state, -1, "solution");
+    parts[k].solution = &object_argument<SolutionObject>(state, -1, kSolutionType);
+    lua_pop(state, 2);
+  }
+  SolutionObject joined = join(whole, parts);
+  joined.constraints = constraints_of(whole);
+  new_object(state, kSolutionType, std::move(joined));
   return 1;
 }
 
@@ -289,7 +327,10 @@ std::span<const Binding> solving_methods_of_run() {
       {"solve", &guarded<solve>,
        "(problem: lapwing.problem, solver: lapwing.trajectory_solver, options?: @): "
        "lapwing.solution",
-       "a solution; its `status` states the outcome", nullptr, kWarmStart}};
+       "a solution; its `status` states the outcome", nullptr, kWarmStart},
+      {"join", &guarded<join_parts>, "(whole: lapwing.problem, parts: @[]): lapwing.solution",
+       "the solution of a whole flight from those of its parts, in order of time", nullptr,
+       kSolutionPart}};
   return methods;
 }
 

@@ -102,7 +102,7 @@ void BoundFunction::list_instances(const StageColumns& columns) {
   const Horizon& horizon = columns.horizon;
   const int last = horizon.stages - shape_.window;
   if (!shape_.times.empty()) {
-    const double end = horizon.duration();
+    const double begin = horizon.begin, end = horizon.end();
     for (const double time : shape_.times) {
       if (horizon.step_free) {
         stage_.push_back(end_of_leg(horizon, time));
@@ -110,9 +110,9 @@ void BoundFunction::list_instances(const StageColumns& columns) {
         nominal_.push_back(horizon.time(stage_.back()));
         continue;
       }
-      if (!(time >= -kOnStage && time <= end + kOnStage))
-        throw InputError(name_ + ": time " + seconds_text(time) + " lies outside the duration of " +
-                         seconds_text(end));
+      if (!(time >= begin - kOnStage && time <= end + kOnStage))
+        throw InputError(name_ + ": time " + seconds_text(time) + " lies outside the " +
+                         (begin == 0 ? "duration of " : "part that ends at ") + seconds_text(end));
       int stage = std::min(horizon.stage_at(time), last);
       double offset = time - horizon.time(stage);
       if (horizon.step_after(stage) - offset < kOnStage && stage < last) ++stage, offset = 0;

@@ -31,8 +31,8 @@ Horizon Horizon::of_legs(std::vector<Leg> legs) {
 }
 
 double Horizon::time(int stage) const {
-  if (legs.empty()) return stage * step;
-  double time = 0;
+  if (legs.empty()) return begin + stage * step;
+  double time = begin;
   for (const Leg& leg : legs) {
     if (stage <= leg.intervals) return time + stage * leg.step;
     time += leg.intervals * leg.step;
@@ -54,14 +54,16 @@ double Horizon::step_after(int stage) const {
 }
 
 int Horizon::stage_at(double time) const {
-  if (legs.empty()) return std::min(static_cast<int>(time / step), stages - 1);
+  if (legs.empty())
+    return std::clamp(static_cast<int>((time - begin) / step), 0, stages - 1);
   int first = 0;
-  double begin = 0;
+  double leg_begin = begin;
   for (const Leg& leg : legs) {
     const double length = leg.intervals * leg.step;
-    if (time < begin + length)
-      return first + std::clamp(static_cast<int>((time - begin) / leg.step), 0, leg.intervals - 1);
-    begin += length;
+    if (time < leg_begin + length)
+      return first +
+             std::clamp(static_cast<int>((time - leg_begin) / leg.step), 0, leg.intervals - 1);
+    leg_begin += length;
     first += leg.intervals;
   }
   return stages - 1;

@@ -23,6 +23,7 @@ struct Leg {
 struct Horizon {
   int stages = 0;              // at least 2
   double step = 0;             // s; with legs their mean
+  double begin = 0;            // s, time of the first stage: a part of a longer flight begins later
   bool step_free = false;      // some step is a variable
   std::vector<Leg> legs = {};  // empty: one leg of `stages` and `step`
   // The last stage closes onto the first: every state is the same, but yaw, which may have made
@@ -35,7 +36,8 @@ struct Horizon {
   static Horizon of_legs(std::vector<Leg> legs);
 
   bool uniform() const { return legs.size() < 2; }
-  double duration() const { return time(stages - 1); }
+  double duration() const { return end() - begin; }
+  double end() const { return time(stages - 1); }  // s, time of the last stage
   // Of a stage, s: nominal where steps are free.
   double time(int stage) const;
   // From a stage to the next, s; of the last stage, as before it.

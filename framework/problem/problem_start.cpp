@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points of a trajectory problem that are made of another trajectory.
+// Where a trajectory problem begins from another trajectory: points made of it, stages held to it.
 #include "framework/core/plugin_object.h"
 #include "framework/problem/trajectory_problem_impl.h"
 #include "framework/trajectory/interpolate.h"
@@ -14,10 +14,11 @@ Stages TrajectoryProblem::point_of(const Trajectory& trajectory) const {
   const double here = columns.horizon.duration();
   Stages at = initial_guess();
   for (int i = 0; i < columns.horizon.stages; ++i) {
-    const double share = here > 0 ? std::min(1.0, columns.horizon.time(i) / here) : 0.0;
+    const double share = here > 0 ? std::min(1.0, (columns.horizon.time(i) - columns.horizon.begin) / here) : 0.0;
     Sample sample = sample_at(trajectory, begin + share * duration);
     if (here > 0) {
-      const double middle = columns.horizon.time(i) + 0.5 * columns.horizon.step_after(i);
+      const double middle = columns.horizon.time(i) - columns.horizon.begin +
+                            0.5 * columns.horizon.step_after(i);
       smooth_held_inputs(trajectory, begin + middle / here * duration, sample);
     }
     for (const BoundModel& model : columns.models) {
@@ -35,6 +36,59 @@ Stages TrajectoryProblem::point_of(const Trajectory& trajectory) const {
     if (aimed) at.col(i).segment<3>(layout.offset(target)) = sample.target;
   }
   return at;
+}
+
+void TrajectoryProblem::continue_from(Stages before, int held) {
+  impl_->expect_unfinished();
+  if (held < 1 || held > before.cols() || before.cols() > impl_->columns.horizon.stages)
+    throw InputError("continue_from: " + std::to_string(held) + " stages of " +
+                     std::to_string(before.cols()) + " cannot be held in " +
+                     std::to_string(impl_->columns.horizon.stages));
+  if (impl_->columns.horizon.step_free)
+    throw InputError("continue_from: a flight with free steps cannot be continued");
+  impl_->before = std::move(before);
+  impl_->held = held;
+}
+
+// Inputs are held before the last held stage, free blocks in all of them, states in the first one:
+// the others follow from the motion. Bounds on these states no longer matter, and rounding must not
+// make them contradict the motion.
+void TrajectoryProblem::Impl::hold_stages() {
+  if (held == 0) return;
+  const StageLayout& layout = columns.layout;
+  if (before.rows() != layout.size())
+    throw InputError("continue_from: the flight before has stages of " +
+                     std::to_string(before.rows()) + " numbers, this one of " +
+                     std::to_string(layout.size()));
+  bound_owners.push_back("flight before");
+  const int owner = static_cast<int>(bound_owners.size()) - 1;
+  for (int b = 0; b < layout.count(); ++b) {
+    const BlockSpec& block = layout.block(b);
+    if (block.role == BlockRole::clock) continue;
+    if (block.topology != Topology::line)
+      throw InputError("continue_from: block '" + block.name + "' is an orientation");
+    for (int stage = 0; stage < held; ++stage) {
+      const bool fixed = block.role == BlockRole::state ? stage == 0
+                                                        : block.role == BlockRole::free ||
+                                                              stage + 1 < held;
+      for (int i = 0; i < block.size; ++i) {
+        ColumnBound& bound = bounds[columns.column(stage, layout.tangent_offset(b) + i)];
+        const double value = before(layout.offset(b) + i, stage);
+        if (fixed)
+          bound = {value, value, owner, owner};
+        else if (block.role == BlockRole::state)
+          bound = {};
+      }
+    }
+  }
+}
+
+void TrajectoryProblem::Impl::begin_as_before(Stages& guess) const {
+  const StageLayout& layout = columns.layout;
+  for (int b = 0; b < layout.count() && before.size() > 0; ++b)
+    if (layout.block(b).role != BlockRole::clock)
+      guess.block(layout.offset(b), 0, layout.block(b).size, before.cols()) =
+          before.middleRows(layout.offset(b), layout.block(b).size);
 }
 
 }  // namespace lapwing

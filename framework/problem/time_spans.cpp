@@ -10,9 +10,9 @@ constexpr double kOnStage = 1e-9;  // s, nearer to a stage than this is on it
 
 void expect_inside(const std::vector<TimeSpan>& spans, const Horizon& horizon) {
   for (const TimeSpan& span : spans)
-    if (span.start > horizon.duration() + kOnStage)
+    if (span.start > horizon.end() + kOnStage)
       throw InputError("a span begins at " + std::to_string(span.start) + " s, after the end at " +
-                       std::to_string(horizon.duration()) + " s");
+                       std::to_string(horizon.end()) + " s");
 }
 
 }  // namespace

@@ -173,6 +173,7 @@ void TrajectoryProblem::finish(const TrajectoryProblem* like) {
   impl_->add_clock();
   impl_->list_closure();
   impl_->bind_terms();
+  impl_->hold_stages();
   impl_->build_patterns(like ? like->impl_.get() : nullptr);
   impl_->finished = true;
 }
@@ -198,7 +199,8 @@ void TrajectoryProblem::Impl::add_clock() {
   if (!columns.horizon.step_free) return;
   bound_owners.push_back("clock");
   const int owner = static_cast<int>(bound_owners.size()) - 1;
-  tighten(columns.column(0, layout.tangent_offset(columns.time_block)), 0.0, 0.0, owner);
+  const double begin = columns.horizon.begin;
+  tighten(columns.column(0, layout.tangent_offset(columns.time_block)), begin, begin, owner);
   for (int i = 0; i < columns.horizon.stages; ++i) {
     const int column = columns.column(i, layout.tangent_offset(columns.step_block));
     tighten(column, kShortestStep, kInfinity, owner);
@@ -364,6 +366,7 @@ Stages TrajectoryProblem::initial_guess() const {
           interpolate(columns.layout.block(b), guess, samples[i].time);
     }
   }
+  impl_->begin_as_before(at);
   return at;
 }
 

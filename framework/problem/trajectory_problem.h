@@ -87,6 +87,13 @@ class TrajectoryProblem {
   void set_motion_guess(Trajectory motion, Horizon legs);
   void set_block_guess(const std::string& block, std::vector<double> times,
                        std::vector<Eigen::VectorXd> values);
+  // Continues another problem's solution: the flight before the last of the first `held` stages is
+  // that of `before`, whose columns are stages of the same layout, the first one the first stage
+  // here. States follow from the held inputs; the state of stage held - 1 is the last that is held,
+  // its inputs are free. Every column of `before` is a guess. Call it after all blocks were added.
+  // InputError where the layout differs, where there are fewer columns than `held`, or where a held
+  // block is an orientation.
+  void continue_from(Stages before, int held);
   // Binds all terms. InputError naming the term when one does not fit. The sparsity of `like` is
   // taken over where it is the same, which saves most of the time and changes nothing else.
   void finish(const TrajectoryProblem* like = nullptr);

@@ -56,6 +56,8 @@ struct TrajectoryProblem::Impl {
   Trajectory motion;  // to begin from; empty: the path
   Horizon motion_legs;
   Sample motion_sample(int stage) const;
+  Stages before;  // continued solution: guesses of the first stages
+  int held = 0;   // stages of it that do not change
   bool finished = false;
   bool rests = true;        // every model can
   bool affine_rows = true;  // all rows affine
@@ -77,6 +79,8 @@ struct TrajectoryProblem::Impl {
   void bind_terms();
   void take_bounds(ConstraintEntry& entry, int owner);
   void tighten(int column, double lower, double upper, int owner);
+  void hold_stages();  // problem_start.cpp
+  void begin_as_before(Stages& guess) const;
   void model_bounds();
   // problem_pattern.cpp
   void build_patterns(const Impl* like);

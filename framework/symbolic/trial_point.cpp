@@ -57,7 +57,7 @@ const std::vector<double>& TrialPoint::numbers(int stage, int block) {
             : point_ < kWholePoints ? static_cast<double>(random_.integer(-5, 5))
                                     : random_.uniform(-1, 1) * kScales[point_ % 3];
   if (spec.name == "time" && !literal_)
-    values[0] = horizon.duration() * point_ / kSeeded + stage * horizon.step;
+    values[0] = horizon.begin + horizon.duration() * point_ / kSeeded + stage * horizon.step;
   if (spec.name == "step" && !(literal_ && *literal_ > 0))
     values[0] = horizon.step * (point_ == 0 ? 1 : random_.uniform(0.5, 2));
   if (spec.topology == Topology::quaternion) {

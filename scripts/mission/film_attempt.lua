@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- One attempt at a film: request in, outcome out; nothing else is read or changed.
 local checks = require "mission.checks"
+local horizons = require "mission.film_horizon"
 local problem = require "mission.film_problem"
 local requests = require "mission.film_request"
 
@@ -10,7 +11,9 @@ local function tried(run, request)
   local stated = problem.state(run, request)
   local camera = stated.camera
   local begin = request.scope ~= "flight" and { start = run.start } or nil
-  local solution = run:solve(stated.problem, run.options.solver, begin)
+  local horizon = request.scope == "film" and run.options.horizon
+  local solution = horizon and horizons.solve(run, request, stated, horizon)
+    or run:solve(stated.problem, run.options.solver, begin)
   local verdict = run:certify(run:plan { solution = solution, task = stated.task,
                                          controller = run.options.controller,
                                          cuts = camera and camera.cuts or {} })

@@ -1,5 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- The environment of a film as a problem needs it: obstacles, flight zones, the tracking volume.
+local parts = require "mission.film_parts"
 local tracks = require "mission.tracks"
 
 local M = {}
@@ -159,13 +160,16 @@ end
 
 -- The speeds that keyframes are timed by, wanted in between them as well: along the straight leg,
 -- which keeps the term convex where the flight goes round something.
-function M.add_cruise(p, request, weight)
+function M.add_cruise(p, request, weight, part)
   local stretch = request.stretch
   for i, leg in ipairs(request.cruise) do
     local speed, way = leg.speed / stretch, lapwing.normalize(lapwing.vector(leg.to) - leg.from)
-    p:add_cost { name = "cruise " .. i, weight = weight,
-                 spans = { { start = leg.start * stretch, finish = leg.finish * stretch } },
-                 residual = function(s) return lapwing.dot(s.velocity, way) - speed end }
+    local spans = parts.spans(part, { { start = leg.start * stretch,
+                                        finish = leg.finish * stretch } })
+    if #spans > 0 then
+      p:add_cost { name = "cruise " .. i, weight = weight, spans = spans,
+                   residual = function(s) return lapwing.dot(s.velocity, way) - speed end }
+    end
   end
 end
 

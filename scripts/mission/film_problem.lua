@@ -3,6 +3,7 @@
 -- its plan is judged by (thesis 3.5).
 local surroundings = require "mission.film_environment"
 local own = require "mission.own_terms"
+local parts = require "mission.film_parts"
 local point_mass = require "mission.point_mass"
 local subjects = require "mission.subjects"
 local tracks = require "mission.tracks"
@@ -18,10 +19,15 @@ local FEWEST_INTERVALS = 12
 local HARD_YAW = math.rad(8)    -- with `hard`: largest miss of yaw; the certificate allows 10 deg
 
 -- `free_yaw`: nothing else says where the vehicle heads.
-local function boundary(run, p, stretch, free_yaw)
+-- `part`: of a part of the film that is neither its beginning nor its end, that is free; nil: all.
+local function boundary(run, p, stretch, free_yaw, part)
   local options = run.options
-  local state = { type = "boundary_state", start_yaw = free_yaw and p:rests() and 0 or nil }
-  for _, name in ipairs { "start", "finish" } do
+  local state = { type = "boundary_state", start = "free", finish = "free",
+                  start_yaw = free_yaw and p:rests() and (not part or part.first) and 0 or nil }
+  local ends = {}
+  if not part or part.first then ends[1] = "start" end
+  if not part or part.last then ends[#ends + 1] = "finish" end
+  for _, name in ipairs(ends) do
     state[name] = options[name]
     if options[name] == "rest" then
       point_mass.must_rest(run, p, name, "give free or moving, not rest")
@@ -172,59 +178,68 @@ local function check_yaws(run, p, request)
   end
 end
 
--- What a request asks for, as {problem, task, camera, legs}; `legs` as the request's, with the ways
--- that were planned here.
-function problem.state(run, request)
+-- What all problems of a film have alike: the whole one, and those of its parts.
+local function prepared(run, request)
   local o, vehicle, scope = run.options, request.vehicle, request.scope
   local duration = request.duration * request.stretch
   local camera = scope ~= "flight" and vehicle.gimbal and subjects.plan(run, request, duration)
-  local keyframes = keyframes_of(request, o)
   local environment, bystanders = surroundings.state(run, request, camera)
   local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
                                   duration / FEWEST_INTERVALS)
-  local p = run:problem(surroundings.stated(environment, { vehicle = vehicle, duration = duration,
-                                                           step = step }))
-  check_keyframes(run, p, request, camera, bystanders)
-  local way = ways.planned(p, keyframes, environment, o.planner, request.legs, request.corridor)
-  local limited, path, track = scope ~= "unlimited", way.path, request.track
+  return { duration = duration, camera = camera, keyframes = keyframes_of(request, o),
+           environment = environment, bystanders = bystanders, step = step }
+end
+
+local function new_problem(run, request, film, times)
+  return run:problem(surroundings.stated(film.environment, {
+    vehicle = request.vehicle, begin = times.begin, duration = times.finish - times.begin,
+    step = film.step }))
+end
+
+-- Costs, constraints and first guess of the part of a film between two times (film_parts.lua).
+local function fill(run, request, film, part)
+  local o, vehicle, scope, p = run.options, request.vehicle, request.scope, part.problem
+  local keyframes, environment = film.keyframes, film.environment
+  local camera = parts.camera(part, film.camera)
+  local limited, path, track = scope ~= "unlimited", film.way.path, request.track
   if track then
     path = {}
     for i, place in ipairs(track.places) do
       path[i] = { time = place.time, position = place.value }
     end
   end
-  p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }
+  path = parts.line(part, path)
+  local places = parts.entries(part, keyframes.places)
+  if #places > 0 then
+    p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = places }
+  end
   point_mass.add(p, vehicle, motion_of(o, limited and { across = "extent" } or nil))
-  if limited then surroundings.add(p, environment, camera, way.corridor) end
-  surroundings.add_cruise(p, request, o.weights.speed)
+  if limited then
+    surroundings.add(p, environment, camera,
+                     film.way.corridor and parts.spans(part, film.way.corridor))
+  end
+  surroundings.add_cruise(p, request, o.weights.speed, part)
   surroundings.add_speed_limit(p, o, limited)
   if track and scope ~= "flight" then
     p:add_cost { type = "keyframe", name = "path", weight = track.weight,
-                 keyframes = track.places }
+                 keyframes = parts.entries(part, track.places) }
   end
-  local yaws = keyframes.yaws
-  p:add_constraint(boundary(run, p, request.stretch, not camera and #yaws == 0))
+  local yaws = parts.entries(part, keyframes.yaws)
+  p:add_constraint(boundary(run, p, request.stretch, not camera and #keyframes.yaws == 0, part))
   check_yaws(run, p, request)
   if #yaws > 0 then
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
                  weight = o.weights.keyframe, keyframes = yaws }
   end
-  if o.hard then
-    p:add_constraint { type = "hard_keyframe", tolerance = o.hard, keyframes = keyframes.places }
+  if o.hard and #places > 0 then
+    p:add_constraint { type = "hard_keyframe", tolerance = o.hard, keyframes = places }
     if #yaws > 0 then
       p:add_constraint { type = "hard_keyframe", name = "hard_yaw", block = "yaw",
                          tolerance = HARD_YAW, keyframes = yaws }
     end
   end
-  local task = { keyframes = keyframes.task }
   if camera then
     add_camera(p, o.weights, camera, path, request.looks_round and environment)
-    task.framing = {}
-    for i, span in ipairs(camera.spans) do
-      task.framing[i] = { subject = span.subject.name, start = span.start, finish = span.finish }
-    end
-    task.framing_share = #task.framing > 0 and o.framing or nil
-    task.line_of_sight_required = o.line_of_sight == "required"
   end
   if scope == "film" or scope == "unconstrained" then
     own.add(p, o, request.terms, scope == "film")
@@ -232,8 +247,47 @@ function problem.state(run, request)
   local guessed = guess(keyframes, camera, path)
   if not p:rests() then guessed.yaws = point_mass.courses(guessed.positions) end
   p:guess_path(guessed)
+end
+
+-- What the plan of a film is judged by.
+local function task_of(run, film)
+  local task, camera, o = { keyframes = film.keyframes.task }, film.camera, run.options
+  if not camera then return task end
+  task.framing = {}
+  for i, span in ipairs(camera.spans) do
+    task.framing[i] = { subject = span.subject.name, start = span.start, finish = span.finish }
+  end
+  task.framing_share = #task.framing > 0 and o.framing or nil
+  task.line_of_sight_required = o.line_of_sight == "required"
+  return task
+end
+
+-- What a request asks for, as {problem, task, camera, legs, film}; `legs` as the request's, with
+-- the ways that were planned here; `film` is for problem.part.
+function problem.state(run, request)
+  local film = prepared(run, request)
+  local whole = parts.whole(film.duration)
+  local p = new_problem(run, request, film, whole)
+  whole.problem = p
+  check_keyframes(run, p, request, film.camera, film.bystanders)
+  film.way = ways.planned(p, film.keyframes, film.environment, run.options.planner, request.legs,
+                          request.corridor)
+  fill(run, request, film, whole)
   p:finish()
-  return { problem = p, task = task, camera = camera or nil, legs = way.legs }
+  return { problem = p, task = task_of(run, film), camera = film.camera or nil,
+           legs = film.way.legs, film = film }
+end
+
+-- The problem of a part {begin, finish, first, last} of a film that was stated. `before`: {solution,
+-- stage, held}, the part of the flight that it continues; nil: none.
+function problem.part(run, request, film, part, before)
+  part.problem = new_problem(run, request, film, part)
+  fill(run, request, film, part)
+  if before then
+    part.problem:continue_from(before.solution, { stage = before.stage, held = before.held })
+  end
+  part.problem:finish()
+  return part.problem
 end
 
 -- For problems that share some of it.

@@ -37,15 +37,16 @@ end
 -- Position in a list of {time, position}: straight in between, at rest outside. A
 -- list of numbers or a vector.
 function tracks.at(track, time)
-  if time <= track[1].time then return track[1].position end
-  for i = 2, #track do
-    local a, b = track[i - 1], track[i]
-    if time <= b.time then
-      local way = lapwing.vector(b.position) - a.position
-      return (time - a.time) / (b.time - a.time) * way + a.position
-    end
+  local low, high = 1, #track
+  if time <= track[low].time then return track[low].position end
+  if time > track[high].time then return track[high].position end
+  while high - low > 1 do  -- after `low`, not after `high`
+    local middle = (low + high) // 2
+    if time <= track[middle].time then high = middle else low = middle end
   end
-  return track[#track].position
+  local a, b = track[low], track[high]
+  local way = lapwing.vector(b.position) - a.position
+  return (time - a.time) / (b.time - a.time) * way + a.position
 end
 
 -- Yaw in the world, and pitch, of a look; the yaw next to `before`, which it keeps when the look is
