@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A film against its configuration: what it passes, keeps away from and has in its image.
+#include <optional>
+
+#include <Eigen/Core>
+
 #include "framework/app/configured_task.h"
 #include "framework/app/stated_values.h"
 #include "framework/core/number_text.h"
@@ -73,8 +77,66 @@ class ConfiguredFilm {
     }
   }
 
+  // The subject of that name, as missions name subjects without one.
+  const Value* subject(const std::string& name) const {
+    const Value::List& all = stated_tables(asked_, "subjects");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      std::string own = stated_text(all[i], "name");
+      if (own.empty()) own = all.size() == 1 ? "subject" : "subject " + std::to_string(i + 1);
+      if (own == name) return &all[i];
+    }
+    return nullptr;
+  }
+
+  // Where a subject is at a time in the film, before it is stretched.
+  static std::optional<Eigen::Vector3d> place(const Value& subject, double time) {
+    const auto vector = [](const std::vector<double>& p) -> Eigen::Vector3d {
+      return {p[0], p[1], p[2]};
+    };
+    if (const auto still = stated_numbers(subject, "position")) return vector(*still);
+    std::optional<Eigen::Vector3d> last;
+    double before = 0;
+    for (const Value& point : stated_tables(subject, "track")) {
+      const auto at = stated_number(point, "time");
+      const auto position = stated_numbers(point, "position");
+      if (!at || !position || position->size() != 3) return std::nullopt;
+      if (time <= *at && last)
+        return *last + (time - before) / (*at - before) * (vector(*position) - *last);
+      last = vector(*position);
+      if (time <= *at) return last;
+      before = *at;
+    }
+    return last;
+  }
+
+  // Keyframes beside a live subject are wishes, which a plan does not promise.
+  Value::List promised_keyframes() const {
+    Value::List promised;
+    for (const Value& keyframe : stated_tables(asked_, "keyframes")) {
+      const std::string name = stated_text(keyframe, "beside");
+      const Value* beside = name.empty() ? nullptr : subject(name);
+      const Value* live = beside ? beside->find("live") : nullptr;
+      if (!live || live->type() != Value::Type::boolean || !live->as_boolean())
+        promised.push_back(keyframe);
+    }
+    return promised;
+  }
+
+  // Where a keyframe is, which may be beside a subject.
+  std::optional<std::vector<double>> position(const Value& keyframe) const {
+    std::optional<std::vector<double>> stated = stated_numbers(keyframe, "position");
+    const std::string name = stated_text(keyframe, "beside");
+    if (!stated || name.empty()) return stated;
+    const Value* beside = subject(name);
+    const auto time = stated_number(keyframe, "time");
+    const auto at = beside && time ? place(*beside, *time) : std::nullopt;
+    if (!at) return std::nullopt;
+    for (int axis = 0; axis < 3; ++axis) (*stated)[axis] += (*at)(axis);
+    return stated;
+  }
+
   void keyframes() {
-    const Value::List& asked = stated_tables(asked_, "keyframes");
+    const Value::List asked = promised_keyframes();
     const auto& here = plan_.task.keyframes;
     if (asked.empty()) return;
     if (here.size() != asked.size())
@@ -83,8 +145,8 @@ class ConfiguredFilm {
     bool timed = false;
     for (std::size_t i = 0; i < here.size(); ++i) {
       const std::string name = "keyframe " + std::to_string(i + 1);
-      const auto position = stated_numbers(asked[i], "position");
-      if (position && !same_vector(*position, here[i].position))
+      const auto wanted = position(asked[i]);
+      if (wanted && !same_vector(*wanted, here[i].position))
         fault(name + " has another position in the plan than in its configuration");
       timed = keyframe_time(name, asked[i], here[i]) || timed;
       yaw(name, asked[i], here[i]);

@@ -6,6 +6,8 @@
 namespace lapwing {
 namespace {
 
+constexpr double kMissed = 1e-5;  // largest violation of a row or bound, in its unit
+
 bool ended_well(SolveStatus status) {
   return status == SolveStatus::optimal || status == SolveStatus::feasible;
 }
@@ -43,7 +45,9 @@ SolutionObject join(const ProblemObject& whole, const std::vector<SolutionPart>&
   joined.problem = whole.problem;
   joined.solver = parts.front().solution->solver;
   SolveReport& report = joined.result.report;
-  report.status = SolveStatus::feasible;
+  int unfinished = 0;
+  SolveStatus first = SolveStatus::feasible;  // status of the first part that did not end well
+  std::string why;
   Stages at = problem.initial_guess();
   int count = 0;
   for (const SolutionPart& part : parts) {
@@ -52,10 +56,10 @@ SolutionObject join(const ProblemObject& whole, const std::vector<SolutionPart>&
     const SolveReport& own = part.solution->result.report;
     report.iterations += own.iterations;
     report.seconds += own.seconds;
-    if (ended_well(report.status) && !ended_well(own.status)) {
-      report.status = own.status;
-      report.message = own.message;
-    }
+    if (ended_well(own.status)) continue;
+    if (unfinished++ > 0) continue;
+    first = own.status;
+    why = own.message;
   }
   if (count != at.cols())
     throw InputError("join: the parts make " + std::to_string(count) + " stages of " +
@@ -63,8 +67,12 @@ SolutionObject join(const ProblemObject& whole, const std::vector<SolutionPart>&
   report.terms = problem.term_costs(at);
   for (const TermCost& term : report.terms) report.cost += term.cost;
   report.violations = problem.violations(at);
-  if (report.message.empty())
-    report.message = "joined from " + std::to_string(parts.size()) + " parts";
+  const double worst = report.violations.empty() ? 0.0 : report.violations.front().amount;
+  report.status = worst <= kMissed ? SolveStatus::feasible : first;
+  report.message = "joined from " + std::to_string(parts.size()) + " parts";
+  if (unfinished > 0)
+    report.message += ", " + std::to_string(unfinished) + " of which did not end well, the first as " +
+                      to_string(first) + (why.empty() ? "" : ": " + why);
   joined.result.point.stages = std::move(at);
   return joined;
 }

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a trajectory problem begins from another trajectory: points made of it, stages held to it.
+#include <algorithm>
+#include <limits>
+
 #include "framework/core/plugin_object.h"
 #include "framework/problem/trajectory_problem_impl.h"
 #include "framework/trajectory/interpolate.h"
 
 namespace lapwing {
+
 Stages TrajectoryProblem::point_of(const Trajectory& trajectory) const {
   const StageColumns& columns = impl_->columns;
   const StageLayout& layout = columns.layout;
@@ -51,8 +55,8 @@ void TrajectoryProblem::continue_from(Stages before, int held) {
 }
 
 // Inputs are held before the last held stage, free blocks in all of them, states in the first one:
-// the others follow from the motion. Bounds on these states no longer matter, and rounding must not
-// make them contradict the motion.
+// the others follow from the motion. What cannot change any more is bound by nothing else: rounding
+// must not make it contradict the motion or a limit.
 void TrajectoryProblem::Impl::hold_stages() {
   if (held == 0) return;
   const StageLayout& layout = columns.layout;
@@ -62,24 +66,40 @@ void TrajectoryProblem::Impl::hold_stages() {
                      std::to_string(layout.size()));
   bound_owners.push_back("flight before");
   const int owner = static_cast<int>(bound_owners.size()) - 1;
+  std::vector<bool> decided(columns.total(), false);
   for (int b = 0; b < layout.count(); ++b) {
     const BlockSpec& block = layout.block(b);
     if (block.role == BlockRole::clock) continue;
     if (block.topology != Topology::line)
       throw InputError("continue_from: block '" + block.name + "' is an orientation");
-    for (int stage = 0; stage < held; ++stage) {
-      const bool fixed = block.role == BlockRole::state ? stage == 0
-                                                        : block.role == BlockRole::free ||
-                                                              stage + 1 < held;
+    const bool state = block.role == BlockRole::state;
+    const int stages = block.role == BlockRole::input ? held - 1 : held;
+    for (int stage = 0; stage < stages; ++stage)
       for (int i = 0; i < block.size; ++i) {
-        ColumnBound& bound = bounds[columns.column(stage, layout.tangent_offset(b) + i)];
+        const int column = columns.column(stage, layout.tangent_offset(b) + i);
         const double value = before(layout.offset(b) + i, stage);
-        if (fixed)
-          bound = {value, value, owner, owner};
-        else if (block.role == BlockRole::state)
-          bound = {};
+        ColumnBound& bound = bounds[column];
+        decided[column] = true;
+        if (bound.lower == bound.upper) continue;  // it never moves
+        bound = state && stage > 0 ? ColumnBound{} : ColumnBound{value, value, owner, owner};
       }
-    }
+  }
+  for (ConstraintEntry& entry : constraints)
+    if (!entry.is_bounds) release_rows(entry, decided);
+}
+
+// Rows of a constraint that read decided columns alone.
+void TrajectoryProblem::Impl::release_rows(ConstraintEntry& entry,
+                                           const std::vector<bool>& decided) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const BoundFunction& bound = *entry.bound;
+  for (int k = 0; k < bound.instances(); ++k) {
+    bool all = true;
+    for (int c = 0; c < bound.width(); ++c)
+      all &= bound.columns(k)[c] < 0 || decided[bound.columns(k)[c]];
+    if (!all) continue;
+    std::fill_n(entry.lower.begin() + k * bound.rows(), bound.rows(), -kNone);
+    std::fill_n(entry.upper.begin() + k * bound.rows(), bound.rows(), kNone);
   }
 }
 

@@ -79,7 +79,9 @@ struct TrajectoryProblem::Impl {
   void bind_terms();
   void take_bounds(ConstraintEntry& entry, int owner);
   void tighten(int column, double lower, double upper, int owner);
-  void hold_stages();  // problem_start.cpp
+  // problem_start.cpp
+  void hold_stages();
+  static void release_rows(ConstraintEntry& entry, const std::vector<bool>& decided);
   void begin_as_before(Stages& guess) const;
   void model_bounds();
   // problem_pattern.cpp

@@ -44,6 +44,8 @@ local common = {
     summary = "longest time between stages; absent: 0.1 s, longer beyond 3000 stages" },
   { name = "horizon", type = "number", unit = "s", above = 0,
     summary = "solve the film in parts of this length that overlap; absent: as one problem" },
+  { name = "update", type = "number", unit = "s", default = 0.1, above = 0, maximum = 10,
+    summary = "time between two plans of a film with a live subject" },
   { name = "order", type = "integer", default = 4, minimum = 1, maximum = 4,
     summary = "order of the penalised position derivative: 3 is jerk, 4 is snap" },
   { name = "weights", type = "table", summary = "weights of the cost terms", table = weights },

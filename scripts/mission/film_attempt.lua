@@ -11,8 +11,7 @@ local function tried(run, request)
   local stated = problem.state(run, request)
   local camera = stated.camera
   local begin = request.scope ~= "flight" and { start = run.start } or nil
-  local horizon = request.scope == "film" and run.options.horizon
-  local solution = horizon and horizons.solve(run, request, stated, horizon)
+  local solution = horizons.wanted(run, request) and horizons.solve(run, request, stated)
     or run:solve(stated.problem, run.options.solver, begin)
   local verdict = run:certify(run:plan { solution = solution, task = stated.task,
                                          controller = run.options.controller,

@@ -2,6 +2,7 @@
 -- A film as a trajectory problem: blocks, cost terms, constraints, a first guess, and the task that
 -- its plan is judged by (thesis 3.5).
 local surroundings = require "mission.film_environment"
+local live = require "mission.film_live"
 local own = require "mission.own_terms"
 local parts = require "mission.film_parts"
 local point_mass = require "mission.point_mass"
@@ -57,9 +58,11 @@ local function keyframes_of(request, options)
     made.places[i] = { time = time, value = k.position }
     if k.yaw then made.yaws[#made.yaws + 1] = { time = time, value = { k.yaw } } end
     made.times[i], made.positions[i], made.headings[i] = time, k.position, heading
-    made.task[i] = { time = time, position = k.position, yaw = k.yaw,
-                     tolerance = options.hard or problem.MISS,
-                     time_tolerance = options.hard and 0 or problem.LATE }
+    if not k.live then  -- nobody can promise a place beside a live subject
+      made.task[#made.task + 1] = { time = time, position = k.position, yaw = k.yaw,
+                                    tolerance = options.hard or problem.MISS,
+                                    time_tolerance = options.hard and 0 or problem.LATE }
+    end
   end
   return made
 end
@@ -69,6 +72,7 @@ local function check_keyframes(run, p, request, camera, bystanders)
   local options = run.options
   local reach = options.hard or problem.MISS
   for i, k in ipairs(request.keyframes) do
+    if k.live then goto continue end  -- the flight comes as near as it may
     local time = k.time * request.stretch
     local distance, name = p:nearest_obstacle(k.position, time)
     local function check_people(what, people)
@@ -96,6 +100,7 @@ local function check_keyframes(run, p, request, camera, bystanders)
         "%s obstacle '%s': %.3g m from its surface, and %g m are required",
         distance < 0 and "inside" or "too near", name, distance, options.margin))
     end
+    ::continue::
   end
 end
 
@@ -178,11 +183,13 @@ local function check_yaws(run, p, request)
   end
 end
 
--- What all problems of a film have alike: the whole one, and those of its parts.
-local function prepared(run, request)
+-- What all problems of a film have alike: the whole one, and those of its parts. `part`: of a live
+-- subject, what is needed for it alone.
+local function prepared(run, request, part)
   local o, vehicle, scope = run.options, request.vehicle, request.scope
   local duration = request.duration * request.stretch
-  local camera = scope ~= "flight" and vehicle.gimbal and subjects.plan(run, request, duration)
+  local camera = scope ~= "flight" and vehicle.gimbal
+    and subjects.plan(run, request, duration, part)
   local environment, bystanders = surroundings.state(run, request, camera)
   local step = o.step or math.min(math.max(STEP, duration / (MOST_STAGES - 1)),
                                   duration / FEWEST_INTERVALS)
@@ -270,8 +277,9 @@ function problem.state(run, request)
   local p = new_problem(run, request, film, whole)
   whole.problem = p
   check_keyframes(run, p, request, film.camera, film.bystanders)
-  film.way = ways.planned(p, film.keyframes, film.environment, run.options.planner, request.legs,
-                          request.corridor)
+  film.way = live.films(request) and ways.straight(film.keyframes)
+    or ways.planned(p, film.keyframes, film.environment, run.options.planner, request.legs,
+                    request.corridor)
   fill(run, request, film, whole)
   p:finish()
   return { problem = p, task = task_of(run, film), camera = film.camera or nil,
@@ -280,7 +288,13 @@ end
 
 -- The problem of a part {begin, finish, first, last} of a film that was stated. `before`: {solution,
 -- stage, held}, the part of the flight that it continues; nil: none.
-function problem.part(run, request, film, part, before)
+-- With a live subject the part is planned at the time `now`.
+function problem.part(run, request, film, part, before, now)
+  if live.films(request) then
+    request = live.seen(request, now)
+    film = prepared(run, request, part)
+    film.way = ways.straight(film.keyframes)
+  end
   part.problem = new_problem(run, request, film, part)
   fill(run, request, film, part)
   if before then

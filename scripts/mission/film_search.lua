@@ -4,6 +4,7 @@
 local attempts = require "mission.film_attempt"
 local environment = require "mission.film_environment"
 local failure = require "mission.film_failure"
+local live = require "mission.film_live"
 local passages = require "mission.passages"
 local problem = require "mission.film_problem"
 local requests = require "mission.film_request"
@@ -124,7 +125,7 @@ local function at_given_times(run, film)
   local status = first.solution.status
   local broken = not too_fast and (status == "unsupported"
                                    or status == "numerical_error" and not ways.matter(first.legs))
-  if first.verdict.feasible or broken or run:cancelled() then
+  if first.verdict.feasible or broken or run:cancelled() or live.films(request) then
     return finished(run, first, { certified = first.verdict.feasible and request.stretch or nil,
                                   notes = told_first })
   end
@@ -184,6 +185,8 @@ function M.fly(run, shot, terms)
   if #film.keyframes == 0 then run:fail("keyframes", "expected at least one keyframe") end
   run:expect_controller("controller")
   check_origin(run, shot)
+  live.check(run, film)
+  film.keyframes = live.placed(run, film.keyframes, film.subjects)
   check_start(run, film)
   check_gimbal(run, film)
   timing.check(run, film)

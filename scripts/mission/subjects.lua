@@ -14,13 +14,30 @@ local function inside(spans, time)
   end
 end
 
--- All that the camera is asked for by a request, over `duration` s; nil when nothing is.
+-- Numbers 0 to `count` that divide the time from `start` to `finish`, in a loop: those in a part and
+-- one beyond on either side.
+local function numbers_in(part, count, start, finish)
+  local first, last = 0, count
+  if part then
+    local per = count / (finish - start)
+    first = math.max(0, math.floor((part.begin - start) * per))
+    last = math.min(count, math.ceil((part.finish - start) * per))
+  end
+  local i = first - 1
+  return function()
+    i = i + 1
+    if i <= last then return i end
+  end
+end
+
+-- All that the camera is asked for by a request, over `duration` s; nil when nothing is. Of a
+-- `part` {begin, finish} pulls and guess are only those in it; nil: all.
 --   list      subjects {name, track, height, width, ...}
 --   spans     {subject, start, finish}       when a subject is to be in the image
 --   cuts      {start, finish}
 --   pulls     {time, position, weight}       where the target is drawn to
 --   guess     {times, yaws, pitches, targets}
-function subjects.plan(run, request, duration)
+function subjects.plan(run, request, duration, part)
   local stretch = request.stretch
   local list, by_name = tracks.checked(run, request.subjects, stretch)
   local keyframes = {}
@@ -53,7 +70,7 @@ function subjects.plan(run, request, duration)
   local pulls = {}
   for _, s in ipairs(spans) do
     local count = math.max(1, math.ceil((s.finish - s.start) / GRID))
-    for i = 0, count do
+    for i in numbers_in(part, count, s.start, s.finish) do
       local time = s.start + (s.finish - s.start) * i / count
       if not inside(cuts, time) then
         pulls[#pulls + 1] = { time = time, value = tracks.at(s.subject.track, time),
@@ -70,12 +87,11 @@ function subjects.plan(run, request, duration)
   local guess = { times = {}, yaws = {}, pitches = {}, targets = {} }
   local yaw, pitch
   local count = math.max(2, math.ceil(duration / GRID))
-  for i = 0, count do
-    local time = duration * i / count
+  for i in numbers_in(part, count, 0, duration) do
+    local time, k = duration * i / count, #guess.times + 1
     local at = target(time)
     yaw, pitch = tracks.angles(tracks.at(keyframes, time), at, yaw)
-    guess.times[i + 1], guess.yaws[i + 1], guess.pitches[i + 1] = time, yaw, pitch
-    guess.targets[i + 1] = at
+    guess.times[k], guess.yaws[k], guess.pitches[k], guess.targets[k] = time, yaw, pitch, at
   end
   return { list = list, spans = spans, cuts = cuts, pulls = pulls, guess = guess }
 end

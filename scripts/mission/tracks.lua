@@ -28,6 +28,7 @@ function tracks.checked(run, list, stretch, option, word)
     end
     result[i] = { name = name, track = points, still = given.position ~= nil,
                   height = given.height or 0, width = given.width or 0, distance = given.distance,
+                  live = given.live,
                   place = given.place, size = given.size, option = what }
     by_name[name] = result[i]
   end

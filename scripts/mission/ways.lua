@@ -86,6 +86,15 @@ function M.planned(p, keyframes, environment, planner, known, in_corridor)
   return { path = path, legs = legs, corridor = corridor }
 end
 
+-- The straight way through keyframes, as M.planned gives it.
+function M.straight(keyframes)
+  local path = {}
+  for i, time in ipairs(keyframes.times) do
+    path[i] = { time = time, position = keyframes.positions[i] }
+  end
+  return { path = path, legs = {} }
+end
+
 -- Whether any leg goes round something.
 function M.matter(legs)
   for _, leg in ipairs(legs) do
