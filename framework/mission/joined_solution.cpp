@@ -27,8 +27,8 @@ void append(const SolutionPart& part, const StageLayout& layout, Stages& at, int
   if (part.first < 0 || size < 1 || part.last >= stages.cols() || count + size > at.cols())
     throw InputError("join: stages " + std::to_string(part.first) + " to " +
                      std::to_string(part.last) + " of a part with " +
-                     std::to_string(stages.cols()) + " do not fit behind " +
-                     std::to_string(count) + " of " + std::to_string(at.cols()));
+                     std::to_string(stages.cols()) + " do not fit behind " + std::to_string(count) +
+                     " of " + std::to_string(at.cols()));
   for (int b = 0; b < layout.count(); ++b)
     if (layout.block(b).role != BlockRole::clock)
       at.block(layout.offset(b), count, layout.block(b).size, size) =
@@ -71,8 +71,9 @@ SolutionObject join(const ProblemObject& whole, const std::vector<SolutionPart>&
   report.status = worst <= kMissed ? SolveStatus::feasible : first;
   report.message = "joined from " + std::to_string(parts.size()) + " parts";
   if (unfinished > 0)
-    report.message += ", " + std::to_string(unfinished) + " of which did not end well, the first as " +
-                      to_string(first) + (why.empty() ? "" : ": " + why);
+    report.message += ", " + std::to_string(unfinished) +
+                      " of which did not end well, the first as " + to_string(first) +
+                      (why.empty() ? "" : ": " + why);
   joined.result.point.stages = std::move(at);
   return joined;
 }

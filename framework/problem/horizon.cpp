@@ -54,8 +54,7 @@ double Horizon::step_after(int stage) const {
 }
 
 int Horizon::stage_at(double time) const {
-  if (legs.empty())
-    return std::clamp(static_cast<int>((time - begin) / step), 0, stages - 1);
+  if (legs.empty()) return std::clamp(static_cast<int>((time - begin) / step), 0, stages - 1);
   int first = 0;
   double leg_begin = begin;
   for (const Leg& leg : legs) {

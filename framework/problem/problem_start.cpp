@@ -18,11 +18,12 @@ Stages TrajectoryProblem::point_of(const Trajectory& trajectory) const {
   const double here = columns.horizon.duration();
   Stages at = initial_guess();
   for (int i = 0; i < columns.horizon.stages; ++i) {
-    const double share = here > 0 ? std::min(1.0, (columns.horizon.time(i) - columns.horizon.begin) / here) : 0.0;
+    const double share =
+        here > 0 ? std::min(1.0, (columns.horizon.time(i) - columns.horizon.begin) / here) : 0.0;
     Sample sample = sample_at(trajectory, begin + share * duration);
     if (here > 0) {
-      const double middle = columns.horizon.time(i) - columns.horizon.begin +
-                            0.5 * columns.horizon.step_after(i);
+      const double middle =
+          columns.horizon.time(i) - columns.horizon.begin + 0.5 * columns.horizon.step_after(i);
       smooth_held_inputs(trajectory, begin + middle / here * duration, sample);
     }
     for (const BoundModel& model : columns.models) {
