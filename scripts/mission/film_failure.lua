@@ -5,7 +5,7 @@
 local attempts = require "mission.film_attempt"
 local checks = require "mission.checks"
 local own = require "mission.own_terms"
-local problem = require "mission.film_problem"
+local film_keyframes = require "mission.film_keyframes"
 local requests = require "mission.film_request"
 local subjects = require "mission.subjects"
 
@@ -43,7 +43,8 @@ end
 -- For a film that misses a keyframe: which option says how near is near enough. Else "".
 function M.tolerance(outcome, hard)
   if not attempts.failed_checks(outcome).keyframe_miss then return "" end
-  return string.format("; keyframes may be missed by %g m: hard = METRES %s", hard or problem.MISS,
+  return string.format("; keyframes may be missed by %g m: hard = METRES %s",
+                       hard or film_keyframes.MISS,
                        hard and "sets that" or "sets another distance")
 end
 

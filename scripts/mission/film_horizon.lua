@@ -37,7 +37,7 @@ function M.wanted(run, request)
 end
 
 -- The solution of the film that was stated by problem.state, whose stages are those of its parts;
--- nil where the user cancels. Of the parts of a film with `horizon` that many seconds are kept; with
+-- nil where the user cancels. Of the parts of a film with `horizon`, that many seconds are kept. With
 -- a live subject they look that far ahead, and what is kept ends with the next update.
 function M.solve(run, request, stated)
   local film, p, o = stated.film, stated.problem, run.options

@@ -42,11 +42,13 @@ function M.check(run, film)
   if o.stretch ~= 1 then
     run:fail("stretch", "a live subject does not wait for the film; remove it")
   end
-  if run.start then run:fail("subjects", "a film of a live subject begins from no plan (--from)") end
+  if run.start then
+    run:fail("subjects", "a film of a live subject begins from no plan (--from)")
+  end
 end
 
--- Keyframes with positions in the world: those `beside` a subject are relative to its place at their
--- time. They keep what was stated as `offset`.
+-- Keyframes with positions in the world: those `beside` a subject are relative to its place at
+-- their time. They keep what was stated as `offset`.
 function M.placed(run, keyframes, subjects)
   local by_name
   local list = {}

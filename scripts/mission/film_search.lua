@@ -6,7 +6,7 @@ local environment = require "mission.film_environment"
 local failure = require "mission.film_failure"
 local live = require "mission.film_live"
 local passages = require "mission.passages"
-local problem = require "mission.film_problem"
+local film_keyframes = require "mission.film_keyframes"
 local requests = require "mission.film_request"
 local stretching = require "mission.film_stretch"
 local times = require "mission.keyframe_times"
@@ -68,8 +68,8 @@ local function first_request(run, film)
   local keyframes = times.with_yaw(filled)
   local last = keyframes[#keyframes].time
   local duration = film.duration or (last > 0 and last or HOVER)
-  local least, why = times.fastest_leg(keyframes, film.vehicle, o.hard or problem.MISS,
-                                       o.hard and 0 or problem.LATE, o.speed_limit)
+  local least, why = times.fastest_leg(keyframes, film.vehicle, o.hard or film_keyframes.MISS,
+                                       o.hard and 0 or film_keyframes.LATE, o.speed_limit)
   local auto = o.stretch == "auto"
   local stretch = auto and 1 or o.stretch
   times.check_battery(run, film.vehicle, duration * stretch)

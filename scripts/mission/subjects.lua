@@ -14,8 +14,8 @@ local function inside(spans, time)
   end
 end
 
--- Numbers 0 to `count` that divide the time from `start` to `finish`, in a loop: those in a part and
--- one beyond on either side.
+-- Numbers 0 to `count` that divide the time from `start` to `finish`, in a loop: those in a part
+-- and one beyond on either side.
 local function numbers_in(part, count, start, finish)
   local first, last = 0, count
   if part then

@@ -5,6 +5,7 @@
 -- times found. If it fails, times are searched again with a larger reserve of thrust. If there are
 -- none, the film is planned at the times of straight flight from stop to stop, stretched.
 local attempts = require "mission.film_attempt"
+local film_keyframes = require "mission.film_keyframes"
 local film_problem = require "mission.film_problem"
 local point_mass = require "mission.point_mass"
 local requests = require "mission.film_request"
@@ -114,7 +115,7 @@ local function problem_of(run, request, memory)
   point_mass.add(p, vehicle,
                  film_problem.parts.motion(o, { across = "extent", share = memory.share }))
   p:add_cost { type = "flight_time", weight = o.weights.time }
-  p:add_constraint { type = "hard_keyframe", tolerance = o.hard or film_problem.MISS,
+  p:add_constraint { type = "hard_keyframe", tolerance = o.hard or film_keyframes.MISS,
                      keyframes = keyframes.places }
   if #keyframes.yaws > 0 then
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
