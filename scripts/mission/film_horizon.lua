@@ -37,8 +37,8 @@ function M.wanted(run, request)
 end
 
 -- The solution of the film that was stated by problem.state, whose stages are those of its parts;
--- nil where the user cancels. Of the parts of a film with `horizon`, that many seconds are kept. With
--- a live subject they look that far ahead, and what is kept ends with the next update.
+-- nil where the user cancels. Each part is kept for the seconds of `horizon`. With a live subject a
+-- part looks that far ahead, and is kept until the next update.
 function M.solve(run, request, stated)
   local film, p, o = stated.film, stated.problem, run.options
   local live_subject = live.films(request)

@@ -28,7 +28,7 @@ function M.check(run, film)
   local o = run.options
   for i, subject in ipairs(film.subjects) do
     local what = "subjects[" .. i .. "]"
-    if subject.delay > 0 and not subject.live then
+    if (subject.delay or 0) > 0 and not subject.live then
       run:fail(what .. ".delay", "only a live subject is seen late; give live = true")
     end
     if subject.live and subject.position then
@@ -96,7 +96,7 @@ function M.seen(request, now)
     if subject.live then
       local copy = {}
       for name, value in pairs(subject) do copy[name] = value end
-      copy.track = expected(subject.track, now, subject.delay)
+      copy.track = expected(subject.track, now, subject.delay or 0)
       subjects[i] = copy
     end
     by_name[subject.name or (#request.subjects == 1 and "subject" or "subject " .. i)] = subjects[i]
