@@ -12,7 +12,6 @@ return race.course {
   name = "seven gates",
   vehicle = "vehicles/racer_flown",  -- with lag, delay, and a controller that knows of both
   model = "quadrotor_full",
-  solver = "iqp",
   thrust = 1,
   floor = 0.3,
   step = 0.05,

@@ -58,8 +58,8 @@ TEST_F(Race, AFreeFormCourseRepeatsItself) {
 
 TEST_F(Race, SolversAgree) {
   const std::string rotors = "--set model=quadrotor_full --set laps=1 --set closed_loop=reported";
-  const Flown ipopt = fly("../racing/round_course.lua", rotors);
-  const Flown iqp = fly("../racing/round_course.lua", rotors + " --set solver=iqp");
+  const Flown ipopt = fly("../racing/round_course.lua", rotors + " --set solver=ipopt");
+  const Flown iqp = fly("../racing/round_course.lua", rotors);
   expect_flown_by_rotors(iqp, 3);
   EXPECT_NEAR(time_of(iqp), time_of(ipopt), 0.005 * time_of(ipopt));
 }
@@ -68,7 +68,7 @@ TEST_F(Race, OtherSolversSayWhichOneToTake) {
   const Flown flown = fly("../racing/seven_gates.lua", "--set solver=nlopt");
   EXPECT_EQ(flown.status, 1);
   EXPECT_EQ(flown.result.at("solver").at("status").as_text(), "unsupported");
-  EXPECT_NE(flown.result.at("notes").as_list().at(0).as_text().find("use the solver ipopt"),
+  EXPECT_NE(flown.result.at("notes").as_list().at(0).as_text().find("use the solver iqp"),
             std::string::npos);
 }
 

@@ -18,11 +18,11 @@ std::string ReducedProblem::unsupported(const TrajectoryProblem& problem) {
   for (int b = 0; b < layout.count(); ++b)
     if (layout.block(b).topology == Topology::quaternion)
       return "nlopt does not support orientations, such as block '" + layout.block(b).name +
-             "': use the solver ipopt";
+             "': use the solver iqp";
   if (problem.horizon().step_free)
-    return "nlopt does not support free steps: give the film a duration, or use the solver ipopt";
+    return "nlopt does not support free steps: give the film a duration, or use the solver iqp";
   if (problem.horizon().periodic)
-    return "nlopt does not support periodic flights: use the solver ipopt";
+    return "nlopt does not support periodic flights: use the solver iqp";
   return "";
 }
 
