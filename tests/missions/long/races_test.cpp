@@ -28,27 +28,24 @@ TEST_F(Race, SolversAgreeOnSevenGates) {
               time_of(ipopt), solve_seconds(ipopt), time_of(iqp), solve_seconds(iqp));
 }
 
-// Balls of 0.3 m, the seven places of a known course passed almost three times.
-TEST_F(Race, NineteenBallsByIqp) {
-  const double places[7][3] = {{-1.1, -1.6, 3.6}, {9.2, 6.6, 1.0},   {9.2, -4.0, 1.2},
-                               {-4.5, -6.0, 3.5}, {-4.5, -6.0, 0.8}, {4.75, -0.9, 1.2},
-                               {-2.8, 6.8, 1.2}};
-  std::string gates;
-  for (int i = 0; i < 19; ++i) {
-    char line[96];
-    const double* p = places[i % 7];
-    std::snprintf(line, sizeof line, "{shape = 'ball', radius = 0.3, position = {%g, %g, %g}}, ",
-                  p[0], p[1], p[2]);
-    gates += line;
-  }
-  const Flown flown = race(
-      "vehicle = 'vehicles/racer', model = 'quadrotor_full', thrust = 1, solver = 'iqp', step = "
-      "0.05, closed_loop = 'reported', start = {-5, 4.5, 1.2}, finish = {4.75, -0.9, 1.2}, gates = "
-      "{ " +
-      gates + "}, ");
+// Nineteen balls of 0.3 m; flown by the controller of the vehicle file, with its lag and delay and
+// an error of the mass, it passes all of them every time.
+TEST_F(Race, SplitSIsPlannedAndFlown) {
+  const Flown flown = fly("../racing/split_s.lua");
+  expect_certified(flown);
   expect_flown_by_rotors(flown, 19);
-  EXPECT_LE(time_of(flown), 17.9);
-  std::printf("nineteen balls: %.4g s of flight in %.3g s\n", time_of(flown), solve_seconds(flown));
+  EXPECT_LE(time_of(flown), 18);
+  std::printf("split S: %.4g s of flight in %.3g s\n", time_of(flown), solve_seconds(flown));
+  const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing simulate '" +
+                           (flown.folder / "plan.json").string() +
+                           "' --runs 100 --mass-error 5 --json > '" +
+                           (folder_ / "runs.json").string() + "'";
+  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0);
+  const Value runs = from_json(read_file(folder_ / "runs.json"), "stdout").at("simulations");
+  EXPECT_EQ(runs.at("good_share").as_number(), 1);
+  std::printf("split S: through every gate in %g of 100 runs, worst %.3f m from the plan\n",
+              100 * runs.at("good_share").as_number(),
+              runs.at("position_error").at("worst").as_number());
 }
 
 TEST_F(Race, CostIsLinearInTheNumberOfGates) {
