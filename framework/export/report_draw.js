@@ -134,7 +134,8 @@ function drawLegend(figure, entries) {
 // What the colours of lines with values stand for.
 function drawRamp(parent, value, least, most) {
   const ramp = child(parent, "span", "ramp");
-  ramp.append(`${value.label} ${numberText(least, 3)}`);
+  const rounding = 1e-9 * Math.abs(most);  // a vehicle at rest has a speed of 1e-13 m/s
+  ramp.append(`${value.label} ${numberText(Math.abs(least) < rounding ? 0 : least, 3)}`);
   child(ramp, "i", "");
   ramp.append(withUnit(numberText(most, 3), value.unit));
 }
