@@ -77,7 +77,7 @@ TEST_F(NewFiles, TheGuideOfControllersHolds) {
   if (tool_on_path({"cmake"}).empty()) GTEST_SKIP() << "there is no cmake";
   if (tool_on_path({"make"}).empty()) GTEST_SKIP() << "there is no make";
   const double began = seconds_of_children();
-  const std::string log = followed_guide(folder_, "## A controller of one's own", 2);
+  const std::string log = followed_guide(folder_, "## Your own controller", 2);
   EXPECT_NE(log.find("100% tests passed, 0 tests failed out of 1"), std::string::npos) << log;
   EXPECT_NE(log.find("hop: certified"), std::string::npos) << log;
   EXPECT_NE(log.find("20 of 20 runs are good"), std::string::npos) << log;
