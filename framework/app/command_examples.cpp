@@ -53,7 +53,7 @@ const std::vector<CommandExamples>& command_examples() {
       {"lapwing simulate",
        {"lapwing simulate out/shot/plan.json --wind 5,1 --mass-error 10 -o flight.html",
         "lapwing simulate out/race/plan.json --controller tvlqr --runs 100 --mass-error 5"},
-       "0 done; 1 the vehicle, or one of the runs, is lost, misses what the plan asks for or is "
+       "0 done; 1 the vehicle, or one of the runs, is lost, fails the task of the plan, or is "
        "farther from the plan than the tolerance; 2 bad input; 3 internal error"},
       {"lapwing export",
        {"lapwing export out/shot/plan.json --format csv -o shot.csv"},

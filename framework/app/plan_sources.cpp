@@ -136,7 +136,7 @@ VehicleSource read_vehicle_file(const fs::path& file, const fs::path& configs) {
 
 Plan with_environment(Plan plan, const fs::path& file, std::map<std::string, fs::path>& elsewhere) {
   ParameterTable named;
-  named.text("name", "", "for messages").required_text("file", "beside this file");
+  named.text("name", "", "for messages").required_text("file", "in the folder of this file");
   ParameterTable table = shapes_table();
   table.tables("meshes", named, "obstacle, in metres with z up")
       .tables("maps", named, "occupied and unknown voxels are obstacles")

@@ -57,7 +57,7 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
              });
            });
   add_text(*scan, "--noise", "SIGMA[,DROPPED]",
-           "noise of the evaluated depth in m, and share of dropped pixels; default: ideal",
+           "noise of the evaluated depth in m, and fraction of dropped pixels; default: ideal",
            [&](const std::string& text) {
              std::vector<double> numbers;
              read_list(text, [&](const std::string& part) {
@@ -193,7 +193,7 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
             [&](std::uint64_t count) { request.lookahead = static_cast<int>(count); });
   add_text(*made, "--sigma", "M", "depth noise in m; views are evaluated without it; default: 0",
            [&](const std::string& text) { request.sigma = read_within("--sigma", text, 100); });
-  add_text(*made, "--dropped", "SHARE", "share of pixels without a measurement; default: 0",
+  add_text(*made, "--dropped", "SHARE", "fraction of pixels without a measurement; default: 0",
            [&](const std::string& text) { request.dropped = read_within("--dropped", text, 1); });
   add_text(*made, "--stereo", "M",
            "depth from a stereo pair with this baseline in m; default: a depth camera",

@@ -295,18 +295,20 @@ ParameterTable mission_parameters() {
   return ParameterTable{}
       .number("tolerance", 0.25, "m", "largest distance of the lines from the path",
               between(0.05, 10))
-      .number("time_tolerance", 1, "s", "largest difference in time on a line at even speed",
+      .number("time_tolerance", 1, "s", "largest difference in time on a line at constant speed",
               between(0.05, 1000))
       .number("angle_tolerance", 5, "deg", "largest error of camera or heading on a line",
               between(0.5, 180))
-      .choice("autopilot", "px4", {"px4", "ardupilot"}, "autopilot that the commands are for")
+      .choice("autopilot", "px4", {"px4", "ardupilot"},
+              "autopilot for which the commands are written")
       .integer("gimbal", 1000, "command that turns the gimbal: 1000, or 205 for older autopilots",
                between(205, 1000))
-      .optional_number("home_z", "m",
-                       "height of the take-off place, world; absent: the ground of the origin if "
-                       "its height is above it, else 0")
+      .optional_number(
+          "home_z", "m",
+          "z of the take-off place, world; absent: the ground if the origin has height_of = "
+          "ground, otherwise 0")
       .boolean("take_off", true, "whether the mission begins with a take-off")
-      .choice("finish", "land", {"land", "return", "hover"}, "what follows the last waypoint")
+      .choice("finish", "land", {"land", "return", "hover"}, "action after the last waypoint")
       .integer("part", 0, "part of a plan that is too long for one file; 0: it must fit",
                between(0, 1000));
 }

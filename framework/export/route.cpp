@@ -94,14 +94,15 @@ ParameterTable route_parameters(std::int64_t most) {
   return ParameterTable{}
       .number("tolerance", 0.5, "m", "largest distance of the lines from the path",
               between(0.05, 10))
-      .number("time_tolerance", 2, "s", "largest difference in time on a line at even speed",
+      .number("time_tolerance", 2, "s", "largest difference in time on a line at constant speed",
               between(0.05, 1000))
-      .number("angle_tolerance", 20, "deg",
-              "half the angle that the camera turns on a line at most", between(0.5, 90))
+      .number("angle_tolerance", 20, "deg", "half of the largest turn of the camera on a line",
+              between(0.5, 90))
       .integer("most_points", most, "points that a file may hold", between(2, 65535))
-      .optional_number("home_z", "m",
-                       "height of the take-off place, world; absent: the ground of the origin if "
-                       "its height is above it, else 0")
+      .optional_number(
+          "home_z", "m",
+          "z of the take-off place, world; absent: the ground if the origin has height_of = "
+          "ground, otherwise 0")
       .integer("part", 0, "part of a plan that is too long for one file; 0: it must fit",
                between(0, 10000));
 }

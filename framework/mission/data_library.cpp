@@ -175,17 +175,18 @@ int expect_keys(lua_State* state) {
 void open_data_library(lua_State* state) {
   static const Binding methods[] = {
       {"fail", &guarded<fail_in_file>, "(path: string, message: string)",
-       "an error on the line of that value: \"gates[2].radius\""},
+       "raises an error on the line of the value at `path`, as \"gates[2].radius\""},
       {"check", &guarded<check_part>, "(path: string, declarations: lapwing.option[]): table",
-       "the table there, checked like options, with defaults"},
+       "the table at `path`, checked like options, with defaults"},
       {"expect_keys", &guarded<expect_keys>,
        "(path: string|table<string, string[]>, known?: string[], slips?: boolean)",
-       "an error for any other key of the table there; slips: for misspelt ones only; a map from "
-       "paths to keys: one error for all"}};
+       "raises an error for every key of the table at `path` that is not in `known`; with `slips`, "
+       "only for keys that resemble a known one. `path` may be a map from paths to lists of keys: "
+       "one error then reports the wrong keys of all these tables"}};
   static const Binding functions[] = {
       {"read_json", &guarded<read_json>, "(name: string, folder?: string): any, lapwing.data_file",
-       "a table from a file in the folder of the script, a --data folder or configs/, and the "
-       "file"},
+       "a table from a JSON file, and an object for errors in it; the file is in the folder of the "
+       "script, a --data folder or configs/"},
       {"read_yaml", &guarded<read_yaml_data>,
        "(name: string, folder?: string): any, lapwing.data_file", "the same from a YAML file"},
       {"read_text", &guarded<read_text>, "(name: string, folder?: string): string",

@@ -23,7 +23,7 @@ ParameterTable explore_table() {
       .number("view_deg", 90, "deg", "angle across", {1, 170})
       .number("pitch_deg", -10, "deg", "positive up", between(-89, 89));
   ParameterTable noise;
-  noise.number("dropped", 0, "", "share of pixels without a measurement", between(0, 1))
+  noise.number("dropped", 0, "", "fraction of pixels without a measurement", between(0, 1))
       .number("sigma", 0, "m", "standard deviation of the depth", between(0, 100));
   ParameterTable start;
   start.required_numbers("position", 3, "m", "world").number("yaw", 0, "rad", "heading");

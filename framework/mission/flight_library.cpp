@@ -63,13 +63,14 @@ int fly_plan(lua_State* state) {
   return 1;
 }
 
-constexpr BoundField kFlownPlan[] = {{"plan", "lapwing.plan", "that is flown"}};
+constexpr BoundField kFlownPlan[] = {{"plan", "lapwing.plan", "plan to fly"}};
 
 ParameterTable fly_runs_table() {
   ParameterTable table;
   table.integer("runs", 20, "flights, with seeds in turn", between(1, 100000))
       .integer("seed", 1, "of the first", at_least(0))
-      .number("mass_error", 0, "", "share of the mass, drawn evenly up to it", between(0, 0.9))
+      .number("mass_error", 0, "", "largest error of the mass, as a fraction; drawn uniformly",
+              between(0, 0.9))
       .number("wind", 0, "m/s", "mean, towards the east", between(0, 150))
       .number("gust", 0, "m/s", "standard deviation of each horizontal axis", between(0, 150));
   return table;
@@ -139,7 +140,7 @@ ParameterTable time_path_table() {
   table.required_numbers("points", 0, "m", "x, y, z of each point in turn, world")
       .number("spacing", 0.01, "m", "distance between the points of the result", above(0))
       .number("rounding", 0, "m", "rounding of corners, standard deviation", at_least(0))
-      .number("share", 1, "", "share of the limits of the vehicle", {0, 1, true})
+      .number("share", 1, "", "fraction of the limits of the vehicle that is used", {0, 1, true})
       .optional_number("speed", "m/s", "largest", above(0))
       .optional_number("acceleration", "m/s^2",
                        "largest acceleration, along and across the path together", above(0));
@@ -324,27 +325,28 @@ int pursue_path(lua_State* state) {
 std::span<const Binding> flight_methods_of_run() {
   static const Binding methods[] = {
       {"fly", &guarded<fly_plan>, "(plan: lapwing.plan): table",
-       "the simulated flight in still air: position_error, yaw_error, lost; of a drawing also "
+       "the simulated flight in still air: position_error, yaw_error, lost; for a drawing also "
        "mean_drawing_error, worst_drawing_error"},
       {"fly_runs", &guarded<fly_plan_often>, "(flights: @): table",
-       "{through, runs, position_error, duration}: many flights under drawn conditions, how many "
-       "come to the end through all gates, the worst distance and the longest time",
+       "{through, runs, position_error, duration}: simulates many flights with random errors; "
+       "gives "
+       "the number that finish through all gates, the worst distance and the longest time",
        &fly_runs_table, kFlownPlan},
       {"time_path", &guarded<time_path>, "(path: @): table",
-       "{points, times}: the path in even steps and the times of passing them, as fast as the "
-       "limits "
-       "allow, from rest to rest",
+       "{points, times}: points of the path at equal distances, and the time of each; from rest to "
+       "rest, as fast as the limits allow",
        &time_path_table, kPathVehicle},
       {"path_distance", &guarded<path_distance>, "(places: @): number",
        "largest distance of the points from the path, m", &path_distance_table},
       {"keyframe_stops", &guarded<stops_of_keyframes>, "(places: @): integer[]",
-       "number of the nearest path point of each keyframe, in order", &keyframe_stops_table},
+       "for each keyframe in order: the index of the nearest path point", &keyframe_stops_table},
       {"keyframe_times", &guarded<times_of_keyframes>, "(asked: @): number[]?, integer?",
-       "the cheapest times that grant every wish: duration and weighted squared distances from "
-       "preferred times; or nil and the keyframe whose wish cannot be met",
+       "the times of lowest cost that meet every wish; the cost is the duration plus the weighted "
+       "squared differences from preferred times; otherwise nil and the keyframe whose wish cannot "
+       "be met",
        &keyframe_times_table},
       {"pursue", &guarded<pursue_path>, "(path: @): table",
-       "a flight along straight lines by pure pursuit, simulated: duration, views, lost, "
+       "the simulated flight along straight lines by pure pursuit: duration, views, lost, "
        "position_error",
        &pursue_table, kVehicleObject}};
   return methods;

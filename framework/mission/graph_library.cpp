@@ -100,9 +100,9 @@ ParameterTable motions_table() {
   table
       .integer("neighbours", standard.neighbours,
                "number of matching views to which a view is connected", between(1, 1000))
-      .integer("among", standard.among, "number of nearest views among which they are searched",
+      .integer("among", standard.among, "number of nearest views from which these are chosen",
                between(1, 100000))
-      .number("alpha", standard.alpha, "", "common content that connected views need, of (4.8)",
+      .number("alpha", standard.alpha, "", "smallest common content of connected views, (4.8)",
               between(0, 1))
       .number("longest_detour", standard.longest_detour, "",
               "longest path of a motion, in straight lines", at_least(1))
@@ -314,9 +314,9 @@ constexpr BoundField kGraphFields[] = {
     {"unmatched", "integer", "pairs whose images do not match"},
     {"blocked", "integer", "pairs without a free path"},
     {"voxels", "integer", "number of scored voxels"},
-    {"total", "number", "score of full information about all of them"},
+    {"total", "number", "score of full information about all voxels"},
     {"home", "integer", "candidate at which tours begin, from 1"},
-    {"joined", "integer", "number of views connected to it, itself included"},
+    {"joined", "integer", "number of views connected to `home`, including itself"},
     {"reach", "string", "sentence with the number of views connected to the start"}};
 
 int graph_field(lua_State* state) {

@@ -129,16 +129,16 @@ void open_lapwing_library(lua_State* state, MissionRun& run) {
   static const Binding functions[] = {
       {"options", &guarded<options>,
        "(declarations: lapwing.option[], given: table): lapwing.options",
-       "the options of a mission: declarations, and values of the script"},
+       "the options of a mission, from declarations and the values of the script"},
       {"arguments", &guarded<arguments>,
        "(what: string, declarations: lapwing.option[], given: table): table",
        "the arguments of a function, checked like options, with defaults"},
       {"local_from_geodetic", &guarded<local_from_geodetic>,
        "(origin: lapwing.geodetic, point: lapwing.geodetic): number[]",
-       "{east, north, up} of the point from the origin, m"},
+       "the position {east, north, up} of the point relative to the origin, m"},
       {"has_module", &guarded<has_module>, "(name: string): boolean, string?",
        "whether `require` finds a module; if not, also the nearest name"},
-      {"fail", &guarded<fail>, "(message: string)", "an error at the script's own line"}};
+      {"fail", &guarded<fail>, "(message: string)", "raises an error at the line of the script"}};
   static const BoundTable tables[] = {{"geodetic", &geodetic_table, {}}};
   lua_newtable(state);
   bind_functions(state, "lapwing", functions);

@@ -130,7 +130,7 @@ constexpr BoundField kSurfaceFields[] = {
     {"lower", "number[]", "lowest corner of its bounds, m"},
     {"upper", "number[]", "highest corner of its bounds, m"},
     {"region", "table", "region of interest: {lower, upper}, m"},
-    {"moves", "table", "moves that its scene recommends for explorations"}};
+    {"moves", "table", "motions that its scene recommends for explorations"}};
 
 int surface_field(lua_State* state) {
   const SurfaceObject& surface = object_argument<SurfaceObject>(state, 1, kSurfaceType);
@@ -171,7 +171,7 @@ ParameterTable scan_table() {
       .integer("height", 120, "pixels", between(1, 10000))
       .number("view_deg", 90, "deg", "angle across", {1, 170});
   ParameterTable noise;
-  noise.number("dropped", 0, "", "share of pixels without a measurement", between(0, 1))
+  noise.number("dropped", 0, "", "fraction of pixels without a measurement", between(0, 1))
       .number("sigma", 0, "m", "standard deviation of the depth", between(0, 100));
   ParameterTable pose;
   pose.required_numbers("position", 3, "m", "world")
@@ -287,11 +287,11 @@ void open_map_library(lua_State* state) {
       {"counts", &guarded<counts>, "(): table", "voxels and memory: known, free, occupied, bytes"}};
   static const Binding of_surface[] = {
       {"clearance", &guarded<clearance>, "(place: number[]): number",
-       "distance to the nearest triangle in m, 50 at most"},
+       "distance to the nearest triangle in m, at most 50"},
       {"covered", &guarded<covered>, "(place: number[]): boolean",
-       "whether there is a surface straight above"},
+       "whether there is a surface vertically above the place"},
       {"add_ground", &guarded<add_ground>, "()",
-       "adds a plane through its lowest point, 100 m beyond it on every side"},
+       "adds a horizontal plane at its lowest point, which extends 100 m beyond it on every side"},
       {"discard", &guarded<discard>, "()", "deletes the surface; it cannot be used any more"}};
   define_type<MapObject>(state, kMapType, {methods});
   define_type<SurfaceObject>(state, kSurfaceType, {of_surface}, &guarded<surface_field>);

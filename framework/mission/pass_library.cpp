@@ -288,7 +288,7 @@ PassedFlight passed_flight(const TourObject& tour, const SolutionObject& solutio
 std::span<const Binding> pass_methods_of_run() {
   static const Binding methods[] = {
       {"pass_graph", &guarded<pass_graph_of_run>, "(settings: @): lapwing.scan_graph",
-       "views of a region for a vehicle that cannot stand still, along straight passes",
+       "views along straight passes over a region, for a vehicle that cannot stand still",
        &pass_graph_table, kPassGraphObjects},
       {"pass_tour", &guarded<pass_tour_of_run>, "(settings: @): lapwing.tour",
        "a tour of passes within a budget", &pass_tour_table, kPassTourObjects}};

@@ -84,7 +84,7 @@ ParameterTable task_table() {
       .number("drawing_tolerance", Task{}.drawing_tolerance, "m",
               "mean distance between light and strokes", above(0))
       .numbers("drawing_view", {0, 1, 0}, "", "viewing direction of the spectators")
-      .number("framing_share", Task{}.framing_share, "", "share of that time", {0, 1, true})
+      .number("framing_share", Task{}.framing_share, "", "fraction of that time", {0, 1, true})
       .boolean("line_of_sight_required", true,
                "for that share of the time; false: hidden subjects are reported only");
   return table;
@@ -288,17 +288,15 @@ std::span<const Binding> planning_methods_of_run() {
       {"plan", &guarded<plan>, "(made: @): lapwing.plan",
        "the plan that `plan` of a mission returns", &plan_table, kPlanObjects},
       {"certify", &guarded<certify>, "(plan: lapwing.plan): table",
-       "the result of the verifier: `feasible`, `failures` (sentences), `checks`, each as in a "
-       "plan, "
-       "with "
-       "`line`: its result in words"}};
+       "the result of the verifier: `feasible`, `failures` (sentences) and `checks`; a check is as "
+       "in a plan, with its result in words as `line`"}};
   return methods;
 }
 
 void open_plan_library(lua_State* state) {
   static const Binding of_plan[] = {
       {"add_sections", &guarded<add_sections>, "(sections: table[])",
-       "more sections of its report: text, facts, tables, charts, drawings, images"}};
+       "adds sections to its report: text, facts, tables, charts, drawings, images"}};
   define_type<PlanObject>(state, kPlanType, {of_plan}, &guarded<plan_field>);
   note_fields(state, kPlanType, kPlanFields);
 }

@@ -7,11 +7,10 @@ ParameterTable player_table() {
   ParameterTable table;
   table.required_text("log", "stick log: CSV, time,forward,left")
       .text("name", "", "name; absent: that of the log")
-      .number("weight", 0.5, "", "share of the stick against the planned acceleration",
+      .number("weight", 0.5, "", "weight of the stick against the planned acceleration",
               between(0, 1))
       .number("strength", 4, "m/s^2", "acceleration of a full deflection", above(0))
-      .number("reach", 3, "m", "distance from the course that ends the effect of the stick",
-              above(0))
+      .number("reach", 3, "m", "displacement across the course that full stick causes", above(0))
       .number("speed", 1, "", "factor on the reference speed", between(0.1, 3))
       .number("handicap", 0, "s", "added to the score", between(-3600, 3600));
   return table;

@@ -70,7 +70,7 @@ Prior& prior_argument(lua_State* state) {
 
 ParameterTable look_table() {
   ParameterTable noise;
-  noise.number("dropped", 0, "", "share of pixels without a measurement", between(0, 1))
+  noise.number("dropped", 0, "", "fraction of pixels without a measurement", between(0, 1))
       .number("sigma", 0, "m", "standard deviation of the depth", between(0, 100));
   ParameterTable table;
   table.table("camera", pinhole_table(), "camera of the depth images")
@@ -367,8 +367,8 @@ int prior_of_run(lua_State* state) {
 
 std::span<const Binding> prior_methods_of_run() {
   static const Binding methods[] = {{"prior", &guarded<prior_of_run>,
-                                     "(settings: @): lapwing.prior", "a prior without knowledge",
-                                     &prior_table, kPriorObjects}};
+                                     "(settings: @): lapwing.prior", "an empty prior", &prior_table,
+                                     kPriorObjects}};
   return methods;
 }
 

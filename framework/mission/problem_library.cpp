@@ -354,7 +354,7 @@ namespace {
 constexpr BoundField kProblemObjects[] = {
     {"vehicle", "lapwing.vehicle", "vehicle"},
     {"obstacles?", "lapwing.shape[]",
-     "shapes by plugin, with name, side, opaque and track beside their parameters"}};
+     "shapes by plugin, with name, side, opaque and track in addition to their parameters"}};
 
 ParameterTable problem_table() {
   ParameterTable table;
@@ -444,8 +444,8 @@ void open_problem_library(lua_State* state) {
       {"has_block", &guarded<has_block>, "(name: string): boolean",
        "whether a model or the script added a block of that name"},
       {"rests", &guarded<rests_of_problem>, "(): boolean",
-       "whether the vehicle can stand still, by the models that were added"},
-      {"add_block", &guarded<add_block>, "(block: @)", "a free block", &block_table},
+       "whether the added models allow the vehicle to stand still"},
+      {"add_block", &guarded<add_block>, "(block: @)", "adds a free block", &block_table},
       {"add_cost", &guarded<add_cost>, "(term: lapwing.cost_term|lapwing.own_cost)",
        "adds a cost: a plugin by name, or a function of the script"},
       {"add_constraint", &guarded<add_constraint>,
@@ -464,19 +464,23 @@ void open_problem_library(lua_State* state) {
       {"continue_from", &guarded<continue_from>, "(solution: lapwing.solution, from: @)",
        "begins as the solution of another part of the flight goes on", &continued_table},
       {"nearest_obstacle", &guarded<nearest>, "(place: number[], time?: number): number, string",
-       "distance of the nearest obstacle in m, negative inside, and its name"},
+       "distance from the nearest obstacle in m, negative inside, and the name of the obstacle"},
       {"flight_zone_distance", &guarded<flight_zone_distance>,
        "(place: number[], time?: number): number, string",
-       "distance from the nearest face of a flight zone, negative outside, and its name"},
-      {"plan_way", &guarded<plan_way>, "(wanted: @): number[][]?, string?, string?",
-       "a free path that keeps the margin, the distance to bystanders that stand still, and `more` "
-       "metres, through a passage that none of the `excluded` paths has; or nil, the reason, and "
+       "distance from the nearest face of a flight zone in m, negative outside, and the name of "
        "the "
-       "planner's status",
+       "zone"},
+      {"plan_way", &guarded<plan_way>, "(wanted: @): number[][]?, string?, string?",
+       "a path whose distance from obstacles and from bystanders that stand still is at least the "
+       "required one plus `more` (m); it uses a passage that no `excluded` path uses. If there is "
+       "none: nil, the reason, and the status of the planner",
        &way_table, kWayObjects},
       {"grow_corridor", &guarded<grow_corridor_of_problem>, "(along: @): table[]",
-       "free boxes along a path, {from, to, lower, size}, parts in shares of its length", nullptr,
-       kCorridorWay},
+       "collision-free boxes along a path: {from, to, lower, size}; `from` and `to` are the ends "
+       "of "
+       "the covered part, as fractions of its length; `lower` and `size` are the corner and the "
+       "edges of the box, m",
+       nullptr, kCorridorWay},
       {"finish", &guarded<finish>, "()", "completes the problem; nothing can be added afterwards"}};
   static const BoundTable tables[] = {
       {"plugin_frame", &plugin_frame_table, {}},

@@ -159,23 +159,24 @@ std::span<const Binding> told_methods() {
   static const Binding methods[] = {
       {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user cancelled the run"},
       {"phases", &guarded<phases>, "(phases: table[])",
-       "states the phases of the work: {name, weight}, the weight in any unit or none"},
-      {"phase", &guarded<phase>, "(name: string)", "begins a phase; the one before has ended"},
+       "states the phases of the work: a list of {name, weight}; weights are relative, and "
+       "optional"},
+      {"phase", &guarded<phase>, "(name: string)", "begins a phase, and ends the one before"},
       {"progress", &guarded<progress>, "(fraction: number, words: string)",
        "reports progress, 0 to 1, with a text"},
       {"fail", &guarded<fail>, "(option: string, message: string)",
-       "an error at the place of that option"},
+       "raises an error at the place where the option is set"},
       {"expect_plugin", &guarded<expect_plugin>, "(option: string, kind: string)",
-       "an error at that option if it names no plugin of the kind"},
+       "raises an error at the option if it names no plugin of the kind"},
       {"expect_controller", &guarded<expect_controller>, "(option: string)",
-       "an error at that option if it names no controller, or parameters that are not its own"},
+       "raises an error at the option if it names no controller, or an unknown parameter of it"},
       {"expect_players", &guarded<expect_players>, "(option: string)",
-       "an error at that option if it names a stick log that cannot be read"},
+       "raises an error at the option if it names a stick log that cannot be read"},
       {"take_origin", &guarded<take_origin>, "(option: string)",
-       "states the geodetic origin of all plans of the mission, by that option: {latitude_deg, "
+       "sets the geodetic origin of all plans of the mission from the option: {latitude_deg, "
        "longitude_deg, height, height_of}"},
       {"stated", &guarded<stated>, "(option: string): boolean",
-       "whether that option was set, or has its default"}};
+       "true if the option was set, false if it has its default"}};
   return methods;
 }
 

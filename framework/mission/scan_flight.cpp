@@ -248,7 +248,7 @@ ParameterTable scan_plan_table() {
               at_least(0))
       .required_number("budget", "s", "flight time", above(0))
       .number("seen_share", ScanTask{}.seen_share, "",
-              "share of the voxels that must be seen again", {0, 1, true})
+              "fraction of the voxels that must be seen again", {0, 1, true})
       .boolean("closed_loop_required", true, "false: tracking under control is reported only");
   return table;
 }

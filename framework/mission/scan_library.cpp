@@ -19,24 +19,24 @@ PluginChoice choice_at(lua_State* state, int table, const char* key) {
 namespace {
 
 constexpr BoundField kTourFields[] = {
-    {"name", "string", "the solver's"},
+    {"name", "string", "name of the solver"},
     {"status", "string", "optimal, feasible, infeasible, iteration_limit, ..."},
     {"message", "string", "message of the solver"},
     {"score", "number", "score of its views"},
     {"upper_bound", "number?", "upper bound of the score of any tour; nil if none is known"},
-    {"gap", "number", "gap to the bound, as a share of it"},
+    {"gap", "number", "gap to the bound, as a fraction of the bound"},
     {"seconds", "number", "flight time in s"},
     {"budget", "number", "s"},
-    {"images", "integer", "different views in it"},
-    {"visits", "integer", "views in order, passed ones included"},
+    {"images", "integer", "number of different views"},
+    {"visits", "integer", "views in order, including those that are only passed"},
     {"reachable", "integer", "number of views on any tour within the budget"},
-    {"reachable_score", "number", "score of all of them"},
+    {"reachable_score", "number", "score of all reachable views"},
     {"evaluations", "integer", "evaluations of the score"},
     {"iterations", "integer", "iterations of the solver"},
     {"legs", "table[]",
      "legs from view to view: {points, yaw_from, yaw_to, seconds}, m, rad, s without the pause"},
     {"flight", "table?",
-     "of passes: {duration, times, positions, yaws, images}, s, m, rad; an image has a time and a "
+     "for passes: {duration, times, positions, yaws, images}, s, m, rad; an image has a time and a "
      "position"}};
 
 int tour_field(lua_State* state) {

@@ -202,11 +202,11 @@ constexpr BoundField kSolutionFields[] = {
     {"solver", "string", "its name"},
     {"cost", "number", "sum of all weighted terms"},
     {"iterations", "integer", "iterations of the solver"},
-    {"violations", "table[]", "the worst of each constraint: {name, row, amount, time}"},
+    {"violations", "table[]", "largest violation of each constraint: {name, row, amount, time}"},
     {"legs", "number[]", "durations of the legs, s"},
     {"duration", "number", "s"},
-    {"defects", "number[]", "defect of each leg, as a share of the limit of the certificate"},
-    {"path", "number[]", "x, y, z of every stage in turn, m, world"}};
+    {"defects", "number[]", "defect of each leg, as a fraction of the limit of the certificate"},
+    {"path", "number[]", "x, y, z of the first stage, of the second, ...; m, world"}};
 
 int solution_field(lua_State* state) {
   const SolutionObject& solution = object_argument<SolutionObject>(state, 1, kSolutionType);
@@ -280,13 +280,14 @@ Value wing_value(const Vehicle& vehicle) {
 constexpr BoundField kVehicleFields[] = {
     {"name", "string", "name of the vehicle"},
     {"mass", "number", "kg"},
-    {"speed_across", "number", "largest, m/s"},
-    {"climb_speed", "number", "largest, m/s"},
-    {"descent_speed", "number", "largest, m/s"},
-    {"acceleration_across", "number", "largest, m/s^2"},
-    {"acceleration_up", "number", "largest, m/s^2; math.huge where the file states none"},
-    {"acceleration_down", "number", "largest, m/s^2; math.huge where the file states none"},
-    {"yaw_rate", "number", "largest, rad/s"},
+    {"speed_across", "number", "largest horizontal speed, m/s"},
+    {"climb_speed", "number", "largest climb speed, m/s"},
+    {"descent_speed", "number", "largest descent speed, m/s"},
+    {"acceleration_across", "number", "largest horizontal acceleration, m/s^2"},
+    {"acceleration_up", "number", "largest upward acceleration, m/s^2; math.huge if not stated"},
+    {"acceleration_down", "number",
+     "largest downward acceleration, m/s^2; math.huge if not stated"},
+    {"yaw_rate", "number", "largest yaw rate, rad/s"},
     {"thrust_max", "number", "largest used thrust of all rotors, N"},
     {"rotor_thrust_max", "number", "largest thrust of one rotor, N"},
     {"flight_time", "number", "flight time of one battery, s"},

@@ -100,13 +100,13 @@ void push_stage(lua_State* state, int stage, std::uint64_t serial) {
 void open_stage_values(lua_State* state) {
   static const Binding methods[] = {
       {"subject", &guarded<subject_of_stage>, "(name: string): lapwing.vector",
-       "position of a subject of the environment at that time, m"},
+       "position of a subject of the environment at the time of the stage, m"},
       {"distance", &guarded<distance_of_stage>,
        "(point: lapwing.vector, name?: string): lapwing.value",
-       "distance in m to the nearest obstacle, or to the one of that name; negative inside"}};
+       "distance in m to the nearest obstacle, or to the named obstacle; negative inside"}};
   static constexpr BoundField kFields[] = {
       {"time", "lapwing.value", "s"},
-      {"step", "lapwing.value", "s, to the next stage"},
+      {"step", "lapwing.value", "time to the next stage, s"},
       {"[integer]", "lapwing.stage", "the stages after it: s[1], s[2], ..."},
       {"[string]", "lapwing.vector", "every block of the problem: position, yaw, target, ..."}};
   define_type<StageObject>(state, kStageType, {methods}, &guarded<stage_index>);

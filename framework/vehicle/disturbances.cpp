@@ -10,14 +10,14 @@ namespace lapwing {
 const std::vector<DisturbanceField>& disturbance_fields() {
   using D = Disturbances;
   static const std::vector<DisturbanceField> fields{
-      {"quadratic_drag", "N s^2/m^2", "drag over the square of the airspeed", &D::quadratic_drag, 0,
-       10, false},
-      {"inertia_error", "", "share by which the true inertia exceeds the file's", &D::inertia_error,
-       -0.9, 10, false},
-      {"battery_loss", "", "share of the thrust that is lost when the battery is empty",
+      {"quadratic_drag", "N s^2/m^2", "drag divided by the square of the airspeed",
+       &D::quadratic_drag, 0, 10, false},
+      {"inertia_error", "", "fraction by which the true inertia exceeds that of the file",
+       &D::inertia_error, -0.9, 10, false},
+      {"battery_loss", "", "fraction of the thrust that is lost when the battery is empty",
        &D::battery_loss, 0, 0.9, false},
-      {"battery_used", "", "share of the battery that is used at take-off", &D::battery_used, 0, 1,
-       false},
+      {"battery_used", "", "fraction of the battery that is used at take-off", &D::battery_used, 0,
+       1, false},
       {"position_noise", "m", "standard deviation of each axis of the estimate", &D::position_noise,
        0, 10, false},
       {"velocity_noise", "m/s", "standard deviation of each axis of the estimate",
@@ -26,8 +26,8 @@ const std::vector<DisturbanceField>& disturbance_fields() {
        &D::attitude_noise, 0, 1, true},
       {"rate_noise", "rad/s", "standard deviation of each axis of the estimate", &D::rate_noise, 0,
        10, true},
-      {"estimator_delay", "s", "by which the estimate is old", &D::estimator_delay, 0, 1, false},
-      {"command_delay", "s", "after which a command reaches the rotors", &D::command_delay, 0, 1,
+      {"estimator_delay", "s", "age of the estimated state", &D::estimator_delay, 0, 1, false},
+      {"command_delay", "s", "time until a command reaches the rotors", &D::command_delay, 0, 1,
        false}};
   return fields;
 }

@@ -17,7 +17,7 @@ function M.depth(least)
   return { name = "range", type = "number", unit = "m", default = 20, minimum = least,
            maximum = 1000, summary = "largest depth" },
          { name = "dropped", type = "number", default = 0, minimum = 0, maximum = 1,
-           summary = "share of pixels without a measurement" },
+           summary = "fraction of pixels without a measurement" },
          { name = "sigma", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
            summary = "standard deviation of the depth" }
 end

@@ -78,7 +78,7 @@ local OPTIONS = {
   { name = "budget", type = "number", unit = "s", above = 0,
     summary = "flight time; absent: one battery" },
   { name = "wall_clock_guard", type = "number", unit = "s", above = 0,
-    summary = "limit of computing time; a run that it ends may not repeat" },
+    summary = "limit of computing time; a run that it ends may not be repeatable" },
   { name = "compare", type = "boolean", default = true,
     summary = "run the oracle from the same start, for comparison" },
   { name = "start", type = "numbers", size = 3, unit = "m",

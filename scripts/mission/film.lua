@@ -86,10 +86,10 @@ local common = {
     summary = "bystanders, and the distances that the flight keeps from them" },
   { name = "cuts", type = "tables", table = input.cut, summary = "spans of discarded footage" },
   { name = "framing", type = "number", default = 0.95, above = 0, maximum = 1,
-    summary = "share of the time in which the subject must be in the image" },
+    summary = "fraction of the time in which the subject must be in the image" },
   { name = "line_of_sight", type = "choice", default = "required",
     choices = { "required", "reported" },
-    summary = "effect on the certificate if obstacles hide the subject beyond that share" },
+    summary = "effect on the certificate if the subject is hidden longer than `framing` permits" },
   { name = "model", type = "plugin", kind = "vehicle_model", default = "quadrotor",
     summary = "vehicle model: how the vehicle moves" },
   { name = "solver", type = "plugin", kind = "trajectory_solver", default = "iqp",
@@ -99,12 +99,12 @@ local common = {
   { name = "planner", type = "plugin", kind = "path_planner", default = "bit_star",
     summary = "planner of a path around obstacles, the first guess" },
   { name = "passages", type = "integer", default = 4, minimum = 0, maximum = 20,
-    summary = "number of passages that are tried if the first flight fails; 0: none" },
+    summary = "number of passages to try if the first flight fails; 0: none" },
   own.declared[1], own.declared[2],
 }
 local subjects = { name = "subjects", type = "tables", table = input.subject,
-                   summary = "filmed subjects; a single one may be given as `subject`; of a file "
-                   .. "absent: the points that it looks at" }
+                   summary = "filmed subjects; a single one may be given as `subject`; absent, "
+                   .. "with a shot file: the points at which the shot looks" }
 local subject = { name = "subject", type = "text",
   refused = "a script's `subject` is the first of `subjects`: write subjects[1], as in "
   .. "--set subjects[1].distance=3" }

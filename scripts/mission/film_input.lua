@@ -144,7 +144,7 @@ input.subject = {
   { name = "place", type = "numbers", size = 2, minimum = 0, maximum = 1,
     summary = "wanted place in the image, from the upper left (0, 0) to the lower right (1, 1)" },
   { name = "size", type = "number", above = 0, maximum = 1,
-    summary = "wanted height as a share of the image height, in the centre of the image" },
+    summary = "wanted height as a fraction of the image height, in the centre of the image" },
 }
 
 input.keyframe = {

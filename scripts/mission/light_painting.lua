@@ -40,7 +40,7 @@ local DECLARATIONS = {
     summary = "reorder and reverse strokes to shorten the flight" },
   { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "vehicle" },
   { name = "speed", type = "number", unit = "m/s", default = 1.5, minimum = 0.01,
-    summary = "largest speed, beside the limits of the vehicle" },
+    summary = "largest speed, in addition to the limits of the vehicle" },
   { name = "acceleration", type = "number", unit = "m/s^2", default = 2, minimum = 0.01,
     summary = "largest acceleration, along and across the path together" },
   { name = "rounding", type = "number", unit = "m", default = 0.015, minimum = 0, maximum = 1,

@@ -9,10 +9,10 @@ local ORIGIN = {
     { name = "longitude_deg", type = "number", unit = "deg", minimum = -180, maximum = 180,
       summary = "degrees east" },
     { name = "height", type = "number", unit = "m",
-      summary = "height of the point z = 0 above what `height_of` says" },
+      summary = "height of the point z = 0 above the reference `height_of`" },
     { name = "height_of", type = "choice", choices = { "ellipsoid", "sea", "ground" },
-      summary = "ellipsoid of WGS 84; sea: the geoid, as on maps (AMSL); ground: that at the "
-        .. "origin itself, so that z = 0 is `height` above it" },
+      summary = "reference of `height`: the ellipsoid of WGS 84; the geoid, as on maps (AMSL); "
+        .. "or the ground at the origin" },
   },
 }
 

@@ -22,12 +22,12 @@ own.declared = {
     summary = "additional constraints", table = { name },
     functions = {
       { name = "lower", type = "number",
-        summary = "of a function: lower bound; a script may list one for each value" },
+        summary = "lower bound of a function; a script may list one for each value" },
       { name = "upper", type = "number",
-        summary = "of a function: upper bound; a script may list one for each value" },
+        summary = "upper bound of a function; a script may list one for each value" },
       { name = "certificate", type = "choice", choices = { "required", "reported" },
         default = "required",
-          summary = "of a function: effect of a violation on the certificate" } } },
+          summary = "effect on the certificate if a function violates its bounds" } } },
 }
 
 -- Whether a field of a function is an option. Lists of bounds can only be stated in the script.

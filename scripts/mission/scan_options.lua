@@ -32,14 +32,14 @@ local PATTERN = {
   { name = "pattern", type = "choice", choices = { "circle", "crosshatch", "ellipse", "meander" },
     default = "meander", summary = "pattern of places over the region" },
   number("height", nil, "m",
-         "height in the world; absent: 15 m above safe_height, of a crosshatch 5 m",
+         "height in the world; absent: 15 m above safe_height, for a crosshatch 5 m",
          { maximum = 1e5 }),
   integer("views", nil, 1, 10000,
-          "number of depth images; absent: 30, of a crosshatch by its spacing, 400 at most"),
-  number("pitch_deg", nil, "deg", "pitch of the camera, of a circle the largest; absent: -60, of a "
-         .. "crosshatch -45", { minimum = -90, maximum = 0 }),
+          "number of depth images; absent: 30, for a crosshatch as its spacing gives, at most 400"),
+  number("pitch_deg", nil, "deg", "pitch of the camera, for a circle the largest one; absent: -60, "
+         .. "for a crosshatch -45", { minimum = -90, maximum = 0 }),
   number("reach", nil, "m",
-         "distance beyond the region; absent: 5 m, of a crosshatch half its height "
+         "distance beyond the region; absent: 5 m, for a crosshatch half its height "
          .. "above the floor of the region, at most `reach` of the mission", NOT_NEGATIVE),
 }
 
@@ -86,7 +86,8 @@ local DECLARATIONS = {
     summary = "value of a view in an exploration" },
   { name = "camera", type = "table", table = CAMERA, summary = "camera of all images" },
   { name = "noise", type = "table", summary = "noise of the depth images", table = {
-    number("dropped", 0, "", "share of pixels without a measurement", { minimum = 0, maximum = 1 }),
+    number("dropped", 0, "", "fraction of pixels without a measurement",
+           { minimum = 0, maximum = 1 }),
     number("sigma", 0, "m", "standard deviation of the depth", { minimum = 0, maximum = 100 }) } },
   number("range", nil, "m", "largest depth; absent: 60 m, up to 200 m if the first flight needs it "
          .. "to see the floor", POSITIVE),
@@ -115,9 +116,9 @@ local DECLARATIONS = {
            { minimum = 0, maximum = 180 }) } },
   { name = "motions", type = "table", summary = "motions between views", table = {
     integer("neighbours", 12, 1, 1000, "number of matching views to which a view is connected"),
-    integer("among", 120, 1, 100000, "number of nearest views among which they are searched"),
+    integer("among", 120, 1, 100000, "number of nearest views from which these are chosen"),
     number("alpha", 0.4, "",
-           "common content that connected views need, of (4.8)", { minimum = 0, maximum = 1 }),
+           "smallest common content of connected views, (4.8)", { minimum = 0, maximum = 1 }),
     integer("coarse", 120, 1, 10000, "pixels per row of compared views") } },
   { name = "flight", type = "table", summary = "flight along the tour", table = {
     number("speed", 3, "m/s", "speed between views", POSITIVE),

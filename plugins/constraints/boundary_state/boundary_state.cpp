@@ -29,7 +29,7 @@ class BoundaryState final : public DifferentiableConstraint<BoundaryState> {
     for (const std::string end : {"start", "finish"})
       table.choice(end, "rest", {"rest", "moving", "free"}, "state at the " + end)
           .optional_numbers(end + "_velocity", 3, "m/s",
-                            "velocity at the " + end + ", world; for 'moving' alone")
+                            "velocity at the " + end + ", world; only with 'moving'")
           .optional_numbers(end + "_position", 3, "m", "position at the " + end + ", world")
           .optional_number(end + "_yaw", "rad", "yaw at the " + end);
     return table;

@@ -35,7 +35,7 @@ class InputLimits final : public DifferentiableConstraint<InputLimits, 4> {
                  "bound the norm of the force: a larger set than the box, but curved rows")
         .choice("across", "inscribed", {"inscribed", "extent"},
                 "box only: horizontal acceleration limit in every direction, or per axis")
-        .number("share", 0.98, "", "share of the limits used, measured from hovering",
+        .number("share", 0.98, "", "used fraction of the limits, measured from hovering",
                 {.minimum = 0, .maximum = 1, .minimum_excluded = true});
   }
 

@@ -88,17 +88,20 @@ class GeometricFlight final : public ControlledFlight {
 class Geometric final : public Controller {
  public:
   static constexpr PluginText kText{"geometric", "1.0.0",
-                                    "tracking on SE(3) with fed-forward rates, upside down as well",
+                                    "tracking on SE(3) with feed-forward rates, also upside down",
                                     "Lee, Leok, McClamroch, CDC 2010"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .number("position", 0.1, "m", "error worth 2 m/s^2", between(0.001, 10))
-        .number("velocity", 0.5, "m/s", "error worth 2 m/s^2", between(0.01, 100))
-        .number("integral", 0.1, "m s", "of the error, worth 2 m/s^2", between(0.001, 100))
-        .number("tilt_bandwidth", 30, "rad/s", "at most, about x and y", between(1, 100))
-        .number("heading_bandwidth", 8, "rad/s", "at most, about z", between(0.1, 100))
-        .number("largest_correction", 20, "m/s^2", "that errors of the place may ask for",
-                between(0.1, 1000));
+        .number("position", 0.1, "m", "position error of the same cost as 2 m/s^2",
+                between(0.001, 10))
+        .number("velocity", 0.5, "m/s", "velocity error of the same cost as 2 m/s^2",
+                between(0.01, 100))
+        .number("integral", 0.1, "m s",
+                "integral of the position error of the same cost as 2 m/s^2", between(0.001, 100))
+        .number("tilt_bandwidth", 30, "rad/s", "largest bandwidth about x and y", between(1, 100))
+        .number("heading_bandwidth", 8, "rad/s", "largest bandwidth about z", between(0.1, 100))
+        .number("largest_correction", 20, "m/s^2",
+                "largest acceleration that corrects position errors", between(0.1, 1000));
   }
   explicit Geometric(const Parameters& parameters)
       : weights_{parameters.number("position"), parameters.number("velocity"),

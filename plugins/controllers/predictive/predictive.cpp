@@ -96,18 +96,19 @@ ParameterTable common(const HorizonSettings& usual) {
   return ParameterTable{}
       .number("horizon", usual.length, "s", "length of the horizon", between(0.05, 5))
       .integer("stages", usual.stages, "number of stages of the horizon", between(2, 100))
-      .number("period", usual.period, "s", "time from one quadratic programme to the next",
+      .number("period", usual.period, "s", "time from one quadratic program to the next",
               between(0.001, 0.1))
       .number("position", usual.position, "m", "position error of cost 1", between(0.001, 100))
       .number("velocity", usual.velocity, "m/s", "velocity error of cost 1", between(0.001, 100))
       .number("attitude", usual.attitude, "rad", "attitude error of cost 1", between(0.001, 100))
       .number("rates", usual.rates, "rad/s", "body rate error of cost 1", between(0.001, 1000))
       .number("thrust", usual.thrust, "",
-              "thrust difference of cost 1, as a share of the largest thrust of a rotor",
+              "thrust difference of cost 1, as a fraction of the largest thrust of a rotor",
               between(0.001, 100))
       .number("terminal", usual.terminal, "s",
               "weight of the error at the end of the horizon, as a time", between(0, 10))
-      .number("observer", 8, "rad/s", "bandwidth of the estimate of mass and wind; 0: no estimate",
+      .number("observer", 8, "rad/s",
+              "bandwidth of the estimate of thrust factor and wind; 0: no estimate",
               between(0, 100))
       .number("farthest", 3, "m", "largest position error that is corrected in full",
               between(0.1, 100))
@@ -155,7 +156,8 @@ class Predictive : public Controller {
 
 class Mpc final : public Predictive {
  public:
-  static constexpr PluginText kText{"mpc", "1.0.0", "nonlinear predictive control of rotor thrusts",
+  static constexpr PluginText kText{"mpc", "1.0.0",
+                                    "nonlinear model predictive control of rotor thrusts",
                                     "Diehl, Bock, Schloeder, SIAM J. Control Optim. 43(5), 2005"};
   static ParameterTable parameters() { return common({}); }
   explicit Mpc(const Parameters& parameters) : Predictive(settings_from(parameters, false)) {}
@@ -164,7 +166,7 @@ class Mpc final : public Predictive {
 class Contouring final : public Predictive {
  public:
   static constexpr PluginText kText{"contouring", "1.0.0",
-                                    "the same, where the plan waits for a vehicle that is late",
+                                    "as mpc, but the plan time slows for a late vehicle",
                                     "Lam, Manzie, Good, CDC 2010"};
   static ParameterTable parameters() {
     const HorizonSettings usual;

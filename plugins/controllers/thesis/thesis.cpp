@@ -11,18 +11,21 @@ namespace {
 
 class Thesis final : public Controller {
  public:
-  static constexpr PluginText kText{
-      "thesis", "1.0.0", "regulator of the place, attitude of force and heading", "thesis 3.8.2"};
+  static constexpr PluginText kText{"thesis", "1.0.0",
+                                    "regulator of the position; attitude from force and heading",
+                                    "thesis 3.8.2"};
   static ParameterTable parameters() {
     const ControllerWeights usual;
     return ParameterTable{}
-        .number("position", usual.position, "m", "error worth 2 m/s^2", between(0.001, 10))
-        .number("velocity", usual.velocity, "m/s", "error worth 2 m/s^2", between(0.01, 100))
-        .number("integral", usual.integral, "m s", "of the error, worth 2 m/s^2",
-                between(0.001, 100))
-        .number("tilt_bandwidth", usual.tilt_bandwidth, "rad/s", "at most, about x and y",
+        .number("position", usual.position, "m", "position error of the same cost as 2 m/s^2",
+                between(0.001, 10))
+        .number("velocity", usual.velocity, "m/s", "velocity error of the same cost as 2 m/s^2",
+                between(0.01, 100))
+        .number("integral", usual.integral, "m s",
+                "integral of the position error of the same cost as 2 m/s^2", between(0.001, 100))
+        .number("tilt_bandwidth", usual.tilt_bandwidth, "rad/s", "largest bandwidth about x and y",
                 between(1, 100))
-        .number("heading_bandwidth", usual.heading_bandwidth, "rad/s", "at most, about z",
+        .number("heading_bandwidth", usual.heading_bandwidth, "rad/s", "largest bandwidth about z",
                 between(0.1, 100));
   }
   explicit Thesis(const Parameters& parameters)

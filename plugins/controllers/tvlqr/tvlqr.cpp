@@ -111,17 +111,18 @@ class Tvlqr final : public Controller {
       "Anderson, Moore, Optimal Control, 1990, 2.3"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .number("thrust", 0.15, "", "share of a rotor's largest thrust that errors are worth",
+        .number("thrust", 0.15, "",
+                "thrust difference of cost 1, as a fraction of the largest thrust of a rotor",
                 between(0.001, 10))
-        .number("integral", 0.3, "m s", "of the position's error, worth that thrust",
+        .number("integral", 0.3, "m s", "integral of the position error of cost 1",
                 between(0.001, 1000))
-        .number("position", 0.1, "m", "error worth that thrust", between(0.001, 100))
-        .number("velocity", 0.5, "m/s", "error worth that thrust", between(0.001, 100))
-        .number("attitude", 0.2, "rad", "error worth that thrust", between(0.001, 10))
-        .number("rates", 4, "rad/s", "error worth that thrust", between(0.01, 1000))
-        .number("largest_position", 1, "m", "error that is answered to in full",
+        .number("position", 0.1, "m", "position error of cost 1", between(0.001, 100))
+        .number("velocity", 0.5, "m/s", "velocity error of cost 1", between(0.001, 100))
+        .number("attitude", 0.2, "rad", "attitude error of cost 1", between(0.001, 10))
+        .number("rates", 4, "rad/s", "body rate error of cost 1", between(0.01, 1000))
+        .number("largest_position", 1, "m", "largest error that is corrected in full",
                 between(0.01, 1000))
-        .number("largest_velocity", 4, "m/s", "error that is answered to in full",
+        .number("largest_velocity", 4, "m/s", "largest error that is corrected in full",
                 between(0.01, 1000));
   }
   explicit Tvlqr(const Parameters& parameters)

@@ -29,7 +29,7 @@ class Framing final : public DifferentiableCost<Framing, 9> {
                 "wanted place in the image: 0 is the left edge, 1 the right edge", between(0, 1))
         .number("vertical", 0.5, "",
                 "wanted place in the image: 0 is the upper edge, 1 the lower edge", between(0, 1))
-        .optional_number("size", "", "wanted height as a share of the image height", above(0))
+        .optional_number("size", "", "wanted height as a fraction of the image height", above(0))
         .number("size_weight", 1.0, "", "weight of the squared log size error, per rad^2",
                 at_least(0))
         .tables("spans", time_span_table(), "spans with this cost; none: always")

@@ -62,7 +62,7 @@ class Geojson final : public Exporter {
     return ParameterTable{}
         .number("rate", 10, "1/s", "points of the path per second", between(0.1, 1000))
         .choice("heights", "ellipsoid", {"ellipsoid", "sea", "ground"},
-                "reference of heights; the standard asks for the ellipsoid");
+                "reference of heights; the standard requires the ellipsoid");
   }
   explicit Geojson(const Parameters& parameters)
       : rate_(parameters.number("rate")), heights_(*height_of_named(parameters.text("heights"))) {}

@@ -40,7 +40,7 @@ class Gpx final : public Exporter {
     return ParameterTable{}
         .number("rate", 10, "1/s", "points of the path per second", between(0.1, 1000))
         .choice("heights", "sea", {"sea", "ellipsoid", "ground"},
-                "reference of heights; GPX asks for the sea");
+                "reference of heights; GPX requires the sea");
   }
   explicit Gpx(const Parameters& parameters)
       : rate_(parameters.number("rate")), heights_(*height_of_named(parameters.text("heights"))) {}

@@ -50,7 +50,7 @@ class Kml final : public Exporter {
     return ParameterTable{}
         .number("rate", 10, "1/s", "points of the path per second", between(0.1, 1000))
         .choice("heights", "auto", {"auto", "sea", "ground"},
-                "reference of heights; auto: ground if that of the origin is, else sea");
+                "reference of heights; auto: ground for an origin above the ground, otherwise sea");
   }
   explicit Kml(const Parameters& parameters)
       : rate_(parameters.number("rate")), heights_(parameters.text("heights")) {}

@@ -58,7 +58,7 @@ class Wpml final : public Exporter {
     table.choice("drone", "m3e", {"m3e", "m30", "m300", "m350", "m3d"}, "drone of the mission")
         .optional_number("payload", "", "number of the camera; absent: that of the drone")
         .choice("finish", "goHome", {"goHome", "noAction", "autoLand", "gotoFirstWaypoint"},
-                "what follows the last waypoint")
+                "action after the last waypoint")
         .number("take_off_height", 20, "m", "height to which the drone climbs first",
                 between(1.2, 1500));
     return table;

@@ -10,13 +10,14 @@ enum Takes : unsigned { kRange = 1, kGoalBias = 2, kRewiring = 4, kBatches = 8 }
 
 ParameterTable table_of(unsigned takes, std::int64_t iterations) {
   ParameterTable table;
-  table.integer("iterations", iterations, "largest number; planners that improve paths use all",
+  table.integer("iterations", iterations,
+                "largest number of iterations; planners that improve paths use all",
                 between(1, 100'000'000));
   if (takes & kRange) {
     table.number("range", 0, "m", "longest segment; 0: a fifth of the bounds", between(0, 1e5));
   }
   if (takes & kGoalBias) {
-    table.number("goal_bias", 0.05, "", "share of samples at the goal", between(0, 1));
+    table.number("goal_bias", 0.05, "", "fraction of samples at the goal", between(0, 1));
   }
   if (takes & kRewiring) {
     table.number("rewire_factor", 1.1, "", "factor on the rewiring radius", between(1, 10));

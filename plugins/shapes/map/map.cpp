@@ -26,8 +26,8 @@ class MapForm final : public Shape {
         .required_text("file", "map file, .ot or .bt")
         .optional_numbers("lower", 3, "m", "lowest corner of the used part, world", far)
         .optional_numbers("upper", 3, "m", "highest corner", far)
-        .text("voxels", "brick", "plugin of kind map that holds it")
-        .optional_text("sha256", "checksum of the copy beside a plan; stated by plans");
+        .text("voxels", "brick", "plugin of kind map that holds the voxels")
+        .optional_text("sha256", "checksum of the copy in the folder of a plan; stated by plans");
   }
   explicit MapForm(const Parameters& parameters)
       : name_(parameters.text("file")), plugin_(parameters.text("voxels")) {

@@ -17,7 +17,7 @@ class MeshForm final : public Shape {
   static ParameterTable parameters() {
     return ParameterTable{}
         .required_text("file", "mesh file, in metres with z up")
-        .optional_text("sha256", "checksum of the copy beside a plan; stated by plans");
+        .optional_text("sha256", "checksum of the copy in the folder of a plan; stated by plans");
   }
   explicit MeshForm(const Parameters& parameters) : name_(parameters.text("file")) {
     if (parameters.has("sha256")) stated_ = parameters.text("sha256");

@@ -156,11 +156,12 @@ class LocalSearch final : public TourSolver {
   static ParameterTable parameters() {
     return ParameterTable{}
         .integer("iterations", 2000, "number of removals and repairs", between(1, 100'000'000))
-        .number("share", 0.25, "", "largest share of the views removed at once", between(0.01, 1))
+        .number("share", 0.25, "", "largest fraction of the views that is removed at once",
+                between(0.01, 1))
         .number("warmth", 1.0, "", "initial temperature, in mean gains of a view",
                 between(1e-3, 100))
         .number("exchanges", 0.3, "",
-                "share of iterations that first insert views beyond the budget", between(0, 1))
+                "fraction of iterations that first insert views beyond the budget", between(0, 1))
         .number("chance", 0.5, "", "random spread of estimated gains; 0: always the best",
                 between(0, 5))
         .integer("patience", 12, "largest number of evaluations per choice", between(1, 100'000));

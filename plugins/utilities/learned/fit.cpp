@@ -408,7 +408,7 @@ ParameterTable fit_parameters() {
               "constant rate, or falling to 0 at the last epoch")
       .choice("targets", "plain", {"plain", "root"},
               "target: values of the oracle, or their square roots")
-      .number("dropout", 0.5, "", "dropout: share of hidden units left out", between(0, 0.95))
+      .number("dropout", 0.5, "", "dropout: fraction of hidden units left out", between(0, 0.95))
       .number("regularisation", 1e-4, "", "lambda of (5.4)", between(0, 1))
       .boolean("mirror", true, "mirror half of the samples")
       .text("begin", "", "model with the initial weights; empty: none")

@@ -143,7 +143,7 @@ class FixedWing final : public DifferentiableModel<FixedWing, 8, 3> {
                                     "Beard and McLain (2012), chapter 9"};
   static ParameterTable parameters() {
     return ParameterTable{}
-        .number("share", 0.98, "", "share of bank, bank rate, thrust and accelerations used",
+        .number("share", 0.98, "", "used fraction of bank, bank rate, thrust and accelerations",
                 {.minimum = 0, .maximum = 1, .minimum_excluded = true})
         .number("stall_reserve", 1.05, "", "factor on the stall speed", between(1, 3));
   }

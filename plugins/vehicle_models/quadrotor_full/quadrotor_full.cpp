@@ -27,8 +27,8 @@ class QuadrotorFull final : public VehicleModel {
   static ParameterTable parameters() {
     ParameterTable table;
     for (const auto& [name, value, summary] :
-         {std::tuple{"thrust_share", 1.0, "share of the largest rotor thrust used"},
-          std::tuple{"rate_share", 1.0, "share of the body rate limits used"}})
+         {std::tuple{"thrust_share", 1.0, "used fraction of the largest rotor thrust"},
+          std::tuple{"rate_share", 1.0, "used fraction of the body rate limits"}})
       table.number(name, value, "", summary,
                    {.minimum = 0, .maximum = 1, .minimum_excluded = true});
     return table;

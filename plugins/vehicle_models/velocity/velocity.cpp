@@ -16,9 +16,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class Velocity final : public DifferentiableModel<Velocity, 10, 4> {
  public:
   static constexpr PluginText kText{
-      "velocity", "1.0.0", "position and yaw commanded, limits as manufacturers state them", "own"};
+      "velocity", "1.0.0", "position and yaw as commands, with the limits that manufacturers state",
+      "own"};
   static ParameterTable parameters() {
-    return ParameterTable{}.number("share", 0.98, "", "share of jerk and yaw rate that is used",
+    return ParameterTable{}.number("share", 0.98, "",
+                                   "used fraction of the limits of jerk and yaw rate",
                                    {.minimum = 0, .maximum = 1, .minimum_excluded = true});
   }
   explicit Velocity(const Parameters& parameters) : share_(parameters.number("share")) {}
