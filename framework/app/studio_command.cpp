@@ -9,7 +9,9 @@
 
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
+#include "framework/app/provenance.h"
 #include "framework/core/visible_text.h"
+#include "framework/studio/patch.h"
 #include "framework/studio/studio.h"
 #include "framework/studio/worker.h"
 
@@ -33,12 +35,28 @@ void add_folders(std::vector<std::string>& words, const char* option,
     words.insert(words.end(), {option, folder.string()});
 }
 
+// What --config and --set change of the script's own options; checked, as for `lapwing run`.
+Value laid_by_words(const StudioRequest& asked, const Invocation& invocation,
+                    const Registry& registry) {
+  if (invocation.configs.empty() && invocation.overrides.empty()) return Value::map();
+  Invocation plain = invocation;
+  plain.configs.clear();
+  plain.overrides.clear();
+  const auto script = load_mission(asked.script, plain, registry),
+             mission = load_mission(asked.script, invocation, registry);
+  for (const std::string& text : invocation.overrides)
+    if (text.starts_with("sandbox."))
+      throw InputError("--set " + text + ": the limits of a studio's script are the default ones");
+  return layer_of(script->configuration(), mission->configuration());
+}
+
 ExitStatus open_studio(const StudioRequest& asked, const Invocation& invocation) {
   require_script(asked.script);
   const Interruption interruption;
   const Registry registry = invocation.registry();
   mission_settings(invocation, registry);  // folders that are none are told here
   StudioSettings settings;
+  settings.laid = laid_by_words(asked, invocation, registry);
   settings.script = asked.script;
   settings.assets = asked.assets;
   settings.port = asked.port;
@@ -59,7 +77,13 @@ ExitStatus open_studio(const StudioRequest& asked, const Invocation& invocation)
 ExitStatus work_for_studio(const StudioRequest& asked, const Invocation& invocation) {
   const Registry registry = invocation.registry();
   MissionSettings settings = mission_settings(invocation, registry);
-  run_studio_worker(asked.script, settings);
+  const auto judged = [&](const Plan& plan, const std::filesystem::path& folder,
+                          const CancellationToken& token) {
+    return judge(plan, folder, nullptr,
+                 {.cancellation = &token, .controllers = controllers_of(invocation)})
+        .certificate;
+  };
+  run_studio_worker(asked.script, settings, judged);
   return ExitStatus::done;
 }
 
@@ -80,6 +104,11 @@ void add_studio_commands(CLI::App& app, Invocation& invocation, StudioRequest& a
   studio->add_flag("--no-open", asked.no_open, "print the address and open no browser");
   add_text(*studio, "--assets", "DIR", "folder of the page's files; default: the page built in",
            [&](const std::string& path) { asked.assets = path; });
+  add_repeated(*studio, "--config", "FILE", invocation.configs,
+               "a configuration file or its name in configs/, laid on the film as its first edit; "
+               "repeatable, later ones win; default: none");
+  add_repeated(*studio, "--set", "KEY=VALUE", invocation.overrides,
+               "set one option likewise; repeatable, later ones win; default: none");
   add_data(*studio, invocation);
   studio->callback([&] { command = [&] { return open_studio(asked, invocation); }; });
   CLI::App* worker = app.add_subcommand("studio-worker", "a working process of a studio");

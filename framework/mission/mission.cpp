@@ -82,6 +82,7 @@ struct Mission::Impl {
         run{given, DataFiles(data_folders(script_file, given)), "", "", Value::map(), 0, {}},
         sandbox(given.limits, given.seed, {given.scripts}, given.print) {
     sandbox.watch(given.cancellation);
+    sandbox.watch_files(given.observe_script);
   }
 
   void load();
@@ -237,6 +238,10 @@ MissionStatement Mission::state() {
                      "' makes no plan of a problem that could be edited");
   statement.obstacle_folder = run.obstacles.folder();
   return statement;
+}
+
+const std::filesystem::path& Mission::obstacle_folder() const {
+  return impl_->run.obstacles.folder();
 }
 
 bool Mission::planning_began() const {

@@ -67,6 +67,9 @@ class Mission {
   // Calls the script's plan function up to where planning begins: whatever it finds wrong before,
   // `plan` finds as well, with the same message. Files that the mission names are read. InputError.
   void judge();
+  // Where the files lie that its environment names, as far as it was stated by `plan`, `judge` or
+  // `state`; as long as the mission lives.
+  const std::filesystem::path& obstacle_folder() const;
   // Whether the last `plan` or `judge` came to where planning begins.
   bool planning_began() const;
 

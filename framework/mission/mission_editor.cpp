@@ -7,12 +7,21 @@
 
 namespace lapwing {
 
-MissionEditor::MissionEditor(std::filesystem::path script, MissionSettings settings, Hear hear)
+MissionEditor::MissionEditor(std::filesystem::path script, MissionSettings settings, Hear hear,
+                             Judge judge)
     : script_(std::move(script)),
       settings_(std::move(settings)),
       hear_(std::move(hear)),
+      judge_(std::move(judge)),
       session_([this](const EditAnswer& answer) { this->hear(answer); }) {
   if (!hear_) throw Error("a mission editor needs a listener");
+  if (!judge_)
+    judge_ = [this](const Plan& plan, const std::filesystem::path& folder,
+                    const CancellationToken& token) {
+      return verify(plan, {.folder = folder,
+                           .cancellation = &token,
+                           .controllers = controllers_of(*settings_.registry)});
+    };
 }
 
 std::uint64_t MissionEditor::edit(MissionEdit edit) {
@@ -31,19 +40,18 @@ EditStatement MissionEditor::state(const MissionEdit& edit, const EditSession::T
   MissionStatement statement = mission->state();
   mission_ = std::move(mission);
   statement_ = std::move(statement);
-  return {.problem = statement_.problem,
-          .solver = statement_.solver,
-          .start = statement_.start,
-          .certify = [this](const EditAnswer& answer, const CancellationToken& token) {
-            plan_ = std::make_shared<const Plan>(plan_of(answer));
-            certificate_ = verify(*plan_, {.folder = statement_.obstacle_folder,
-                                           .cancellation = &token,
-                                           .controllers = controllers_of(*settings_.registry)});
-            std::string all;
-            for (const Check& check : certificate_->failures())
-              all += (all.empty() ? "" : "; ") + to_line(check);
-            return all;
-          }};
+  EditStatement edited{
+      .problem = statement_.problem, .solver = statement_.solver, .start = statement_.start};
+  if (edit.certify)
+    edited.certify = [this](const EditAnswer& answer, const CancellationToken& token) {
+      plan_ = std::make_shared<const Plan>(plan_of(answer));
+      certificate_ = judge_(*plan_, statement_.obstacle_folder, token);
+      std::string all;
+      for (const Check& check : certificate_->failures())
+        all += (all.empty() ? "" : "; ") + to_line(check);
+      return all;
+    };
+  return edited;
 }
 
 Plan MissionEditor::plan_of(const EditAnswer& answer) const {

@@ -23,6 +23,7 @@ namespace lapwing {
 struct MissionEdit {
   std::vector<Value> layers;           // lowest first
   std::vector<std::string> overrides;  // "key.path=value", in order
+  bool certify = true;                 // else the last answer is the converged one
 };
 
 struct EditedPlan {
@@ -40,13 +41,20 @@ class MissionEditor {
   // Gets every answer, on the solving thread, in order.
   using Hear = std::function<void(const EditedPlan&)>;
 
-  // The script is read again by every edit. `settings.start` is where the first one begins.
-  MissionEditor(std::filesystem::path script, MissionSettings settings, Hear hear);
+  // Judges a plan; the files that its environment names lie in the folder. May throw Cancelled.
+  using Judge = std::function<Certificate(const Plan&, const std::filesystem::path& folder,
+                                          const CancellationToken&)>;
 
-  // As EditSession::post, cancel and work.
+  // The script is read again by every edit. `settings.start` is where the first one begins. Without
+  // a judge the verifier judges by itself.
+  MissionEditor(std::filesystem::path script, MissionSettings settings, Hear hear,
+                Judge judge = {});
+
+  // As EditSession::post, cancel, work and begin_at.
   std::uint64_t edit(MissionEdit edit);
   void cancel() { session_.cancel(); }
   bool work() { return session_.work(); }
+  void begin_at(Trajectory flight) { session_.begin_at(std::move(flight)); }
 
  private:
   EditStatement state(const MissionEdit& edit, const EditSession::Turn& context);
@@ -56,6 +64,7 @@ class MissionEditor {
   std::filesystem::path script_;
   MissionSettings settings_;
   Hear hear_;
+  Judge judge_;
   MissionStatement statement_;        // of the edit that is worked on
   std::shared_ptr<const Plan> plan_;  // of the answer that was judged
   std::optional<Certificate> certificate_;

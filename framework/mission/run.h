@@ -45,6 +45,8 @@ struct MissionSettings {
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
   std::function<void(const std::string&)> print = [](const std::string&) {};
+  // Hears of the script and of every module that it requires before they are read; may be null.
+  std::function<void(const std::filesystem::path&)> observe_script;
   // A plan that scripts may begin from, as `run.start`; null for none.
   std::shared_ptr<const Plan> start;
   // A problem stated before, whose sparsity later ones may have (TrajectoryProblem::finish).

@@ -316,6 +316,7 @@ int Sandbox::describe_error(lua_State* state) {
 }
 
 void Sandbox::load(lua_State* state, const std::filesystem::path& file, const std::string& shown) {
+  if (hear_file_) hear_file_(file);
   const std::string text = read_file(file, kLargestScript);
   if (!text.empty() && text[0] == LUA_SIGNATURE[0]) {
     throw InputError({shown, 1}, "this is precompiled Lua; only source text is accepted");

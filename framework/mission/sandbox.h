@@ -81,6 +81,10 @@ class Sandbox {
   // An interruption ends the script, after a grace in which it may finish with what it has:
   // `protect` then throws Cancelled. Null: never.
   void watch(const CancellationToken* cancellation) { cancellation_ = cancellation; }
+  // Hears of the script and of every module before it is read. May be null.
+  void watch_files(std::function<void(const std::filesystem::path&)> hear) {
+    hear_file_ = std::move(hear);
+  }
 
   static Sandbox& of(lua_State* state);
 
@@ -125,6 +129,7 @@ class Sandbox {
 
   SandboxLimits limits_;
   Random random_;
+  std::function<void(const std::filesystem::path&)> hear_file_;
   std::vector<std::filesystem::path> module_folders_;
   std::function<void(const std::string&)> print_;
   lua_State* state_ = nullptr;

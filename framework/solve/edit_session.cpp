@@ -15,6 +15,11 @@ bool worth_keeping(const SolveResult& result) {
          result.point.stages.allFinite();
 }
 
+bool moves_alike(const Trajectory& a, const Trajectory& b) {
+  return a.motion.name == b.motion.name && a.motion.columns == b.motion.columns &&
+         a.has_gimbal == b.has_gimbal && a.has_target == b.has_target && a.samples.size() > 1;
+}
+
 }  // namespace
 
 const char* to_string(AnswerGrade grade) {
@@ -50,6 +55,10 @@ void EditSession::cancel() {
   if (working_) working_->cancel();
 }
 
+void EditSession::begin_at(Trajectory flight) {
+  flight_ = std::move(flight);
+}
+
 bool EditSession::work() {
   State state;
   std::uint64_t revision = 0;
@@ -74,8 +83,10 @@ bool EditSession::work() {
 
 // The last point where the problem has its blocks, else none.
 std::optional<WarmStart> EditSession::start_for(const EditStatement& statement) const {
-  if (!kept_.problem) return statement.start;
   const TrajectoryProblem& problem = *statement.problem;
+  if (flight_ && moves_alike(*flight_, problem.trajectory(problem.initial_guess())))
+    return WarmStart{problem.point_of(*flight_), {}, {}};
+  if (!kept_.problem) return statement.start;
   const StageLayout &now = problem.layout(), &then = kept_.problem->layout();
   bool alike = now.count() == then.count();
   for (int b = 0; alike && b < now.count(); ++b) {
@@ -106,7 +117,9 @@ std::optional<WarmStart> EditSession::start_for(const EditStatement& statement) 
 
 // Problem and point together.
 void EditSession::keep(const EditAnswer& answer) {
-  if (worth_keeping(answer.result)) kept_ = {answer.problem, answer.result.point};
+  if (!worth_keeping(answer.result)) return;
+  kept_ = {answer.problem, answer.result.point};
+  flight_.reset();
 }
 
 void EditSession::answer(std::uint64_t revision, const State& state,

@@ -24,6 +24,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "framework/solve/trajectory_solver.h"
@@ -76,6 +77,10 @@ class EditSession {
   std::uint64_t post(State state);
   // From any thread: ends the work under way, if any, and forgets an edit that waits.
   void cancel();
+  // On the solving thread: the next edit begins at this flight, resampled at its times, in place of
+  // the last point. One of another motion, or without a gimbal or target that the problem has, is
+  // no start, and the last point stays.
+  void begin_at(Trajectory flight);
   // Works on what was posted; false where there was nothing. One thread at a time. What a solver, a
   // plugin or a listener throws comes out, and the session is as it was before that edit.
   bool work();
@@ -94,6 +99,7 @@ class EditSession {
   Hear hear_;
   std::unique_ptr<SolverMemory> memory_;
   Kept kept_;
+  std::optional<Trajectory> flight_;  // of `begin_at`, until there is a newer point
 
   std::mutex mutex_;  // of what follows
   std::uint64_t revision_ = 0;

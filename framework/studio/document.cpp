@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/studio/document.h"
 
+#include <algorithm>
 #include <array>
 
 namespace lapwing {
@@ -88,8 +89,14 @@ Value StudioDocument::proposed(const Gesture& gesture) const {
   if (gesture.base > revision())
     throw InputError("made on revision " + std::to_string(gesture.base) +
                      ", which there is not: the newest is " + std::to_string(revision()));
+  for (const std::string& id : gesture.after)
+    if (!has(id)) throw InputError("it was made on top of an edit that was refused");
+  const auto known = [&](const std::string& id) {
+    return !id.empty() &&
+           std::find(gesture.after.begin(), gesture.after.end(), id) != gesture.after.end();
+  };
   for (std::size_t i = gesture.base; i < history_.size(); ++i)
-    if (overlap(history_[i].patch, gesture.patch))
+    if (!known(history_[i].id) && overlap(history_[i].patch, gesture.patch))
       throw InputError("the same was changed meanwhile (" + history_[i].label +
                        "): do it again on what is there now");
   return proposed(gesture.patch);

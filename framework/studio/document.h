@@ -27,6 +27,8 @@ struct Gesture {
   std::uint64_t base = 0;  // the revision that it was made on
   std::string label;
   Patch patch;
+  // Gestures that were on their way when it was made, and that it was made on top of.
+  std::vector<std::string> after = {};
 };
 
 // What made a revision of the one before. `inverse` takes it back.
@@ -62,7 +64,7 @@ class StudioDocument {
   Value layer() const { return layer_of(script_, current_); }
 
   // The document after a gesture. One of an older revision is laid on the newest where nothing that
-  // changed since is at its paths. Throws InputError for others, for a revision that there is not,
+  // changed since is at its paths, but for those that it was made after. Throws InputError for others, for a revision that there is not,
   // for paths that are not there, and for taking away what the script sets.
   Value proposed(const Gesture& gesture) const;
   // As patches alone, of nobody's history: of drags under way.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/studio/page_message.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "framework/core/json.h"
@@ -12,6 +13,7 @@ using Type = PageMessageType;
 
 constexpr std::size_t kLongestName = 128;  // bytes, of ids, tabs and formats
 constexpr std::size_t kLongestLabel = 400;
+constexpr std::size_t kMostAfter = 64;  // as many as may wait
 constexpr std::int64_t kLargestNumber = (std::int64_t{1} << 53) - 1;
 
 constexpr std::array kTypes{Type::hello,          Type::preview,     Type::gesture,
@@ -91,6 +93,18 @@ void read_base(MessageFields& fields, PageMessage& message) {
   message.base = static_cast<std::uint64_t>(fields.count("base", 0, kLargestNumber));
 }
 
+void read_after(MessageFields& fields, PageMessage& message) {
+  const Value* after = fields.find("after");
+  if (!after) return;
+  const auto is_id = [](const Value& id) {
+    return id.is_text() && !id.as_text().empty() && id.as_text().size() <= kLongestName;
+  };
+  if (!after->is_list() || after->as_list().size() > kMostAfter ||
+      !std::all_of(after->as_list().begin(), after->as_list().end(), is_id))
+    throw InputError("after: expected a list of at most " + std::to_string(kMostAfter) + " ids");
+  for (const Value& id : after->as_list()) message.after.push_back(id.as_text());
+}
+
 StudioDocument::Take take_named(const std::string& name) {
   if (name == "mine") return StudioDocument::Take::mine;
   if (name == "theirs") return StudioDocument::Take::theirs;
@@ -149,6 +163,7 @@ void read_fields(MessageFields& fields, PageMessage& message) {
       read_base(fields, message);
       message.label = fields.text("label", kLongestLabel, true);
       message.patch = patch_from(fields.at("patch"), "patch");
+      read_after(fields, message);
       return;
     case Type::undo:
     case Type::redo:

@@ -35,6 +35,7 @@ struct PageMessage {
   std::uint64_t base = 0;  // revision
   std::uint64_t edit = 0;  // preview, fly, picture
   Patch patch;             // preview, gesture
+  std::vector<std::string> after = {};  // gesture: the ids that it was made on top of
   StudioDocument::Take take = StudioDocument::Take::mine;
   std::array<double, 3> wind{};  // m/s
   double gust = 0;               // m/s

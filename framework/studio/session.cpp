@@ -139,9 +139,11 @@ void StudioSession::welcome(Page& page) {
     changed.set("message", "the script changed on disk; your edits are kept until you choose");
     tell(page.socket.get(), changed);
   }
-  if (journal_ && !journal_->remark().empty()) {
+  std::vector<std::string> remarks = remarks_;
+  if (journal_ && !journal_->remark().empty()) remarks.push_back(journal_->remark());
+  for (const std::string& what : remarks) {
     Value remark = typed("remark");
-    remark.set("message", as_utf8(journal_->remark()));
+    remark.set("message", as_utf8(what));
     tell(page.socket.get(), remark);
   }
 }
@@ -192,7 +194,7 @@ void StudioSession::take(PageSocket& page, const PageMessage& message) {
       Proposal proposal;
       proposal.from = &page;
       proposal.bytes = message.bytes;
-      proposal.gesture = {message.id, message.base, message.label, message.patch};
+      proposal.gesture = {message.id, message.base, message.label, message.patch, message.after};
       proposal.take = message.take;
       proposal.kind = message.type == Type::gesture ? EntryKind::gesture
                       : message.type == Type::undo  ? EntryKind::undo
@@ -221,6 +223,17 @@ void StudioSession::tell_all(const std::string& text, bool replaceable) {
 
 void StudioSession::tell_all(const Value& message) {
   tell_all(to_json(message, -1));
+}
+
+// Once for every change of what can be edited.
+void StudioSession::tell_mission() {
+  Value message = typed("mission");
+  message.set("mission", mission_value());
+  std::string text = to_json(message, -1);
+  if (text == told_mission_) return;
+  const bool first = told_mission_.empty();
+  told_mission_ = std::move(text);
+  if (!first) tell_all(told_mission_);
 }
 
 void StudioSession::refuse(PageSocket* page, const PageMessage& message, const std::string& why) {
@@ -256,6 +269,7 @@ void StudioSession::heard(WorkerRole role, Frame frame) {
   if (role == WorkerRole::errands) return errand_done(std::move(frame));
   if (what == "checked") checked(frame);
   if (what == "refused") not_checked(frame);
+  if (what == "checked" || what == "refused") tell_mission();
   if (what == "described") {
     Value description = Value::map();
     description.set("schema", frame.header.at("schema"));

@@ -31,6 +31,7 @@ struct SessionSettings {
   std::filesystem::path script;
   std::string token;                      // of the address
   std::vector<std::string> run_words;     // `lapwing run SCRIPT --json ...`, for reports
+  Value laid = Value::map();              // of --config and --set: the first edit, if it is one
   std::chrono::milliseconds glance{250};  // between looks at the script
   std::chrono::milliseconds pause{150};   // after a gesture, before the layer is written
   // How long a drag waits for the first answer of the move before, so that quick moves are drawn.
@@ -88,6 +89,7 @@ class StudioSession {
     PageSocket* from = nullptr;  // null: nobody, or gone
     std::size_t bytes = 0;       // of the message that it came with
     bool quiet = false;          // a layer or a script that was found: no page waits for it
+    bool of_words = false;       // what the command line lays on the document
   };
   struct Check {
     std::int64_t serial = 0;
@@ -102,6 +104,7 @@ class StudioSession {
     std::string layer;                      // as JSON
     std::optional<std::uint64_t> revision;  // of the document; none of a preview
     std::uint64_t base = 0;                 // the revision that a preview is laid on
+    bool settled = true;                    // of the document, as it is or will be; else a preview
     std::uint64_t edit = 0;                 // of a preview
     std::string tab;                        // likewise
     bool held = false;                      // of a proposal that has no revision yet
@@ -118,6 +121,13 @@ class StudioSession {
     PageMessage message = {};
     Frame frame = {};
     int crashes = 0;
+  };
+  // What a document ended with, to be shown again where it comes back, as by undo.
+  struct Remembered {
+    std::string layer;  // as JSON
+    Frame answer = {};
+    std::string world;
+    std::size_t bytes = 0;
   };
   // What a page may fly, draw and export.
   struct Settled {
@@ -137,6 +147,7 @@ class StudioSession {
   void tell(PageSocket* page, const Value& message);
   void tell_all(const std::string& text, bool replaceable = false);
   void tell_all(const Value& message);
+  void tell_mission();
   void refuse(PageSocket* page, const PageMessage& message, const std::string& why);
   void refuse_gesture(const Proposal& proposal, const std::string& why);
   void fail(PageSocket* page, const PageMessage& message, const std::string& why);
@@ -152,11 +163,16 @@ class StudioSession {
   void not_checked(const Frame& frame);
   void found_script(const Value& options);
   void begin_document(const Value& options);
+  void look_at(const Value& options);
   void adopt_layer();
   void commit(const Check& check, const Value& next);
   void acknowledge(const Proposal& proposal);
   void check_script();
+  void watch(const Frame& frame);
+  void remark(const std::string& what);
+  void remark_words(const std::string& why);
   void glance();
+  void lay_words();
   void layer_changed();
   std::string write_layer_now();  // "" or why it could not be
   const Value& base_options() const;
@@ -172,6 +188,9 @@ class StudioSession {
   void document_changed(std::int64_t solved_meanwhile);
   void answered(Frame frame);
   void deliver(const Frame& frame);
+  const Remembered* remembered(const std::string& layer) const;
+  void remember(const Frame& frame);
+  void show_again(const Remembered& shown);
   void settle(const Frame& frame);
   void world(const Frame& frame);
   void solver_started();
@@ -202,12 +221,16 @@ class StudioSession {
   std::optional<Settled> certified_, settled_, displayed_;
   std::string document_answer_;  // the last one of the document as it is
   int document_rank_ = -1;
-  std::string world_, settled_world_;  // the last one told, and the one of the document's answer
+  std::string world_;  // the last one told
   BlobStore surfaces_{std::size_t{512} << 20}, pictures_{std::size_t{64} << 20};
   std::deque<Errand> errand_queue_;
   bool errand_under_way_ = false;
   std::int64_t serial_ = 0;
-  std::string watched_;  // what the script's file looked like
+  std::deque<Remembered> remembered_;  // of the script as it is; the newest first
+  std::vector<std::filesystem::path> script_files_;  // that the script requires
+  std::string watched_;       // what the script's files looked like
+  std::string told_mission_;  // as JSON; "" before the first page
+  std::vector<std::string> remarks_;  // of the start, for every page
 };
 
 }  // namespace lapwing

@@ -9,6 +9,8 @@
 namespace lapwing {
 namespace {
 
+constexpr const char* kWordsLabel = "--config and --set";
+
 // Edits of pages that wait to be checked, all pages together (PROTOCOL.md).
 constexpr std::size_t kMostWaiting = 64, kMostWaitingBytes = std::size_t{8} << 20;
 
@@ -25,14 +27,31 @@ std::string look_of(const std::filesystem::path& file) {
 // ---- the script ---------------------------------------------------------------------------------
 
 void StudioSession::glance() {
-  const std::string look = look_of(settings_.script);
+  std::string look = look_of(settings_.script);
+  for (const std::filesystem::path& file : script_files_) look += "\n" + look_of(file);
   if (look != watched_) {
-    watched_ = look;
+    watched_ = std::move(look);
     check_script();
   }
   loop_.after(settings_.glance, [this, alive = alive_] {
     if (*alive) glance();
   });
+}
+
+// The script and its modules, also those that were read before one failed; what was there before
+// stays watched then.
+void StudioSession::watch(const Frame& frame) {
+  const Value* files = frame.header.find("files");
+  if (!files) return;
+  std::set<std::filesystem::path> all;
+  if (frame.header.at("said") == Value("refused"))
+    all.insert(script_files_.begin(), script_files_.end());
+  for (const Value& file : files->as_list()) all.insert(file.as_text());
+  std::vector<std::filesystem::path> found(all.begin(), all.end());
+  if (found == script_files_) return;
+  script_files_ = std::move(found);
+  watched_ = look_of(settings_.script);
+  for (const std::filesystem::path& file : script_files_) watched_ += "\n" + look_of(file);
 }
 
 void StudioSession::check_script() {
@@ -50,11 +69,17 @@ Value StudioSession::document_layer() const {
   return layer_of(base_options(), document_->current());
 }
 
+// To be looked at: without a journal, and without checks beyond those of the command line.
+void StudioSession::look_at(const Value& options) {
+  document_.emplace(options);
+  if (settings_.laid.as_map().empty()) return;
+  Value next = options;
+  merge(next, settings_.laid);
+  document_->add(document_->entry_for(EntryKind::gesture, "", kWordsLabel, next));
+}
+
 void StudioSession::begin_document(const Value& options) {
-  if (!journal_) {
-    document_.emplace(options);
-    return;
-  }
+  if (!editable()) return look_at(options);
   if (journal_->document()) {
     document_ = journal_->document();
   } else {
@@ -66,6 +91,16 @@ void StudioSession::begin_document(const Value& options) {
     document_.emplace(options);
   }
   adopt_layer();
+  lay_words();
+}
+
+// What the command line sets is an edit like another: it stands in the layer, and can be undone.
+void StudioSession::lay_words() {
+  if (settings_.laid.as_map().empty()) return;
+  Proposal proposal;
+  proposal.gesture.label = kWordsLabel;
+  proposal.of_words = proposal.quiet = true;
+  propose(std::move(proposal));
 }
 
 // What somebody wrote into the layer's file by hand is an edit. What a studio wrote last may be
@@ -95,7 +130,13 @@ void StudioSession::adopt_layer() {
 }
 
 void StudioSession::found_script(const Value& options) {
-  script_error_.clear();
+  if (!script_error_.empty()) {
+    script_error_.clear();
+    Value loaded = Value::map();
+    loaded.set("type", "script_loaded");
+    tell_all(loaded);
+  }
+  remembered_.clear();
   if (!document_) {
     begin_document(options);
     // Whoever was let in while there was none is welcomed again.
@@ -105,7 +146,7 @@ void StudioSession::found_script(const Value& options) {
   if (same_options(document_->script(), options)) {
     pending_script_.reset();
     solve_document(true);
-  } else if (document_->layer().as_map().empty()) {
+  } else if (document_->layer().as_map().empty() || !editable()) {
     Proposal proposal;
     proposal.kind = EntryKind::script;
     proposal.gesture.label = "the script changed";
@@ -115,11 +156,12 @@ void StudioSession::found_script(const Value& options) {
     if (editable()) {
       propose(std::move(proposal));
     } else {  // to be looked at: without a history
-      const Patch patch = difference(document_->current(), options);
-      document_.emplace(options);
+      const Value before = document_->current();
+      look_at(options);
+      const Patch patch = difference(before, document_->current());
       Value message = Value::map();
       message.set("type", "document");
-      message.set("revision", 0);
+      message.set("revision", static_cast<std::int64_t>(document_->revision()));
       message.set("patch", to_value(patch));
       message.set("by", "");
       message.set("label", "the script changed");
@@ -178,6 +220,11 @@ void StudioSession::propose(Proposal proposal) {
 Value StudioSession::next_of(const Proposal& proposal) const {
   const Gesture& gesture = proposal.gesture;
   if (proposal.next) return *proposal.next;
+  if (proposal.of_words) {
+    Value next = document_->current();
+    merge(next, settings_.laid);
+    return next;
+  }
   switch (proposal.kind) {
     case EntryKind::gesture:
       return document_->proposed(gesture);
@@ -211,6 +258,7 @@ void StudioSession::advance() {
         if (proposal.kind == EntryKind::script && !proposal.script)
           proposal.script = *pending_script_;
       } catch (const InputError& error) {
+        if (proposal.of_words) remark_words(error.what());
         refuse_gesture(proposal, error.what());
         checks_.pop_front();
         continue;
@@ -226,7 +274,8 @@ void StudioSession::advance() {
     check.frame.header.set(
         "judge", !check.of_script && proposal.kind == EntryKind::gesture && !proposal.quiet);
     checker_->send(check.frame);
-    if (!check.of_script) {  // most proposals hold: it is solved meanwhile
+    // Most proposals hold: it is solved meanwhile, where its answer is not known.
+    if (!check.of_script && !remembered(to_json(layer, -1))) {
       Solve solve;
       solve.held = true;
       post_solve(layer, std::move(solve));
@@ -241,6 +290,7 @@ void StudioSession::checked(const Frame& frame) {
   checks_.pop_front();
   mission_name_ = frame.header.at("mission").at("name").as_text();
   mission_kind_ = frame.header.at("mission").at("kind").as_text();
+  watch(frame);
   if (check.of_script)
     found_script(frame.header.at("document"));
   else
@@ -253,6 +303,7 @@ void StudioSession::not_checked(const Frame& frame) {
   const Check check = std::move(checks_.front());
   checks_.pop_front();
   const std::string& why = frame.header.at("why").as_text();
+  if (check.of_script) watch(frame);
   if (check.of_script) {
     const Value* line = frame.header.find("line");
     script_error_ = as_utf8(why);
@@ -266,7 +317,9 @@ void StudioSession::not_checked(const Frame& frame) {
   } else {
     refuse_gesture(check.proposal, why);
     // A layer that was found and does not hold is left alone, and nothing is written over it.
-    if (check.proposal.quiet && check.proposal.kind == EntryKind::gesture)
+    if (check.proposal.of_words)
+      remark_words(why);
+    else if (check.proposal.quiet && check.proposal.kind == EntryKind::gesture)
       why_not_ = beside_script(settings_.script, ".studio.yaml").string() + ": " + why;
     solve_document();
   }
@@ -332,13 +385,20 @@ void StudioSession::layer_changed() {
   loop_.after(settings_.pause, [this, alive = alive_] {
     if (!*alive || !layer_waits_) return;
     const std::string why = write_layer_now();
-    if (why.empty()) return;
-    Value message = Value::map();
-    message.set("type", "remark");
-    message.set("message",
-                as_utf8(why + "; the journal has every edit, and the next one tries again"));
-    tell_all(message);
+    if (!why.empty()) remark(why + "; the journal has every edit, and the next one tries again");
   });
+}
+
+void StudioSession::remark_words(const std::string& why) {
+  remarks_.push_back(std::string(kWordsLabel) + " were not laid on the film: " + why);
+  remark(remarks_.back());
+}
+
+void StudioSession::remark(const std::string& what) {
+  Value message = Value::map();
+  message.set("type", "remark");
+  message.set("message", as_utf8(what));
+  tell_all(message);
 }
 
 std::string StudioSession::write_layer_now() {

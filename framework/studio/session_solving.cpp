@@ -12,6 +12,7 @@ namespace {
 using Type = PageMessageType;
 
 constexpr std::size_t kMostErrands = 32;
+constexpr std::size_t kMostRemembered = 64, kMostRememberedBytes = std::size_t{128} << 20;
 
 int rank_of(const std::string& grade) {
   return grade == "step" ? 0 : grade == "converged" ? 1 : 2;
@@ -30,6 +31,7 @@ void StudioSession::post_solve(const Value& layer, Solve solve) {
   solve.frame.header.set("do", "solve");
   solve.frame.header.set("serial", solve.serial);
   solve.frame.header.set("layer", layer);
+  solve.frame.header.set("settled", solve.settled);
   solver_->send(solve.frame);
   solve_ = std::move(solve);
 }
@@ -40,6 +42,7 @@ void StudioSession::preview(PageSocket& page, const PageMessage& message) {
     if (!editable()) throw InputError(why_not());
     const Value next = document_->proposed(message.patch);
     solve.base = document_->revision();
+    solve.settled = false;
     solve.edit = message.edit;
     solve.tab = pages_.at(&page).tab;
     drag(layer_of(base_options(), next), std::move(solve));
@@ -73,20 +76,7 @@ void StudioSession::drag_on() {
 
 // A drag that came to nothing: the document's own answer is told again, or it is solved.
 void StudioSession::rest() {
-  if (!document_) return;
-  if (document_rank_ < 2 || settled_world_ != world_) return solve_document();
-  next_drag_.reset();
-  Solve solve;
-  solve.serial = ++serial_;
-  solve.layer = to_json(document_layer(), -1);
-  solve.revision = document_->revision();
-  solve.rank = 2;
-  solve_ = std::move(solve);
-  Frame drop;
-  drop.header.set("do", "drop");
-  drop.header.set("serial", solve_->serial);
-  solver_->send(std::move(drop));
-  tell_all(document_answer_);
+  if (document_) solve_document();
 }
 
 // Whatever was said of the document is not about it any more. A solve that began while it was
@@ -97,7 +87,7 @@ void StudioSession::document_changed(std::int64_t solved_meanwhile) {
   settled_.reset();
   const bool its_own = solve_ && solve_->serial == solved_meanwhile;
   if (its_own) solve_->layer = to_json(document_layer(), -1);
-  const bool dragged = solve_ && !its_own && !solve_->held && !solve_->revision;
+  const bool dragged = solve_ && !its_own && !solve_->settled;
   if (!dragged) solve_document();
 }
 
@@ -105,7 +95,9 @@ void StudioSession::document_changed(std::int64_t solved_meanwhile) {
 void StudioSession::solve_document(bool anew) {
   const Value layer = document_layer();
   const std::uint64_t revision = document_->revision();
-  if (!anew && solve_ && solve_->layer == to_json(layer, -1) && script_error_.empty()) {
+  const std::string text = to_json(layer, -1);
+  if (const Remembered* shown = anew ? nullptr : remembered(text)) return show_again(*shown);
+  if (!anew && solve_ && solve_->settled && solve_->layer == text && script_error_.empty()) {
     if (!solve_->held && solve_->revision == revision) return;
     solve_->held = false;
     solve_->revision = revision;
@@ -118,6 +110,57 @@ void StudioSession::solve_document(bool anew) {
   document_rank_ = -1;
   settled_.reset();
   post_solve(layer, std::move(solve));
+}
+
+// ---- what was shown before -----------------------------------------------------------------------
+
+const StudioSession::Remembered* StudioSession::remembered(const std::string& layer) const {
+  for (const Remembered& shown : remembered_)
+    if (shown.layer == layer) return &shown;
+  return nullptr;
+}
+
+// What the document ended with. Only what was judged: the same options may be refused for a crash.
+void StudioSession::remember(const Frame& frame) {
+  if (frame.header.at("grade") == Value("refused") || remembered(solve_->layer)) return;
+  Remembered shown{solve_->layer, frame, world_};
+  for (const std::string& part : frame.parts) shown.bytes += part.size();
+  shown.bytes += shown.world.size() + shown.layer.size();
+  remembered_.push_front(std::move(shown));
+  std::size_t bytes = 0, kept = 0;
+  for (const Remembered& one : remembered_) {
+    bytes += one.bytes;
+    if (kept > 0 && (kept >= kMostRemembered || bytes > kMostRememberedBytes)) break;
+    ++kept;
+  }
+  remembered_.resize(kept);
+}
+
+// The very flight again. The process that solves begins the next edit there.
+void StudioSession::show_again(const Remembered& shown) {
+  const Frame answer = shown.answer;
+  next_drag_.reset();
+  Solve solve;
+  solve.serial = ++serial_;
+  solve.layer = shown.layer;
+  solve.revision = document_->revision();
+  solve.came = solve.posted = Clock::now();
+  solve.rank = 2;
+  solve.frame.header.set("layer", document_layer());
+  solve_ = std::move(solve);
+  Frame drop, begin;
+  drop.header.set("do", "drop");
+  drop.header.set("serial", solve_->serial);
+  solver_->send(std::move(drop));
+  begin.header.set("do", "begin_at");
+  begin.header.set("serial", solve_->serial);
+  if (answer.parts.size() > 2) begin.parts = {answer.parts[2]};
+  solver_->send(std::move(begin));
+  if (shown.world != world_ && !shown.world.empty()) {
+    world_ = shown.world;
+    tell_all(world_);
+  }
+  deliver(answer);
 }
 
 void StudioSession::solver_started() {
@@ -164,7 +207,7 @@ void StudioSession::deliver(const Frame& frame) {
   if (solve.revision && rank_of(grade) >= document_rank_) {
     document_answer_ = text;
     document_rank_ = rank_of(grade);
-    settled_world_ = world_;
+    if (rank_of(grade) == 2) remember(frame);
   }
   settle(frame);
   tell_all(text, grade == "step");
@@ -250,6 +293,7 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
         words.push_back(beside_script(settings_.script, ".studio.yaml").string());
       }
       frame.header.set("words", std::move(words));
+      if (settled_) frame.parts = {settled_->document};
       break;
     }
     default:

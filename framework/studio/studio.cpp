@@ -95,6 +95,7 @@ void run_studio(const StudioSettings& settings, const CancellationToken& token,
   SessionSettings own;
   own.script = settings.script;
   own.run_words = settings.run_words;
+  own.laid = settings.laid;
   StudioSession session(loop, own, std::move(journal), why_not);
   WebHandlers handlers;
   handlers.get = [&](std::string_view path) -> std::optional<WebContent> {

@@ -18,6 +18,7 @@ struct StudioSettings {
   std::uint16_t port = 0;              // 0: one is chosen
   WorkerProgram worker;                // the words of a working process
   std::vector<std::string> run_words;  // of `lapwing run` for reports
+  Value laid = Value::map();           // options that the command line lays on the script
 };
 
 // Serves until the token is cancelled. `ready` is told the address once it can be opened.

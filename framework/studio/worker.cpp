@@ -11,12 +11,10 @@
 #include <thread>
 
 #include "framework/core/json.h"
-#include "framework/mission/controller_source.h"
-#include "framework/mission/mission_editor.h"
 #include "framework/studio/plan_message.h"
 #include "framework/studio/worker_errands.h"
 #include "framework/studio/worker_link.h"
-#include "framework/verify/verify.h"
+#include "framework/trajectory/interpolate.h"
 
 namespace lapwing {
 namespace {
@@ -32,13 +30,29 @@ std::string all_failures(const Certificate& certificate) {
   return all;
 }
 
+// m between two flights: beyond the first they are two to who looks at them, up to the second the
+// solver had better begin at its own point, which has multipliers.
+constexpr double kAnotherWay = 0.5, kSameWay = 0.05;
+
+// The largest distance at equal times, m; infinite between flights of other durations.
+double apart(const Trajectory& a, const Trajectory& b) {
+  if (a.samples.empty() || b.samples.empty() || std::abs(a.duration() - b.duration()) > 1e-6)
+    return std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (const Sample& s : a.samples)
+    most = std::max(most, (sample_at(b, s.time).position - s.position).norm());
+  return most;
+}
+
 class StudioWorker {
  public:
-  StudioWorker(const std::filesystem::path& script, const MissionSettings& settings)
+  StudioWorker(const std::filesystem::path& script, const MissionSettings& settings,
+               MissionEditor::Judge judge)
       : script_(script),
         settings_(settings),
+        judge_(std::move(judge)),
         errands_(script, settings_),
-        editor_(script, settings_, [this](const EditedPlan& edited) { hear(edited); }) {}
+        editor_(script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_) {}
 
   void run() {
     std::thread reader([this] { read(); });
@@ -91,16 +105,24 @@ class StudioWorker {
     // With the lock: from here on `take` ends this one.
     serial_ = frame.header.at("serial").as_integer();
     whole_ = std::make_shared<CancellationToken>();
-    if (kind_ == "film") edit(frame.header.at("layer"));
+    if (kind_ == "film") edit(frame);
     return frame;
   }
 
-  void edit(const Value& layer) { editor_.edit({{layer_of_page(layer, script_)}, {}}); }
+  void edit(const Frame& frame) {
+    const bool settled = frame.header.at("settled").as_boolean();
+    // What was drawn last of the same options is told again.
+    if (settled && drawn_last_ && drawn_layer_ == to_json(frame.header.at("layer"), -1)) return;
+    editor_.edit({{layer_of_page(frame.header.at("layer"), script_)}, {}, !settled});
+  }
 
   void do_work(const Frame& frame) {
     try {
-      if (frame.header.at("do").as_text() == "solve")
+      const std::string& what = frame.header.at("do").as_text();
+      if (what == "solve")
         solve(frame);
+      else if (what == "begin_at")
+        begin_at(frame);
       else
         send(errands_.answer(frame), frame.header.at("serial").as_integer());
     } catch (const Cancelled&) {
@@ -116,7 +138,16 @@ class StudioWorker {
     answer.header.set("said", frame.header.at("do") == Value("check") ? "refused" : "failed");
     answer.header.set("why", as_utf8(why));
     answer.header.set("line", line_in(why, script_));
+    answer.header.set("files", errands_.script_files());
     send(std::move(answer), serial);
+  }
+
+  // What a page sees again without a solve.
+  void begin_at(const Frame& frame) {
+    drawn_last_.reset();
+    told_world_.clear();
+    if (!frame.parts.empty())
+      editor_.begin_at(plan_from_value(from_json(frame.parts.front(), "plan")).trajectory);
   }
 
   void refuse(std::int64_t serial, const std::string& why) {
@@ -134,6 +165,9 @@ class StudioWorker {
 
   void solve(const Frame& frame) {
     const Value& layer = frame.header.at("layer");
+    const bool settled = frame.header.at("settled").as_boolean();
+    const std::string text = to_json(layer, -1);
+    const bool drawn = drawn_last_ && drawn_layer_ == text;
     began_ = Clock::now();
     last_step_ = {};
     refused_.reset();
@@ -141,20 +175,25 @@ class StudioWorker {
       kind_ = Mission(script_, settings_).kind();
       if (kind_ == "film") {
         const std::lock_guard lock(mutex_);
-        if (!solve_ && !whole_->cancelled()) edit(layer);
+        if (!solve_ && !whole_->cancelled()) edit(frame);
       }
     }
+    std::optional<Trajectory> before;
     if (kind_ == "film") {
+      if (settled && drawn) tell(*drawn_last_);
+      if (!drawn) drawn_last_.reset();
+      drawn_layer_ = text;
       while (editor_.work()) {
       }
-      if (!refused_) return;
+      if (!refused_ && !settled) return;
+      if (!refused_ && drawn_last_) before = drawn_last_->plan->trajectory;
     }
-    if (!whole_->cancelled()) plan_whole(layer);
+    if (!whole_->cancelled()) plan_whole(layer, before);
   }
 
-  // What is no problem by itself (times that are sought, missions of other kinds) is planned as
-  // `lapwing run` does, and drawn when it is done.
-  void plan_whole(const Value& layer) {
+  // As `lapwing run` does: what is settled, and what is no problem by itself (times that are sought,
+  // missions of other kinds), which is drawn when it is done. `before`: what is drawn of it already.
+  void plan_whole(const Value& layer, const std::optional<Trajectory>& before) {
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
     const std::unique_ptr<Mission> mission = configured_mission(script_, settings, layer);
@@ -171,13 +210,18 @@ class StudioWorker {
     edited.plan = std::make_shared<const Plan>(result.plan);
     for (const std::string& note : result.notes)
       edited.answer.message += (edited.answer.message.empty() ? "" : "; ") + note;
-    tell(edited);
-    edited.certificate = verify(*edited.plan, {.folder = edited.folder,
-                                               .cancellation = whole_.get(),
-                                               .controllers = controllers_of(*settings_.registry)});
+    if (!before) tell(edited);
+    edited.certificate = judge_(*edited.plan, edited.folder, *whole_);
+    if (whole_->cancelled()) return;
     const std::string failures = all_failures(*edited.certificate);
     edited.answer.grade = failures.empty() ? AnswerGrade::certified : AnswerGrade::rejected;
     if (!failures.empty()) edited.answer.message = failures;
+    const double moved = before ? apart(edited.plan->trajectory, *before) : 0;
+    if (failures.empty() && edited.answer.message.empty() && moved > kAnotherWay)
+      edited.answer.message =
+          "planned from the beginning, as lapwing run does, the flight takes another way";
+    if (!before || moved > kSameWay) editor_.begin_at(edited.plan->trajectory);
+    drawn_last_.reset();
     tell(edited);
   }
 
@@ -190,6 +234,7 @@ class StudioWorker {
       if (Clock::now() - last_step_ < kBetweenSteps) return;
       last_step_ = Clock::now();
     }
+    if (edited.answer.grade == AnswerGrade::converged) drawn_last_ = edited;
     tell(edited);
   }
 
@@ -228,11 +273,14 @@ class StudioWorker {
 
   std::filesystem::path script_;
   MissionSettings settings_;
+  MissionEditor::Judge judge_;
   WorkerErrands errands_;
   MissionEditor editor_;
   std::string kind_;  // of the mission, once it is known
   Clock::time_point began_, last_step_;
   std::optional<std::string> refused_;
+  std::optional<EditedPlan> drawn_last_;  // as it converged, from the point before; of this layer:
+  std::string drawn_layer_;
   DrawnSurfaces drawn_;
   std::string told_world_;
 
@@ -247,9 +295,10 @@ class StudioWorker {
 
 }  // namespace
 
-void run_studio_worker(const std::filesystem::path& script, const MissionSettings& settings) {
+void run_studio_worker(const std::filesystem::path& script, const MissionSettings& settings,
+                       MissionEditor::Judge judge) {
   std::signal(SIGINT, SIG_IGN);  // the server ends it
-  StudioWorker(script, settings).run();
+  StudioWorker(script, settings, std::move(judge)).run();
 }
 
 }  // namespace lapwing

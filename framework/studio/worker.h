@@ -5,9 +5,10 @@
 // for errands, so that none waits for another. Frames (frames.h) come on standard input, answers
 // leave on descriptor 3. Every request has `do` and a `serial`, every answer `said` and the serial:
 //
-//   solve {layer}            answer {grade, message, seconds} [plan, certificate, document], world
+//   solve {layer, settled}   answer {grade, message, seconds} [plan, certificate, document], world
 //   drop                     the solve under way ends
-//   check {layer, judge}     checked {document, mission} or refused {why, line}
+//   begin_at                 the next solve begins at the flight of the plan in the first part
+//   check {layer, judge}     checked {document, mission, files} or refused {why, line, files}
 //   describe                 described {schema, choices}
 //   fly {conditions}         done {...} [samples]        of the plan document in the first part
 //   picture, export, export_lua, save_report             done {...}, or failed {why}
@@ -15,11 +16,16 @@
 
 #include <filesystem>
 
-#include "framework/mission/mission.h"
+#include "framework/mission/mission_editor.h"
 
 namespace lapwing {
 
-// Returns when standard input ends.
-void run_studio_worker(const std::filesystem::path& script, const MissionSettings& settings);
+// Returns when standard input ends. `judge` makes the certificate of a plan, as `lapwing run` does.
+//
+// What is dragged is solved from the last point. A film that is `settled` is shown so as well, and
+// is then planned by its script from the beginning: that plan alone is judged, so that it is the
+// flight of `lapwing run`, whatever was drawn before.
+void run_studio_worker(const std::filesystem::path& script, const MissionSettings& settings,
+                       MissionEditor::Judge judge);
 
 }  // namespace lapwing

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -37,6 +38,12 @@ Frame done() {
 Plan plan_in(const Frame& asked) {
   if (asked.parts.empty()) throw InputError("there is no plan yet");
   return plan_from_value(from_json(asked.parts.front(), "plan"));
+}
+
+// The motion alone.
+std::string trajectory_text(const Plan& plan) {
+  const Value value = to_value(plan);
+  return to_json(value.at("motion"), -1) + to_json(value.at("samples"), -1);
 }
 
 // Reads to the end, and waits for the process.
@@ -116,13 +123,27 @@ Frame WorkerErrands::answer(const Frame& asked) {
   throw Error("a working process does not know '" + what + "'");
 }
 
-Frame WorkerErrands::check(const Frame& asked) const {
+Value WorkerErrands::script_files() const {
+  return Value(Value::List(files_.begin(), files_.end()));
+}
+
+Frame WorkerErrands::check(const Frame& asked) {
+  files_.clear();
+  MissionSettings settings = settings_;
+  const fs::path shipped = fs::weakly_canonical(settings.scripts);
+  settings.observe_script = [&](const fs::path& file) {
+    const fs::path whole = fs::weakly_canonical(file);
+    const bool own = std::mismatch(shipped.begin(), shipped.end(), whole.begin(), whole.end())
+                         .first != shipped.end();
+    if (own && file != script_) files_.insert(whole.string());
+  };
   const std::unique_ptr<Mission> mission =
-      configured_mission(script_, settings_, asked.header.at("layer"));
+      configured_mission(script_, settings, asked.header.at("layer"));
   if (asked.header.at("judge").as_boolean()) mission->judge();
   Frame frame;
   frame.header.set("said", "checked");
   frame.header.set("document", options_with_file(*mission));
+  frame.header.set("files", script_files());
   Value& about = frame.header.set("mission", Value::map());
   about.set("name", mission->name());
   about.set("kind", mission->kind());
@@ -169,22 +190,31 @@ Plan WorkerErrands::with_shapes(const Frame& asked) {
   const Value& layer = asked.header.at("layer");
   const std::string stated = to_json(layer, -1) + read_file(script_);
   if (stated != stated_layer_ || !stated_mission_) {
-    stated_layer_ = stated;
     stated_mission_.reset();
-    try {
-      auto mission = configured_mission(script_, settings_, layer);
-      MissionStatement statement = mission->state();
-      stated_environment_ = std::move(statement.plan.environment);
-      stated_folder_ = statement.obstacle_folder;
-      stated_mission_ = std::move(mission);
-    } catch (const InputError&) {  // a mission of several problems: what the plan records
-    }
+    state_environment(plan, layer);
+    stated_layer_ = stated;
   }
-  if (stated_mission_)
-    plan.environment = stated_environment_;
-  else
-    open_recorded_shapes(plan.environment, *settings_.registry, ".");
+  plan.environment = stated_environment_;
   return plan;
+}
+
+// As the script states it; of a mission of several problems what the plan records, with the files
+// that the script named before planning began.
+void WorkerErrands::state_environment(const Plan& plan, const Value& layer) {
+  auto mission = configured_mission(script_, settings_, layer);
+  try {
+    MissionStatement statement = mission->state();
+    stated_environment_ = std::move(statement.plan.environment);
+  } catch (const InputError&) {
+    mission = configured_mission(script_, settings_, layer);
+    mission->judge();
+    stated_environment_ = plan.environment;
+    const fs::path& folder = mission->obstacle_folder();
+    open_recorded_shapes(stated_environment_, *settings_.registry,
+                         folder.empty() ? fs::path(".") : folder);
+  }
+  stated_folder_ = mission->obstacle_folder();
+  stated_mission_ = std::move(mission);
 }
 
 Frame WorkerErrands::picture(const Frame& asked) {
@@ -217,8 +247,10 @@ Frame WorkerErrands::export_plan(const Frame& asked) {
   plan.certificate = certificate;
   const std::string extension = exporter->file_extension();
   const std::string name = run_folder_name(plan.mission);
-  const fs::path target = run_folder(plan.mission) /
-                          (name + (extension == "." + format ? "" : "." + format) + extension);
+  // Whole: whoever reads the answer is in no folder.
+  const fs::path target =
+      fs::absolute(run_folder(plan.mission) /
+                   (name + (extension == "." + format ? "" : "." + format) + extension));
   Frame frame = done();
   Value files = Value::list(), losses = Value::list();
   if (extension.empty()) {
@@ -228,7 +260,8 @@ Frame WorkerErrands::export_plan(const Frame& asked) {
   } else {
     const std::string bytes = exporter->write(plan);
     for (const std::string& loss : exporter->losses(plan, bytes)) losses.push_back(as_utf8(loss));
-    const fs::path folder = surroundings && stated_mission_ ? stated_folder_ : fs::path(".");
+    const fs::path folder =
+        surroundings && !stated_folder_.empty() ? stated_folder_ : fs::path(".");
     for (const std::string& sentence :
          judge_written_flight(*exporter, plan, bytes, folder, "export " + format))
       losses.push_back(as_utf8(sentence));
@@ -244,7 +277,7 @@ Frame WorkerErrands::export_plan(const Frame& asked) {
 Frame WorkerErrands::export_lua(const Frame& asked) const {
   const std::unique_ptr<Mission> mission =
       configured_mission(script_, settings_, asked.header.at("layer"));
-  const fs::path target = asked.header.at("target").as_text();
+  const fs::path target = fs::absolute(asked.header.at("target").as_text());
   write_flat_script(script_, settings_, *mission, target);
   Frame frame = done();
   frame.header.set("files", Value(Value::List{target.string()}));
@@ -257,12 +290,18 @@ Frame WorkerErrands::save_report(const Frame& asked) const {
       from_json(answer_of_program(asked.header.at("words").as_list()), "the run's answer");
   if (const Value* error = answer.find("error")) throw InputError(error->as_text());
   Frame frame = done();
-  const fs::path folder = fs::path(answer.at("plan").as_text()).parent_path();
-  Value files = Value::list();
+  const fs::path folder = fs::absolute(answer.at("plan").as_text()).parent_path();
+  Value files = Value::list(), loss = Value::list();
+  // Both were planned by the same script from the beginning.
+  if (!asked.parts.empty() && trajectory_text(plan_in(asked)) !=
+                                  trajectory_text(read_plan(folder / "plan.json")))
+    loss.push_back(
+        "the flight that was saved is another than the one on display: the script or a file that it "
+        "reads has changed; reload the studio");
   for (const char* name : {"report.html", "plan.json", "trajectory.csv", "run.log"})
     files.push_back((folder / name).string());
   frame.header.set("files", std::move(files));
-  frame.header.set("loss", Value::list());
+  frame.header.set("loss", std::move(loss));
   frame.header.set("status", answer.at("status"));
   return frame;
 }

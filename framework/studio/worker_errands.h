@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "framework/mission/mission.h"
@@ -33,9 +34,12 @@ class WorkerErrands {
 
   // Does what the frame asks for. InputError and what plugins throw come out.
   Frame answer(const Frame& asked);
+  // The modules that the script required in the last check, also in one that failed; those that are
+  // shipped left out.
+  Value script_files() const;
 
  private:
-  Frame check(const Frame& asked) const;
+  Frame check(const Frame& asked);
   Frame describe() const;
   Frame fly(const Frame& asked) const;
   Frame picture(const Frame& asked);
@@ -44,9 +48,11 @@ class WorkerErrands {
   Frame save_report(const Frame& asked) const;
   // With the shapes of its obstacles open.
   Plan with_shapes(const Frame& asked);
+  void state_environment(const Plan& plan, const Value& layer);
 
   std::filesystem::path script_;
   const MissionSettings& settings_;
+  std::set<std::string> files_;
   std::string stated_layer_;  // whose environment is kept
   std::unique_ptr<Mission> stated_mission_;
   Environment stated_environment_;
