@@ -64,8 +64,9 @@ class StudioDocument {
   Value layer() const { return layer_of(script_, current_); }
 
   // The document after a gesture. One of an older revision is laid on the newest where nothing that
-  // changed since is at its paths, but for those that it was made after. Throws InputError for others, for a revision that there is not,
-  // for paths that are not there, and for taking away what the script sets.
+  // changed since is at its paths, but for those that it was made after. Throws InputError for
+  // others, for a revision that there is not, for paths that are not there, and for taking away
+  // what the script sets.
   Value proposed(const Gesture& gesture) const;
   // As patches alone, of nobody's history: of drags under way.
   Value proposed(const Patch& patch) const;

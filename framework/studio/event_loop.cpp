@@ -32,6 +32,7 @@ void EventLoop::after(std::chrono::milliseconds pause, std::function<void()> wor
 
 void EventLoop::run() {
   impl_->io.run();
+  impl_->io.restart();  // so that it may run again
 }
 
 void EventLoop::stop() {

@@ -29,12 +29,12 @@ const char* to_string(PageMessageType type);
 
 struct PageMessage {
   PageMessageType type = PageMessageType::hello;
-  std::string token, tab;  // hello
-  std::uint64_t seen = 0;  // hello
-  std::string id, label;   // gesture and what follows it; one id each
-  std::uint64_t base = 0;  // revision
-  std::uint64_t edit = 0;  // preview, fly, picture
-  Patch patch;             // preview, gesture
+  std::string token, tab;               // hello
+  std::uint64_t seen = 0;               // hello
+  std::string id, label;                // gesture and what follows it; one id each
+  std::uint64_t base = 0;               // revision
+  std::uint64_t edit = 0;               // preview, fly, picture
+  Patch patch;                          // preview, gesture
   std::vector<std::string> after = {};  // gesture: the ids that it was made on top of
   StudioDocument::Take take = StudioDocument::Take::mine;
   std::array<double, 3> wind{};  // m/s

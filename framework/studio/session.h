@@ -226,11 +226,11 @@ class StudioSession {
   std::deque<Errand> errand_queue_;
   bool errand_under_way_ = false;
   std::int64_t serial_ = 0;
-  std::deque<Remembered> remembered_;  // of the script as it is; the newest first
+  std::deque<Remembered> remembered_;                // of the script as it is; the newest first
   std::vector<std::filesystem::path> script_files_;  // that the script requires
-  std::string watched_;       // what the script's files looked like
-  std::string told_mission_;  // as JSON; "" before the first page
-  std::vector<std::string> remarks_;  // of the start, for every page
+  std::string watched_;                              // what the script's files looked like
+  std::string told_mission_;                         // as JSON; "" before the first page
+  std::vector<std::string> remarks_;                 // of the start, for every page
 };
 
 }  // namespace lapwing

@@ -112,7 +112,8 @@ void StudioSession::solve_document(bool anew) {
   post_solve(layer, std::move(solve));
 }
 
-// ---- what was shown before -----------------------------------------------------------------------
+// ---- what was shown before
+// -----------------------------------------------------------------------
 
 const StudioSession::Remembered* StudioSession::remembered(const std::string& layer) const {
   for (const Remembered& shown : remembered_)

@@ -52,7 +52,8 @@ class StudioWorker {
         settings_(settings),
         judge_(std::move(judge)),
         errands_(script, settings_),
-        editor_(script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_) {}
+        editor_(
+            script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_) {}
 
   void run() {
     std::thread reader([this] { read(); });
@@ -191,8 +192,9 @@ class StudioWorker {
     if (!whole_->cancelled()) plan_whole(layer, before);
   }
 
-  // As `lapwing run` does: what is settled, and what is no problem by itself (times that are sought,
-  // missions of other kinds), which is drawn when it is done. `before`: what is drawn of it already.
+  // As `lapwing run` does: what is settled, and what is no problem by itself (times that are
+  // sought, missions of other kinds), which is drawn when it is done. `before`: what is drawn of it
+  // already.
   void plan_whole(const Value& layer, const std::optional<Trajectory>& before) {
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();

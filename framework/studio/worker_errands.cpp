@@ -133,8 +133,9 @@ Frame WorkerErrands::check(const Frame& asked) {
   const fs::path shipped = fs::weakly_canonical(settings.scripts);
   settings.observe_script = [&](const fs::path& file) {
     const fs::path whole = fs::weakly_canonical(file);
-    const bool own = std::mismatch(shipped.begin(), shipped.end(), whole.begin(), whole.end())
-                         .first != shipped.end();
+    const bool own =
+        std::mismatch(shipped.begin(), shipped.end(), whole.begin(), whole.end()).first !=
+        shipped.end();
     if (own && file != script_) files_.insert(whole.string());
   };
   const std::unique_ptr<Mission> mission =
@@ -293,10 +294,11 @@ Frame WorkerErrands::save_report(const Frame& asked) const {
   const fs::path folder = fs::absolute(answer.at("plan").as_text()).parent_path();
   Value files = Value::list(), loss = Value::list();
   // Both were planned by the same script from the beginning.
-  if (!asked.parts.empty() && trajectory_text(plan_in(asked)) !=
-                                  trajectory_text(read_plan(folder / "plan.json")))
+  if (!asked.parts.empty() &&
+      trajectory_text(plan_in(asked)) != trajectory_text(read_plan(folder / "plan.json")))
     loss.push_back(
-        "the flight that was saved is another than the one on display: the script or a file that it "
+        "the flight that was saved is another than the one on display: the script or a file that "
+        "it "
         "reads has changed; reload the studio");
   for (const char* name : {"report.html", "plan.json", "trajectory.csv", "run.log"})
     files.push_back((folder / name).string());

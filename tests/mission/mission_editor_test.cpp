@@ -195,6 +195,45 @@ TEST_F(Editing, MissionsTellWhatTheyDeclare) {
   EXPECT_TRUE(found);
 }
 
+// A tower in the way leaves two ways past it: the flight that is given decides.
+TEST_F(Editing, BeginsAtTheFlightThatIsGiven) {
+  open(R"(return require("mission.film").shot {
+    keyframes = { { time = 0, position = {-12, 1, 3}, yaw_deg = 0 },
+                  { time = 20, position = {12, 1, 3} } },
+    obstacles = { { type = "cylinder", base = {0, 0, -20}, radius = 3, height = 60 } } })");
+  const auto side = [](const Trajectory& flight) {
+    return flight.samples[flight.samples.size() / 2].position.y();
+  };
+  const std::vector<std::string> other{"keyframes[1].position=[-12,-1,3]",
+                                       "keyframes[2].position=[12,-1,3]"};
+  EXPECT_GT(side(edit({}).plan->trajectory), 3);
+  const Trajectory right = planned(other).plan.trajectory;
+  EXPECT_LT(side(right), -3);
+  editor_->begin_at(right);
+  EXPECT_LT(side(edit({"keyframes[1].position=[-12,0.2,3]"}).plan->trajectory), -3);
+  // Once, and then from the last point again.
+  EXPECT_LT(side(edit({"keyframes[1].position=[-12,0.3,3]"}).plan->trajectory), -3);
+  // Another motion is no start.
+  Trajectory foreign = right;
+  foreign.motion.name = "other";
+  editor_->begin_at(foreign);
+  EXPECT_LT(side(edit({"keyframes[1].position=[-12,0.4,3]"}).plan->trajectory), -3);
+}
+
+TEST_F(Editing, TheScriptAndItsModulesAreTold) {
+  write_file_atomically(folder_ / "part.lua", "return 3");
+  write_file_atomically(folder_ / "shot.lua", "require 'part'\nreturn nil +");
+  MissionSettings hearing = settings();
+  std::vector<std::string> heard;
+  hearing.observe_script = [&](const std::filesystem::path& file) {
+    heard.push_back(file.filename().string());
+  };
+  EXPECT_THROW(Mission(folder_ / "shot.lua", hearing), InputError);
+  write_file_atomically(folder_ / "shot.lua", "require 'part'\nreturn nil");
+  EXPECT_THROW(Mission(folder_ / "shot.lua", hearing), InputError);
+  EXPECT_EQ(heard, (std::vector<std::string>{"shot.lua", "shot.lua", "part.lua"}));
+}
+
 TEST_F(Editing, BeginsFromAPlan) {
   open(kShot);
   const MissionResult cold = planned({});

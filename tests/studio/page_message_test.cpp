@@ -12,6 +12,7 @@ const char* const kGood[] = {
     R"({"type": "hello", "token": "t", "tab": "a", "seen": 3})",
     R"({"type": "preview", "edit": 4, "patch": [{"path": "margin", "value": 2}]})",
     R"({"type": "gesture", "id": "g", "base": 0, "label": "", "patch": []})",
+    R"({"type": "gesture", "id": "g", "base": 0, "label": "", "patch": [], "after": ["f"]})",
     R"({"type": "undo", "id": "u", "base": 2})",
     R"({"type": "redo", "id": "u", "base": 2})",
     R"({"type": "rest"})",
@@ -26,7 +27,7 @@ const char* const kGood[] = {
 
 TEST(PageMessages, AreReadWithTheirFields) {
   for (const char* text : kGood) EXPECT_NO_THROW(page_message(text)) << text;
-  const PageMessage fly = page_message(kGood[8]);
+  const PageMessage fly = page_message(kGood[9]);
   EXPECT_EQ(fly.type, PageMessageType::fly);
   EXPECT_EQ(fly.wind[1], -1);
   EXPECT_EQ(fly.gust, 0.5);
@@ -46,7 +47,7 @@ TEST(PageMessages, WhatIsMissingUnknownOrOfAnotherTypeIsRefused) {
       Value other = good;
       other.set(key, value.is_map() ? Value(3) : Value(Value::Map{{"x", Value(1)}}));
       EXPECT_THROW(page_message(to_json(other)), InputError) << text << key;
-      if (key == "parameters" || key == "uncertified" || key == "gust") continue;
+      if (key == "parameters" || key == "uncertified" || key == "gust" || key == "after") continue;
       Value less = good;
       std::erase_if(less.as_map(), [&](const auto& entry) { return entry.first == key; });
       EXPECT_THROW(page_message(to_json(less)), InputError) << text << key;
@@ -75,6 +76,8 @@ TEST(PageMessages, WhatIsOutOfRangeIsRefused) {
            R"({"type": "picture", "edit": 1, "time": 1, "width": 640, "height": 100000})",
            R"({"type": "picture", "edit": 1, "time": 1, "width": 0, "height": 10})",
            R"({"type": "resolve_script", "take": "none"})",
+           R"({"type": "gesture", "id": "g", "base": 0, "label": "", "patch": [], "after": [3]})",
+           R"({"type": "gesture", "id": "g", "base": 0, "label": "", "patch": [], "after": [""]})",
            "{\"type\": \"undo\", \"id\": \"" + long_text + "\", \"base\": 2}",
            "{\"type\": \"" + long_text + "\"}",
            std::string(100000, '[')})

@@ -21,6 +21,7 @@
 #include "framework/studio/option_path.h"
 #include "framework/studio/patch.h"
 #include "framework/trajectory/plan.h"
+#include "framework/verify/certificate.h"
 #include "tests/studio/page_client.h"
 
 namespace lapwing {

@@ -139,6 +139,137 @@ TEST_F(StudioProgram, TheLayerPlansTheSameFlightByteForByte) {
   EXPECT_FALSE(fs::exists(folder_ / "castle_flyover.studio.yaml"));
 }
 
+// A ball in the way, which the flight passes on the side that the drag began on; planned from the
+// beginning it takes the other side.
+TEST_F(StudioProgram, WhatIsCertifiedIsTheFlightThatTheScriptPlans) {
+  write_file_atomically(folder_ / "past.lua", R"(local film = require "mission.film"
+return film.shot {
+  name = "past", duration = 20,
+  keyframes = { { time = 0, position = {-12, 1, 3}, yaw_deg = 0 },
+                { time = 20, position = {12, 1, 3} } },
+  obstacles = { { type = "cylinder", name = "tower", base = {0, 0, -20}, radius = 3,
+                  height = 60 } },
+})");
+  script_ = "past.lua";
+  PageClient page(serve(), "a");
+  const auto side = [](const Value& answer) {
+    const Value::List& y = answer.at("plan").at("columns").at("y").as_list();
+    return y[y.size() / 2].as_number();
+  };
+  const auto last_of = [](const Value& m) {
+    return m.at("type") == Value("answer") && !m.at("certificate").is_null();
+  };
+  const Value first = page.until_judged(0);
+  ASSERT_EQ(first.at("grade"), Value("certified"));
+  ASSERT_GT(side(first), 3);
+  Value last;
+  for (int i = 1; i <= 8; ++i) {
+    const double y = 1 - 0.25 * i;
+    page.send(preview(i, {change("keyframes[1].position", place(-12, y, 3)),
+                          change("keyframes[2].position", place(12, y, 3))}));
+    last = page.until(last_of);
+  }
+  EXPECT_GT(side(last), 3);  // as it was dragged
+  page.send(gesture("g", 0,
+                    {change("keyframes[1].position", place(-12, -1, 3)),
+                     change("keyframes[2].position", place(12, -1, 3))}));
+  const Value settled = page.until_judged(1);
+  ASSERT_EQ(settled.at("grade"), Value("certified"));
+  EXPECT_LT(side(settled), -3);
+  EXPECT_NE(settled.at("message").as_text().find("another way"), std::string::npos);
+  const auto same_as_run = [&](const char* id, std::vector<std::string> words) {
+    page.send_text(std::string(R"({"type": "export", "format": "csv", "id": ")") + id + R"("})");
+    const fs::path csv = page.until_type("wrote").at("files").as_list()[0].as_text();
+    words.insert(words.begin(), {"run", "past.lua", "-o", id, "--quiet"});
+    EXPECT_EQ(run(words), 0) << errors_;
+    EXPECT_TRUE(read_file(csv) == read_file(folder_ / id / "trajectory.csv")) << id;
+  };
+  page.send_text(R"({"type": "save_report", "id": "s"})");
+  EXPECT_EQ(page.until_type("wrote").at("loss"), Value::list());
+  same_as_run("edited", {"--config", "past.studio.yaml"});
+  // Taken back, it is the flight of before, on its side.
+  page.send_text(R"({"type": "undo", "id": "u", "base": 1})");
+  const Value undone = page.until_judged(2);
+  EXPECT_EQ(to_json(undone.at("plan")), to_json(first.at("plan")));
+  same_as_run("undone", {});
+  // And again after a restart, where nothing is remembered.
+  server_->end(SIGTERM);
+  PageClient other(serve(), "b");
+  EXPECT_EQ(to_json(other.until_judged(2).at("plan")), to_json(first.at("plan")));
+}
+
+// The certificate has what `lapwing run` judges, provenance too.
+TEST_F(StudioProgram, TheCertificateIsTheOneOfARun) {
+  use("filming/castle_flyover.lua");
+  PageClient page(serve({"--set", "margin=0.8"}), "a");
+  EXPECT_EQ(page.until_judged(1).at("certificate").at("passed"), Value(true));
+  page.send(gesture("g", 1, {change("margin", 0.75)}));
+  const Value judged = page.until_judged(2);
+  ASSERT_EQ(run({"run", "castle_flyover.lua", "--set", "margin=0.75", "-o", "run", "--quiet"}), 0);
+  const Certificate theirs =
+      Certificate::from_value(read_plan(folder_ / "run/plan.json").certificate);
+  const Value::List& mine = judged.at("certificate").at("checks").as_list();
+  ASSERT_EQ(mine.size(), theirs.checks.size());
+  bool provenance = false;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    EXPECT_EQ(mine[i].at("name"), Value(theirs.checks[i].name));
+    EXPECT_EQ(mine[i].at("text").as_text(), result_of(theirs.checks[i]));
+    provenance = provenance || (theirs.checks[i].name == "provenance" && mine[i].find("detail"));
+  }
+  EXPECT_TRUE(provenance);
+}
+
+// Zero problems, or several: the meshes that the script names are pictured and exported.
+TEST_F(StudioProgram, FilmsOfSeveralProblemsShowTheirMeshes) {
+  write_file_atomically(folder_ / "tent.obj",
+                        "v 0 -20 0\nv 4 -20 0\nv 2 -16 0\nv 2 -18 3\n"
+                        "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  write_file_atomically(folder_ / "tent.lua", R"(local film = require "mission.film"
+return film.shot {
+  name = "tent", timing = "path_first",
+  subject = { position = {0, 0, 2}, height = 4, width = 5 },
+  keyframes = { { time = 0, position = {-14, 0, 5} }, { time = 12, position = {0, 12, 6} },
+                { time = 24, position = {14, 0, 5} } },
+  obstacles = { { type = "mesh", name = "tent", file = "tent.obj" } },
+})");
+  script_ = "tent.lua";
+  PageClient page(serve(), "a");
+  page.until_judged(0);
+  const auto ask = [&](const std::string& text) {
+    page.send_text(text);
+    return page.until([](const Value& m) {
+      return m.at("type") == Value("picture") || m.at("type") == Value("wrote") ||
+             m.at("type") == Value("failed");
+    });
+  };
+  const Value picture =
+      ask(R"({"type": "picture", "edit": 1, "time": 10, "width": 64, "height": 36})");
+  EXPECT_EQ(picture.at("type"), Value("picture")) << to_json(picture);
+  const Value gltf = ask(R"({"type": "export", "id": "e", "format": "gltf", "uncertified": true})");
+  ASSERT_EQ(gltf.at("type"), Value("wrote")) << to_json(gltf);
+  EXPECT_NE(read_file(gltf.at("files").as_list()[0].as_text()).find("tent"), std::string::npos);
+}
+
+TEST_F(StudioProgram, ModulesBesideTheScriptAreFollowed) {
+  write_file_atomically(folder_ / "places.lua", "return { {-10, 0, 5}, {10, 0, 5} }\n");
+  write_file_atomically(folder_ / "shot.lua",
+                        R"(local film, places = require "mission.film", require "places"
+return film.shot { keyframes = { { time = 0, position = places[1], yaw_deg = 0 },
+                                 { time = 10, position = places[2] } } })");
+  script_ = "shot.lua";
+  PageClient page(serve(), "a");
+  page.until_judged(0);
+  write_file_atomically(folder_ / "places.lua", "return { {-10, 0, 5}, {10, 4, 5} }\n");
+  const Value told = page.until_type("document");
+  EXPECT_EQ(to_json(told.at("patch"), -1),
+            R"([{"path":"keyframes[2].position","value":[10.0,4.0,5.0]}])");
+  write_file_atomically(folder_ / "places.lua", "return {\n");
+  EXPECT_NE(page.until_type("script_error").at("message").as_text().find("places.lua"),
+            std::string::npos);
+  write_file_atomically(folder_ / "places.lua", "return { {-10, 0, 5}, {10, 4, 5} }\n");
+  page.until_type("script_loaded");
+}
+
 // A film of a file: its keyframes stand in the document, and what is edited in the layer.
 TEST_F(StudioProgram, FilmsOfFilesAreEditedLikeOthers) {
   write_file_atomically(folder_ / "file.json", R"({"refLLH": {"lat": 47, "lng": 8, "altitude": 400},
@@ -223,9 +354,11 @@ TEST_F(StudioProgram, FliesPicturesAndExports) {
       Value("failed"));
   const Value gltf = ask(R"({"type": "export", "id": "e1", "format": "gltf", "parameters": {}})");
   EXPECT_FALSE(gltf.at("loss").as_list().empty());
-  EXPECT_TRUE(fs::exists(folder_ / gltf.at("files").as_list()[0].as_text()));
+  const fs::path written = gltf.at("files").as_list()[0].as_text();
+  EXPECT_TRUE(written.is_absolute() && fs::exists(written)) << written;
   const Value csv = ask(R"({"type": "export", "id": "e2", "format": "csv"})");
-  EXPECT_EQ(csv.at("files").as_list()[0], Value("out/castle_flyover/castle_flyover.csv"));
+  EXPECT_EQ(csv.at("files").as_list()[0],
+            Value((fs::canonical(folder_) / "out/castle_flyover/castle_flyover.csv").string()));
   EXPECT_NE(ask(R"({"type": "export", "id": "e3", "format": "cvs"})")
                 .at("why")
                 .as_text()
@@ -414,6 +547,9 @@ TEST_F(StudioProgram, SaysWhatIsInTheWayOfStarting) {
   fails({"other.lua", "--assets", "nowhere"}, "no index.html");
   fails({"page/index.html", "--assets", "page", "--port", "0"}, "--port");
   fails({"page/studio.js", "--assets", "page", "--data", "nowhere"}, "nowhere");
+  fails({"other.lua", "--assets", "page", "--set", "margin=-1"}, "margin");
+  fails({"other.lua", "--assets", "page", "--set", "sandbox.memory=9"}, "sandbox.memory");
+  fails({"other.lua", "--assets", "page", "--config", "none"}, "none");
   EXPECT_FALSE(fs::exists(folder_ / "other.studio.journal"));
 }
 

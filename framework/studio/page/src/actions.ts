@@ -5,7 +5,8 @@ import { actionOf } from "./state/keys";
 import type { Vec3 } from "./state/types";
 import type { Rate, Studio } from "./studio";
 import { byId, forgetColours, typing } from "./view/dom";
-import { duplicate, order, remove, type Selected } from "./panel/selected";
+import { duplicate, order, pace, remove, type Selected } from "./panel/selected";
+import type { CompareDialog } from "./panel/compare";
 import type { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
 import type { FilmList } from "./panel/film_list";
 import type { Notices } from "./panel/notices";
@@ -19,6 +20,7 @@ export interface Parts {
   exports: ExportDialog;
   flying: FlyDialog;
   help: HelpDialog;
+  compare: CompareDialog;
   frame(): void;
   keyframeHere(): void;
   clickMiddle(): void;
@@ -78,7 +80,7 @@ export class Actions {
     const simple: Record<string, string> = {
       undo: "undo", redo: "redo", fly: "fly", export: "export", report: "report", theme: "theme",
       help: "help", place: "place", insert: "insert", "add-subject": "subject", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
-      frame: "frame", play: "play", cut: "cut", draw: "draw",
+      frame: "frame", play: "play", cut: "cut", draw: "draw", margins: "margins", compare: "compare",
     };
     for (const [id, action] of Object.entries(simple)) {
       byId(id).addEventListener("click", () => this.run(action, ""));
@@ -129,6 +131,10 @@ export class Actions {
       case "move": return this.arrow(key, size, shift);
       case "lift": return this.moveSelected([0, 0, key === "PageUp" ? size : -size]);
       case "retime": return this.retime(key === "Alt+ArrowLeft" ? -0.1 : 0.1);
+      case "pace": return pace(studio, key === "Alt+PageUp" ? "faster" : "slower");
+      case "walk": studio.setMode(studio.mode === "walk" ? "orbit" : "walk"); return true;
+      case "margins": studio.margins = !studio.margins; studio.tell("look"); return true;
+      case "compare": parts.compare.open(); return true;
       case "order": order(studio, key === "Alt+ArrowUp" ? -1 : 1); return true;
       case "insert": parts.list.insertAtHead(); return true;
       case "place": studio.setMode(studio.mode === "place" ? "orbit" : "place"); return true;

@@ -4,6 +4,7 @@ import "./app.css";
 import * as THREE from "three";
 import { Actions } from "./actions";
 import { CertificateList } from "./panel/certificate";
+import { CompareDialog } from "./panel/compare";
 import { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
 import { Feel } from "./panel/feel";
 import { FilmList } from "./panel/film_list";
@@ -25,6 +26,7 @@ import { byId, forgetColours } from "./view/dom";
 import { wireFraming } from "./view/framing";
 import { Gizmo } from "./view/gizmo";
 import { Ground } from "./view/ground";
+import { Hulls } from "./view/hulls";
 import { keyframeHere } from "./view/look_through";
 import { Navigation } from "./view/navigate";
 import { Paths } from "./view/paths";
@@ -33,6 +35,7 @@ import { Pins } from "./view/pins";
 import { Preview, previewControls } from "./view/preview";
 import { Solids } from "./view/solids";
 import { Stage } from "./view/stage";
+import { Walk } from "./view/walk";
 
 const theme = recall("lapwing-theme");
 if (theme === "light" || theme === "dark") document.documentElement.dataset.theme = theme;
@@ -92,6 +95,7 @@ gizmo.controls.addEventListener("dragging-changed", () => {
 new Paths(studio, stage);
 new Pins(studio, stage, byId("pins"));
 const pick = new Pick(studio, stage, solids, gizmo);
+new Walk(studio, stage, pick);
 new Preview(studio, stage);
 wireFraming(studio);
 byId("picture-controls").append(previewControls(studio));
@@ -116,16 +120,21 @@ function bounds(): THREE.Box3 {
   return box;
 }
 
+// Where something new begins: where one looks.
 function centre(): Vec3 {
-  const { x, y } = navigation.orbit.target;
+  const [x, y] = pick.lookedAtGround();
   return [Math.round(x), Math.round(y), 0];
 }
 
 const list = new FilmList(studio, centre);
+navigation.onButton = (button) => {
+  if (button === "keyframe") keyframeHere(studio, stage, pick);
+  else studio.setMode("orbit");
+};
 const selected = new Selected(studio);
 new Actions({
   studio, selected, list, notices, exports: new ExportDialog(studio),
-  flying: new FlyDialog(studio), help: new HelpDialog(),
+  flying: new FlyDialog(studio), help: new HelpDialog(), compare: new CompareDialog(studio),
   frame: () => navigation.frame(bounds()),
   keyframeHere: () => keyframeHere(studio, stage, pick),
   clickMiddle: () => pick.clickMiddle(),
@@ -138,8 +147,16 @@ let framed = false;
 // The document's obstacles, and what only the server knows: flight zones, the walls of a race.
 function obstacles(): JsonObject[] {
   const own = entries(studio.document, "obstacles");
+  const zones = entries(studio.document, "flight_zones").map((zone): JsonObject =>
+    ({ ...zone, type: "prism", side: "keep_inside", opaque: false }));
   const more = (session.world.obstacles ?? []).slice(own.length);
-  return [...own, ...more.map((one) => ({ ...one, type: one.shape }) as unknown as JsonObject)];
+  let known = 0;
+  const told = more.map((one) => {
+    const zone = one.shape === "prism" && one.side === "keep_inside" ? zones[known++] : undefined;
+    return zone ?? { ...one, type: one.shape } as unknown as JsonObject;
+  });
+  // One that the server has not heard of yet is drawn all the same.
+  return [...own, ...told, ...zones.slice(known)];
 }
 
 studio.on(["document", "world", "standing"], () => {
@@ -158,6 +175,9 @@ studio.on(["selection"], () => {
   if (studio.selection) showTab("film");
   stage.invalidate();
 });
+// After the surfaces that it is drawn around.
+new Hulls(studio, stage, solids);
+studio.on(["look"], () => byId("margins").setAttribute("aria-pressed", String(studio.margins)));
 studio.on(["mode"], () => {
   document.body.dataset.mode = studio.mode;
   byId("fly-camera").setAttribute("aria-pressed", String(studio.mode === "camera"));

@@ -8,12 +8,13 @@ import type { Edit, Item } from "./state/edits";
 import { entryOf, sameItem } from "./state/edits";
 import type { Session } from "./state/session";
 import type { Flown, JsonObject, Passage, Plan } from "./state/types";
-import type { Standing } from "./state/grades";
+import type { Version } from "./state/compare";
+import type { Grade, Standing } from "./state/grades";
 import { clamp } from "./state/vector";
 
 export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
-  "flown" | "look" | "playing";
-export type Mode = "orbit" | "place" | "aim" | "draw" | "camera";
+  "flown" | "look" | "playing" | "kept";
+export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk";
 export type Rate = 0.5 | 1 | 2;
 
 export class Studio {
@@ -25,7 +26,9 @@ export class Studio {
   guides = true;
   rendered = true;             // a picture by the server while paused
   framing = false;             // clicks in the picture place the subject
+  margins = false;             // hulls around obstacles
   flown: Flown | null = null;
+  kept: (Version & { grade: Grade }) | null = null;   // to be compared with
   private readonly listeners: { topics: Topic[]; then: (topic: Topic) => void }[] = [];
   private cached: { document: JsonObject; film: Film; guess: Plan } | null = null;
   private lastFrame = 0;
@@ -134,6 +137,11 @@ export class Studio {
     if (next === this.time) return;
     this.time = next;
     this.tell("time");
+  }
+
+  keep(version: Studio["kept"]): void {
+    this.kept = version;
+    this.tell("kept");
   }
 
   setMode(mode: Mode): void {

@@ -31,6 +31,10 @@ export class CertificateList {
     } else {
       this.summary.textContent = this.shown ? "Being checked again\u2026" : "Not checked yet.";
     }
+    // A mend is of this certificate: it is pressed once, until there is another.
+    for (const mend of this.list.querySelectorAll<HTMLButtonElement>(".mend button")) {
+      mend.disabled = certificate === null;
+    }
     if (!certificate || certificate === this.shown) return;
     this.shown = certificate;
     refill(this.list, ...sortedChecks(certificate).map((check) => this.row(check)));

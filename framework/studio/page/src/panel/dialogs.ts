@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dialogs: export, flying with wind, the sheet of keys.
 import { bindings, keyText } from "../state/keys";
+import { exporterGroups } from "../state/installed";
 import { fieldsOf } from "../state/schema";
 import { show } from "../state/units";
 import type { Flown, JsonObject, ServerMessage } from "../state/types";
@@ -42,13 +43,16 @@ export class ExportDialog {
   }
 
   open(): void {
-    const all = [...(this.studio.session.choices.exporters ?? []),
-                 { name: LUA, summary: "the film as it is now, as a script of its own" },
-                 { name: REPORT, summary: "a folder with plan, report, pictures and log, as " +
-                   "lapwing run writes it" }];
-    if (this.choice.options.length !== all.length) {
-      this.choice.replaceChildren(...all.map((one) => el("option", { value: one.name },
-        [one.name, one.summary].filter(Boolean).join(" \u2013 "))));
+    const all = [...exporterGroups(this.studio.session.choices.exporters ?? []),
+                 { title: "For Lapwing", choices: [
+                   { name: REPORT, summary: "a folder with plan, report, pictures and log, as " +
+                     "lapwing run writes it" },
+                   { name: LUA, summary: "the film as it is now, as a script of its own" }] }];
+    const count = all.reduce((sum, group) => sum + group.choices.length, 0);
+    if (this.choice.options.length !== count) {
+      this.choice.replaceChildren(...all.map(({ title, choices }) => el("optgroup", { label: title },
+        ...choices.map((one) => el("option", { value: one.name },
+          [one.name, one.summary].filter(Boolean).join(" \u2013 "))))));
     }
     this.result.replaceChildren();
     this.showForm();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The film as a list: keyframes, subjects, obstacles; a click selects, the buttons add.
-import { obstacleKinds, addedObstacle, addedSubject, inserted, nameOf, sameItem, type Item } from "../state/edits";
+import { obstacleKinds, addedObstacle, corneredItem, addedSubject, inserted, nameOf, sameItem, type Item } from "../state/edits";
 import { entries, targetAt } from "../state/film";
 import { shots, withShot, type Shot } from "../state/shots";
 import { positionAt } from "../state/samples";
@@ -13,7 +13,8 @@ export class FilmList {
   constructor(private readonly studio: Studio, private readonly centre: () => Vec3) {
     studio.on(["document", "standing", "selection", "mode"], () => this.show());
     const kind = byId<HTMLSelectElement>("add-obstacle");
-    kind.append(...obstacleKinds.map((one) => el("option", { value: one.type }, one.text)));
+    kind.append(...obstacleKinds.map((one) => el("option", { value: one.type }, one.text)),
+                el("option", { value: "flight_zone" }, "Flight zone (stay inside)"));
     kind.addEventListener("change", () => {
       const { value } = kind;
       kind.value = "";
@@ -41,7 +42,8 @@ export class FilmList {
     const text = JSON.stringify([
       film.keyframes.map((k) => [k.position, studio.timeOf(k.index)]), studio.selection,
       entries(document, "subjects").map((s) => s.name),
-      entries(document, "obstacles").map((o) => [o.name, o.type])]);
+      entries(document, "obstacles").map((o) => [o.name, o.type]),
+      entries(document, "flight_zones").map((o) => o.name)]);
     if (text === this.shown) return;
     this.shown = text;
     const rows = film.keyframes.map((keyframe, index) => this.row(
@@ -57,12 +59,18 @@ export class FilmList {
       others.push(this.row({ kind: "obstacle", index }, "\u25a0",
         String(entry.name || `Obstacle ${index + 1}`), String(entry.type ?? "")));
     });
+    entries(document, "flight_zones").forEach((entry, index) => {
+      others.push(this.row({ kind: "zone", index }, "\u25a1",
+        String(entry.name || `Flight zone ${index + 1}`), "stay inside"));
+    });
     refill(byId("thing-list"), ...others);
   }
 
   private row(item: Item, mark: string, text: string, more: string): HTMLElement {
     const { studio } = this;
-    const chosen = sameItem(item, studio.selection);
+    const chosen = sameItem(item, studio.selection) ||
+      (studio.selection?.kind === "corner" && sameItem(item, corneredItem(studio.document,
+                                                                          studio.selection)));
     return el("li", {}, el("button", {
       type: "button", class: `item ${item.kind}`, "aria-pressed": String(chosen),
       "data-key": `${item.kind}-${item.index}`,
@@ -92,9 +100,10 @@ export class FilmList {
   }
 
   addObstacle(type = "box"): void {
-    const count = entries(this.studio.document, "obstacles").length;
+    const zone = type === "flight_zone";
+    const index = entries(this.studio.document, zone ? "flight_zones" : "obstacles").length;
     if (this.studio.edit(addedObstacle(this.studio.document, type, this.centre()))) {
-      this.studio.select({ kind: "obstacle", index: count });
+      this.studio.select({ kind: zone ? "zone" : "obstacle", index });
     }
   }
 

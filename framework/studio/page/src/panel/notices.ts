@@ -130,8 +130,10 @@ export class Hints {
       aim: "Click what the camera is to look at, or press Enter for the middle of the view. " +
         "Esc ends it.",
       draw: "Draw the path with the mouse, from where the film ends. Esc ends it.",
+      walk: "Hold the mouse on the ground and lead the subject: the film runs meanwhile. Or Enter, the " +
+        "arrows (Shift runs), and Enter again. Esc drops it.",
       camera: "You are the camera: W A S D moves, Q E down and up, drag or arrows turn. K makes a " +
-        "keyframe of what you see, Esc ends it.",
+        "keyframe of what you see, Esc ends it. A gamepad does the same: sticks, A for a keyframe.",
     };
     const special = modes[this.studio.mode];
     if (special) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is selected, as numbers to type.
-import { entryOf, nameOf, pathOfItem, retimed, timeRange, without, deleted, duplicated, reordered,
-         moved, placeOfItem, type Item } from "../state/edits";
+import { addedCorner, corneredItem, entryOf, nameOf, pathOfItem, retimed, timeRange, without, deleted, duplicated, reordered,
+         moved, placeOfItem, slowed, type Item } from "../state/edits";
 import { entries } from "../state/film";
 import { labelOf, type Field } from "../state/schema";
 import { isObject } from "../state/document";
@@ -60,7 +60,12 @@ export class Selected {
 
   private fields(item: Item, entry: JsonObject): Field[] {
     const { document, session } = this.studio;
-    if (item.kind === "obstacle") return obstacleFields(item.index, entry);
+    if (item.kind === "obstacle") return obstacleFields(`obstacles[${item.index + 1}]`, entry);
+    if (item.kind === "zone") return obstacleFields(`flight_zones[${item.index + 1}]`, entry);
+    if (item.kind === "corner") {
+      const corner = placeOfItem(document, item);
+      return corner ? placeFields("corner", corner).slice(0, 2) : [];
+    }
     const path = pathOfItem(document, item) ?? `subjects[${item.index + 1}]`;
     const place = placeOfItem(document, item);
     const fields = place ? placeFields(path, place) : [];
@@ -120,7 +125,7 @@ export class Selected {
       if (place && /^[012]$/.test(part)) {
         const to = place.slice() as Vec3;
         to[Number(part)] = Number(value);
-        studio.edit(item.kind === "obstacle" ? this.corner(path, Number(part), Number(value))
+        studio.edit(item.kind === "obstacle" ? this.point(path, Number(part), Number(value))
           : moved(studio.document, item, to));
       }
       return;
@@ -152,7 +157,7 @@ export class Selected {
     studio.tell("selection");
   }
 
-  private corner(path: string, axis: number, value: number): { label: string;
+  private point(path: string, axis: number, value: number): { label: string;
     patch: { path: string; value: Json }[] } {
     const found = path.match(/\.([a-z]+)$/)?.[1] ?? "";
     const entry = this.studio.selection && entryOf(this.studio.document, this.studio.selection);
@@ -187,8 +192,21 @@ export class Selected {
       list.push(button("Duplicate", "Duplicate this keyframe (D)", () => duplicate(studio)));
       list.push(button("\u2191", "Swap with the keyframe before (Alt + up)", () => order(studio, -1)));
       list.push(button("\u2193", "Swap with the keyframe after (Alt + down)", () => order(studio, 1)));
+      list.push(button("Faster", "Less time for the leg to this keyframe (Alt + page up)",
+                       () => pace(studio, "faster")));
+      list.push(button("Slower", "More time for the leg to this keyframe (Alt + page down)",
+                       () => pace(studio, "slower")));
       list.push(button("Aim", "Click a place for the camera to look at (L)",
                        () => studio.setMode("aim")));
+    }
+    const cornered = corneredItem(studio.document, item);
+    if (cornered) {
+      list.push(button("Add corner", "A corner in the middle of the next side (D)",
+                       () => addCorner(studio)));
+    }
+    if (item.kind === "subject") {
+      list.push(button("Walk", "Walk its way with the mouse or the arrows, in real time (J)",
+                       () => studio.setMode("walk")));
     }
     if (item.kind !== "track") {
       list.push(button("Delete", "Delete (Del)", () => remove(studio)));
@@ -197,7 +215,28 @@ export class Selected {
   }
 }
 
+export function addCorner(studio: Studio): void {
+  const item = studio.selection;
+  const made = item && addedCorner(studio.document, item);
+  const owner = corneredItem(studio.document, item);
+  if (!made || !owner || !studio.edit(made)) return;
+  studio.select({ kind: "corner", of: owner.kind as "obstacle" | "zone", index: owner.index,
+                  point: made.point });
+}
+
+const PACE = 1.05;      // a press
+
+// The leg to the selected keyframe; of the first, the one that follows.
+export function pace(studio: Studio, how: "faster" | "slower"): boolean {
+  const item = studio.selection;
+  if (item?.kind !== "keyframe") return false;
+  studio.edit(slowed(studio.document, Math.max(1, item.index),
+                     how === "slower" ? PACE : 1 / PACE));
+  return true;
+}
+
 export function duplicate(studio: Studio): void {
+  if (corneredItem(studio.document, studio.selection)) return addCorner(studio);
   if (studio.selection?.kind !== "keyframe") return;
   const made = duplicated(studio.document, studio.selection.index);
   if (made && studio.edit(made)) studio.select({ kind: "keyframe", index: made.index });
@@ -215,13 +254,16 @@ export function remove(studio: Studio): string | null {
   const item = studio.selection;
   if (!item) return null;
   const edit = deleted(studio.document, item);
-  if (!edit) return "A film needs at least two keyframes.";
+  if (!edit) {
+    return item.kind === "corner" ? "A zone needs at least three corners."
+      : item.kind === "track" ? "Walk the way of the subject anew to change its places."
+        : "A film needs at least two keyframes.";
+  }
   studio.edit(edit);
   return null;
 }
 
-function obstacleFields(index: number, entry: JsonObject): Field[] {
-  const base = `obstacles[${index + 1}]`;
+function obstacleFields(base: string, entry: JsonObject): Field[] {
   const fields: Field[] = [];
   for (const [name, value] of Object.entries(entry)) {
     const place = vec(value);

@@ -10,27 +10,39 @@ import { Form } from "./form";
 
 // Kinds of choices, and where the document has them.
 const kinds = ["vehicle", "camera", "model", "solver", "planner", "controller"];
+const flying = new Set(["vehicle", "camera"]);
+
+// What most films are told, in plain words; all else is for who knows how films are planned.
+const rules: Record<string, string> = {
+  margin: "Distance from obstacles", ground: "Height of the ground", speed_limit: "Speed limit",
+  battery: "Longest flight", duration: "Length of the film", speed: "Speed between keyframes",
+  start: "Begins", finish: "Ends", framing: "Subject in the picture",
+  line_of_sight: "Free view of it", stretch: "All times, times",
+};
 
 export class Setup {
   private readonly chosen: Form;
   private readonly solver: Form;
   private readonly film: Form;
+  private readonly planning: Form;
 
   constructor(private readonly studio: Studio) {
     const commit = (field: Field, value: Json): void => this.commit(field, value);
     this.chosen = new Form(commit);
     this.solver = new Form(commit);
     this.film = new Form(commit);
+    this.planning = new Form(commit);
     byId("setup-choices").append(this.chosen.root);
     byId("setup-solver").append(this.solver.root);
     byId("setup-film").append(this.film.root);
+    byId("setup-planning").append(this.planning.root);
     studio.on(["document"], () => this.show());
   }
 
   private show(): void {
     const { schema, choices } = this.studio.session;
     const { document } = this.studio;
-    this.chosen.show(kinds.flatMap((kind): Field[] => {
+    const chosen = kinds.flatMap((kind): Field[] => {
       const list = choices[kind];
       if (!list || list.length === 0) return [];
       const vehicle = this.vehicleTable();
@@ -45,13 +57,15 @@ export class Setup {
         path: kind, label: labelOf(kind), value: name, stated: value !== undefined,
         option: { name: kind, type: "choice", choices: names, summary: summaries(list) },
       }];
-    }));
-    const solver = pluginFields(choices.solver, document.solver, "solver");
-    this.solver.show(solver);
-    byId("solver-box").hidden = solver.length === 0;
+    });
+    this.chosen.show(chosen.filter(({ path }) => flying.has(path)));
+    this.solver.show(pluginFields(choices.solver, document.solver, "solver"));
     const shown = new Set(kinds);
-    this.film.show(fieldsOf(schema.filter((o) => !shown.has(o.name) && o.name !== "weights"),
-                            document));
+    const all = fieldsOf(schema.filter((o) => !shown.has(o.name) && o.name !== "weights"), document);
+    this.film.show(all.filter(({ path }) => rules[path] !== undefined)
+      .map((field) => ({ ...field, label: rules[field.path] as string })));
+    this.planning.show([...chosen.filter(({ path }) => !flying.has(path)),
+                        ...all.filter(({ path }) => rules[path] === undefined)]);
   }
 
   // A camera belongs to its vehicle: another one makes a vehicle of its own of it.

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The time line: ruler, play head, keyframes and cuts by their times, and below them speed,
 // acceleration, thrust with their limits.
-import { retimed, uncut } from "../state/edits";
-import { lanesOf, massOf, type Lane } from "../state/samples";
+import { retimed, slowed, uncut } from "../state/edits";
+import { legAt } from "../state/failures";
+import { lanesOf, massOf, valueAtTime, type Lane } from "../state/samples";
 import { clock, show } from "../state/units";
 import type { Plan } from "../state/types";
 import type { Studio } from "../studio";
+import { clamp } from "../state/vector";
 import { byId, colour, el, sized, whileHeld } from "../view/dom";
 
 const LEFT = 92;          // px, names of the lanes
 const RIGHT = 14;
 const THRESHOLD = 3;
+const NEAR = 6;           // px from a curve
 
 export class Timeline {
   private readonly ruler = byId<HTMLCanvasElement>("ruler");
@@ -22,15 +25,23 @@ export class Timeline {
   private waiting = false;
   private shownCuts = "";
   private scale = 10;      // s in the width
+  // The lane of speed as it was drawn last.
+  private speed: { times: number[]; values: number[]; y(value: number): number;
+                   valueAt(y: number): number } | null = null;
 
   constructor(private readonly studio: Studio) {
     studio.on(["document", "standing"], () => this.refresh());
     studio.on(["selection"], () => this.refreshMarks());
     studio.on(["time", "playing", "look", "flown"], () => this.later());
     new ResizeObserver(() => this.refresh()).observe(this.lanes);
-    for (const canvas of [this.ruler, this.lanes]) {
-      canvas.addEventListener("pointerdown", (event) => this.scrub(event, canvas));
-    }
+    this.ruler.addEventListener("pointerdown", (event) => this.scrub(event, this.ruler));
+    this.lanes.addEventListener("pointerdown", (event) => {
+      if (this.onCurve(event)) this.bend(event);
+      else this.scrub(event, this.lanes);
+    });
+    this.lanes.addEventListener("pointermove", (event) => {
+      if (event.buttons === 0) this.lanes.style.cursor = this.onCurve(event) ? "ns-resize" : "";
+    });
     this.head.addEventListener("pointerdown", (event) => this.scrub(event, this.head));
     this.head.addEventListener("keydown", (event) => {
       const by = { ArrowLeft: -0.1, ArrowRight: 0.1, PageDown: -1, PageUp: 1 }[event.key];
@@ -68,6 +79,42 @@ export class Timeline {
     on.addEventListener("pointermove", move);
     on.addEventListener("pointerup", up);
     on.addEventListener("pointercancel", up);
+  }
+
+  // The speed that a place on the page stands for, and whether the curve of speed is there.
+  private onCurve(event: MouseEvent): boolean {
+    const { speed } = this;
+    if (!speed || !this.studio.editable) return false;
+    const value = valueAtTime({ time: speed.times, v: speed.values }, "v", this.timeAt(event.clientX));
+    if (value === null || !Number.isFinite(value)) return false;
+    return Math.abs(speed.y(value) - (event.clientY - this.lanes.getBoundingClientRect().top)) < NEAR;
+  }
+
+  // Up is faster, down is slower: the leg there takes as much less or more time. Sideways it scrubs.
+  private bend(event: PointerEvent): void {
+    const { studio, speed } = this;
+    const time = this.timeAt(event.clientX);
+    const leg = legAt(studio.film.keyframes, time, 0);
+    if (!speed || leg === null) return this.scrub(event, this.lanes);
+    const was = valueAtTime({ time: speed.times, v: speed.values }, "v", time) ?? 0;
+    const base = studio.session.settled();
+    const top = this.lanes.getBoundingClientRect().top;
+    let bends: boolean | null = null, factor = 1;
+    studio.play(false);
+    studio.seek(time);
+    whileHeld(this.lanes, event.pointerId, (e) => {
+      const dx = Math.abs(e.clientX - event.clientX), dy = Math.abs(e.clientY - event.clientY);
+      if (bends === null && Math.max(dx, dy) >= THRESHOLD) bends = dy > dx;
+      if (bends === false) studio.seek(this.timeAt(e.clientX));
+      if (!bends) return;
+      const wanted = Math.max(speed.valueAt(e.clientY - top), 1e-3);
+      factor = clamp(Math.max(was, 0.05) / wanted, 0.25, 4);
+      studio.drag(slowed(base, leg, factor));
+    }, (kept) => {
+      if (!bends) return;
+      if (kept) studio.edit(slowed(base, leg, factor));
+      else studio.session.rest();
+    });
   }
 
   private refresh(): void {
@@ -235,6 +282,12 @@ export class Timeline {
     if (high - low < 1e-9) high = low + 1;
     const y = (v: number): number =>
       top + height - pad - ((v - low) / (high - low)) * (height - 2 * pad);
+    if (lane.name === "Speed") {
+      this.speed = {
+        times, values: lane.values, y,
+        valueAt: (at) => low + ((top + height - pad - at) / (height - 2 * pad)) * (high - low),
+      };
+    }
     context.strokeStyle = colour("line");
     context.strokeRect(LEFT + 0.5, Math.round(top) + 0.5, this.width, Math.round(height) - 1);
     const beyond = (v: number): boolean => lane.limits.some((l) =>

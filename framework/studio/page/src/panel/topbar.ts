@@ -7,10 +7,11 @@ import { byId } from "../view/dom";
 
 // Each grade has a sign and a word, beside its colour.
 export const gradeLooks: Record<Grade, { sign: string; word: string; text: string }> = {
-  guess: { sign: "\u2026", word: "Guess",
-           text: "A first guess of the path. It knows nothing of the drone yet." },
-  step: { sign: "\u25d4", word: "Step", text: "One step towards a path that the drone can fly." },
-  converged: { sign: "\u25d1", word: "Converged", text: "The best path; its check is under way." },
+  guess: { sign: "\u2026", word: "Sketch",
+           text: "A line through the keyframes. It knows nothing of the drone yet." },
+  step: { sign: "\u25d4", word: "Planning", text: "On the way to a path that the drone can fly." },
+  converged: { sign: "\u25d1", word: "Checking",
+               text: "The best path; whether the drone can fly it is being checked." },
   certified: { sign: "\u2713", word: "Certified",
                text: "Checked independently: the drone can fly exactly this." },
   rejected: { sign: "\u2717", word: "Not flyable",

@@ -3,7 +3,7 @@
 // any other is set whole.
 import { entries, filmOf } from "./film";
 import { freeGround, lifted } from "./room";
-import { handleOf, movedObstacle } from "./shapes";
+import { cornersOf, flatCorners, handleOf, movedObstacle } from "./shapes";
 import type { Json, JsonObject, Patch, Vec3 } from "./types";
 import { add, minus, mix, rounded, vec } from "./vector";
 
@@ -13,20 +13,36 @@ export interface Edit {
 }
 
 export type Item =
-  | { kind: "keyframe" | "look" | "subject" | "obstacle"; index: number }
-  | { kind: "track"; index: number; point: number };
+  | { kind: "keyframe" | "look" | "subject" | "obstacle" | "zone"; index: number }
+  | { kind: "track"; index: number; point: number }
+  | { kind: "corner"; of: "obstacle" | "zone"; index: number; point: number };
+
+const pointOf = (item: Item): string =>
+  item.kind === "track" ? `${item.point}` : item.kind === "corner" ? `${item.of}${item.point}` : "";
 
 export const sameItem = (a: Item | null, b: Item | null): boolean =>
-  a !== null && b !== null && a.kind === b.kind && a.index === b.index &&
-  (a.kind !== "track" || b.kind !== "track" || a.point === b.point);
+  a !== null && b !== null && a.kind === b.kind && a.index === b.index && pointOf(a) === pointOf(b);
 
-const listNames: Record<Item["kind"], string> = {
+const listNames: Record<Exclude<Item["kind"], "corner">, string> = {
   keyframe: "keyframes", look: "keyframes", subject: "subjects", obstacle: "obstacles",
-  track: "subjects",
+  track: "subjects", zone: "flight_zones",
 };
 
+const listOf = (item: Item): string => listNames[item.kind === "corner" ? item.of : item.kind];
+
+// A flight zone is a prism that says nothing of its type.
 export function entryOf(document: JsonObject, item: Item): JsonObject | null {
-  return entries(document, listNames[item.kind])[item.index] ?? null;
+  const entry = entries(document, listOf(item))[item.index];
+  if (!entry) return null;
+  const shaped = listOf(item) === "flight_zones" ? { ...entry, type: "prism" } : entry;
+  return item.kind === "corner" && !cornersOf(shaped.corners)[item.point] ? null : shaped;
+}
+
+// The item whose corners are shown: the one that is selected, or that a selected corner is of.
+export function corneredItem(document: JsonObject, item: Item | null): Item | null {
+  const owner = item?.kind === "corner" ? { kind: item.of, index: item.index } as Item : item;
+  if (!owner || (owner.kind !== "obstacle" && owner.kind !== "zone")) return null;
+  return cornersOf(entryOf(document, owner)?.corners).length > 2 ? owner : null;
 }
 
 export function nameOf(document: JsonObject, item: Item): string {
@@ -39,11 +55,14 @@ export function nameOf(document: JsonObject, item: Item): string {
     case "subject": return name ? `subject ${name}` : `subject ${n}`;
     case "track": return `place ${item.point + 1} of ${name || `subject ${n}`}`;
     case "obstacle": return name ? `obstacle ${name}` : `obstacle ${n}`;
+    case "zone": return name ? `flight zone ${name}` : `flight zone ${n}`;
+    case "corner": return `corner ${item.point + 1} of ${name || `${item.of === "zone"
+      ? "flight zone" : "obstacle"} ${n}`}`;
   }
 }
 
 export function pathOfItem(document: JsonObject, item: Item): string | null {
-  const list = `${listNames[item.kind]}[${item.index + 1}]`;
+  const list = `${listOf(item)}[${item.index + 1}]`;
   if (item.kind === "keyframe") return `${list}.position`;
   if (item.kind === "look") return `${list}.look_at`;
   if (item.kind === "track") return `${list}.track[${item.point + 1}].position`;
@@ -58,7 +77,11 @@ export function placeOfItem(document: JsonObject, item: Item): Vec3 | null {
   if (!entry) return null;
   if (item.kind === "keyframe") return vec(entry.position);
   if (item.kind === "look") return vec(entry.look_at);
-  if (item.kind === "obstacle") return handleOf(entry);
+  if (item.kind === "obstacle" || item.kind === "zone") return handleOf(entry);
+  if (item.kind === "corner") {
+    const corner = cornersOf(entry.corners)[item.point];
+    return corner ? [...corner, handleOf(entry)?.[2] ?? 0] : null;
+  }
   const track = Array.isArray(entry.track) ? entry.track : [];
   if (item.kind === "track") return vec((track[item.point] as JsonObject | undefined)?.position);
   return vec(entry.position) ?? vec((track[0] as JsonObject | undefined)?.position);
@@ -71,9 +94,15 @@ export function moved(document: JsonObject, item: Item, to: Vec3): Edit | null {
   const label = `Move ${nameOf(document, item)}`;
   const path = pathOfItem(document, item);
   if (path) return { label, patch: [{ path, value: rounded(to) }] };
-  if (item.kind === "obstacle") {
-    const patch = movedObstacle(entry, `obstacles[${item.index + 1}]`, minus(to, from));
+  const list = `${listOf(item)}[${item.index + 1}]`;
+  if (item.kind === "obstacle" || item.kind === "zone") {
+    const patch = movedObstacle(entry, list, minus(to, from));
     return patch.length > 0 ? { label, patch } : null;
+  }
+  if (item.kind === "corner") {
+    const corners = cornersOf(entry.corners);
+    corners[item.point] = [to[0], to[1]];
+    return { label, patch: [{ path: `${list}.corners`, value: flatCorners(corners) }] };
   }
   // A subject with a track moves as a whole.
   const by = minus(to, from);
@@ -163,6 +192,20 @@ export function duplicated(document: JsonObject, index: number): (Edit & { index
   return { ...withKeyframes(`Duplicate keyframe ${index + 1}`, list, end), index: index + 1 };
 }
 
+// A corner in the middle of the side after this one.
+export function addedCorner(document: JsonObject, item: Item): (Edit & { point: number }) | null {
+  const owner = corneredItem(document, item);
+  const corners = cornersOf(owner && entryOf(document, owner)?.corners);
+  if (!owner || corners.length < 3) return null;
+  const point = item.kind === "corner" ? item.point : corners.length - 1;
+  const [ax, ay] = corners[point] as [number, number];
+  const [bx, by] = corners[(point + 1) % corners.length] as [number, number];
+  corners.splice(point + 1, 0, [(ax + bx) / 2, (ay + by) / 2]);
+  return { label: `Add a corner to ${nameOf(document, owner)}`, point: point + 1,
+           patch: [{ path: `${listOf(owner)}[${owner.index + 1}].corners`,
+                     value: flatCorners(corners) }] };
+}
+
 // What a script sets cannot be taken away alone; a list without it can be set whole.
 export function without(document: JsonObject, label: string, index: number, key: string): Edit {
   const list = entries(document, "keyframes").map((entry, i) => {
@@ -176,11 +219,35 @@ export function without(document: JsonObject, label: string, index: number, key:
 export function deleted(document: JsonObject, item: Item): Edit | null {
   const label = `Delete ${nameOf(document, item)}`;
   if (item.kind === "look") return without(document, label, item.index, "look_at");
-  const name = listNames[item.kind];
+  const name = listOf(item);
   const list = entries(document, name);
   if (item.kind === "keyframe" && list.length <= 2) return null;
+  if (item.kind === "corner") {
+    const corners = cornersOf(entryOf(document, item)?.corners);
+    if (corners.length <= 3) return null;
+    corners.splice(item.point, 1);
+    return { label, patch: [{ path: `${name}[${item.index + 1}].corners`,
+                              value: flatCorners(corners) }] };
+  }
   if (item.kind === "track") return null;
-  return { label, patch: [{ path: name, value: list.filter((_, i) => i !== item.index) }] };
+  const left = list.filter((_, i) => i !== item.index);
+  return item.kind === "keyframe" ? withEnds(document, label, list, left, item.index)
+    : { label, patch: [{ path: name, value: left }] };
+}
+
+// Without its first or its last keyframe a film begins, or ends, at the one that is left: before and
+// after it nothing says where the camera is to be.
+function withEnds(
+  document: JsonObject, label: string, list: JsonObject[], left: JsonObject[], gone: number,
+): Edit {
+  const first = left[0] as JsonObject, last = left[left.length - 1] as JsonObject;
+  if (gone === 0 && typeof first.time === "number") {
+    const { earliest: _e, latest: _l, ...rest } = first;
+    left[0] = { ...rest, time: typeof list[0]?.time === "number" ? list[0].time : 0 };
+  }
+  const ends = gone === list.length - 1 && typeof document.duration === "number" &&
+    typeof last.time === "number";
+  return withKeyframes(label, left, ends ? (last.time as number) : undefined);
 }
 
 // The places change, the times stay: what was passed second is passed first.
@@ -234,18 +301,20 @@ export function retimed(document: JsonObject, index: number, time: number): Edit
   return { label, patch };
 }
 
-// The leg to a keyframe takes `factor` times as long; all that follows comes later.
+// The leg to a keyframe takes `factor` times as long, at least 0.2 s; all that follows comes later.
 export function slowed(document: JsonObject, index: number, factor: number): Edit | null {
   const film = filmOf(document);
   const here = film.keyframes[index], before = film.keyframes[index - 1];
   if (!here || !before) return null;
-  const by = (here.time - before.time) * (factor - 1);
+  const leg = here.time - before.time;
+  const by = Math.max(leg * factor, Math.min(leg, 0.2)) - leg;
   const list = withTimes(document, entries(document, "keyframes")).map((entry, i) =>
     i < index ? entry : { ...entry, time: Math.ceil(((entry.time as number) + by) * 10) / 10 });
   const last = list[list.length - 1]?.time as number;
   const end = typeof document.duration === "number"
     ? Math.max(last, tenth(document.duration + by)) : undefined;
-  return withKeyframes(`Slow the leg to keyframe ${index + 1}`, list, end);
+  return withKeyframes(`${factor < 1 ? "Speed up" : "Slow"} the leg to keyframe ${index + 1}`, list,
+                       end);
 }
 
 export function cutAt(document: JsonObject, start: number, finish: number): Edit {
@@ -273,7 +342,25 @@ export const obstacleKinds: {
     floor: 0, ceiling: 30, opaque: false }) },
 ];
 
+const AROUND = 10;     // m, of a new flight zone around what is flown
+
+// What flies stays inside: a square around all keyframes.
+function addedZone(document: JsonObject): Edit {
+  const list = entries(document, "flight_zones");
+  const places = filmOf(document).keyframes.map((k) => k.position);
+  const end = (axis: number, sign: 1 | -1): number => sign * Math.ceil(
+    Math.max(...places.map((p) => sign * (p[axis] as number)), 0) + AROUND);
+  const [west, east, south, north] = [end(0, -1), end(0, 1), end(1, -1), end(1, 1)];
+  const made: JsonObject = {
+    name: `flight zone ${list.length + 1}`, ceiling: end(2, 1), floor: -AROUND,
+    corners: [west, south, east, south, east, north, west, north],
+  };
+  return { label: `Add ${made.name}`, patch: [{ path: "flight_zones", value: [...list, made] }] };
+}
+
+// An obstacle, or a zone that is no obstacle.
 export function addedObstacle(document: JsonObject, type: string, at: Vec3): Edit | null {
+  if (type === "flight_zone") return addedZone(document);
   const kind = obstacleKinds.find((one) => one.type === type);
   if (!kind) return null;
   const list = entries(document, "obstacles");

@@ -109,16 +109,18 @@ export function unhurried(
 }
 
 // The leg at a time, by the keyframe that it leads to: beside a keyframe, the faster of both.
-export function legAt(keyframes: { time: number; position: Vec3 }[], time: number): number | null {
+export function legAt(
+  keyframes: { time: number; position: Vec3 }[], time: number, beside = BESIDE,
+): number | null {
   const speed = (i: number): number => {
     const a = keyframes[i - 1], b = keyframes[i];
     return a && b ? distance(a.position, b.position) / Math.max(b.time - a.time, 1e-3) : -1;
   };
-  const at = keyframes.findIndex((k) => k.time >= time - BESIDE);
+  const at = keyframes.findIndex((k) => k.time >= time - beside);
   const leg = at < 0 ? keyframes.length - 1 : at;
   const here = keyframes[leg];
   if (!here) return null;
-  const best = Math.abs(here.time - time) <= BESIDE && speed(leg + 1) > speed(leg) ? leg + 1 : leg;
+  const best = Math.abs(here.time - time) <= beside && speed(leg + 1) > speed(leg) ? leg + 1 : leg;
   return speed(best) < 0 ? null : best;
 }
 

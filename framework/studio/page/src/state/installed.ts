@@ -47,3 +47,22 @@ export function choicesIn(schema: unknown, choices: unknown): Choices {
   }
   return result;
 }
+
+// In the order in which they are asked for: what flies it, what shows it, maps, data. Formats of
+// other plugins come last.
+const groups: [string, string[]][] = [
+  ["For a drone", ["wpml", "litchi", "qgc_plan", "waypoints", "poly4d"]],
+  ["For film and 3D programs", ["gltf", "chan", "edl", "srt"]],
+  ["For maps", ["kml", "gpx", "geojson"]],
+  ["Tables and recordings", ["csv", "mcap", "colmap"]],
+];
+
+export function exporterGroups(exporters: Choice[]): { title: string; choices: Choice[] }[] {
+  const known = new Set(groups.flatMap(([, names]) => names));
+  const all = groups.map(([title, names]) => ({
+    title,
+    choices: names.flatMap((name) => exporters.filter((one) => one.name === name)),
+  }));
+  all.push({ title: "Others", choices: exporters.filter((one) => !known.has(one.name)) });
+  return all.filter((group) => group.choices.length > 0);
+}

@@ -86,3 +86,25 @@ export function freeGround(document: JsonObject, from: Vec3, radius: number): Ve
   }
   return from;
 }
+
+// Whether a point is inside an obstacle, as far as the page knows its shape.
+export function holds(obstacle: JsonObject, p: Vec3): boolean {
+  if (obstacle.type === "capsule") {
+    const from = vec(obstacle.from), to = vec(obstacle.to);
+    if (!from || !to) return false;
+    const d = [to[0] - from[0], to[1] - from[1], to[2] - from[2]] as Vec3;
+    const size = d[0] ** 2 + d[1] ** 2 + d[2] ** 2;
+    const along = size > 0 ? Math.min(1, Math.max(0, ((p[0] - from[0]) * d[0] +
+      (p[1] - from[1]) * d[1] + (p[2] - from[2]) * d[2]) / size)) : 0;
+    return Math.hypot(p[0] - from[0] - along * d[0], p[1] - from[1] - along * d[1],
+                      p[2] - from[2] - along * d[2]) < number(obstacle.radius, 0);
+  }
+  if (obstacle.type === "cone") {
+    const base = vec(obstacle.base), height = number(obstacle.height, 0);
+    if (!base || height <= 0 || p[2] <= base[2]) return false;
+    return Math.hypot(p[0] - base[0], p[1] - base[1]) <
+      number(obstacle.radius, 0) * (1 - (p[2] - base[2]) / height);
+  }
+  const span = taken(obstacle, p[0], p[1], 0);
+  return span !== null && p[2] > span[0] && p[2] < span[1];
+}

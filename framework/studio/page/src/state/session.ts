@@ -16,6 +16,7 @@ export type { Clock, Event, Link, SessionParts, Socket } from "./session_parts";
 const PREVIEW_EVERY = 40;                              // ms
 const WAITS = [100, 200, 400, 800, 1500];              // ms, between attempts to connect
 const CONNECT_LIMIT = 4000;                            // ms
+const MOST_AFTER = 64;                                 // as many as the server lets wait
 
 export class Session {
   readonly grades: Grades;
@@ -146,8 +147,10 @@ export class Session {
       return null;
     }
     this.endDrag();
+    // What is on its way was there when this was made: the server must not take it for another's.
+    const on = this.parts.queue.all().map((waiting) => waiting.id).slice(-MOST_AFTER);
     return this.queued({ type: "gesture", id: this.parts.unique(), base: this.revision, label,
-                         patch });
+                         patch, ...(on.length > 0 ? { after: on } : {}) });
   }
 
   undo(): void {
@@ -299,6 +302,14 @@ export class Session {
       case "script_error":
         this.scriptError = message;
         return this.tell({ what: "script", message });
+      case "script_loaded":
+        this.scriptError = null;
+        return this.tell({ what: "script", message });
+      case "mission":
+        this.mission = message.mission;
+        if (!this.mission.editable) this.endDrag();
+        this.moment();
+        return this.tell({ what: "document" });
       default:
         return;
     }
@@ -362,10 +373,6 @@ export class Session {
   }
 
   private answered(message: Answer): void {
-    if (this.scriptError) {
-      this.scriptError = null;
-      this.tell({ what: "script" });
-    }
     this.grades.take(message);
     this.tell({ what: "standing", message });
   }

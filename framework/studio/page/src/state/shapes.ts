@@ -150,6 +150,10 @@ export function cornersOf(value: Json | undefined): [number, number][] {
     [flat[2 * i] as number, flat[2 * i + 1] as number]);
 }
 
+// As a document has them, to the millimetre.
+export const flatCorners = (corners: [number, number][]): number[] =>
+  corners.flat().map((v) => Math.round(v * 1000) / 1000);
+
 // Null for shapes that only the server can draw, and for values that make none.
 export function trianglesOf(obstacle: JsonObject): Triangles | null {
   const radius = number(obstacle.radius, 0);

@@ -129,6 +129,7 @@ export interface WorldObstacle {
 export interface World {
   obstacles?: WorldObstacle[];
   subjects?: SubjectTrack[];
+  margin?: number;
   bounds?: { lower?: Vec3; upper?: Vec3 } | null;
 }
 
@@ -188,6 +189,8 @@ export type ServerMessage =
   | { type: "failed"; id?: string; edit?: number; why: string }
   | { type: "script_changed"; conflict: boolean; message: string }
   | { type: "script_error"; message: string; line?: number }
+  | { type: "script_loaded" }
+  | { type: "mission"; mission: MissionInfo }
   | { type: "remark"; message: string }
   | { type: "worker"; role?: string; state: "started" | "crashed" | "message"; message?: string }
   | { type: "picture"; edit: number | null; time: number; blob: string }
@@ -199,4 +202,5 @@ export interface Gesture {
   base: number;
   label?: string;
   patch?: Patch;
+  after?: string[];        // gestures on their way that it was made on top of
 }

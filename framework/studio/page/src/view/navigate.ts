@@ -12,6 +12,8 @@ import type { Stage } from "./stage";
 const SPEED = 8;          // m/s of the virtual camera
 const TURN = 1.1;         // rad/s by the arrows
 const MOUSE = 0.0035;     // rad per pixel
+const STICK = 1.4;        // rad/s by a stick of a gamepad
+const SLACK = 0.15;       // of a stick, that counts as its middle
 const FILLED = 0.85;      // of the view by a film that is shown whole
 const held = ["w", "a", "s", "d", "q", "e", "arrowleft", "arrowright", "arrowup", "arrowdown"];
 
@@ -22,6 +24,9 @@ export class Navigation {
   private pitch = 0;
   private last = 0;
   private running = false;
+  // What a gamepad's buttons ask for while the camera is flown.
+  onButton: (button: "keyframe" | "leave") => void = () => undefined;
+  private pressed = new Set<number>();
   private before: { position: THREE.Vector3; fov: number } | null = null;
 
   constructor(private readonly studio: Studio, private readonly stage: Stage) {
@@ -30,9 +35,13 @@ export class Navigation {
     this.orbit.target.set(0, 0, 3);
     this.orbit.maxPolarAngle = Math.PI * 0.52;
     this.orbit.minDistance = 1;
-    this.orbit.maxDistance = 1500;
+    this.orbit.maxDistance = 1500;       // more where the film is larger
     this.orbit.addEventListener("change", () => stage.invalidate());
     studio.on(["mode"], () => this.switch());
+    window.addEventListener("gamepadconnected", () => {
+      if (studio.mode === "camera") this.run();
+      else studio.session.note("A gamepad: press V, and fly the camera with it.");
+    });
     window.addEventListener("keydown", (event) => this.press(event));
     window.addEventListener("keyup", (event) => this.keys.delete(event.key.toLowerCase()));
     window.addEventListener("blur", () => this.keys.clear());
@@ -73,6 +82,8 @@ export class Navigation {
       distance = Math.max(distance, p.dot(away) + Math.abs(p.dot(right)) / across,
                           p.dot(away) + Math.abs(p.dot(up)) / high);
     }
+    this.orbit.maxDistance = Math.max(1500, 2 * distance);
+    this.stage.reach(3 * distance + shown.getSize(new THREE.Vector3()).length());
     camera.position.copy(center).addScaledVector(away, distance);
     this.orbit.target.copy(center);
     this.orbit.update();
@@ -100,6 +111,7 @@ export class Navigation {
         this.pitch = Math.asin(d.z);
       }
       this.apply();
+      if (this.sticks()) this.run();
     } else if (!flying && this.before) {
       camera.fov = this.before.fov;
       camera.position.copy(this.before.position);
@@ -117,17 +129,52 @@ export class Navigation {
     event.preventDefault();
     event.stopImmediatePropagation();
     this.keys.add(key);
+    this.run();
+  }
+
+  private run(): void {
     if (this.running) return;
     this.running = true;
     this.last = performance.now();
     requestAnimationFrame(this.tick);
   }
 
+  // Sticks of the first gamepad with a standard layout: to the right, forward, up; and what it turns.
+  private sticks(): { move: Vec3; turn: [number, number] } | null {
+    const pad = navigator.getGamepads?.().find((one) => one?.connected && one.axes.length >= 4);
+    if (!pad) return null;
+    const axis = (i: number): number => {
+      const value = pad.axes[i] ?? 0;
+      return Math.abs(value) < SLACK ? 0 : (value - Math.sign(value) * SLACK) / (1 - SLACK);
+    };
+    const button = (i: number): number => pad.buttons[i]?.value ?? 0;
+    for (const [i, what] of [[0, "keyframe"], [1, "leave"]] as const) {
+      const down = button(i) > 0.5;
+      if (down && !this.pressed.has(i)) this.onButton(what);
+      if (down) this.pressed.add(i);
+      else this.pressed.delete(i);
+    }
+    return { move: [axis(0), -axis(1), button(7) - button(6)], turn: [-axis(2), -axis(3)] };
+  }
+
   private readonly tick = (now: number): void => {
     const seconds = Math.min(0.1, (now - this.last) / 1000);
     this.last = now;
-    if (this.keys.size === 0 || this.studio.mode !== "camera") {
+    const sticks = this.studio.mode === "camera" ? this.sticks() : null;
+    // Asked for again: a button may have left the mode.
+    if ((this.keys.size === 0 && !sticks) || this.studio.mode !== "camera") {
       this.running = false;
+      return;
+    }
+    if (sticks && [...sticks.move, ...sticks.turn].some((v) => v !== 0)) {
+      this.yaw += sticks.turn[0] * STICK * seconds;
+      this.turn(sticks.turn[1] * STICK * seconds);
+      const [right, forward, up] = sticks.move.map((v) => v * SPEED * seconds) as Vec3;
+      this.step([right, 0, up], forward);
+      this.apply();
+    }
+    if (this.keys.size === 0) {
+      requestAnimationFrame(this.tick);
       return;
     }
     const on = (key: string): number => (this.keys.has(key) ? 1 : 0);

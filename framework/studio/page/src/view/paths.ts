@@ -18,6 +18,7 @@ const shapes: Record<Exclude<Grade, "refused">, Ribbon> = {
 export class Paths {
   private readonly failing = new Ribbon("hatched", 6);
   private readonly ghost = new Ribbon("dotted", 3);
+  private readonly kept = new Ribbon("dashdot", 3);
   private readonly stems = segments([]);
   private readonly frame = segments([]);
   private readonly ghostMark = new THREE.Mesh(
@@ -33,16 +34,18 @@ export class Paths {
     });
     studio.on(["document", "standing"], () => this.draw());
     studio.on(["flown"], () => this.drawGhost());
+    studio.on(["kept"], () => this.drawKept());
     studio.on(["time"], () => this.drawMarker());
     studio.on(["look"], () => {
       this.paint();
       this.drawGhost();
+      this.drawKept();
     });
     this.paint();
   }
 
   private all(): Ribbon[] {
-    return [...Object.values(shapes), this.failing, this.ghost];
+    return [...Object.values(shapes), this.failing, this.ghost, this.kept];
   }
 
   paint(): void {
@@ -54,6 +57,7 @@ export class Paths {
     shapes.rejected.paint(palette.converged);
     this.failing.paint(palette.fail);
     this.ghost.paint(palette.flown);
+    this.kept.paint(palette.ink);
     this.stems.material.color.set(palette.step);
     this.frame.material.color.set(palette.ink);
     this.drone.material.color.set(palette.ink);
@@ -83,6 +87,14 @@ export class Paths {
     if (flown) this.ghost.set(pathOf(flown), 1);
     else this.ghost.hide();
     this.drawMarker();
+  }
+
+  private drawKept(): void {
+    const points = this.studio.kept ? pathOf(this.studio.kept.plan.columns) : [];
+    if (points.length > 1) this.kept.set(points, dashOf(points));
+    else this.kept.hide();
+    document.body.classList.toggle("comparing", points.length > 1);
+    this.stage.invalidate();
   }
 
   private drawStems(): void {

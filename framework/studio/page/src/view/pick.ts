@@ -13,8 +13,9 @@ import type { Stage } from "./stage";
 const NEAR = 9;          // px from the path
 const FAR = 120;         // px, of a drag along it
 const STILL = 4;         // px that a click may move
+const AHEAD = 20;        // m, where the sky is looked at
 const HEIGHT = 3;        // m above the ground, of a first keyframe
-const FARTHEST = 1500;   // m
+const FARTHEST = 30000;  // m
 
 export class Pick {
   private down: PointerEvent | null = null;
@@ -126,7 +127,7 @@ export class Pick {
     window.addEventListener("keydown", escape, true);
   }
 
-  private onLevel(event: MouseEvent, height: number): Vec3 | null {
+  onLevel(event: MouseEvent, height: number): Vec3 | null {
     const ray = this.stage.rayAt(event.clientX, event.clientY);
     const hit = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), -height),
                                    new THREE.Vector3());
@@ -196,13 +197,21 @@ export class Pick {
   }
 
   private solidAt(event: { clientX: number; clientY: number }): { index: number; point: Vec3 } | null {
-    if (!this.solids.opaque.visible) return null;
     const ray = this.stage.rayAt(event.clientX, event.clientY);
-    const hits = new THREE.Raycaster(ray.origin, ray.direction).intersectObject(this.solids.opaque);
-    const hit = hits[0];
-    if (!hit) return null;
-    const index = this.solids.obstacleOf(hit.faceIndex ?? 0);
-    return index < 0 ? null : { index, point: [hit.point.x, hit.point.y, hit.point.z] };
+    return this.solids.hitBy(new THREE.Raycaster(ray.origin, ray.direction));
+  }
+
+  // The ground where one looks: below what is in the middle of the view, or ahead of an eye that
+  // looks at the sky.
+  lookedAtGround(): Vec3 {
+    const rect = this.stage.world.getBoundingClientRect();
+    const seen = this.surfaceAt({ clientX: rect.left + rect.width / 2,
+                                  clientY: rect.top + rect.height / 2 });
+    if (seen) return [seen[0], seen[1], 0];
+    const { position } = this.stage.worldCamera;
+    const ahead = this.stage.worldCamera.getWorldDirection(new THREE.Vector3()).setZ(0);
+    const size = ahead.length() || 1;
+    return [position.x + (AHEAD * ahead.x) / size, position.y + (AHEAD * ahead.y) / size, 0];
   }
 
   // What is seen there: an obstacle, else the ground.

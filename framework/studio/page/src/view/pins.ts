@@ -2,9 +2,11 @@
 // The pins of the world: a button at each keyframe, look-at point, subject and obstacle. A drag
 // moves it on the level where it is; with Shift, up and down.
 import * as THREE from "three";
-import { moved, nameOf, placeOfItem, sameItem, type Item } from "../state/edits";
+import { corneredItem, entryOf, moved, nameOf, placeOfItem, sameItem, type Item } from
+  "../state/edits";
 import { isObject } from "../state/document";
 import { entries } from "../state/film";
+import { cornersOf } from "../state/shapes";
 import type { JsonObject, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import { el, whileHeld } from "./dom";
@@ -24,10 +26,18 @@ export function itemsOf(document: JsonObject, selection: Item | null): Item[] {
   const items: Item[] = [];
   // A forest of pins hides the film: then obstacles are selected by a click on them, or in the list.
   const obstacles = entries(document, "obstacles");
+  const cornered = corneredItem(document, selection);
   obstacles.forEach((_, index) => {
     const item: Item = { kind: "obstacle", index };
-    if (obstacles.length <= MOST_OBSTACLES || sameItem(item, selection)) items.push(item);
+    if (obstacles.length <= MOST_OBSTACLES || sameItem(item, selection) ||
+        sameItem(item, cornered)) items.push(item);
   });
+  entries(document, "flight_zones").forEach((_, index) => items.push({ kind: "zone", index }));
+  if (cornered?.kind === "obstacle" || cornered?.kind === "zone") {
+    cornersOf(entryOf(document, cornered)?.corners).forEach((_, point) =>
+      items.push({ kind: "corner", of: cornered.kind as "obstacle" | "zone",
+                   index: cornered.index, point }));
+  }
   entries(document, "subjects").forEach((entry, index) => {
     items.push({ kind: "subject", index });
     if (!Array.isArray(entry.track)) return;
@@ -42,10 +52,11 @@ export function itemsOf(document: JsonObject, selection: Item | null): Item[] {
   return items;
 }
 
-const keyOfItem = (item: Item): string =>
-  `${item.kind}-${item.index}${item.kind === "track" ? `-${item.point}` : ""}`;
+const keyOfItem = (item: Item): string => `${item.kind}-${item.index}${
+  item.kind === "track" || item.kind === "corner" ? `-${item.point}` : ""}`;
 const glyphs: Record<Item["kind"], string> = {
   keyframe: "", look: "\u25ce", subject: "\u25b2", obstacle: "\u25a0", track: "\u2022",
+  zone: "\u25a1", corner: "\u25c6",
 };
 
 export class Pins {
@@ -159,7 +170,7 @@ class PinDrag {
 
   private hit(ray: THREE.Ray, plane: THREE.Plane): THREE.Vector3 | null {
     const found = ray.intersectPlane(plane, new THREE.Vector3());
-    return found && found.distanceTo(ray.origin) < 2000 ? found : null;
+    return found && found.distanceTo(ray.origin) < 30000 ? found : null;
   }
 
   at(event: PointerEvent, now: Vec3): Vec3 {

@@ -86,7 +86,7 @@ export class Preview {
       new THREE.Vector3(...view.right), new THREE.Vector3(...view.down).negate(),
       new THREE.Vector3(...view.forward).negate());
     camera.quaternion.setFromRotationMatrix(turn);
-    const near = 0.1, far = 3000;
+    const near = 0.1, far = 20000;
     const left = (-(optics.cx + 0.5) * near) / optics.fx;
     const right = ((optics.width - 0.5 - optics.cx) * near) / optics.fx;
     const top = ((optics.cy + 0.5) * near) / optics.fy;
@@ -183,7 +183,7 @@ export function previewControls(studio: Studio): HTMLElement {
       studio.framing = !studio.framing;
       studio.tell("look");
     },
-  }, "Frame");
+  }, "Place subject");
   studio.on(["look"], () => framing.setAttribute("aria-pressed", String(studio.framing)));
   return el("div", { class: "row" }, framing,
     box("Guides", "Thirds, horizon and the subject's box (G)", () => studio.guides,

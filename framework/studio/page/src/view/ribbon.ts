@@ -4,11 +4,12 @@
 import * as THREE from "three";
 import type { Vec3 } from "../state/types";
 
-export type Pattern = "dashed" | "thin" | "rails" | "solid" | "hatched" | "dotted";
+export type Pattern = "dashed" | "thin" | "rails" | "solid" | "hatched" | "dotted" | "dashdot";
 
-const patterns: Pattern[] = ["dashed", "thin", "rails", "solid", "hatched", "dotted"];
+const patterns: Pattern[] = ["dashed", "thin", "rails", "solid", "hatched", "dotted", "dashdot"];
 const widths: Record<Pattern, number> = {
   dashed: 3.5, thin: 2.5, rails: 7, solid: 5, hatched: 10, dotted: 4,
+  dashdot: 3,
 };
 
 const vertex = `
@@ -46,6 +47,8 @@ void main() {
   if (pattern == 0 && fract(u) > 0.55) discard;
   if (pattern == 2 && abs(vSide) < 0.4) discard;
   bool pale = pattern == 4 && fract(u * 1.4 + vSide * 0.35) > 0.65;
+  float w = fract(u);
+  if (pattern == 6 && w > 0.55 && (w < 0.7 || w > 0.85)) discard;
   if (pattern == 5 && fract(u * 2.0) > 0.4) discard;
   gl_FragColor = vec4(pale ? mix(tint, vec3(1.0), 0.75) : tint, alpha);
 }`;

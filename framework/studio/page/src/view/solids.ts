@@ -3,6 +3,7 @@
 import * as THREE from "three";
 import { isObject } from "../state/document";
 import { subjectAt } from "../state/film";
+import { holds } from "../state/room";
 import { trianglesOf, type Triangles } from "../state/shapes";
 import type { JsonObject, SubjectTrack, Vec3 } from "../state/types";
 import { vec } from "../state/vector";
@@ -39,6 +40,7 @@ export interface Solid {
   key: string;               // of the obstacle's text, so that an unchanged one is not made again
   baked: Baked;
   seeThrough: boolean;
+  source: JsonObject;        // the obstacle
   track: { time: number; move: Vec3 }[];   // empty: it stands still
 }
 
@@ -50,6 +52,9 @@ function trackOf(obstacle: JsonObject): Solid["track"] {
     return move && typeof time === "number" ? [{ time, move }] : [];
   });
 }
+
+// Of the world alone, of the film's picture alone; all else is in both.
+export const WORLD = 1, PICTURE = 2;
 
 function meshOf(seeThrough: boolean): THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial> {
   const material = new THREE.MeshBasicMaterial({
@@ -67,16 +72,25 @@ export class Solids {
   private readonly clear = meshOf(true);
   private readonly people = meshOf(false);
   private readonly movers = meshOf(false);
+  // What a subject is inside of: whole in the world, and looked through in the picture, where it
+  // would hide what is filmed. A rendered picture shows it so.
+  readonly around = meshOf(false);
+  private readonly aroundClear = meshOf(true);
+  private holders = new Set<number>();
   private time = 0;
   private known: (Solid | null)[] = [];
   private readonly blobs = new Map<number, Baked>();
-  private ends: number[] = [];       // last corner of each obstacle in the opaque buffer
+  private ends: number[] = [];       // last triangle of each obstacle in the opaque buffer,
+  private aroundEnds: number[] = [];  // and of those around subjects
   private subjects: SubjectTrack[] = [];
   private colours = { solid: "#888", closed: "#a33", subject: "#27a", chosen: "#f80" };
   private chosen: number | null = null;
 
   constructor() {
-    this.group.add(this.opaque, this.clear, this.people, this.movers);
+    this.around.layers.set(WORLD);
+    this.aroundClear.layers.set(PICTURE);
+    this.group.add(this.opaque, this.clear, this.people, this.movers, this.around,
+                   this.aroundClear);
   }
 
   paint(colours: Solids["colours"]): void {
@@ -108,21 +122,43 @@ export class Solids {
       const shape = own ? baked(own) : this.blobs.get(i);
       const seeThrough = obstacle.opaque === false || obstacle.side === "keep_inside" ||
         obstacle.type === "no_fly_zone";
-      return shape ? { key, baked: shape, seeThrough, track: trackOf(obstacle) } : null;
+      return shape ? { key, baked: shape, seeThrough, track: trackOf(obstacle), source: obstacle }
+        : null;
     });
     this.known = next;
     if (changed) this.merge();
+    this.findHolders();
+  }
+
+  private findHolders(): void {
+    const places = this.subjects.map((subject) => subjectAt(subject, this.time));
+    const found = this.known.flatMap((solid, i) =>
+      solid && !solid.seeThrough && solid.track.length === 0 &&
+      places.some((place) => holds(solid.source, place)) ? [i] : []);
+    if (found.length === this.holders.size && found.every((i) => this.holders.has(i))) return;
+    this.holders = new Set(found);
+    this.merge();
   }
 
   private merge(): void {
-    this.ends = [];
-    const parts: { solid: Solid; chosen: boolean }[] = [];
-    this.known.forEach((solid, i) => {
-      if (solid && !solid.seeThrough && solid.track.length === 0) parts.push({ solid, chosen: i === this.chosen });
-      this.ends.push(parts.reduce((sum, part) => sum + part.solid.baked.shade.length, 0));
-    });
-    fill(this.opaque, parts.map(({ solid, chosen }) =>
-      [solid.baked, chosen ? this.colours.chosen : this.colours.solid]));
+    const part = (held: boolean): { parts: [Baked, string][]; ends: number[] } => {
+      const parts: [Baked, string][] = [], ends: number[] = [];
+      let end = 0;
+      this.known.forEach((solid, i) => {
+        if (solid && !solid.seeThrough && solid.track.length === 0 && this.holders.has(i) === held) {
+          parts.push([solid.baked, i === this.chosen ? this.colours.chosen : this.colours.solid]);
+          end += solid.baked.shade.length;
+        }
+        ends.push(end);
+      });
+      return { parts, ends };
+    };
+    const free = part(false), held = part(true);
+    this.ends = free.ends;
+    this.aroundEnds = held.ends;
+    fill(this.opaque, free.parts);
+    fill(this.around, held.parts);
+    fill(this.aroundClear, held.parts);
     fill(this.clear, this.known.flatMap((solid, i) => solid?.seeThrough
       ? [[solid.baked, i === this.chosen ? this.colours.chosen : this.colours.closed] as
          [Baked, string]] : []));
@@ -132,8 +168,7 @@ export class Solids {
   private drawMovers(): void {
     fill(this.movers, this.known.flatMap((solid, i): [Baked, string][] => {
       if (!solid || solid.seeThrough || solid.track.length === 0) return [];
-      const by = subjectAt({ name: "", times: solid.track.map((p) => p.time),
-                             positions: solid.track.map((p) => p.move) }, this.time);
+      const by = this.moveOf(solid);
       const place = solid.baked.place.map((v, k) => v + (by[k % 3] as number));
       return [[{ place, shade: solid.baked.shade },
                i === this.chosen ? this.colours.chosen : this.colours.solid]];
@@ -142,14 +177,19 @@ export class Solids {
 
   setSubjects(subjects: SubjectTrack[], time: number): void {
     this.subjects = subjects;
+    this.time = time;
     this.drawSubjects(time);
+    this.findHolders();
   }
 
   // Where all is at a time; made again only where something moves.
   moveTo(time: number): void {
     this.time = time;
     if (this.movers.visible) this.drawMovers();
-    if (this.subjects.some((s) => s.times.length > 1)) this.drawSubjects(time);
+    if (this.subjects.some((s) => s.times.length > 1)) {
+      this.drawSubjects(time);
+      this.findHolders();
+    }
   }
 
   private drawSubjects(time: number): void {
@@ -162,14 +202,45 @@ export class Solids {
     }));
   }
 
-  // The obstacle that a triangle of the opaque buffer belongs to.
-  obstacleOf(face: number): number {
-    return this.ends.findIndex((end) => face < end);
+  // The first obstacle on a ray that is not looked through.
+  hitBy(ray: THREE.Raycaster): { index: number; point: Vec3 } | null {
+    ray.layers.enableAll();
+    const [hit] = ray.intersectObjects([this.opaque, this.around].filter((mesh) => mesh.visible));
+    if (!hit) return null;
+    const ends = hit.object === this.opaque ? this.ends : this.aroundEnds;
+    const index = ends.findIndex((end) => (hit.faceIndex ?? 0) < end);
+    return index < 0 ? null : { index, point: [hit.point.x, hit.point.y, hit.point.z] };
+  }
+
+  // Whether some obstacle moves.
+  get moving(): boolean {
+    return this.movers.visible;
+  }
+
+  // The surfaces of what flights keep away from, or stay inside of, where they are now; `key` is
+  // another one for another surface.
+  bodies(): (Triangles & { key: string; inside: boolean })[] {
+    return this.known.flatMap((solid) => {
+      if (!solid) return [];
+      const by = this.moveOf(solid);
+      const { place } = solid.baked;
+      return [{
+        key: `${solid.key}${by.join()}`, inside: solid.source.side === "keep_inside",
+        positions: by.some((v) => v !== 0) ? place.map((v, k) => v + (by[k % 3] as number)) : place,
+        triangles: Uint32Array.from(place.subarray(0, place.length / 3), (_, i) => i),
+      }];
+    });
+  }
+
+  private moveOf({ track }: Solid): Vec3 {
+    return track.length === 0 ? [0, 0, 0]
+      : subjectAt({ name: "", times: track.map((p) => p.time),
+                    positions: track.map((p) => p.move) }, this.time);
   }
 
   bounds(): THREE.Box3 {
     const box = new THREE.Box3();
-    for (const mesh of [this.opaque, this.people]) {
+    for (const mesh of [this.opaque, this.around, this.people]) {
       if (mesh.visible) box.union(new THREE.Box3().setFromObject(mesh));
     }
     return box;

@@ -50,6 +50,8 @@ export class Stage {
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.setScissorTest(true);
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.worldCamera.layers.enable(1);    // WORLD of solids.ts
+    this.filmCamera.layers.enable(2);     // PICTURE
     this.worldCamera.up.set(0, 0, 1);
     this.worldCamera.position.set(-28, -34, 24);
     this.worldCamera.lookAt(0, 0, 3);
@@ -140,6 +142,15 @@ export class Stage {
     this.renderer.setViewport(left, bottom, rect.width, rect.height);
     this.renderer.setScissor(left, bottom, rect.width, rect.height);
     this.renderer.render(this.scene, camera);
+  }
+
+  // So that all within this distance of the eye is drawn, m: near and far ends are in proportion, or
+  // what is far would flicker.
+  reach(distance: number): void {
+    const camera = this.worldCamera;
+    camera.far = Math.max(4000, distance);
+    camera.near = camera.far / 13000;
+    camera.updateProjectionMatrix();
   }
 
   // Where a point of the world is in the opening, in pixels; null when it is behind the eye.
