@@ -27,8 +27,9 @@ export async function startStudio(example, folder = null) {
   const words = program();
   const dir = folder ?? mkdtempSync(join(tmpdir(), "lapwing-studio-"));
   if (!folder) copyFileSync(join(root, example), join(dir, "film.lua"));
+  // The address of a studio that was killed is kept there, for the next one.
   const child = spawn(words[0], [...words.slice(1), "film.lua", "--no-open", "--assets", dist],
-                      { cwd: dir });
+                      { cwd: dir, env: { ...process.env, XDG_RUNTIME_DIR: dir } });
   let said = "";
   const address = await new Promise((found, failed) => {
     const hear = (data) => {
@@ -42,6 +43,12 @@ export async function startStudio(example, folder = null) {
   });
   return {
     address, dir,
+    // As by the system: nothing is finished.
+    kill: () => new Promise((done) => {
+      child.removeAllListeners("exit");
+      child.on("exit", done);
+      child.kill("SIGKILL");
+    }),
     stop: (keep = false) => new Promise((done) => {
       child.on("exit", () => {
         if (!keep) rmSync(dir, { recursive: true, force: true });
@@ -50,6 +57,30 @@ export async function startStudio(example, folder = null) {
       child.kill("SIGINT");
     }),
   };
+}
+
+// kill -9 of the server while the page is open: it finds the next one by itself, and what was edited
+// meanwhile arrives.
+async function killed(page, studio, started) {
+  await waitGrade(page, "certified");
+  const { revision } = await studioState(page);
+  await studio.kill();
+  await page.waitForFunction("document.body.classList.contains('lost')");
+  await drag(page, '[data-pin="keyframe-2"]', 30, 0);
+  assert.equal((await studioState(page)).pending, 1);
+  const { document } = await studioState(page);
+  const next = await startStudio(null, studio.dir);
+  started(next);
+  const begun = Date.now();
+  assert.equal(next.address, studio.address);
+  await page.waitForFunction("!document.body.classList.contains('lost')", { timeout: 10000 });
+  console.log(`${"connected again after kill -9, ms".padEnd(44)} ${Date.now() - begun}   at most 2000`);
+  assert.ok(Date.now() - begun <= 2000);
+  await waitRevision(page, revision + 1);
+  assert.deepEqual((await studioState(page)).document, document);
+  await waitGrade(page, "certified");
+  await page.click("#undo");
+  await waitRevision(page, revision + 2);
 }
 
 export async function film(browser, shot) {
@@ -125,6 +156,7 @@ export async function film(browser, shot) {
     assert.deepEqual((await studioState(page)).document, document);
     await page.click("#undo");
     await page.waitForFunction("window.lapwing.document.keyframes[1].position[0] === 0");
+    await killed(page, studio, (next) => { studio = next; });
     console.log(`ok      ${String(Date.now() - begun).padStart(5)} ms  a film with the studio's own server`);
     return 0;
   } catch (error) {

@@ -118,7 +118,14 @@ export const links = [
      mock.tell({ type: "script_error", message: "unexpected symbol near '}'", line: 14 });
      await page.waitForFunction("document.querySelector('#banner').textContent.includes('Line 14')");
      await shot("script_error");
-     mock.tell({ type: "answer", ...mock.state.answer });
+     // A drag is answered, and the error stands.
+     await drag(page, '[data-pin="keyframe-1"]', 40, 0, { hold: true, pause: 30 });
+     await page.waitForFunction("window.lapwing.grade !== 'guess'");
+     assert.match(await text(page, "#banner"), /Line 14/);
+     await page.keyboard.press("Escape");
+     await page.mouse.up();
+     assert.match(await text(page, "#banner"), /Line 14/);
+     mock.tell({ type: "script_loaded" });
      await page.waitForFunction("document.querySelector('#banner').hidden");
    }],
   ["a script that changed asks: mine, theirs, both", async ({ page, mock }) => {

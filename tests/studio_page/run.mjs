@@ -9,6 +9,7 @@ import { edits } from "./cases_edit.mjs";
 import { film } from "./cases_film.mjs";
 import { links } from "./cases_link.mjs";
 import { views } from "./cases_view.mjs";
+import { worlds } from "./cases_world.mjs";
 import { figures } from "./figures.mjs";
 import { startMock } from "./mock_server.mjs";
 
@@ -66,7 +67,7 @@ async function run(browser, name, then) {
 }
 
 try {
-  const wanted = [...edits, ...views, ...links].filter(([name]) => !only || name.includes(only));
+  const wanted = [...edits, ...worlds, ...views, ...links].filter(([name]) => !only || name.includes(only));
   const together = wanted.filter(([, , how]) => how !== "alone");
   await Promise.all(browsers.map(async (browser) => {
     for (let next = together.shift(); next; next = together.shift()) {

@@ -101,7 +101,7 @@ wireFraming(studio);
 byId("picture-controls").append(previewControls(studio));
 
 new TopBar(studio);
-new Timeline(studio);
+const timeline = new Timeline(studio);
 new CertificateList(studio);
 new Feel(studio);
 new Setup(studio);
@@ -257,6 +257,9 @@ Object.defineProperty(window, "lapwing", {
       const rect = stage.world.getBoundingClientRect();
       return seen ? { x: rect.left + seen.x, y: rect.top + seen.y } : null;
     },
+    // Where the curve of speed is at a time, on the page; where the eye is, m.
+    onCurve: (time: number) => timeline.curvePlace(time),
+    get eye() { return stage.worldCamera.position.toArray(); },
     measure(on: boolean) { stage.measuring = on; },
     get edit() { return session.dragging ? session.edit : null; },
     // Resolves when the next frame is drawn.

@@ -3,11 +3,11 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { applied, valueAt } from "../src/state/document";
 import {
-  addedObstacle, addedSubject, obstacleKinds, appended, cutAt, deleted, duplicated, inserted, moved, nameOf,
+  addedCorner, addedObstacle, addedSubject, corneredItem, obstacleKinds, appended, cutAt, deleted, duplicated, inserted, moved, nameOf,
   placeOfItem, reordered, retimed, slowed, timeRange, uncut, type Edit,
 } from "../src/state/edits";
 import { trianglesOf } from "../src/state/shapes";
-import { freeGround, lifted } from "../src/state/room";
+import { freeGround, holds, lifted } from "../src/state/room";
 import { shots, simplified, withShot, withStroke } from "../src/state/shots";
 import type { JsonObject, Vec3 } from "../src/state/types";
 
@@ -57,6 +57,69 @@ test("a prism moves with its levels; a mesh stays", () => {
   assert.equal(moved(film, { kind: "keyframe", index: 9 }, [0, 0, 0]), null);
 });
 
+test("the corners of zones are moved, added and taken away", () => {
+  const zones: JsonObject = { ...film, flight_zones: [
+    { name: "park", corners: [[0, 0], [10, 0], [10, 10], [0, 10]], ceiling: 9 }] };
+  const done = (edit: Edit | null): JsonObject => {
+    assert.ok(edit);
+    return applied(zones, edit.patch);
+  };
+  const prism = { kind: "corner", of: "obstacle", index: 2, point: 1 } as const;
+  const park = { kind: "corner", of: "zone", index: 0, point: 3 } as const;
+  assert.deepEqual(placeOfItem(zones, prism), [4, 0, 1]);
+  assert.deepEqual(placeOfItem(zones, park), [0, 10, 0]);
+  assert.equal(nameOf(zones, park), "corner 4 of park");
+  assert.deepEqual(valueAt(done(moved(zones, prism, [6, -1, 50])), "obstacles[3].corners"),
+                   [0, 0, 6, -1, 4, 4]);
+  assert.deepEqual(valueAt(done(moved(zones, park, [-2.5, 11, 0])), "flight_zones[1].corners"),
+                   [0, 0, 10, 0, 10, 10, -2.5, 11]);
+  const added = addedCorner(zones, park);
+  assert.equal(added?.point, 4);
+  assert.deepEqual(valueAt(done(added), "flight_zones[1].corners"),
+                   [0, 0, 10, 0, 10, 10, 0, 10, 0, 5]);
+  assert.deepEqual(valueAt(done(deleted(zones, park)), "flight_zones[1].corners"),
+                   [0, 0, 10, 0, 10, 10]);
+  assert.equal(deleted(zones, prism), null);       // three are needed
+  assert.deepEqual(corneredItem(zones, park), { kind: "zone", index: 0 });
+  assert.equal(corneredItem(zones, { kind: "obstacle", index: 0 }), null);
+  // As a whole, and gone.
+  const zone = { kind: "zone", index: 0 } as const;
+  assert.deepEqual(placeOfItem(zones, zone), [5, 5, 0]);
+  assert.deepEqual(valueAt(done(moved(zones, zone, [6, 5, 2])), "flight_zones[1]"),
+                   { name: "park", corners: [1, 0, 11, 0, 11, 10, 1, 10], ceiling: 11 });
+  assert.deepEqual(valueAt(done(deleted(zones, zone)), "flight_zones"), []);
+  const made = valueAt(after(addedObstacle(film, "flight_zone", [0, 0, 0])), "flight_zones[1]");
+  assert.deepEqual((made as JsonObject).corners, [-10, -10, 30, -10, 30, 10, -10, 10]);
+});
+
+test("a film begins at its first keyframe and ends at its last", () => {
+  const without = (index: number): JsonObject =>
+    after(deleted(film, { kind: "keyframe", index }));
+  assert.deepEqual(times(without(0)), [0, 20]);
+  assert.equal(without(0).duration, 20);
+  assert.deepEqual(times(without(2)), [0, 10]);
+  assert.equal(without(2).duration, 10);
+  assert.deepEqual(times(without(1)), [0, 20]);
+  // Times that nothing states stay so.
+  const open: JsonObject = { keyframes: [{ position: [0, 0, 1] }, { position: [4, 0, 1] },
+                                         { position: [8, 0, 1] }] };
+  const edit = deleted(open, { kind: "keyframe", index: 0 });
+  assert.deepEqual(edit?.patch, [{ path: "keyframes",
+    value: [{ position: [4, 0, 1] }, { position: [8, 0, 1] }] }]);
+});
+
+test("what a point is inside of", () => {
+  const [ball, box, prism] = film.obstacles as [JsonObject, JsonObject, JsonObject, JsonObject];
+  assert.ok(holds(ball, [1, 2, 4.9]) && !holds(ball, [1, 2, 5.1]));
+  assert.ok(holds(box, [1, 1, 1.9]) && !holds(box, [2.1, 1, 1]));
+  assert.ok(holds(prism, [3, 1, 8]) && !holds(prism, [1, 3, 8]) && !holds(prism, [3, 1, 9.5]));
+  const rod = { type: "capsule", from: [0, 0, 0], to: [10, 0, 0], radius: 1 };
+  assert.ok(holds(rod, [10.9, 0, 0]) && holds(rod, [5, 0.9, 0]) && !holds(rod, [5, 0.9, 0.9]));
+  const tent = { type: "cone", base: [0, 0, 0], radius: 2, height: 4 };
+  assert.ok(holds(tent, [0.9, 0, 2]) && !holds(tent, [1.1, 0, 2]) && !holds(tent, [0, 0, -0.1]));
+  assert.ok(!holds({ type: "mesh" }, [0, 0, 0]));
+});
+
 test("keyframes are inserted in the order of their times", () => {
   const made = inserted(film, 5.04, [1, 1, 1]);
   assert.equal(made.index, 1);
@@ -97,6 +160,12 @@ test("slowing a leg delays all that follows", () => {
   assert.deepEqual(times(slow), [0, 15, 25]);
   assert.equal(slow.duration, 25);
   assert.equal(slowed(film, 0, 2), null);
+});
+
+test("a leg is sped up, and never to nothing", () => {
+  assert.deepEqual(times(after(slowed(film, 1, 0.5))), [0, 5, 15]);
+  assert.equal(after(slowed(film, 1, 0.5)).duration, 15);
+  assert.deepEqual(times(after(slowed(film, 1, 1e-6))), [0, 0.2, 10.2]);
 });
 
 test("duplicate, delete, swap", () => {

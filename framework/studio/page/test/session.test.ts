@@ -219,6 +219,42 @@ test("a script with an error leaves an empty film until it is mended", () => {
   assert.equal(session.scriptError, null);
 });
 
+test("an answer does not end an error of the script; the server says when it is over", () => {
+  const { session, wire, welcome } = world();
+  welcome();
+  wire().says({ type: "script_error", message: "unexpected symbol", line: 3 });
+  session.preview(longer);
+  wire().says({ type: "answer", revision: 0, edit: 1, tab: "me", grade: "refused", plan: null,
+                certificate: null, message: "f.lua:3: unexpected symbol", ms: 3 });
+  assert.equal(session.scriptError?.line, 3);
+  wire().says({ type: "script_loaded" });
+  assert.equal(session.scriptError, null);
+});
+
+test("edits made on top of those on their way name them", () => {
+  const { session, wire, welcome, told } = world();
+  welcome();
+  session.gesture("one", longer);
+  session.gesture("two", [{ path: "duration", value: 40 }]);
+  session.gesture("three", [{ path: "duration", value: 50 }]);
+  const sent = wire().sent.filter((m) => m.type === "gesture");
+  assert.deepEqual(sent.map((m) => m.after), [undefined, ["id1"], ["id1", "id2"]]);
+  told(1, longer, "id1");
+  assert.equal(session.document().duration, 50);
+});
+
+test("it is told when nothing can be edited any more", () => {
+  const { session, wire, welcome, events } = world();
+  welcome();
+  session.preview(longer);
+  wire().says({ type: "mission", mission: { name: "f", kind: "race", script: "f.lua",
+                                            editable: false, why_not: "a race" } });
+  assert.equal(session.mission.editable, false);
+  assert.equal(session.dragging, false);
+  assert.equal(session.gesture("more", longer), null);
+  assert.deepEqual(notes(events), ["a race"]);
+});
+
 test("what cannot be read is told and survived", () => {
   const { session, wire, welcome, events } = world();
   welcome();

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { trianglesIn } from "../src/state/blob";
+import { offset } from "../src/state/hull";
 import { handleOf, trianglesOf, type Triangles } from "../src/state/shapes";
 
 // The volume that closed triangles bound, by the divergence theorem; positive if they face out.
@@ -77,4 +78,32 @@ test("blobs are read, and damaged ones are not", () => {
   assert.throws(() => trianglesIn(blob(3, [0, 1, 2], 4e9)), /are not/);
   assert.throws(() => trianglesIn(new ArrayBuffer(3)), /no triangles/);
   assert.throws(() => trianglesIn(new ArrayBuffer(64)), /no triangles/);
+});
+
+test("a hull has its faces at the distance", () => {
+  const of = (obstacle: object, by: number): Triangles =>
+    offset(trianglesOf(obstacle as never) as Triangles, by);
+  const extent = ({ positions }: Triangles, axis: number): [number, number] => {
+    const list = [...positions].filter((_, i) => i % 3 === axis);
+    return [Math.min(...list), Math.max(...list)];
+  };
+  const near = (a: number, b: number, within = 1e-4): void =>
+    assert.ok(Math.abs(a - b) < within, `${a} is not ${b}`);
+  const box = of({ type: "box", lower: [0, 0, 0], upper: [2, 4, 6] }, 0.5);
+  near(volume(box), 3 * 5 * 7, 1e-2);
+  // Inwards, as of what a flight stays inside of.
+  near(volume(of({ type: "box", lower: [0, 0, 0], upper: [2, 4, 6] }, -0.5)), 1 * 3 * 5, 1e-2);
+  const ball = of({ type: "sphere", center: [1, 2, 3], radius: 2 }, 0.5);
+  for (let i = 0; i < ball.positions.length; i += 3) {
+    const [x, y, z] = ball.positions.slice(i, i + 3) as unknown as [number, number, number];
+    near(Math.hypot(x - 1, y - 2, z - 3), 2.5, 0.05);
+  }
+  // A polygon with a bay: the sides of the bay come nearer to each other.
+  const bay = of({ type: "prism", corners: [0, 0, 9, 0, 9, 9, 6, 9, 6, 3, 3, 3, 3, 9, 0, 9],
+                   floor: 0, ceiling: 2 }, 0.5);
+  near(volume(bay), (10 * 10 - 2 * 6) * 3, 1e-2);
+  assert.deepEqual(extent(bay, 2).map((v) => Math.round(v * 100) / 100), [-0.5, 2.5]);
+  const column = of({ type: "cylinder", base: [0, 0, 0], radius: 2, height: 4 }, 0.5);
+  near(extent(column, 0)[1], 2.5, 0.02);
+  near(extent(column, 2)[1], 4.5);
 });

@@ -81,13 +81,21 @@ export class Timeline {
     on.addEventListener("pointercancel", up);
   }
 
-  // The speed that a place on the page stands for, and whether the curve of speed is there.
+  // Where the curve of speed is at a time, on the page.
+  curvePlace(time: number): { x: number; y: number } | null {
+    const { speed } = this;
+    const value = speed && valueAtTime({ time: speed.times, v: speed.values }, "v", time);
+    if (!speed || value === null || !Number.isFinite(value)) return null;
+    const { left, top } = this.lanes.getBoundingClientRect();
+    return { x: left + this.x(time), y: top + speed.y(value) };
+  }
+
+  // Whether the curve of speed is there.
   private onCurve(event: MouseEvent): boolean {
     const { speed } = this;
     if (!speed || !this.studio.editable) return false;
-    const value = valueAtTime({ time: speed.times, v: speed.values }, "v", this.timeAt(event.clientX));
-    if (value === null || !Number.isFinite(value)) return false;
-    return Math.abs(speed.y(value) - (event.clientY - this.lanes.getBoundingClientRect().top)) < NEAR;
+    const place = this.curvePlace(this.timeAt(event.clientX));
+    return place !== null && Math.abs(place.y - event.clientY) < NEAR;
   }
 
   // Up is faster, down is slower: the leg there takes as much less or more time. Sideways it scrubs.
