@@ -42,7 +42,7 @@ export async function openPage(browser, address, options = {}) {
   }
   await page.goto(address, { waitUntil: "load" });
   if (options.wait !== false) await page.waitForFunction("window.lapwing?.grade !== undefined && " +
-    "document.querySelectorAll('.pin').length > 0", { timeout: 10000 });
+    "document.querySelectorAll('.pin').length > 0", { timeout: 30000 });
   return page;
 }
 
@@ -51,12 +51,12 @@ export const studioState = (page) => page.evaluate(() => ({
   document: window.lapwing.document, time: window.lapwing.time, frames: window.lapwing.frames,
 }));
 
-export async function waitGrade(page, grade, timeout = 10000) {
+export async function waitGrade(page, grade, timeout = 30000) {
   await page.waitForFunction((g) => window.lapwing.grade === g && window.lapwing.pending === 0,
                              { timeout, polling: 10 }, grade);
 }
 
-export async function waitRevision(page, revision, timeout = 10000) {
+export async function waitRevision(page, revision, timeout = 30000) {
   await page.waitForFunction((r) => window.lapwing.revision >= r && window.lapwing.pending === 0,
                              { timeout, polling: 10 }, revision);
 }

@@ -178,7 +178,7 @@ export const edits = [
       }
       throw new Error(`no button ${text}`);
     };
-    await next(page, () => button("Duplicate"));
+    await next(page, () => button("Copy"));
     assert.equal((await keyframes(page)).length, 4);
     await next(page, () => button("\u2191"));
     assert.deepEqual((await keyframes(page))[2].position, [0, -2, 14]);

@@ -70,8 +70,8 @@ test("figures of two versions, and the way back", () => {
   const of = (name: string): number | null | undefined =>
     figures.find((figure) => figure.name === name)?.value;
   assert.equal(of("Way flown"), 7);
-  assert.equal(of("Fastest across"), 5);
-  assert.equal(of("Fastest up or down"), 2);
+  assert.equal(of("Speed across"), 5);
+  assert.equal(of("Climb, sink"), 2);
   assert.equal(of("Nearest obstacle"), 0.75);
   assert.equal(of("Most thrust"), null);
   assert.equal(of("Cost"), 3);

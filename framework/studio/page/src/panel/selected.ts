@@ -185,17 +185,20 @@ export class Selected {
     const { studio } = this;
     const item = studio.selection;
     if (!item) return this.buttons.replaceChildren();
-    const button = (text: string, title: string, then: () => void): HTMLButtonElement =>
-      el("button", { type: "button", title, onclick: then }, text);
+    const button = (text: string, title: string, then: () => void,
+                    name?: string): HTMLButtonElement =>
+      el("button", { type: "button", title, onclick: then, "aria-label": name }, text);
     const list: HTMLButtonElement[] = [];
     if (item.kind === "keyframe") {
-      list.push(button("Duplicate", "Duplicate this keyframe (D)", () => duplicate(studio)));
-      list.push(button("\u2191", "Swap with the keyframe before (Alt + up)", () => order(studio, -1)));
-      list.push(button("\u2193", "Swap with the keyframe after (Alt + down)", () => order(studio, 1)));
-      list.push(button("Faster", "Less time for the leg to this keyframe (Alt + page up)",
-                       () => pace(studio, "faster")));
-      list.push(button("Slower", "More time for the leg to this keyframe (Alt + page down)",
-                       () => pace(studio, "slower")));
+      list.push(button("Copy", "Duplicate this keyframe (D)", () => duplicate(studio)));
+      list.push(button("\u2191", "Swap with the keyframe before (Alt + up)", () => order(studio, -1),
+                       "Swap with the one before"));
+      list.push(button("\u2193", "Swap with the keyframe after (Alt + down)", () => order(studio, 1),
+                       "Swap with the one after"));
+      list.push(button("\u00ab", "Slower: more time for the leg to this keyframe (Alt + page down)",
+                       () => pace(studio, "slower"), "Slower to this keyframe"));
+      list.push(button("\u00bb", "Faster: less time for the leg to this keyframe (Alt + page up)",
+                       () => pace(studio, "faster"), "Faster to this keyframe"));
       list.push(button("Aim", "Click a place for the camera to look at (L)",
                        () => studio.setMode("aim")));
     }

@@ -32,11 +32,11 @@ export function figuresOf({ plan, certificate }: Version): Figure[] {
   const cost = plan.objective?.reduce((sum, part) => sum + part.cost, 0);
   const failed = certificate?.checks.filter((one) => !one.passed && one.required && !one.skipped);
   return [
-    { name: "Length in time", unit: "s", value: plan.duration },
+    { name: "Duration", unit: "s", value: plan.duration },
     { name: "Way flown", unit: "m", value: way },
-    { name: "Fastest across", unit: "m/s", value: most(across("vx", "vy")) },
-    { name: "Fastest up or down", unit: "m/s", value: most((c.vz ?? []).map(Math.abs)) },
-    { name: "Hardest acceleration", unit: "m/s\u00b2", value: most(across("ax", "ay")) },
+    { name: "Speed across", unit: "m/s", value: most(across("vx", "vy")) },
+    { name: "Climb, sink", unit: "m/s", value: most((c.vz ?? []).map(Math.abs)) },
+    { name: "Acceleration", unit: "m/s\u00b2", value: most(across("ax", "ay")) },
     { name: "Most thrust", unit: "N", value: most(c.thrust ?? []) },
     { name: "Nearest obstacle", unit: "m", value: nearest === null ? null : -nearest },
     { name: "Cost", unit: "", value: cost ?? null },

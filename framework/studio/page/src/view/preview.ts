@@ -188,6 +188,6 @@ export function previewControls(studio: Studio): HTMLElement {
   return el("div", { class: "row" }, framing,
     box("Guides", "Thirds, horizon and the subject's box (G)", () => studio.guides,
         (on) => { studio.guides = on; }),
-    box("Render on pause", "Ask the server for a real picture when the film stands still",
+    box("Rendered", "On pause ask the server for a real picture when the film stands still",
         () => studio.rendered, (on) => { studio.rendered = on; }));
 }
