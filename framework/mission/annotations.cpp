@@ -320,8 +320,10 @@ std::string call_table_of(const ScriptInterface& interface) {
     // Tables of the script's own, and the values of terms, have their place in the text.
     const bool elsewhere =
         type.name == "option" || type.name == "mission" || type.name == "symbolic vector";
-    if (!fields.empty() && !elsewhere)
-      text += "| fields of a " + type.name + " | " + fields + " |\n";
+    if (fields.empty() || elsewhere) continue;
+    const bool vowel = std::string("aeiou").find(type.name.front()) != std::string::npos;
+    text +=
+        "| fields of " + std::string(vowel ? "an " : "a ") + type.name + " | " + fields + " |\n";
   }
   return text;
 }

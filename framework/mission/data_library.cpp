@@ -188,7 +188,7 @@ void open_data_library(lua_State* state) {
        "a table from a JSON file, and an object for errors in it; the file is in the folder of the "
        "script, a --data folder or configs/"},
       {"read_yaml", &guarded<read_yaml_data>,
-       "(name: string, folder?: string): any, lapwing.data_file", "the same from a YAML file"},
+       "(name: string, folder?: string): any, lapwing.data_file", "as read_json, from a YAML file"},
       {"read_text", &guarded<read_text>, "(name: string, folder?: string): string",
        "the text of a file"}};
   define_type<DataFile>(state, kDataFileType, {methods});

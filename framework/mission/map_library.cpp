@@ -282,9 +282,10 @@ void open_map_library(lua_State* state) {
       {"scan", &guarded<scan>, "(look: @)", "integrates depth images of a surface", &scan_table,
        kSurfaceObject},
       {"scan_folder", &guarded<scan_folder>, "(name: string)",
-       "the same from a folder of depth images"},
+       "integrates depth images from a folder"},
       {"load", &guarded<load>, "(name: string)", "loads a map file of the same resolution"},
-      {"counts", &guarded<counts>, "(): table", "voxels and memory: known, free, occupied, bytes"}};
+      {"counts", &guarded<counts>, "(): table",
+       "numbers of voxels and memory: known, free, occupied, bytes"}};
   static const Binding of_surface[] = {
       {"clearance", &guarded<clearance>, "(place: number[]): number",
        "distance to the nearest triangle in m, at most 50"},
@@ -303,7 +304,7 @@ std::span<const Binding> map_methods_of_run() {
       {"surface", &guarded<surface>, "(scene: lapwing.scene): lapwing.surface",
        "a surface from a scene"},
       {"read_surface", &guarded<read_surface>, "(mesh: @): lapwing.surface",
-       "the same from a mesh file", &mesh_file_table},
+       "a surface from a mesh file", &mesh_file_table},
       {"map", &guarded<map>, "(choice: lapwing.map_choice): lapwing.map",
        "an empty map; the `plan` of a mission may return a map instead of a plan"},
       {"map_resolution", &guarded<map_resolution>, "(name: string): number",

@@ -379,7 +379,7 @@ void open_prior_type(lua_State* state) {
        kSurfaceObject},
       {"open_air", &guarded<open_air>, "(box: @)",
        "marks a box as free; measurements in it are kept", &box_table, kFlownIn},
-      {"load", &guarded<load_prior>, "(files: @)", "map and mesh of an earlier flight",
+      {"load", &guarded<load_prior>, "(files: @)", "loads map and mesh of an earlier flight",
        &earlier_table},
       {"reconstruct", &guarded<reconstruct>, "(settings: @)",
        "reconstructs its mesh from all images", &reconstruct_table}};

@@ -239,7 +239,8 @@ void open_scene_library(lua_State* state) {
       {"pop", &guarded<pop>, "()", "ends the current frame"},
       {"quad", &guarded<quad>, "(a: number[], b: number[], c: number[], d: number[])",
        "a flat face, seen from the side on which its corners go counter-clockwise"},
-      {"face", &guarded<face>, "(corners: number[][])", "the same with any number of corners"},
+      {"face", &guarded<face>, "(corners: number[][])",
+       "a flat face with any number of corners, seen as `quad`"},
       {"box", &guarded<box>, "(lower: number[], upper: number[])", "a box"},
       {"prism", &guarded<prism>, "(corners: number[][], floor: number, ceiling: number)",
        "a body over {x, y} corners"},
@@ -257,8 +258,9 @@ void open_scene_library(lua_State* state) {
        "sets the motions that explorations of it use by default, such as smaller steps indoors",
        &scene_moves_table},
       {"uniform", &guarded<uniform>, "(low: number, high: number): number",
-       "a random number from the seed of the scene"},
-      {"integer", &guarded<integer>, "(low: integer, high: integer): integer", "a random integer"},
+       "a random number between both, from the seed of the scene"},
+      {"integer", &guarded<integer>, "(low: integer, high: integer): integer",
+       "a random integer between both, from the seed of the scene"},
       {"triangles", &guarded<triangles>, "(): integer", "number of triangles so far"}};
   static const Binding functions[] = {{"scene", &guarded<scene>, "(settings: @): lapwing.scene",
                                        "an empty scene, in metres", &new_scene_table}};
