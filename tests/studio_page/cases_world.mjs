@@ -6,6 +6,14 @@ import { centreOf, drag, studioState, type, waitGrade, waitRevision } from "./br
 import { keys, next } from "./cases_edit.mjs";
 
 const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+// A busy machine draws late: what is held is held for so many frames, and at least so long.
+const frames = (page, count, ms) => page.evaluate((most, least) => new Promise((done) => {
+  const start = performance.now();
+  let n = 0;
+  const next = () => (++n < most || performance.now() - start < least
+    ? requestAnimationFrame(next) : done());
+  requestAnimationFrame(next);
+}), count, ms);
 const text = (page, selector) => page.$eval(selector, (e) => e.textContent);
 const document = async (page) => (await studioState(page)).document;
 
@@ -104,7 +112,7 @@ export const worlds = [
     await next(page, async () => {
       await keys(page, "j", "Enter");
       await page.keyboard.down("ArrowUp");
-      await wait(500);
+      await frames(page, 6, 500);
       await page.keyboard.up("ArrowUp");
       await keys(page, "Enter");
     });
@@ -116,7 +124,7 @@ export const worlds = [
     // Dropped by Escape, nothing is left of it.
     const before = await studioState(page);
     await keys(page, "j", "Enter");
-    await wait(400);
+    await frames(page, 5, 400);
     await keys(page, "Escape", "Escape");
     assert.deepEqual((await studioState(page)).document, before.document);
   }],
@@ -208,12 +216,12 @@ export const worlds = [
         window.pad.axes = a;
         for (const [i, value] of Object.entries(b)) window.pad.buttons[i].value = value;
       }, axes, buttons);
-      await wait(250);
+      await frames(page, 5, 250);
       await page.evaluate(() => {
         window.pad.axes = [0, 0, 0, 0.1];      // not quite at rest, as sticks are
         for (const b of window.pad.buttons) b.value = 0;
       });
-      await wait(40);
+      await frames(page, 3, 40);
     };
     await held([0, -1, 0, 0], { 7: 1 });
     const on = await eye();

@@ -106,6 +106,18 @@ export class Walk {
   private readonly tick = (now: number): void => {
     const { studio, base } = this;
     if (!base) return;
+    this.step(now);
+    if (now - this.shown > SHOWN) {
+      this.shown = now;
+      studio.drag(walked(base, this.subject, this.steps));
+    }
+    if (studio.time >= studio.duration) this.finish();
+    else requestAnimationFrame(this.tick);
+  };
+
+  // Where the subject is now, and how far the film has run.
+  private step(now: number): void {
+    const { studio } = this;
     const seconds = Math.max(0, (now - this.last) / 1000);
     this.last = now;
     for (const [key, runs] of this.held) {
@@ -116,16 +128,11 @@ export class Walk {
     const time = Math.min(studio.time + (this.steps.length > 0 ? seconds : 0), studio.duration);
     this.steps.push({ time, place: this.place });
     studio.seek(time);
-    if (now - this.shown > SHOWN) {
-      this.shown = now;
-      studio.drag(walked(base, this.subject, this.steps));
-    }
-    if (time >= studio.duration) this.finish();
-    else requestAnimationFrame(this.tick);
-  };
+  }
 
   private finish(): void {
     const { studio, base } = this;
+    if (base) this.step(performance.now());
     this.base = null;
     if (!base) return;
     const edit = walked(base, this.subject, this.steps);
