@@ -23,6 +23,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kBetweenSteps = std::chrono::milliseconds(40);
 
+// A film of more stages is dragged with fewer, so that a move is drawn in time.
+constexpr std::size_t kMostDragged = 900, kDraggedStages = 600;
+
 std::string all_failures(const Certificate& certificate) {
   std::string all;
   for (const Check& check : certificate.failures())
@@ -114,7 +117,10 @@ class StudioWorker {
     const bool settled = frame.header.at("settled").as_boolean();
     // What was drawn last of the same options is told again.
     if (settled && drawn_last_ && drawn_layer_ == to_json(frame.header.at("layer"), -1)) return;
-    editor_.edit({{layer_of_page(frame.header.at("layer"), script_)}, {}, !settled});
+    Value layer = layer_of_page(frame.header.at("layer"), script_);
+    const bool coarse = !settled && dragged_step_ > 0;
+    if (coarse) layer.set("step", dragged_step_);
+    editor_.edit({{std::move(layer)}, {}, !settled && !coarse});
   }
 
   void do_work(const Frame& frame) {
@@ -215,6 +221,10 @@ class StudioWorker {
     if (!before) tell(edited);
     edited.certificate = judge_(*edited.plan, edited.folder, *whole_);
     if (whole_->cancelled()) return;
+    const Trajectory& flight = edited.plan->trajectory;
+    dragged_step_ = flight.samples.size() > kMostDragged
+                        ? flight.duration() / static_cast<double>(kDraggedStages)
+                        : 0;
     const std::string failures = all_failures(*edited.certificate);
     edited.answer.grade = failures.empty() ? AnswerGrade::certified : AnswerGrade::rejected;
     if (!failures.empty()) edited.answer.message = failures;
@@ -236,8 +246,12 @@ class StudioWorker {
       if (Clock::now() - last_step_ < kBetweenSteps) return;
       last_step_ = Clock::now();
     }
-    if (edited.answer.grade == AnswerGrade::converged) drawn_last_ = edited;
-    tell(edited);
+    if (edited.answer.grade != AnswerGrade::converged) return tell(edited);
+    drawn_last_ = edited;
+    if (dragged_step_ > 0)
+      drawn_last_->answer.message =
+          "a coarse plan of a long film; it is planned whole and checked when you let go";
+    tell(*drawn_last_);
   }
 
   void tell(const EditedPlan& edited) {
@@ -283,6 +297,7 @@ class StudioWorker {
   std::optional<std::string> refused_;
   std::optional<EditedPlan> drawn_last_;  // as it converged, from the point before; of this layer:
   std::string drawn_layer_;
+  double dragged_step_ = 0;  // s between stages while a long film is dragged; 0: as the film says
   DrawnSurfaces drawn_;
   std::string told_world_;
 

@@ -198,6 +198,39 @@ return film.shot {
   EXPECT_EQ(to_json(other.until_judged(2).at("plan")), to_json(first.at("plan")));
 }
 
+// A film of many stages is dragged with fewer of them, and judged whole.
+TEST_F(StudioProgram, LongFilmsAreDraggedCoarsely) {
+  write_file_atomically(folder_ / "long.lua", R"(local film = require "mission.film"
+return film.shot {
+  name = "long", keyframes = { { time = 0, position = {0, 0, 5}, yaw_deg = 0 },
+    { time = 60, position = {100, 20, 15} }, { time = 120, position = {200, 0, 5} } } })");
+  script_ = "long.lua";
+  PageClient page(serve(), "a");
+  const auto samples = [](const Value& answer) {
+    return answer.at("plan").at("columns").at("time").as_list().size();
+  };
+  const Value first = page.until_judged(0);
+  ASSERT_EQ(first.at("grade"), Value("certified"));
+  EXPECT_EQ(samples(first), 1201u);
+  page.send(preview(1, {change("keyframes[2].position", place(100, 22, 15))}));
+  const Value dragged = page.until([](const Value& m) {
+    return m.at("type") == Value("answer") && m.at("grade") == Value("converged");
+  });
+  EXPECT_EQ(samples(dragged), 601u);
+  EXPECT_NE(dragged.at("message").as_text().find("when you let go"), std::string::npos);
+  page.send(gesture("g", 0, {change("keyframes[2].position", place(100, 22, 15))}));
+  std::set<std::string> grades;
+  const Value judged = page.until([&](const Value& m) {
+    if (m.at("type") != Value("answer")) return false;
+    if (!m.at("edit").is_null()) grades.insert(m.at("grade").as_text());
+    return m.at("edit").is_null() && m.at("revision") == Value(1) && !m.at("certificate").is_null();
+  });
+  EXPECT_EQ(judged.at("grade"), Value("certified"));
+  EXPECT_EQ(samples(judged), 1201u);
+  EXPECT_EQ(judged.at("message"), Value(""));
+  EXPECT_EQ(grades.count("certified"), 0u);
+}
+
 // The certificate has what `lapwing run` judges, provenance too.
 TEST_F(StudioProgram, TheCertificateIsTheOneOfARun) {
   use("filming/castle_flyover.lua");

@@ -2,7 +2,8 @@
 // What a drag costs on real shots: node shots.mjs FOLDER [NAMES...]. Of every shot_*.json in the
 // folder the middle keyframe is dragged for two seconds, twenty moves a second, a metre to and fro,
 // and let go of. Prints a row a shot: how long a move waited for an answer of it or of a later one,
-// and how the released film ended. Exit status 1 where figure 3 of the README is not met.
+// and how the released film ended. Exit status 1 where 95 % of the moves of a shot waited for more than
+// 150 ms, or a film ended without a certificate and without a reason.
 import { spawn } from "node:child_process";
 import { mkdtempSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -127,4 +128,4 @@ for (const name of all) {
   }
 }
 console.log(failed === 0 ? "all within 150 ms" : `${failed} of ${all.length} not`);
-process.exit(0);
+process.exit(failed === 0 ? 0 : 1);

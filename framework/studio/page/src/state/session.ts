@@ -14,7 +14,7 @@ import type {
 export type { Clock, Event, Link, SessionParts, Socket } from "./session_parts";
 
 const PREVIEW_EVERY = 40;                              // ms
-const WAITS = [100, 200, 400, 800, 1500];              // ms, between attempts to connect
+const WAITS = [100, 200, 400, 800];              // ms, between attempts to connect
 const CONNECT_LIMIT = 4000;                            // ms
 const MOST_AFTER = 64;                                 // as many as the server lets wait
 
