@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kBetweenSteps = std::chrono::milliseconds(40);
 
 // A film of more stages is dragged with fewer, so that a move is drawn in time.
-constexpr std::size_t kMostDragged = 900, kDraggedStages = 600;
+constexpr std::size_t kMostDragged = 800, kDraggedStages = 600;
 
 std::string all_failures(const Certificate& certificate) {
   std::string all;
