@@ -94,4 +94,19 @@ for format in "${formats[@]}"; do
   done
   echo
 done
+
+# Logs that nobody here made, read by a program from elsewhere too.
+for data in ${LAPWING_DATA:+"$LAPWING_DATA"} ../shared/data; do
+  [ -d "$data/flight_logs" ] && break
+done
+for log in "$data"/flight_logs/*.ulg; do
+  [ -e "$log" ] || { echo "ulog: no real logs; LAPWING_DATA names their folder"; break; }
+  if "$lapwing" log info "$log" --json >"$judges/log.json" 2>"$judges/log.txt" &&
+    found=$(node "$judges/ulog.js" "$log" "$judges/log.json" 2>&1); then
+    echo "$(basename "$log"): good, $found"
+  else
+    echo "$(basename "$log"): BAD: $(cat "$judges/log.txt") ${found:-}"
+    failed=1
+  fi
+done
 exit "$failed"

@@ -6,7 +6,7 @@ lapwing_packages=(
   libeigen3-dev libyaml-cpp-dev liblua5.4-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libcli11-dev libgeographiclib-dev libembree-dev libpng-dev libtbb-dev libassimp-dev
   libcgal-dev liboctomap-dev libopencv-calib3d-dev libompl-dev coinor-libipopt-dev libnlopt-dev
-  coinor-libcbc-dev libboost-dev
+  coinor-libcbc-dev libboost-dev libexpat1-dev libzstd-dev liblz4-dev
 )
 lapwing_test_packages=(libgtest-dev libgmock-dev chromium binutils groff-base zsh fish)
 lapwing_bench_packages=(libbenchmark-dev)

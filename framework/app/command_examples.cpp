@@ -58,6 +58,18 @@ const std::vector<CommandExamples>& command_examples() {
       {"lapwing export",
        {"lapwing export out/shot/plan.json --format csv -o shot.csv"},
        "0 done; 1 not certified, and nothing written; 2 bad input; 3 internal error"},
+      {"lapwing compare",
+       {"lapwing compare out/shot/plan.json flight.ulg -o flight.html",
+        "lapwing compare out/shot/plan.json record.csv --origin 46.5191,6.5668,0,ground"},
+       "0 flown as planned; 1 the flight broke a limit that the plan keeps, or is another flight; "
+       "2 "
+       "bad input; 3 internal error"},
+      {"lapwing log", {"lapwing log info flight.ulg"}, kOfFiles},
+      {"lapwing log info", {"lapwing log info flight.ulg --json"}, kOfFiles},
+      {"lapwing vehicle", {"lapwing vehicle from flight.ulg -o mine.yaml"}, kOfFiles},
+      {"lapwing vehicle from",
+       {"lapwing vehicle from flight.ulg --base vehicles/phantom -o mine.yaml"},
+       kOfFiles},
       {"lapwing race",
        {"lapwing race out/race/plan.json --pilot ann.csv:name=Ann,strength=0.5 -o race.html"},
        kOfFiles},

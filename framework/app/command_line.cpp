@@ -5,6 +5,7 @@
 #include "framework/app/descriptions.h"
 #include "framework/app/diff_command.h"
 #include "framework/app/evaluate_explore.h"
+#include "framework/app/flight_log_commands.h"
 #include "framework/app/help_commands.h"
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
@@ -243,6 +244,7 @@ struct Requests {
   ExportRequest exporting;
   Judges judges;
   SimulationRequest simulation;
+  FlightLogRequest flight_log;
   SceneStatement stated;
   std::vector<std::string> pilots;
   RaceRules rules;
@@ -277,6 +279,7 @@ void declare_commands(CLI::App& app, Requests& asked) {
   add_difference(app, invocation, asked.difference, command);
   add_plan_commands(app, invocation, asked.plan, asked.exporting, asked.judges, command);
   add_simulate_command(app, invocation, asked.plan, asked.simulation, asked.target, command);
+  add_flight_log_commands(app, invocation, asked.flight_log, command);
   add_map_commands(app, invocation, asked.plan, asked.target, command);
   add_scene_commands(app, invocation, asked.plan, asked.stated, asked.target, command);
   add_race_command(app, invocation, asked.plan, asked.pilots, asked.rules, asked.target, command);

@@ -7,6 +7,7 @@
 #include "framework/conformance/differences.h"
 #include "framework/conformance/function_checks.h"
 #include "framework/export/exporter.h"
+#include "framework/flight_log/flight_log_reader.h"
 #include "framework/shape/shape.h"
 
 namespace lapwing {
@@ -109,6 +110,8 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
   if (kind == Controller::kKind)
     return {{"creation"}, {"finite", "limits"}, {"follows"}, {"repeatable", "threads"}, {"time"}};
   if (kind == Exporter::kKind) return {{"creation"}, {"extension"}, {"repeatable", "contents"}};
+  if (kind == FlightLogReader::kKind)
+    return {{"creation"}, {"example", "repeatable"}, {"refusals"}, {"cut short"}, {"damage"}};
   return {};
 }
 
@@ -162,6 +165,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
     return check_registered<Controller>(registry, entry, options, check_controller);
   if (entry.kind == Exporter::kKind)
     return check_registered<Exporter>(registry, entry, options, check_exporter);
+  if (entry.kind == FlightLogReader::kKind)
+    return check_registered<FlightLogReader>(registry, entry, options, check_flight_log);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
 }
 

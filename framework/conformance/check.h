@@ -28,8 +28,9 @@
 
 namespace lapwing {
 
-class Exporter;  // export/exporter.h
-class Shape;     // shape/shape.h
+class Exporter;         // export/exporter.h
+class FlightLogReader;  // flight_log/flight_log_reader.h
+class Shape;            // shape/shape.h
 
 enum class Outcome { passed, failed, skipped, warned };  // warned: likely a slip, no mistake
 
@@ -100,6 +101,8 @@ std::vector<CheckResult> check_controller(const Specimen<Controller>& subject,
                                           const CheckOptions& options = {});
 std::vector<CheckResult> check_exporter(const Specimen<Exporter>& subject,
                                         const CheckOptions& options = {});
+std::vector<CheckResult> check_flight_log(const Specimen<FlightLogReader>& subject,
+                                          const CheckOptions& options = {});
 
 template <class Kind>
 Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {

@@ -32,9 +32,9 @@ TEST_F(NewFiles, NamesOfTheKernelsClassesAreRefused) {
   const std::string taken =
       "\n" + read_file(fs::path(LAPWING_SOURCE_DIR) / "scripts/templates/taken_names.txt");
   const std::regex declared("(^|\n)(class|struct|enum class|using) ([A-Z][A-Za-z0-9]*)");
-  for (const char* room :
-       {"core", "geometry", "picture", "surface", "shape", "trajectory", "vehicle", "map", "path",
-        "problem", "symbolic", "solve", "view", "explore", "verify", "export", "plugin"})
+  for (const char* room : {"core", "geometry", "picture", "surface", "shape", "trajectory",
+                           "vehicle", "map", "path", "problem", "symbolic", "solve", "view",
+                           "explore", "verify", "export", "plugin", "flight_log"})
     for (const auto& file :
          fs::directory_iterator(fs::path(LAPWING_SOURCE_DIR) / "framework" / room)) {
       if (file.path().extension() != ".h") continue;

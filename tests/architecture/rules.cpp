@@ -22,7 +22,8 @@ const std::map<std::string, Names>& rooms() {
   static const Names kAllButApp{"geometry", "trajectory", "vehicle",     "map",     "path",
                                 "problem",  "solve",      "view",        "explore", "verify",
                                 "export",   "config",     "conformance", "plugin",  "mission",
-                                "surface",  "shape",      "picture",     "symbolic"};
+                                "surface",  "shape",      "picture",     "symbolic",
+                                "flight_log", "flight_review"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -49,6 +50,9 @@ const std::map<std::string, Names>& rooms() {
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
       {"export",
        {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
+      {"flight_log", {"geometry"}},
+      {"flight_review",
+       {"geometry", "trajectory", "vehicle", "verify", "export", "flight_log"}},
       {"config", {}},
       {"plugin", {}},
       {"conformance", without(kAllButApp, "mission")},
@@ -80,6 +84,7 @@ const std::map<std::string, Kind>& kinds() {
       {"utilities", {"utility", "explore"}},
       {"controllers", {"controller", "solve"}},
       {"exporters", {"exporter", "export"}},
+      {"flight_logs", {"flight_log", "flight_log"}},
   };
   return kKinds;
 }
@@ -116,6 +121,9 @@ constexpr Containment kContained[] = {
     {"nanoflann", "", true},
     {"oneapi/dnnl", "", true},
     {"torch/", "", true},
+    {"expat.h", "", true},
+    {"zstd.h", "", true},
+    {"lz4frame.h", "", true},
 };
 // Of these, one source file of the framework alone.
 constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/",  "png.h",

@@ -21,7 +21,7 @@ std::vector<PluginEntry> checked_entries() {
   for (const PluginEntry& entry : plugins().entries())
     for (const char* kind :
          {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner",
-          "tour_solver", "information", "utility", "exporter", "shape", "controller"})
+          "tour_solver", "information", "utility", "exporter", "shape", "controller", "flight_log"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }
@@ -92,6 +92,8 @@ TEST(EveryPlugin, IsThere) {
                                    {"controller", "tvlqr"},
                                    {"controller", "mpc"},
                                    {"controller", "contouring"},
+                                   {"flight_log", "ulog"},
+                                   {"flight_log", "csv"},
                                    {"tour_solver", "greedy"},
                                    {"tour_solver", "cost_benefit"},
                                    {"tour_solver", "recursive_greedy"},

@@ -21,6 +21,10 @@ std::vector<lapwing::FuzzedReader> lapwing::fuzzed_readers() { return {${readers
 ")
 
 add_executable(test_fuzz_corpus ${CMAKE_CURRENT_LIST_DIR}/corpus_test.cpp ${fuzzers} ${reader_list})
+# Readers of flight logs are plugins: the fuzzers call their sources.
+file(GLOB log_readers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/plugins/flight_logs/*/*_*.cpp)
+target_sources(test_fuzz_corpus PRIVATE ${log_readers})
+target_link_libraries(test_fuzz_corpus PRIVATE expat zstd lz4)
 target_link_libraries(test_fuzz_corpus PRIVATE lapwing_studio lapwing GTest::gtest GTest::gtest_main)
 target_compile_definitions(test_fuzz_corpus PRIVATE ${test_definitions})
 target_compile_options(test_fuzz_corpus PRIVATE ${test_options})

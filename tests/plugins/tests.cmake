@@ -27,6 +27,13 @@ foreach(name installed_plugin new_plugins)
 endforeach()
 set_tests_properties(new_plugins PROPERTIES LABELS long)
 
+foreach(reader ulog dataflash gpx csv mcap)
+  add_dependencies(test_flight_logs lapwing_flight_log_${reader})
+  add_dependencies(test_flight_review lapwing_flight_log_${reader})
+endforeach()
+add_dependencies(test_flight_logs lapwing_exporter_csv lapwing_exporter_mcap)
+target_link_libraries(test_flight_logs PRIVATE zstd lz4)
+
 find_package(octomap REQUIRED)
 target_link_libraries(test_maps PRIVATE octomap octomath)
 add_dependencies(test_maps lapwing_map_octomap lapwing_map_brick)

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// A flown flight against its plan: all that `lapwing compare` says.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/core/error.h"
+#include "framework/core/value.h"
+#include "framework/export/report.h"
+#include "framework/flight_review/flight_errors.h"
+#include "framework/flight_review/flown_certificate.h"
+
+namespace lapwing {
+
+struct FlightReview {
+  FlightLog log;
+  std::string source;  // of the positions, in words
+  AlignmentRequest asked;
+  FlightAlignment alignment;
+  FlownTrack flown;
+  std::vector<ErrorSeries> errors;
+  FlownCertificate certificate;
+  double missing_before = 0, missing_after = 0;  // s of the plan that the log does not hold
+
+  // Whether the flight kept every required check that the plan keeps.
+  bool kept() const;
+};
+
+// Throws as flown_series, align_flight and flown_track do. `folder`: where the plan is.
+FlightReview review_flight(const Plan& plan, FlightLog log, const AlignmentRequest& asked,
+                           const std::filesystem::path& folder);
+
+// How both were brought together, and what of the log is missing, as sentences.
+std::vector<std::string> alignment_sentences(const FlightReview& review);
+// What would have to change so that the next flight keeps the plan; empty: nothing.
+std::vector<std::string> advice_of(const Plan& plan, const FlightReview& review);
+
+// SI and radians.
+Value to_value(const Plan& plan, const FlightReview& review);
+
+// The page: paths, errors over time, broken limits, views.
+Report review_report(const Plan& plan, const FlightReview& review,
+                     const std::filesystem::path& folder);
+
+}  // namespace lapwing

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plugins/flight_logs/ulog/ulog_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/flight_log/byte_reader.h"
+
+namespace lapwing::ulog {
+namespace {
+
+constexpr std::string_view kMagic("\x55\x4c\x6f\x67\x01\x12\x35", 7);
+// A sync record: its size, its type and these eight bytes.
+constexpr std::string_view kSync("\x08\x00\x53\x2f\x73\x13\x20\x25\x0c\xbb\x12", 11);
+constexpr std::size_t kHead = 16;  // bytes before the first record
+
+class Reading {
+ public:
+  Reading(std::string_view bytes, Formats& formats, const Listener& listener)
+      : bytes_(bytes), formats_(formats), listener_(listener) {}
+
+  Outcome run() {
+    std::size_t at = kHead;
+    outcome_.read = std::min(at, bytes_.size());
+    while (at < bytes_.size()) {
+      const std::size_t end = next_part(at);
+      const auto size = number_in<std::uint16_t>(bytes_, at);
+      if (!size || at + 3 > end) {
+        if (end < bytes_.size() && jump(at, end)) continue;
+        cut(at, "the head of a record");
+        break;
+      }
+      const char type = bytes_[at + 2];
+      if (at + 3 + *size > end && known(type)) {
+        if (end < bytes_.size() && jump(at, end)) continue;
+        if (resume(at)) continue;
+        cut(at, std::string("a record '") + type + "'");
+        break;
+      }
+      if (!take(type, bytes_.substr(at + 3, *size), at)) {
+        if (!resume(at)) break;
+        continue;
+      }
+      at += 3 + *size;
+      outcome_.read = at;
+    }
+    return outcome_;
+  }
+
+ private:
+  static bool known(char type) {
+    return std::string_view("BFIMPQARDLCSO").find(type) != std::string_view::npos;
+  }
+
+  // The end of the part of the file that a place lies in: data that were appended later follow a
+  // part that may end within a record.
+  std::size_t next_part(std::size_t at) const {
+    for (const std::size_t appended : appended_)
+      if (appended > at) return appended;
+    return bytes_.size();
+  }
+
+  // What a part leaves unfinished is dropped.
+  bool jump(std::size_t& at, std::size_t end) {
+    outcome_.skipped += end - at;
+    at = end;
+    return true;
+  }
+
+  void cut(std::size_t at, const std::string& within) {
+    outcome_.damage = "it ends within " + within + " at byte " + std::to_string(at);
+  }
+
+  // Goes on at the next sync record, if there is one.
+  bool resume(std::size_t& at) {
+    const std::size_t next = bytes_.find(kSync, at + 1);
+    const std::string what = "byte " + std::to_string(at) + " begins no record";
+    if (outcome_.damage.empty()) outcome_.damage = what;
+    if (next == bytes_.npos) return false;
+    outcome_.skipped += next - at;
+    at = next;
+    return true;
+  }
+
+  // Whether the record is sound.
+  bool take(char type, std::string_view body, std::size_t at) {
+    switch (type) {
+      case 'B':
+        return flags(body, at);
+      case 'F':
+        return define(body);
+      case 'I':
+        return inform(body, 0);
+      case 'M':
+        return inform(body, 1);
+      case 'A':
+        return subscribe(body);
+      case 'R':
+        return unsubscribe(body);
+      case 'D':
+        return data(body);
+      case 'L':
+        return text(body, 1);
+      case 'C':
+        return text(body, 3);
+      case 'O':
+        return dropout(body);
+      case 'P':
+      case 'Q':
+        return !body.empty();
+      case 'S':
+        return body == kSync.substr(3);
+      // A later version may have further records, whose types are letters.
+      default:
+        return type >= 'A' && type <= 'Z' && !body.empty();
+    }
+  }
+
+  bool flags(std::string_view body, std::size_t at) {
+    if (body.size() < 40 || at != kHead) return false;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const auto unknown = static_cast<unsigned char>(body[8 + k]) & (k == 0 ? 0xfe : 0xff);
+      if (unknown)
+        throw InputError("byte " + std::to_string(at + 11 + k) +
+                         ": the file needs a feature of ULog that this version does not know");
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto offset = *number_in<std::uint64_t>(body, 16 + 8 * k);
+      if (offset > kHead && offset < bytes_.size())
+        appended_.push_back(static_cast<std::size_t>(offset));
+    }
+    std::sort(appended_.begin(), appended_.end());
+    return true;
+  }
+
+  bool define(std::string_view body) {
+    try {
+      formats_.add(body);
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
+  }
+
+  bool inform(std::string_view body, std::size_t before) {
+    if (body.size() < before + 2) return false;
+    const std::size_t length = static_cast<unsigned char>(body[before]);
+    if (length == 0 || before + 1 + length > body.size()) return false;
+    listener_.information(body.substr(before + 1, length), body.substr(before + 1 + length));
+    return true;
+  }
+
+  bool subscribe(std::string_view body) {
+    if (body.size() < 4) return false;
+    const auto id = *number_in<std::uint16_t>(body, 1);
+    Topic topic{std::string(body.substr(3)), static_cast<unsigned char>(body[0]), nullptr};
+    try {
+      topic.format = &formats_.resolved(topic.name);
+    } catch (const InputError&) {
+      return false;
+    }
+    topics_[id] = std::move(topic);
+    return true;
+  }
+
+  bool unsubscribe(std::string_view body) {
+    const auto id = number_in<std::uint16_t>(body, 0);
+    return id && topics_.erase(*id) > 0;
+  }
+
+  bool data(std::string_view body) {
+    const auto id = number_in<std::uint16_t>(body, 0);
+    if (!id) return false;
+    const auto topic = topics_.find(*id);
+    if (topic == topics_.end() || body.size() - 2 < topic->second.format->size) return false;
+    const std::string_view message = body.substr(2);
+    if (const Field* time = topic->second.format->field("timestamp"))
+      time_ = std::max(time_, 1e-6 * value_of(*time, message));
+    listener_.data(topic->second, message);
+    return true;
+  }
+
+  bool text(std::string_view body, std::size_t before) {
+    const auto time = number_in<std::uint64_t>(body, before);
+    if (!time) return false;
+    listener_.message(1e-6 * static_cast<double>(*time), body.substr(before + 8));
+    return true;
+  }
+
+  bool dropout(std::string_view body) {
+    const auto milliseconds = number_in<std::uint16_t>(body, 0);
+    if (!milliseconds) return false;
+    listener_.dropout(time_, 1e-3 * *milliseconds);
+    return true;
+  }
+
+  std::string_view bytes_;
+  Formats& formats_;
+  const Listener& listener_;
+  Outcome outcome_;
+  std::vector<std::size_t> appended_;
+  std::map<std::uint16_t, Topic> topics_;
+  double time_ = 0;  // s, of the last data
+};
+
+}  // namespace
+
+bool is_ulog(std::string_view bytes) {
+  return bytes.starts_with(kMagic);
+}
+
+Outcome read_records(std::string_view bytes, Formats& formats, const Listener& listener) {
+  if (!is_ulog(bytes)) throw InputError("byte 0: a ULog begins with 'ULog' and the bytes 01 12 35");
+  if (bytes.size() < kHead)
+    throw InputError("byte " + std::to_string(bytes.size()) +
+                     ": the file ends within its head of 16 bytes");
+  return Reading(bytes, formats, listener).run();
+}
+
+}  // namespace lapwing::ulog

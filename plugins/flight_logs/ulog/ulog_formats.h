@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Message formats of a ULog file: which numbers stand where in the bytes of a message.
+// https://docs.px4.io/main/en/dev_log/ulog_file_format.html
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lapwing::ulog {
+
+enum class NumberType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, boolean, character };
+
+struct Field {
+  std::string name;  // "x", "q[2]", "esc[0].rpm"
+  NumberType type = NumberType::u8;
+  std::size_t offset = 0;  // bytes from the beginning of the message, its id excluded
+};
+
+struct Format {
+  std::vector<Field> fields;  // every element of an array by itself, but for texts
+  std::size_t size = 0;       // bytes, the padding at the end excluded, which files may leave out
+
+  // Null where there is none.
+  const Field* field(std::string_view name) const;
+};
+
+// The number as a double; `bytes` is the message without its id and at least `size` long.
+double value_of(const Field& field, std::string_view bytes);
+
+// Definitions as they come, "name:type a;type[3] b;...", which may name each other.
+class Formats {
+ public:
+  // InputError for a line of another form. A format that was resolved stays as it is.
+  void add(std::string_view definition);
+  // Resolved with what it contains. InputError for a format that is not defined, that contains
+  // itself, or that is longer than a message can be (65535 bytes); and for 2^20 fields of all.
+  const Format& resolved(const std::string& name);
+
+ private:
+  struct Member {
+    std::string type, name;
+    std::size_t count = 0;  // of an array; 0: not an array
+  };
+  void append(const std::string& name, const std::string& prefix, int depth, Format& into) const;
+
+  std::map<std::string, std::vector<Member>> defined_;
+  std::map<std::string, Format> resolved_;
+  std::size_t fields_ = 0;  // of all that are resolved
+};
+
+}  // namespace lapwing::ulog

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Log and plan brought together: what was put on a flight comes back.
+#include "framework/flight_review/flight_alignment.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/flight_review/recorded_flight.h"
+
+namespace lapwing {
+namespace {
+
+using testing::HasSubstr;
+
+FlownSeries series_of(const std::vector<RecordedState>& states, bool local = false) {
+  FlownSeries series;
+  series.source = "test";
+  series.local = local;
+  for (const RecordedState& s : states) {
+    series.times.push_back(s.time);
+    series.positions.push_back(s.position);
+  }
+  return series;
+}
+
+std::string refusal_of(const Plan& plan, const FlownSeries& series,
+                       const AlignmentRequest& asked = {}) {
+  try {
+    align_flight(plan.trajectory, series, asked);
+  } catch (const AnotherFlight& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Alignment, ClockAndOffsetComeBack) {
+  const Plan plan = wave_plan();
+  const Eigen::Vector3d offset(1.2, -0.8, 0.5);
+  const auto states =
+      recorded(ideal_flight(plan, 20, 60, 90), {.clock = 123.456, .offset = offset, .noise = 0.05});
+  const FlightAlignment found = align_flight(plan.trajectory, series_of(states));
+  EXPECT_NEAR(found.clock, 123.456, 0.01);
+  EXPECT_LT((found.offset + offset).norm(), 0.02);
+  // Between samples a straight line has two thirds of their variance.
+  EXPECT_NEAR(found.residual, 0.05 * std::sqrt(3 * 2 / 3.0), 0.005);
+  EXPECT_FALSE(found.stretched);
+  EXPECT_FALSE(found.confounded);
+  // What is said of the uncertainty is so: within four standard deviations, and no idle claim.
+  EXPECT_LT(std::abs(found.clock - 123.456), 4 * found.clock_sigma + 1e-3);
+  EXPECT_LT(found.clock_sigma, 0.02);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_LT(std::abs(found.offset[axis] + offset[axis]), 4 * found.offset_sigma[axis] + 1e-3);
+}
+
+TEST(Alignment, OutliersDoNotMatter) {
+  const Plan plan = wave_plan();
+  auto states = recorded(ideal_flight(plan, 20), {.clock = -7.5, .noise = 0.02});
+  for (std::size_t i = 0; i < states.size(); i += 9)
+    states[i].position += Eigen::Vector3d(8, 5, -4);
+  const FlightAlignment found = align_flight(plan.trajectory, series_of(states));
+  EXPECT_NEAR(found.clock, -7.5, 0.02);
+  EXPECT_LT(found.offset.norm(), 0.1);
+}
+
+TEST(Alignment, StatedClockAndPositionsStand) {
+  const Plan plan = wave_plan();
+  const auto states = recorded(ideal_flight(plan, 20), {.clock = 10, .offset = {0.5, 0, 0}});
+  const FlightAlignment found =
+      align_flight(plan.trajectory, series_of(states), {.clock = 10.1, .estimate_offset = false});
+  EXPECT_EQ(found.clock, 10.1);
+  EXPECT_EQ(found.offset, Eigen::Vector3d::Zero().eval());
+  EXPECT_GT(found.residual, 0.3);
+}
+
+TEST(Alignment, TheHeadingOfALocalFrameComesBack) {
+  const Plan plan = wave_plan();
+  auto states = recorded(ideal_flight(plan, 20), {.clock = 3, .noise = 0.02});
+  const Eigen::AngleAxisd turn(-0.7, Eigen::Vector3d::UnitZ());
+  for (RecordedState& s : states) s.position = turn * (s.position + Eigen::Vector3d(200, -50, 3));
+  const FlightAlignment found =
+      align_flight(plan.trajectory, series_of(states, true), {.estimate_turn = true});
+  EXPECT_NEAR(found.turn, 0.7, 0.002);
+  EXPECT_NEAR(found.clock, 3, 0.02);
+  EXPECT_LT((found.corrected(states[100].position) -
+             sample_at(plan.trajectory, states[100].time - 3).position)
+                .norm(),
+            0.15);
+}
+
+TEST(Alignment, HalfAFlightIsEnough) {
+  const Plan plan = wave_plan();
+  auto states = recorded(ideal_flight(plan, 20), {.clock = 50, .offset = {0, 1, 0}, .noise = 0.02});
+  std::erase_if(states, [](const RecordedState& s) { return s.time > 50 + 20; });
+  const FlightAlignment found = align_flight(plan.trajectory, series_of(states));
+  EXPECT_NEAR(found.clock, 50, 0.02);
+  EXPECT_LT((found.offset + Eigen::Vector3d(0, 1, 0)).norm(), 0.05);
+}
+
+TEST(Alignment, ASlowerFlightIsMatchedByItsPlaces) {
+  const Plan plan = wave_plan();
+  auto states = ideal_flight(plan, 20, 5, 5);
+  for (RecordedState& s : states) s.time = 300 + 1.4 * s.time;
+  const FlightAlignment found = align_flight(plan.trajectory, series_of(states));
+  EXPECT_TRUE(found.stretched);
+  EXPECT_NEAR(found.clock, 300, 1);
+  EXPECT_NEAR(found.end, 1.4 * 40, 1.5);
+}
+
+TEST(Alignment, AStraightFlightSaysWhatItCannotTell) {
+  Plan plan = wave_plan();
+  for (Sample& s : plan.trajectory.samples) {
+    s.position = {2 * s.time, 0, 5};
+    s.velocity = {2, 0, 0};
+    s.acceleration.setZero();
+  }
+  std::vector<RecordedState> states = ideal_flight(plan, 20, 0, 0);
+  for (RecordedState& s : states) s.position.x() += 0.4;
+  const FlightAlignment found = align_flight(plan.trajectory, series_of(states));
+  EXPECT_TRUE(found.confounded);
+  EXPECT_NEAR(2 * found.clock - found.offset.x() - 0.4 + 0.8, 0.4, 1.0);
+}
+
+TEST(Alignment, AnotherFlightIsRefused) {
+  const Plan plan = wave_plan();
+  auto far = ideal_flight(plan, 20);
+  for (RecordedState& s : far) s.position.x() += 5000;
+  EXPECT_THAT(refusal_of(plan, series_of(far)), HasSubstr("of another place"));
+  std::vector<RecordedState> other;
+  for (int k = 0; k < 1000; ++k) {
+    RecordedState s;
+    s.time = 0.1 * k;
+    s.position = {30 * std::cos(0.5 * s.time), 30 * std::sin(0.5 * s.time), 40};
+    other.push_back(s);
+  }
+  EXPECT_THAT(refusal_of(plan, series_of(other)), HasSubstr("never flew this plan"));
+  const auto own = recorded(ideal_flight(plan, 20), {.clock = 10});
+  EXPECT_THAT(refusal_of(plan, series_of(own), {.clock = 40}), HasSubstr("--time-offset 40"));
+}
+
+}  // namespace
+}  // namespace lapwing

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/plugins/flight_logs/reader_fixture.h"
+
+namespace lapwing {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(Ulog, ReadsWhatWasWritten) {
+  const auto states = short_flight();
+  const auto reader = reader_named("ulog");
+  const std::string bytes = ulog_of(states, true, {101, 102});
+  ASSERT_TRUE(reader->recognizes(bytes));
+  const FlightLog log = reader->read(bytes);
+  EXPECT_THAT(faults_of(log), IsEmpty());
+  EXPECT_EQ(log.damage, "");
+  EXPECT_EQ(log.bytes_read, bytes.size());
+  ASSERT_EQ(log.find("position")->size(), states.size());
+  for (std::size_t i = 0; i < states.size(); i += 5) {
+    const RecordedState& s = states[i];
+    EXPECT_NEAR(log.find("position")->times[i], s.time, 1e-6);
+    EXPECT_LT((row_of(log, "position", i) - s.position).norm(), 1e-5);
+    EXPECT_LT((row_of(log, "velocity", i) - s.velocity).norm(), 1e-5);
+    EXPECT_NEAR(std::remainder(row_of(log, "yaw", i)[0] - s.yaw, 2 * M_PI), 0, 1e-5);
+    EXPECT_NEAR(std::remainder(row_of(log, "camera", i)[0] - s.camera.x(), 2 * M_PI), 0, 1e-5);
+    EXPECT_NEAR(row_of(log, "camera", i)[1], s.camera.y(), 1e-5);
+  }
+  EXPECT_NEAR(log.reference->latitude_deg, kWaveLatitude, 1e-12);
+  EXPECT_NEAR(log.reference->altitude, kWaveHeight, 1e-9);
+  EXPECT_EQ(log.heights, HeightOf::sea);
+  EXPECT_THAT(log.photographs, testing::ElementsAre(101, 102));
+}
+
+TEST(Ulog, AFileCutAnywhereGivesWhatIsWhole) {
+  const auto reader = reader_named("ulog");
+  const std::string bytes = ulog_of(recorded(ideal_flight(wave_plan(1), 10, 0, 0), {.clock = 5}));
+  EXPECT_GT(read_cut(*reader, bytes), bytes.size() / 2);
+  const FlightLog cut = reader->read(std::string_view(bytes).substr(0, bytes.size() - 10));
+  EXPECT_THAT(cut.damage, HasSubstr("it ends within a record 'D' at byte "));
+}
+
+TEST(Ulog, DropoutsInstancesAndMessagesAreCounted) {
+  const auto states = short_flight();
+  std::string bytes = ulog_head() + ulog_formats() + ulog_topic(9, "vehicle_attitude", 1);
+  for (const RecordedState& s : states) bytes += ulog_state(s, true);
+  std::string other;  // another instance, which is not read
+  put(other, std::uint16_t{9});
+  put(other, microseconds(101));
+  put_floats(other, {1, 0, 0, 0});
+  bytes += ulog_record('D', other);
+  std::string lost;
+  put(lost, std::uint16_t{250});
+  bytes += ulog_record('O', lost);
+  std::string said(1, '6');
+  put(said, microseconds(102));
+  bytes += ulog_record('L', said + "Takeoff");
+  const FlightLog log = reader_named("ulog")->read(bytes);
+  ASSERT_EQ(log.gaps.size(), 1u);
+  EXPECT_NEAR(log.gaps[0].duration, 0.25, 1e-12);
+  EXPECT_EQ(log.messages[0].text, "Takeoff");
+  EXPECT_NEAR(log.messages[0].time, 102, 1e-9);
+  std::map<std::string, std::size_t> counts;
+  for (const LogRecords& records : log.records) counts[records.name] = records.count;
+  EXPECT_EQ(counts["vehicle_attitude"], states.size());
+  EXPECT_EQ(counts["vehicle_attitude#1"], 1u);
+  EXPECT_EQ(log.find("orientation")->size(), states.size());
+}
+
+TEST(Ulog, AppendedDataAreReadAndTheRestOfAPartIsLeft) {
+  const auto states = short_flight();
+  std::string first = ulog_head(1) + ulog_formats();
+  for (std::size_t i = 0; i < 20; ++i) first += ulog_state(states[i], true);
+  first += std::string("\x40\x00\x44\x01", 4);  // a record that a crash cut
+  std::string bytes = ulog_head(first.size()) + first.substr(ulog_head(1).size());
+  for (std::size_t i = 20; i < 30; ++i) bytes += ulog_state(states[i], true);
+  const FlightLog log = reader_named("ulog")->read(bytes);
+  EXPECT_EQ(log.damage, "");
+  EXPECT_EQ(log.find("position")->size(), 30u);
+}
+
+TEST(Ulog, BytesThatAreNoRecordAreSkippedToTheNextSync) {
+  const auto states = short_flight();
+  std::string bytes = ulog_head() + ulog_formats();
+  bytes += ulog_state(states[0], true) + ulog_state(states[1], true);
+  bytes += std::string(50, '\x01');
+  bytes += ulog_record('S', std::string("\x2f\x73\x13\x20\x25\x0c\xbb\x12", 8));
+  bytes += ulog_state(states[2], true);
+  const FlightLog log = reader_named("ulog")->read(bytes);
+  EXPECT_EQ(log.find("position")->size(), 3u);
+  EXPECT_THAT(log.damage, HasSubstr("begins no record"));
+  EXPECT_EQ(log.bytes_read, bytes.size() - 50);
+}
+
+TEST(Ulog, RefusesWhatItDoesNotKnow) {
+  const auto reader = reader_named("ulog");
+  EXPECT_THAT(refusal_of(*reader, "ULog"), HasSubstr("a ULog begins with"));
+  EXPECT_THAT(refusal_of(*reader, ulog_head(0, 2) + ulog_formats()),
+              HasSubstr("a feature of ULog that this version does not know"));
+  EXPECT_THAT(refusal_of(*reader, ulog_head() + ulog_formats()),
+              HasSubstr("expected vehicle_local_position"));
+}
+
+TEST(Ulog, HostileFormatsTakeNoMemoryAndNoTime) {
+  std::string deep = ulog_head();
+  for (int k = 0; k < 40; ++k)
+    deep += ulog_format("f" + std::to_string(k) + ":f" + std::to_string(k + 1) + "[65535] a;");
+  deep += ulog_topic(1, "f0");
+  EXPECT_NE(refusal_of(*reader_named("ulog"), deep), "");
+  std::string wide = ulog_head();
+  for (int k = 0; k < 3000; ++k) {
+    const std::string name = "w" + std::to_string(k);
+    wide += ulog_format(name + ":uint8_t[65535] " + std::string(200, 'a') + ";");
+    wide += ulog_topic(static_cast<std::uint16_t>(k), name);
+  }
+  EXPECT_NE(refusal_of(*reader_named("ulog"), wide), "");
+  std::string self = ulog_head() + ulog_format("a:a b;") + ulog_topic(1, "a");
+  EXPECT_NE(refusal_of(*reader_named("ulog"), self), "");
+}
+
+// Counted by a program of its own: the number of messages of each topic.
+TEST(Ulog, RealLogsAreReadWhole) {
+  struct Expected {
+    const char* file;
+    std::map<std::string, std::size_t> counts;
+    std::size_t gaps, messages;
+  };
+  const std::vector<Expected> all{{"px4_small.ulg",
+                                   {{"vehicle_attitude", 1298},
+                                    {"vehicle_local_position", 636},
+                                    {"battery_status#1", 21},
+                                    {"actuator_controls_0", 1812},
+                                    {"vehicle_gps_position", 32}},
+                                   1,
+                                   3},
+                                  {"px4_events.ulg",
+                                   {{"vehicle_attitude", 622},
+                                    {"vehicle_local_position", 313},
+                                    {"sensor_combined", 7783},
+                                    {"vehicle_thrust_setpoint", 1558},
+                                    {"trajectory_setpoint", 157}},
+                                   0,
+                                   18}};
+  for (const Expected& expected : all) {
+    const auto file = shared_log(expected.file);
+    if (file.empty()) GTEST_SKIP() << "no real logs; LAPWING_DATA names their folder";
+    const FlightLog log = reader_named("ulog")->read(read_file(file));
+    EXPECT_EQ(log.damage, "");
+    EXPECT_EQ(log.bytes_read, log.bytes);
+    EXPECT_THAT(faults_of(log), IsEmpty());
+    EXPECT_EQ(log.gaps.size(), expected.gaps);
+    std::map<std::string, std::size_t> counts;
+    for (const LogRecords& records : log.records) counts[records.name] = records.count;
+    for (const auto& [name, count] : expected.counts) EXPECT_EQ(counts[name], count) << name;
+    std::size_t said = 0;
+    for (const LogMessage& message : log.messages)
+      said += !message.text.starts_with("navigation state");
+    EXPECT_EQ(said, expected.messages);
+  }
+}
+
+}  // namespace
+}  // namespace lapwing
