@@ -19,6 +19,7 @@ constexpr double kStep = 0.1;         // s between clock offsets that are tried
 constexpr std::size_t kMostGrid = 2000000;
 constexpr double kFar = 10;          // m, of an offset that is half unlikely
 constexpr double kFarWeight = 0.02;  // of that against the loss
+constexpr double kTie = 0.02;        // of the loss of one place, that does not count
 constexpr std::size_t kKept = 4;     // candidates
 
 // Positions at even times, for quick look-ups; not a number in gaps.
@@ -201,14 +202,18 @@ WarpedMatch search_places(const Trajectory& plan, const FlownSeries& flown, doub
       double least = INFINITY;
       std::size_t at = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        if (row[i] <= least) least = row[i], at = i;
+        // Before its start a flight hovers: the latest of many good times is the start.
+        if (row[i] <= least + (k == 1 ? kTie : 0)) least = std::min(least, row[i]), at = i;
         next[i] = least + miss(k, i);
         best[k * n + i] = at;
       }
       row.swap(next);
     }
-    std::size_t i =
-        static_cast<std::size_t>(std::min_element(row.begin(), row.end()) - row.begin());
+    // And it hovers at its end: the earliest of many.
+    const double least = *std::min_element(row.begin(), row.end());
+    std::size_t i = static_cast<std::size_t>(
+        std::find_if(row.begin(), row.end(), [&](double c) { return c <= least + kTie; }) -
+        row.begin());
     match.cost = row[i] / kPlaces;
     match.end = times[i];
     Pairs pairs;

@@ -123,8 +123,10 @@ FlightReview review_flight(const Plan& plan, FlightLog log, const AlignmentReque
   review.errors = flight_errors(plan, review.flown);
   review.certificate = judge_flown(plan, review.flown, folder);
   const auto& samples = plan.trajectory.samples;
-  review.missing_before = std::max(0.0, review.flown.start - samples.front().time);
-  review.missing_after = std::max(0.0, samples.back().time - review.flown.finish);
+  const double first = review.alignment.plan_time(series.start());
+  const double last = review.alignment.plan_time(series.finish());
+  review.missing_before = std::max(0.0, first - samples.front().time);
+  review.missing_after = std::max(0.0, samples.back().time - last);
   review.log = std::move(log);
   return review;
 }

@@ -20,6 +20,7 @@ using Eigen::Vector3d;
 constexpr double kGravity = 9.80665;  // m/s^2
 constexpr double kBlock = 5;          // s, of the bootstrap
 constexpr int kDraws = 400;
+constexpr std::size_t kLeastBlocks = 6;  // fewer tell no interval
 
 // A linear least squares by blocks of time, so that blocks can be drawn again.
 template <int N>
@@ -108,7 +109,7 @@ std::optional<DragFit> fit_drag(const ShownMotion& motion) {
     }
   }
   blocks = filled(std::move(blocks));
-  if (blocks.size() < 4 || fastest < 2) return std::nullopt;
+  if (blocks.size() < kLeastBlocks || fastest < 2) return std::nullopt;
   DragFit fit;
   fit.drag = interval<Sums>(blocks, time, [](const Sums& b) { return b.solved()[0]; });
   Sums all;
@@ -157,7 +158,7 @@ std::optional<ThrustFit> fit_thrust(const ShownMotion& motion) {
     time += 0.5;
   }
   blocks = filled(std::move(blocks));
-  if (blocks.size() < 3 || time < 5) return std::nullopt;
+  if (blocks.size() < kLeastBlocks) return std::nullopt;
   ThrustFit fit;
   fit.full = interval<Sums>(blocks, time, [](const Sums& b) { return std::exp(b.solved()[0]); });
   fit.exponent = interval<Sums>(blocks, time, [](const Sums& b) { return b.solved()[1]; });
@@ -245,7 +246,7 @@ std::optional<FitResult> fit_lag(const FlightLog& log, const ShownMotion& motion
     before = at;
   }
   blocks = filled(std::move(blocks));
-  if (blocks.size() < 3 || time < 5) return std::nullopt;
+  if (blocks.size() < kLeastBlocks) return std::nullopt;
   const FitResult fit =
       interval<LagBlock>(blocks, time, [](const LagBlock& b) { return b.best(); });
   const bool clear = fit.high - fit.low < 0.05 && fit.low > 0.005 && fit.value < 0.29;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kHeld = 0.5;       // s, that a value must last
 constexpr double kExercised = 0.2;  // of the base's limit
+constexpr double kFewData = 30;     // s, below which blocks of 5 s tell no interval
 
 using Reading = std::function<std::optional<double>(const ShownState&)>;
 
@@ -118,8 +119,8 @@ class Collection {
       return std::isnan(rate) ? std::nullopt : std::optional(rate);
     };
     add_peak("limits.yaw_rate_deg", base_.yaw_rate_max, degrees(1.0), "deg/s", yaw_rate);
-    add_peak("limits.tilt_rate_deg", base_.tilt_rate_max.value_or(0), degrees(1.0), "deg/s",
-             [](const ShownState& s) -> std::optional<double> {
+    add_peak("limits.tilt_rate_deg", base_.tilt_rate_max.value_or(radians(180)), degrees(1.0),
+             "deg/s", [](const ShownState& s) -> std::optional<double> {
                if (!s.body_rates) return std::nullopt;
                return std::max(std::abs(s.body_rates->x()), std::abs(s.body_rates->y()));
              });
@@ -182,10 +183,12 @@ class Collection {
       limits_.remarks.emplace_back("drag could not be told from the flight");
     }
     if (const auto hover = fit_hover(motion_))
-      limits_.remarks.push_back("it hovers at a throttle of " + plain_number(hover->value, 3) +
-                                " (95 % within " + plain_number(hover->low, 3) + " to " +
-                                plain_number(hover->high, 3) + ", " + plain_number(hover->time, 3) +
-                                " s of data)");
+      limits_.remarks.push_back(
+          "it hovers at a throttle of " + plain_number(hover->value, 3) + " (" +
+          (hover->time < kFewData ? std::string("too little data for an interval")
+                                  : "95 % within " + plain_number(hover->low, 3) + " to " +
+                                        plain_number(hover->high, 3)) +
+          ", " + plain_number(hover->time, 3) + " s of data)");
     else
       limits_.remarks.emplace_back("the throttle of hovering was not seen");
     const auto thrust = fit_thrust(motion_);

@@ -12,7 +12,8 @@ namespace {
 class Csv final : public FlightLogReader {
  public:
   static constexpr PluginText kText{
-      "csv", "1.0.0", "flight records as text: Lapwing, Airdata, Litchi, DJI, DatCon (.csv)", ""};
+      "csv", "1.0.0", "flight records as text: Lapwing, Airdata, Litchi, DJI, DatCon (.csv)",
+      "own"};
   static ParameterTable parameters() {
     return ParameterTable{}.choice("heights", "take_off", {"take_off", "sea"},
                                    "which heights are read, where a record has both");
