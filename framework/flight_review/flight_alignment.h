@@ -21,9 +21,9 @@ class AnotherFlight : public InputError {
 };
 
 struct AlignmentRequest {
-  std::optional<double> clock;  // s, stated; else estimated
-  bool estimate_offset = true;  // else the positions stand as they are
-  bool estimate_turn = false;   // of a local frame alone
+  std::optional<double> clock = {};  // s, stated; else estimated
+  bool estimate_offset = true;       // else the positions stand as they are
+  bool estimate_turn = false;        // of a local frame alone
 };
 
 struct FlightAlignment {

@@ -16,7 +16,10 @@ std::string seconds(double value) {
 
 std::string spread(double value, double sigma, int digits) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.*f \u00b1 %.*f", digits, value, digits, sigma);
+  // No smaller than what is shown: "0.000" would be a claim.
+  const double least = std::pow(10.0, -digits);
+  std::snprintf(text, sizeof text, "%.*f \u00b1 %.*f", digits, value, digits,
+                std::max(sigma, least));
   return text;
 }
 
@@ -28,12 +31,11 @@ std::string offset_text(const FlightAlignment& a) {
 
 void say_space(const FlightReview& review, std::vector<std::string>& said) {
   const FlightAlignment& a = review.alignment;
-  const FlownSeries plain;
   if (review.asked.estimate_offset)
     said.push_back("positions of the log are corrected by " + offset_text(a));
   else
     said.emplace_back("positions of the log stand as they are");
-  if (!review.asked.estimate_offset && a.offset.z() != 0)
+  if (review.height_unknown)
     said.push_back("the log does not tell what its heights count from: they are corrected by " +
                    spread(a.offset.z(), a.offset_sigma.z(), 3) + " m");
   if (review.asked.estimate_turn)
@@ -118,6 +120,7 @@ FlightReview review_flight(const Plan& plan, FlightLog log, const AlignmentReque
   const FlownSeries series = flown_series(log, plan);
   review.asked.estimate_turn = asked.estimate_turn && series.local;
   review.source = series.source;
+  review.height_unknown = series.height_unknown;
   review.alignment = align_flight(plan.trajectory, series, review.asked);
   review.flown = flown_track(plan, log, series, review.alignment);
   review.errors = flight_errors(plan, review.flown);
@@ -165,8 +168,10 @@ std::vector<std::string> advice_of(const Plan& plan, const FlightReview& review)
     advice.push_back("the flight was " + plain_number(std::abs(height->mean()), 3) + " m too " +
                      (height->mean() > 0 ? "high" : "low") +
                      " throughout: check what the heights of the mission count from");
-  if (review.asked.estimate_offset && review.alignment.offset.norm() > 1)
-    advice.push_back("the log is " + plain_number(review.alignment.offset.norm(), 3) +
+  Eigen::Vector3d offset = review.alignment.offset;
+  if (review.height_unknown) offset.z() = 0;
+  if (review.asked.estimate_offset && offset.norm() > 1)
+    advice.push_back("the log is " + plain_number(offset.norm(), 3) +
                      " m from the plan throughout: check the origin, or correct the receiver");
   return advice;
 }

@@ -16,7 +16,8 @@ namespace lapwing {
 
 struct FlightReview {
   FlightLog log;
-  std::string source;  // of the positions, in words
+  std::string source;           // of the positions, in words
+  bool height_unknown = false;  // what the log's heights count from: their offset is no error
   AlignmentRequest asked;
   FlightAlignment alignment;
   FlownTrack flown;

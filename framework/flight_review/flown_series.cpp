@@ -28,7 +28,12 @@ bool comparable(HeightOf a, HeightOf b) {
 EarthFrame frame_of(const FlightLog& log, const Plan& plan, bool& unknown) {
   const HeightOf own = plan.geodetic_origin->height_of;
   unknown = !log.heights || !comparable(*log.heights, own);
-  return EarthFrame(plan, unknown ? own : *log.heights, "flight log");
+  if (!unknown) try {
+      return EarthFrame(plan, *log.heights, "flight log");
+    } catch (const InputError&) {  // no geoid is installed
+      unknown = true;
+    }
+  return EarthFrame(plan, own, "flight log");
 }
 
 // A point of the log's local frame, which stands upright on the earth at its reference.

@@ -33,7 +33,7 @@ TEST_F(HomeAgain, AFlightAsPlannedIsSaidToBeSo) {
   EXPECT_EQ(good.status, 0) << good.err << good.out;
   EXPECT_THAT(good.out, HasSubstr("wave: flown as planned"));
   EXPECT_THAT(good.out, HasSubstr("time 0 of the plan is 321.5"));
-  EXPECT_THAT(good.out, HasSubstr("corrected by -1.00"));
+  EXPECT_THAT(good.out, HasSubstr(" m east, -2.00"));
   EXPECT_THAT(read_file(folder_ / "a.html"), HasSubstr("the flight against its plan"));
   const Finished json = run({"compare", "plan.json", "a.ulg", "--json"});
   const Value value = from_json(json.out, "answer");

@@ -77,7 +77,7 @@ TEST(Alignment, TheHeadingOfALocalFrameComesBack) {
   const Eigen::AngleAxisd turn(-0.7, Eigen::Vector3d::UnitZ());
   for (RecordedState& s : states) s.position = turn * (s.position + Eigen::Vector3d(200, -50, 3));
   const FlightAlignment found =
-      align_flight(plan.trajectory, series_of(states, true), {.estimate_turn = true});
+      align_flight(plan.trajectory, series_of(states, true), {.clock = {}, .estimate_turn = true});
   EXPECT_NEAR(found.turn, 0.7, 0.002);
   EXPECT_NEAR(found.clock, 3, 0.02);
   EXPECT_LT((found.corrected(states[100].position) -

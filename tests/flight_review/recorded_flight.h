@@ -87,7 +87,7 @@ inline std::vector<RecordedState> ideal_flight(const Plan& plan, double rate = 5
   std::vector<RecordedState> states;
   const double last = plan.trajectory.samples.back().time;
   for (double t = -before; t <= last + after; t += 1 / rate) {
-    const bool moves = t >= 0 && t <= last;
+    const bool moves = t > -1e-6 && t < last + 1e-6;
     const Sample s = sample_at(plan.trajectory, std::clamp(t, 0.0, last));
     RecordedState state;
     state.time = t;

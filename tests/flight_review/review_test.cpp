@@ -262,6 +262,20 @@ TEST(Review, AnOriginIsAskedForWhereThereAreLatitudesAlone) {
   EXPECT_LT(review.alignment.offset.norm(), 0.01);
 }
 
+TEST(Review, HeightsThatCannotBeToldAreCorrectedAndSaid) {
+  Plan plan = wave_plan();
+  plan.geodetic_origin = GeodeticOrigin{kWaveLatitude, kWaveLongitude, 0, HeightOf::ground};
+  const auto states = recorded(ideal_flight(plan, 20), {.clock = 30});
+  for (const bool offset : {true, false}) {
+    const FlightReview review = review_flight(plan, read_by("ulog", ulog_of(states)),
+                                              {.clock = {}, .estimate_offset = offset}, ".");
+    EXPECT_NEAR(review.alignment.offset.z(), -kWaveHeight, 0.1);
+    EXPECT_LT(worst_of(review, "distance"), 0.05);
+    EXPECT_TRUE(says(alignment_sentences(review), "does not tell what its heights count from"));
+    EXPECT_FALSE(says(advice_of(plan, review), "from the plan throughout"));
+  }
+}
+
 TEST(Review, ThePageAndTheDocumentHoldIt) {
   const Plan plan = wave_plan();
   const auto states = recorded(simulated_flight(plan, windy()), {.clock = 30});

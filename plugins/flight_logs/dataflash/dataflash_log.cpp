@@ -263,7 +263,7 @@ class Mapping {
   void add_targets(FlightLog& log) {
     LogBuilder targets("dataflash", 0);
     for (const auto& [time, east] : targets_[0]) {
-      const auto near = [&](const std::map<double, double>& axis) {
+      const auto near = [time = time](const std::map<double, double>& axis) {
         auto found = axis.lower_bound(time - 0.05);
         return found != axis.end() && found->first < time + 0.05 ? found->second : NAN;
       };

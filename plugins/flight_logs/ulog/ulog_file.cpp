@@ -44,7 +44,7 @@ class Reading {
         continue;
       }
       at += 3 + *size;
-      outcome_.read = at;
+      outcome_.read += 3 + std::size_t{*size};
     }
     return outcome_;
   }

@@ -27,7 +27,7 @@ struct Listener {
 };
 
 struct Outcome {
-  std::size_t read = 0;     // bytes up to the last record that is whole
+  std::size_t read = 0;     // bytes of the head and of records that are whole
   std::string damage;       // what is wrong with the rest; empty: nothing
   std::size_t skipped = 0;  // bytes in the middle that hold no record
 };

@@ -251,8 +251,10 @@ class Mapping {
     };
     const Outcome outcome = read_records(bytes_, formats_, listener);
     FlightLog& log = builder_.log;
-    log.bytes_read = outcome.read - outcome.skipped;
+    log.bytes_read = outcome.read;
     log.damage = outcome.damage;
+    if (!log.damage.empty() && outcome.skipped > 0)
+      log.damage += "; " + std::to_string(outcome.skipped) + " bytes were skipped";
     log.clock = "the autopilot's boot";
     log.heights = HeightOf::sea;
     log.recorder = system_ + (version_.empty() ? "" : " " + version_);
