@@ -70,6 +70,17 @@ const std::vector<CommandExamples>& command_examples() {
       {"lapwing vehicle from",
        {"lapwing vehicle from flight.ulg --base vehicles/phantom -o mine.yaml"},
        kOfFiles},
+      {"lapwing fly",
+       {"lapwing fly out/shot/plan.json --to udp:127.0.0.1:14540",
+        "lapwing fly out/shot/plan.json --to serial:/dev/ttyACM0:57600 --mode -o flights/take_1",
+        "lapwing fly out/shot/plan.json --to udpin:0.0.0.0:14550 --yes-a-real-vehicle"},
+       "0 flown within the tolerance; 1 not certified and not flown, strayed, aborted, taken over "
+       "by the pilot, or link lost; 2 bad input, or the vehicle is not ready; 3 internal error; "
+       "130 aborted by Ctrl-C"},
+      {"lapwing autopilot",
+       {"lapwing autopilot out/shot/plan.json --pilot fly",
+        "lapwing autopilot out/shot/plan.json --pilot fly --fault lost=0.2 --fault gap=5@4 --once"},
+       "0 no setpoint was beyond the limits; 1 one was; 2 bad input; 3 internal error"},
       {"lapwing race",
        {"lapwing race out/race/plan.json --pilot ann.csv:name=Ann,strength=0.5 -o race.html"},
        kOfFiles},

@@ -6,6 +6,7 @@
 #include "framework/app/diff_command.h"
 #include "framework/app/evaluate_explore.h"
 #include "framework/app/flight_log_commands.h"
+#include "framework/app/fly_command.h"
 #include "framework/app/help_commands.h"
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
@@ -248,6 +249,8 @@ struct Requests {
   SceneStatement stated;
   std::vector<std::string> pilots;
   RaceRules rules;
+  FlyRequest flying;
+  AutopilotRequest autopilot;
   TourRun tour;
   TrainRequest training;
   PluginCheck checking;
@@ -280,6 +283,8 @@ void declare_commands(CLI::App& app, Requests& asked) {
   add_plan_commands(app, invocation, asked.plan, asked.exporting, asked.judges, command);
   add_simulate_command(app, invocation, asked.plan, asked.simulation, asked.target, command);
   add_flight_log_commands(app, invocation, asked.flight_log, command);
+  add_fly_command(app, invocation, asked.flying, command);
+  add_autopilot_command(app, invocation, asked.autopilot, command);
   add_map_commands(app, invocation, asked.plan, asked.target, command);
   add_scene_commands(app, invocation, asked.plan, asked.stated, asked.target, command);
   add_race_command(app, invocation, asked.plan, asked.pilots, asked.rules, asked.target, command);

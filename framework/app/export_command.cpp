@@ -5,6 +5,7 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/mission_loading.h"
+#include "framework/app/origin_option.h"
 #include "framework/app/output_target.h"
 #include "framework/app/plan_origin.h"
 #include "framework/app/provenance.h"

@@ -5,9 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "framework/export/mission_items.h"
+#include <Eigen/Core>
+
+#include "framework/trajectory/plan.h"
 
 namespace lapwing {
+
+// A zone that a ground station hands to the vehicle beside the mission.
+struct MissionFence {
+  std::string name;
+  bool inclusion = false;
+  std::vector<Eigen::Vector2d> corners;  // m, world, clockwise; empty: a circle
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  double radius = 0;  // m
+};
 
 // Of flight zones and zones as polygons, of balls and upright cylinders as circles. What the flight
 // passes above or below is left out, because a fence has no height; `said` takes a sentence on it.

@@ -9,6 +9,7 @@
 
 #include "framework/export/earth_frame.h"
 #include "framework/export/exporter.h"
+#include "framework/export/mission_fences.h"
 #include "framework/export/waypoint_flight.h"
 #include "framework/export/waypoints.h"
 
@@ -44,15 +45,6 @@ struct MissionOptions {
 // The parameters of exporters of missions, and what was given for them.
 ParameterTable mission_parameters();
 MissionOptions mission_options(const Parameters& given);
-
-// A zone that a ground station hands to the vehicle beside the mission.
-struct MissionFence {
-  std::string name;
-  bool inclusion = false;
-  std::vector<Eigen::Vector2d> corners;  // m, world, clockwise; empty: a circle
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();
-  double radius = 0;  // m
-};
 
 struct PlannedMission {
   std::vector<MissionItem> items;

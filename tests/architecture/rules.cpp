@@ -19,11 +19,11 @@ using Names = std::set<std::string>;
 
 // What a room may include besides itself and core.
 const std::map<std::string, Names>& rooms() {
-  static const Names kAllButApp{"geometry", "trajectory", "vehicle",     "map",     "path",
-                                "problem",  "solve",      "view",        "explore", "verify",
-                                "export",   "config",     "conformance", "plugin",  "mission",
-                                "surface",  "shape",      "picture",     "symbolic",
-                                "flight_log", "flight_review"};
+  static const Names kAllButApp{
+      "geometry",    "trajectory", "vehicle",       "map",     "path",   "problem",
+      "solve",       "view",       "explore",       "verify",  "export", "config",
+      "conformance", "plugin",     "mission",       "surface", "shape",  "picture",
+      "symbolic",    "flight_log", "flight_review", "mavlink", "fly"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -51,14 +51,15 @@ const std::map<std::string, Names>& rooms() {
       {"export",
        {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
       {"flight_log", {"geometry"}},
-      {"flight_review",
-       {"geometry", "trajectory", "vehicle", "verify", "export", "flight_log"}},
+      {"flight_review", {"geometry", "trajectory", "vehicle", "verify", "export", "flight_log"}},
+      {"mavlink", {}},
+      {"fly", {"geometry", "shape", "trajectory", "vehicle", "verify", "export", "map", "mavlink"}},
       {"config", {}},
       {"plugin", {}},
-      {"conformance", without(kAllButApp, "mission")},
-      {"mission", kAllButApp},
+      {"conformance", without(without(without(kAllButApp, "mission"), "fly"), "mavlink")},
+      {"mission", without(without(kAllButApp, "fly"), "mavlink")},
       {"study", {"geometry", "surface", "view", "export", "config", "plugin"}},
-      {"studio", kAllButApp},
+      {"studio", without(without(kAllButApp, "fly"), "mavlink")},
       {"app", with(with(with(kAllButApp, "app"), "study"), "studio")},
   };
   return kRooms;

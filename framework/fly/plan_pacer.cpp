@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/fly/plan_pacer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/units.h"
+#include "framework/trajectory/interpolate.h"
+
+namespace lapwing {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRest = 0.05;       // m/s: a plan begins or ends at rest below it
+constexpr double kLeastSpeed = 0.3;  // m/s, for the change of pace where the plan hardly moves
+constexpr double kRampTime = 0.4;    // s, to the full brake
+constexpr double kLongestRamp = 4;   // 1/s, of the rate where the plan hardly moves
+constexpr double kStands = 1e-3;     // of the rate
+constexpr double kRounding = 1e-6;   // of a limit
+constexpr double kSimulated = 0.01;  // s, of the simulated last stop
+
+// The largest share of its limits that an acceleration needs.
+double share_of_limits(const Vector3d& a, const Vehicle& vehicle) {
+  double share = a.head<2>().norm() / vehicle.acceleration_across_max;
+  if (vehicle.acceleration_up_max) share = std::max(share, a.z() / *vehicle.acceleration_up_max);
+  if (vehicle.acceleration_down_max)
+    share = std::max(share, -a.z() / *vehicle.acceleration_down_max);
+  if (!vehicle.has_rotors) return share;
+  const double thrust = vehicle.mass * (a + kGravity * Vector3d::UnitZ()).norm();
+  share = std::max(share, thrust / vehicle.thrust_max());
+  return std::max(share, vehicle.thrust_min() / std::max(thrust, 1e-9));
+}
+
+}  // namespace
+
+PlanPacer::PlanPacer(const Trajectory& trajectory, const Vehicle& vehicle)
+    : trajectory_(trajectory), vehicle_(vehicle) {
+  time_ = trajectory.samples.front().time;
+  end_ = trajectory.samples.back().time;
+  brake_ = 0.5 * vehicle.acceleration_across_max;
+  jerk_ = brake_ / kRampTime;
+  if (vehicle.jerk_max) jerk_ = std::min(jerk_, 0.5 * *vehicle.jerk_max);
+  if (trajectory.samples.front().velocity.norm() > kRest) rate_ = 0;
+  last_stop_ = end_;
+  if (trajectory.samples.back().velocity.norm() > kRest) find_last_stop();
+}
+
+Setpoint PlanPacer::at(const Pace& pace) const {
+  const double time = std::clamp(pace.time, trajectory_.samples.front().time, end_);
+  const Sample s = sample_at(trajectory_, time);
+  // Beyond the end the plan stands still.
+  const double rate = pace.time > end_ ? 0 : pace.rate;
+  const double change = pace.time > end_ ? 0 : pace.change;
+  return {time,
+          rate,
+          s.position,
+          s.velocity * rate,
+          s.acceleration * rate * rate + s.velocity * change,
+          s.yaw,
+          s.yaw_rate * rate,
+          s.gimbal_yaw,
+          s.gimbal_pitch,
+          s.target};
+}
+
+// By how much the limits are exceeded, and those of the plan itself: a share.
+double PlanPacer::excess(const Pace& pace) const {
+  const double planned = share_of_limits(at({pace.time, 1, 0}).acceleration, vehicle_);
+  const double needed = share_of_limits(at(pace).acceleration, vehicle_);
+  return needed - std::max(1.0, planned) - kRounding;
+}
+
+double PlanPacer::wanted_change(const Pace& pace, bool run) const {
+  const double speed =
+      std::max(kLeastSpeed, sample_at(trajectory_, std::min(pace.time, end_)).velocity.norm());
+  const double most = std::min(brake_ / speed, kLongestRamp);
+  const double ramp = jerk_ / speed;
+  const double left = run ? 1 - pace.rate : pace.rate;
+  const double wanted = std::min(most, std::sqrt(2 * ramp * std::max(0.0, left)));
+  return run ? wanted : -wanted;
+}
+
+PlanPacer::Pace PlanPacer::after(const Pace& pace, double step, bool run) const {
+  const double wanted = wanted_change(pace, run);
+  const double speed =
+      std::max(kLeastSpeed, sample_at(trajectory_, std::min(pace.time, end_)).velocity.norm());
+  const double ramp = jerk_ / speed * step;
+  const auto moved = [&](double change) {
+    Pace next{pace.time, std::clamp(pace.rate + change * step, 0.0, 1.0), change};
+    next.time += 0.5 * (pace.rate + next.rate) * step;
+    // At an end of the range the pace does not change any more.
+    if ((next.rate == 0 && change < 0) || (next.rate == 1 && change > 0)) next.change = 0;
+    if (!run && next.rate < kStands) next.rate = 0, next.change = 0;
+    return next;
+  };
+  const double smooth = std::clamp(wanted, pace.change - ramp, pace.change + ramp);
+  Pace best = moved(smooth);
+  double least = excess(best);
+  if (least <= 0) return best;
+  // The nearest change that the limits allow; else the one that exceeds them least.
+  constexpr int kTried = 16;
+  for (int k = 0; k <= kTried; ++k) {
+    const double share = static_cast<double>(k) / kTried;
+    for (const double change : {smooth * (1 - share), -smooth * share}) {
+      const Pace tried = moved(change);
+      const double over = excess(tried);
+      if (over < least) best = tried, least = over;
+      if (least <= 0) return best;
+    }
+  }
+  return best;
+}
+
+// Where a brake that begins at `time`, at full pace, comes to a stop.
+double PlanPacer::stop_from(double time) const {
+  Pace pace{time, 1, 0};
+  while (pace.rate > 0 && pace.time < end_) pace = after(pace, kSimulated, false);
+  return pace.rate > 0 ? end_ + pace.rate : pace.time;
+}
+
+void PlanPacer::find_last_stop() {
+  double late = end_, early = end_;
+  do {
+    early = std::max(trajectory_.samples.front().time, early - 0.5);
+  } while (early > trajectory_.samples.front().time && stop_from(early) > end_);
+  while (late - early > kSimulated / 4) {
+    const double middle = 0.5 * (early + late);
+    (stop_from(middle) > end_ ? late : early) = middle;
+  }
+  last_stop_ = early;
+}
+
+void PlanPacer::advance(double step, bool run) {
+  if (finished_) return;
+  const bool last = time_ >= last_stop_ && last_stop_ < end_;
+  const Pace next = after({time_, rate_, change_}, step, run && !last);
+  time_ = next.time, rate_ = next.rate, change_ = next.change;
+  if (time_ >= end_ || (last && rate_ == 0)) finished_ = true;
+  if (time_ >= end_) time_ = end_, rate_ = 0, change_ = 0;
+}
+
+Setpoint PlanPacer::setpoint(double ahead) const {
+  if (finished_) return at({time_, 0, 0});
+  return at({time_ + ahead * rate_, rate_, change_});
+}
+
+}  // namespace lapwing
