@@ -30,7 +30,7 @@ command -v ogr2ogr >/dev/null && command -v gpsbabel >/dev/null ||
   scripts/setup.sh --yes --for judge
 # Node from another source than Debian brings its own npm, and excludes Debian's.
 command -v node >/dev/null && command -v npm >/dev/null || scripts/setup.sh --yes --for judge
-lapwing_build release lapwing_app lapwing_all_plugins
+lapwing_build release lapwing_app lapwing_all_plugins mavlink_samples
 judges=build/judges
 mkdir -p "$judges"
 cp tests/judges/*.js tests/judges/package.json tests/judges/package-lock.json "$judges"
@@ -39,6 +39,14 @@ npm ci --prefix "$judges" --no-audit --no-fund >"$judges/npm.log" 2>&1 ||
 
 lapwing=build/release/bin/lapwing failed=0
 declare -A verdicts
+
+# Messages of live flights, both ways, against another implementation.
+if ! verdict=$(node "$judges/mavlink.js" build/release/bin/mavlink_samples 2>&1); then
+  echo "mavlink: BAD: $(head -n 1 <<<"$verdict")"
+  failed=1
+else
+  echo "mavlink: good: $verdict"
+fi
 
 # Verdict of one export: judge_file KIND FORMAT PLAN.
 judge_file() {

@@ -17,9 +17,9 @@
 namespace lapwing {
 namespace {
 
-constexpr double kPatience = 10;    // s for a tick: the other side is gone
-constexpr double kLongestEnd = 60;  // s simulated, to come to rest when the other side has left
-constexpr double kGiveUp = 0.2;     // s that it makes up for when the machine was busy
+constexpr double kTickPatience = 20;  // s for a tick: the other side is gone
+constexpr double kLongestEnd = 60;    // s simulated, to come to rest when the other side has left
+constexpr double kGiveUp = 0.2;       // s that it makes up for when the machine was busy
 
 class AutopilotRun {
  public:
@@ -54,7 +54,7 @@ class AutopilotRun {
     for (double silent = 0; !token_.cancelled();) {
       const auto datagram = link_.receive(1);
       if (!datagram) {
-        if (heard_ && ++silent >= kPatience) return false;
+        if (heard_ && ++silent >= kTickPatience) return false;
         continue;
       }
       heard_ = true;

@@ -72,7 +72,7 @@ const std::vector<CommandExamples>& command_examples() {
        kOfFiles},
       {"lapwing fly",
        {"lapwing fly out/shot/plan.json --to udp:127.0.0.1:14540",
-        "lapwing fly out/shot/plan.json --to serial:/dev/ttyACM0:57600 --mode -o flights/take_1",
+        "lapwing fly out/shot/plan.json --to serial:/dev/ttyACM0:115200 --mode -o flights/take_1",
         "lapwing fly out/shot/plan.json --to udpin:0.0.0.0:14550 --yes-a-real-vehicle"},
        "0 flown within the tolerance; 1 not certified and not flown, strayed, aborted, taken over "
        "by the pilot, or link lost; 2 bad input, or the vehicle is not ready; 3 internal error; "

@@ -30,7 +30,8 @@ namespace {
 constexpr std::uint8_t kOurSystem = 245;  // none that vehicles or ground stations begin with
 constexpr int kMostLogs = 999;
 constexpr double kBehind = 0.1;       // s: a period that is so late is not made up for
-constexpr double kTickTimeout = 1.0;  // s, for the simulator in lockstep
+constexpr double kTickTimeout = 1.0;  // s, for the first tick of a simulator in lockstep
+constexpr double kPatience = 20;      // s, for the next ones: it may be busy
 
 // A log that is not there yet.
 std::filesystem::path log_name(const FlyRequest& asked, const Plan& plan) {
@@ -81,7 +82,9 @@ class LiveRun {
         log_name_(std::move(log)),
         epoch_(microseconds_since_1970()),
         progress_("fly", std::cerr, progress_style_of_stderr(invocation.quiet || invocation.json),
-                  columns_of_stderr(), &steady_seconds) {}
+                  columns_of_stderr(), &steady_seconds) {
+    if (!keys_.there() && keys_planned_.empty()) session.nobody_resumes();
+  }
 
   void fly(const CancellationToken& token) {
     if (asked_.lockstep)
@@ -164,28 +167,29 @@ class LiveRun {
     }
   }
 
+  // Time is the simulator's, once it ticks.
   void fly_in_lockstep(const CancellationToken& token) {
     double now = 0;
-    bool gone = false;
+    bool ticks = false, gone = false;
     while (session_.phase() != FlightPhase::ended) {
       step(now, token);
-      if (gone) {
-        now += FlightSession::kPeriod;
-        continue;
-      }
-      wire_.send_tick(now);
-      double later = now + kTickTimeout;  // where nobody ticks
-      for (;;) {
-        const Arrival arrival = wire_.receive(kTickTimeout, now);
-        const bool silent = arrival.packets.empty() && !arrival.tick && !arrival.end;
-        if (arrival.tick) later = std::max(now, *arrival.tick);
-        take(arrival, arrival.tick ? later : now + FlightSession::kPeriod);
-        gone = arrival.end;
-        if (arrival.tick || gone || silent) break;
-      }
-      now = later;
+      if (!gone) wire_.send_tick(now);
+      const std::optional<double> later = gone ? std::nullopt : wait_for_tick(now, ticks);
+      gone = gone || (ticks && !later);
+      ticks = ticks || later;
+      now = later ? std::max(now, *later) : now + (ticks ? FlightSession::kPeriod : kTickTimeout);
     }
     if (!gone) wire_.send_end();
+  }
+
+  // What comes before a tick, and its time; nothing where the simulator has left or is silent.
+  std::optional<double> wait_for_tick(double now, bool ticks) {
+    for (;;) {
+      const Arrival arrival = wire_.receive(ticks ? kPatience : kTickTimeout, now);
+      take(arrival, arrival.tick ? *arrival.tick : now + FlightSession::kPeriod);
+      if (arrival.tick) return arrival.tick;
+      if (arrival.end || !arrival.heard) return std::nullopt;
+    }
   }
 
   const FlyRequest& asked_;
@@ -297,6 +301,8 @@ void add_flight_limits(CLI::App& fly, FlyRequest& asked) {
   number("--stray", "M", "distance from what was sent that ends the flight; default: 1", 1000,
          &SessionOptions::stray);
   number("--hold", "S", "time to hold after the end; default: 5", 86400, &SessionOptions::hold);
+  number("--answer", "S", "time for a first answer of the vehicle; default: 10", 86400,
+         &SessionOptions::wait_answer);
   number("--wait", "S", "time for the pilot to arm and to switch the mode; default: 300", 86400,
          &SessionOptions::wait_pilot);
   add_text(

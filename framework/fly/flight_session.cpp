@@ -29,6 +29,7 @@ constexpr int kMostModeAsked = 5;
 constexpr double kSettleSpeed = 1, kSettleAcceleration = 1;  // m/s, m/s^2, at most
 constexpr double kSettled = 0.25, kSettledSpeed = 0.3;       // m, m/s
 constexpr double kRestTime = 0.5, kLongestSettling = 15;     // s
+constexpr double kLongestStall = 0.5;                        // s without a setpoint
 constexpr double kHalfPeriod = FlightSession::kPeriod / 2;
 
 Packet our_heartbeat() {
@@ -337,6 +338,7 @@ void FlightSession::settle(double now, Packets& packets) {
   if (rests && rest_since_ < 0) rest_since_ = now;
   if (rests && now - rest_since_ >= kRestTime) {
     say("flying");
+    jumps_ = clock_.jumps();
     return enter(FlightPhase::flying, now);
   }
   if (passed > settle_time_ + kLongestSettling) abort("the vehicle does not settle at the start");
@@ -363,8 +365,9 @@ void FlightSession::watch(double now) {
     silent_since_ = now;
     say("the vehicle is silent: braking along the path, then holding");
     paused_ = true;
+    if (!options_.can_resume) abort("the vehicle was silent for " + plain_number(kSilence) + " s");
   }
-  if (!silent && silent_) say("the vehicle is heard again: paused; r resumes");
+  if (!silent && silent_ && !aborting_) say("the vehicle is heard again: paused; r resumes");
   silent_ = silent;
   if (silent && now - silent_since_ > kLongSilence)
     return finish(FlightEnd::link_lost,
@@ -410,7 +413,9 @@ void FlightSession::fly(double now, double step, Packets& packets) {
   measure(now);
   watch(now);
   if (phase_ == FlightPhase::ended) return;
-  pacer_.advance(std::min(step, 0.1), !paused_ && !aborting_);
+  // Where this machine was busy, the plan has gone on; beyond that the vehicle has given up.
+  for (double left = std::min(step, kLongestStall); left > 0; left -= kPeriod)
+    pacer_.advance(std::min(left, kPeriod), !paused_ && !aborting_);
   // A setpoint holds in the middle of its period, and on its way it grows old.
   const double ahead = kHalfPeriod + clock_.delay();
   const Setpoint setpoint = pacer_.setpoint(ahead);

@@ -12,7 +12,8 @@
 // What goes wrong, and what is done:
 //   before the flight                       nothing of the plan is sent; one sentence
 //   the vehicle is silent for 1 s           brake along the path and hold; it stays paused when the
-//                                           vehicle is heard again, and ends after 10 s
+//                                           vehicle is heard again, and ends after 10 s; where
+//                                           nobody can resume: abort
 //   another mode, or disarmed               the stream ends at once: the pilot has the vehicle
 //   more than `stray` away for 0.2 s        abort
 //   the estimate is not valid, the battery
@@ -40,6 +41,7 @@ struct SessionOptions {
   std::optional<std::uint8_t> system = std::nullopt;  // of the vehicle; none: the one that answers
   bool enter_mode = false;  // ask for OFFBOARD or GUIDED once the pilot has armed
   bool upload_fence = true;
+  bool can_resume = true;  // somebody may press keys; else silence of the vehicle aborts
   GimbalWay gimbal = GimbalWay::automatic;
   double start_tolerance = 1;  // m
   double stray = 1;            // m, from what was sent: abort
@@ -68,6 +70,8 @@ class FlightSession {
   // Every 20 ms: the packets to send, without sender and sequence. Times never go back.
   std::vector<mavlink::Packet> step(double now);
   void press(FlightKey key);
+  // There are no keys.
+  void nobody_resumes() { options_.can_resume = false; }
 
   FlightPhase phase() const { return phase_; }
   FlightEnd end() const { return end_; }

@@ -45,6 +45,7 @@ Arrival FlightWire::receive(double timeout, double now) {
   for (int i = 0; i < kMostDatagrams; ++i) {
     const auto bytes = link_.receive(i == 0 ? timeout : 0);
     if (!bytes) break;
+    arrival.heard = true;
     if (take_tick(*bytes, arrival)) break;
     for (mavlink::Packet& packet : parser_.read(*bytes, link_.source())) {
       note(packet, now);

@@ -20,6 +20,7 @@ struct Arrival {
   std::vector<mavlink::Packet> packets;
   std::optional<double> tick;  // s
   bool end = false;            // the other side has left
+  bool heard = false;          // something came, if only garbage
 };
 
 // Whether a datagram is a tick or an end, which it then notes.

@@ -12,13 +12,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRest = 0.05;       // m/s: a plan begins or ends at rest below it
-constexpr double kLeastSpeed = 0.3;  // m/s, for the change of pace where the plan hardly moves
-constexpr double kRampTime = 0.4;    // s, to the full brake
-constexpr double kLongestRamp = 4;   // 1/s, of the rate where the plan hardly moves
-constexpr double kStands = 1e-3;     // of the rate
-constexpr double kRounding = 1e-6;   // of a limit
-constexpr double kSimulated = 0.01;  // s, of the simulated last stop
+constexpr double kRest = 0.05;         // m/s: a plan begins or ends at rest below it
+constexpr double kLeastSpeed = 0.3;    // m/s, for the change of pace where the plan hardly moves
+constexpr double kRampTime = 0.4;      // s, to the full brake
+constexpr double kLongestRamp = 4;     // 1/s, of the rate where the plan hardly moves
+constexpr double kStands = 1e-3;       // of the rate
+constexpr double kRounding = 1e-6;     // of a limit
+constexpr double kSimulated = 0.02;    // s, of a brake that is tried
+constexpr double kStopMargin = 0.005;  // s of the plan, before its end
+constexpr double kThere = 0.1;         // m, from the last place: near enough
+constexpr double kLastMoment = 1e-9;   // s, for rounding
 
 // The largest share of its limits that an acceleration needs.
 double share_of_limits(const Vector3d& a, const Vehicle& vehicle) {
@@ -42,8 +45,10 @@ PlanPacer::PlanPacer(const Trajectory& trajectory, const Vehicle& vehicle)
   jerk_ = brake_ / kRampTime;
   if (vehicle.jerk_max) jerk_ = std::min(jerk_, 0.5 * *vehicle.jerk_max);
   if (trajectory.samples.front().velocity.norm() > kRest) rate_ = 0;
-  last_stop_ = end_;
-  if (trajectory.samples.back().velocity.norm() > kRest) find_last_stop();
+  ends_in_motion_ = trajectory.samples.back().velocity.norm() > kRest;
+  double fastest = 0;
+  for (const Sample& s : trajectory.samples) fastest = std::max(fastest, s.velocity.norm());
+  longest_brake_ = fastest / brake_ + 4 * kRampTime;
 }
 
 Setpoint PlanPacer::at(const Pace& pace) const {
@@ -112,32 +117,34 @@ PlanPacer::Pace PlanPacer::after(const Pace& pace, double step, bool run) const 
   return best;
 }
 
-// Where a brake that begins at `time`, at full pace, comes to a stop.
-double PlanPacer::stop_from(double time) const {
-  Pace pace{time, 1, 0};
+// Whether a brake from here comes to a stop before the end.
+bool PlanPacer::stops_in_time(Pace pace) const {
   while (pace.rate > 0 && pace.time < end_) pace = after(pace, kSimulated, false);
-  return pace.rate > 0 ? end_ + pace.rate : pace.time;
+  return pace.rate == 0 && pace.time <= end_ - kStopMargin;
 }
 
-void PlanPacer::find_last_stop() {
-  double late = end_, early = end_;
-  do {
-    early = std::max(trajectory_.samples.front().time, early - 0.5);
-  } while (early > trajectory_.samples.front().time && stop_from(early) > end_);
-  while (late - early > kSimulated / 4) {
-    const double middle = 0.5 * (early + late);
-    (stop_from(middle) > end_ ? late : early) = middle;
-  }
-  last_stop_ = early;
+// Of a plan that ends in motion: whether the plan may go on for `step` seconds. A brake takes no
+// longer than `longest_brake_`.
+bool PlanPacer::may_run(double step) const {
+  if (!ends_in_motion_ || time_ < end_ - longest_brake_) return true;
+  return stops_in_time(after({time_, rate_, change_}, step, true));
 }
 
 void PlanPacer::advance(double step, bool run) {
   if (finished_) return;
-  const bool last = time_ >= last_stop_ && last_stop_ < end_;
-  const Pace next = after({time_, rate_, change_}, step, run && !last);
+  const bool goes_on = may_run(step);
+  if (run && rate_ == 0 && ends_in_motion_) {
+    const double left = (sample_at(trajectory_, end_).position - at({time_, 0, 0}).position).norm();
+    if (!goes_on || (time_ > end_ - longest_brake_ && left < kThere)) {
+      finished_ = true;
+      return;
+    }
+  }
+  const Pace next = after({time_, rate_, change_}, step, run && goes_on);
   time_ = next.time, rate_ = next.rate, change_ = next.change;
-  if (time_ >= end_ || (last && rate_ == 0)) finished_ = true;
-  if (time_ >= end_) time_ = end_, rate_ = 0, change_ = 0;
+  if (time_ < end_ - kLastMoment) return;
+  finished_ = true;
+  time_ = end_, rate_ = 0, change_ = 0;
 }
 
 Setpoint PlanPacer::setpoint(double ahead) const {

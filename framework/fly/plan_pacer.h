@@ -57,13 +57,14 @@ class PlanPacer {
   double excess(const Pace& pace) const;
   double wanted_change(const Pace& pace, bool run) const;
   Pace after(const Pace& pace, double step, bool run) const;
-  double stop_from(double time) const;
-  void find_last_stop();
+  bool stops_in_time(Pace pace) const;
+  bool may_run(double step) const;
 
   const Trajectory& trajectory_;
   const Vehicle& vehicle_;
-  double end_ = 0, last_stop_ = 0;  // s of the plan: its end; where the last brake begins
-  double brake_ = 0, jerk_ = 0;     // m/s^2, m/s^3
+  double end_ = 0, longest_brake_ = 0;  // s: the plan's end; what a brake takes at most
+  bool ends_in_motion_ = false;
+  double brake_ = 0, jerk_ = 0;  // m/s^2, m/s^3
   double time_ = 0, rate_ = 1, change_ = 0;
   bool finished_ = false;
 };

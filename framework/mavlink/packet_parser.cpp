@@ -60,7 +60,8 @@ PacketParser::Found PacketParser::look(std::string_view rest, Packet& packet) {
     return {Look::nothing};
   }
   packet.has_signature = has_signature;
-  packet.length = static_cast<std::uint8_t>(std::min<std::size_t>(length, entry->length));
+  const std::size_t known = second ? entry->length : entry->base_length;
+  packet.length = static_cast<std::uint8_t>(std::min(length, known));
   std::copy_n(rest.begin() + static_cast<std::ptrdiff_t>(header), packet.length,
               packet.payload.begin());
   return {Look::packet, whole};
