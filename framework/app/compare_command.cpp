@@ -6,8 +6,8 @@
 
 #include "framework/app/flight_log_commands.h"
 #include "framework/app/log_reading.h"
+#include "framework/app/origin_option.h"
 #include "framework/app/output_target.h"
-#include "framework/app/plan_origin.h"
 #include "framework/app/provenance.h"
 #include "framework/app/terminal.h"
 #include "framework/core/files.h"

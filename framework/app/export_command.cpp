@@ -7,7 +7,6 @@
 #include "framework/app/mission_loading.h"
 #include "framework/app/origin_option.h"
 #include "framework/app/output_target.h"
-#include "framework/app/plan_origin.h"
 #include "framework/app/provenance.h"
 #include "framework/core/files.h"
 #include "framework/core/named_parameters.h"

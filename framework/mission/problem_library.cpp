@@ -462,7 +462,10 @@ void open_problem_library(lua_State* state) {
       {"guess_solution", &guarded<guess_solution>, "(solution: lapwing.solution)",
        "sets the initial guess, leg by leg, from the solution of a problem with the same legs"},
       {"continue_from", &guarded<continue_from>, "(solution: lapwing.solution, from: @)",
-       "begins as the solution of another part of the flight goes on", &continued_table},
+       "continues the solution of another part of the flight: stage `stage` of it becomes the "
+       "first "
+       "stage here, the first `held` stages are fixed, the following ones are the initial guess",
+       &continued_table},
       {"nearest_obstacle", &guarded<nearest>, "(place: number[], time?: number): number, string",
        "distance from the nearest obstacle in m, negative inside, and the name of the obstacle"},
       {"flight_zone_distance", &guarded<flight_zone_distance>,
