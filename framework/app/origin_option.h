@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --origin of commands that need a plan's place on the earth.
+// --origin of commands that need the place of a plan on the earth.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace lapwing {
 
-// Of "LAT,LON,HEIGHT,OF"; "" changes nothing. A plan keeps the origin that it has: InputError then,
-// and for another text.
+// Gives a plan the origin of `text`, the value of --origin: "46.5191,6.5668,395,sea"; "" leaves the
+// plan as it is. InputError for another form, for numbers that are no place on the earth, and for a
+// plan that has an origin already.
 void give_origin(Plan& plan, const std::string& text);
 
 }  // namespace lapwing
