@@ -12,6 +12,7 @@ return film.shot {
     { position = { 18, 0, 9 }, time = 15 },
   },
   obstacles = {
-    { type = "no_fly_zone", name = "yard", corners = { { 20, 12 }, { 40, 12 }, { 40, 30 }, { 20, 30 } } },
+    { type = "no_fly_zone", name = "yard",
+      corners = { { 20, 12 }, { 40, 12 }, { 40, 30 }, { 20, 30 } } },
   },
 }

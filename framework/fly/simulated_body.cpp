@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kSmoothing = 0.03;     // s, of the acceleration that is fed forward
 constexpr double kLongestAimGap = 0.1;  // s between setpoints of which rates are taken
+constexpr double kUsualGap = 0.02;      // s
 constexpr double kMostTurning = 20;     // rad/s^2
 
 const Vehicle& with_rotors(const Vehicle& vehicle) {
@@ -46,17 +47,22 @@ Vector3d SimulatedBody::fed_force() const {
          vehicle_.drag * setpoint_.velocity;
 }
 
-// Rates and the turning are those from the last setpoint to this one.
+// Rates and the turning are those from the last setpoint to this one. Of setpoints that come
+// irregularly the stated yaw rate is taken, and no turning: differences would be those of the link.
 void SimulatedBody::aim(const Setpoint& setpoint) {
   setpoint_ = setpoint;
   const double passed = steps_ * kStep;
   if (steps_ == 0) return;
   steps_ = 0;
   const Quaterniond planned = attitude_of(fed_force(), setpoint.yaw);
-  const bool known = passed <= kLongestAimGap;
-  const Vector3d rates =
-      known ? Vector3d(rotation_vector(planned_.conjugate() * planned) / passed) : Vector3d::Zero();
-  turning_ = known ? std::clamp((rates.z() - rates_.z()) / passed, -kMostTurning, kMostTurning) : 0;
+  Vector3d rates = Vector3d::Zero();
+  if (passed <= kLongestAimGap) rates = rotation_vector(planned_.conjugate() * planned) / passed;
+  const bool regular = std::abs(passed - kUsualGap) < kUsualGap / 2;
+  if (!regular) rates.z() = setpoint.yaw_rate * (planned * Vector3d::UnitZ()).z();
+  turning_ = regular && regular_
+                 ? std::clamp((rates.z() - rates_.z()) / passed, -kMostTurning, kMostTurning)
+                 : 0;
+  regular_ = regular;
   rates_ = rates;
   planned_ = planned;
 }

@@ -41,7 +41,7 @@ class SimulatedBody {
   Eigen::Vector3d rates_ = Eigen::Vector3d::Zero();  // rad/s, of `planned_`
   double turning_ = 0;                               // rad/s^2, of its yaw
   int steps_ = 0;                                    // since the last setpoint
-  bool saturated_ = false;
+  bool saturated_ = false, regular_ = false;
 };
 
 }  // namespace lapwing

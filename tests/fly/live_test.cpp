@@ -176,7 +176,8 @@ TEST_F(Live, AFilmOnTheEarth) {
   expect_flown(planned(R"(return require 'mission.film'.shot { name = 'placed', keyframes = {
   { position = {0, 0, 3}, time = 0 }, { position = {6, 2, 4}, time = 5 } },
   origin = { latitude_deg = 46.5, longitude_deg = 6.6, height = 1, height_of = 'ground' },
-  obstacles = { { type = 'no_fly_zone', name = 'yard', corners = { {20, 0}, {30, 0}, {30, 9} } } } })"),
+  obstacles = { { type = 'no_fly_zone', name = 'yard',
+                  corners = { {20, 0}, {30, 0}, {30, 9} } } } })"),
                {});
 }
 

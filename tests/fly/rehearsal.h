@@ -117,6 +117,7 @@ class Rehearsal {
   }
 
   FlightSession& session() { return session_; }
+  const FlightSession& session() const { return session_; }
   SimulatedAutopilot& autopilot() { return autopilot_; }
   double now() const { return now_; }
   bool has_said(const std::string& part) const {
