@@ -47,7 +47,16 @@ Value laid_by_words(const StudioRequest& asked, const Invocation& invocation,
   for (const std::string& text : invocation.overrides)
     if (text.starts_with("sandbox."))
       throw InputError("--set " + text + ": the limits of a studio's script are the default ones");
-  return layer_of(script->configuration(), mission->configuration());
+  Value laid = layer_of(script->configuration(), mission->configuration());
+  // An edit reads what the script may read: a file of elsewhere is refused here, not in every
+  // solve.
+  if (Value* input = laid.find("input")) {
+    input->with_origin({asked.script.string(), 0});
+    Mission reading(asked.script, mission_settings(invocation, registry));
+    reading.configure(std::vector<Value>{laid}, {});
+    reading.judge();
+  }
+  return laid;
 }
 
 ExitStatus open_studio(const StudioRequest& asked, const Invocation& invocation) {

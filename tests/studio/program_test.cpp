@@ -583,6 +583,13 @@ TEST_F(StudioProgram, SaysWhatIsInTheWayOfStarting) {
   fails({"other.lua", "--assets", "page", "--set", "margin=-1"}, "margin");
   fails({"other.lua", "--assets", "page", "--set", "sandbox.memory=9"}, "sandbox.memory");
   fails({"other.lua", "--assets", "page", "--config", "none"}, "none");
+  // What the script may not read is no edit either.
+  write_file_atomically(folder_ / "file.lua",
+                        "return require('mission.film').from_file { input = 'own.json' }\n");
+  const fs::path elsewhere = folder_.string() + "_elsewhere.json";
+  write_file_atomically(elsewhere, "{}");
+  fails({"file.lua", "--assets", "page", "--set", "input=" + elsewhere.string()}, "not found");
+  fs::remove(elsewhere);
   EXPECT_FALSE(fs::exists(folder_ / "other.studio.journal"));
 }
 

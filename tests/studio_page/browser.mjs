@@ -71,7 +71,7 @@ export async function drag(page, selector, dx, dy, options = {}) {
   const { x, y } = await centreOf(page, selector);
   await page.mouse.move(x, y);
   await page.mouse.down();
-  const steps = options.steps ?? 6;
+  const steps = options.steps ?? 4;
   for (let i = 1; i <= steps; ++i) {
     await page.mouse.move(x + (dx * i) / steps, y + (dy * i) / steps);
     if (options.pause) await new Promise((done) => setTimeout(done, options.pause));

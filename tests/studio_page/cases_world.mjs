@@ -92,9 +92,9 @@ export const worlds = [
     await page.mouse.move(x - 100, y + 50);
     await next(page, async () => {
       await page.mouse.down();
-      for (let i = 1; i <= 8; ++i) {
-        await page.mouse.move(x - 100 + 15 * i, y + 50);
-        await wait(80);
+      for (let i = 1; i <= 5; ++i) {
+        await page.mouse.move(x - 100 + 24 * i, y + 50);
+        await wait(120);
       }
       await shot("walked");
       await page.mouse.up();
