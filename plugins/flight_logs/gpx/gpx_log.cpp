@@ -50,6 +50,8 @@ double utc_of(std::string_view text) {
   const double year = part(0, 4), month = part(5, 2), day = part(8, 2);
   const double clock = 3600 * part(11, 2) + 60 * part(14, 2) + number_of(text.substr(17));
   if (!std::isfinite(year + month + day + clock + zone)) return NAN;
+  if (!(year >= 1970 && year <= 9999 && month >= 1 && month <= 12 && day >= 1 && day <= 31))
+    return NAN;
   const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(year)),
                                          std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};

@@ -33,10 +33,11 @@ class Reading {
         break;
       }
       const char type = bytes_[at + 2];
-      if (at + 3 + *size > end && known(type)) {
+      if (at + 3 + *size > end) {
         if (end < bytes_.size() && jump(at, end)) continue;
         if (resume(at)) continue;
-        cut(at, std::string("a record '") + type + "'");
+        cut(at,
+            known(type) ? std::string("a record '") + type + "'" : "a record of an unknown type");
         break;
       }
       if (!take(type, bytes_.substr(at + 3, *size), at)) {
