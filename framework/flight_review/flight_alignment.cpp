@@ -46,6 +46,11 @@ class Refinement {
       times_.push_back(start + span * static_cast<double>(i) / static_cast<double>(count));
       wanted_.push_back(sample_at(plan, times_.back()).position);
     }
+    // Of the plan: that of a log is noise, where its receiver is coarse.
+    for (std::size_t i = 0; i <= count; ++i) {
+      const std::size_t a = i == 0 ? 0 : i - 1, b = std::min(count, i + 1);
+      velocities_.push_back((wanted_[b] - wanted_[a]) / (times_[b] - times_[a]));
+    }
     free_ << !asked.clock, asked.estimate_offset, asked.estimate_offset,
         asked.estimate_offset || flown.height_unknown, asked.estimate_turn && flown.local;
   }
@@ -71,18 +76,14 @@ class Refinement {
   std::vector<Row> rows() const {
     std::vector<Row> found;
     const Eigen::Matrix3d rotation = about_z(at_[4]);
-    constexpr double h = 0.1;  // s, to either side, of the velocity
     for (std::size_t i = 0; i < times_.size(); ++i) {
       const double time = times_[i] + at_[0];
       const auto now = flown_.at(time);
       if (!now) continue;
-      const auto before = flown_.at(time - h), after = flown_.at(time + h);
-      Vector3d velocity = Vector3d::Zero();
-      if (before && after) velocity = (*after - *before) / (2 * h);
       Row row;
       const Vector3d turned = rotation * *now;
       row.residual = turned + at_.segment<3>(1) - wanted_[i];
-      row.slopes.col(0) = rotation * velocity;
+      row.slopes.col(0) = velocities_[i];
       row.slopes.block<3, 3>(0, 1).setIdentity();
       row.slopes.col(4) = Vector3d(-turned.y(), turned.x(), 0);
       found.push_back(row);
@@ -167,7 +168,7 @@ class Refinement {
 
   const FlownSeries& flown_;
   std::vector<double> times_;
-  std::vector<Vector3d> wanted_;
+  std::vector<Vector3d> wanted_, velocities_;
   Eigen::Matrix<bool, 5, 1> free_;
   Unknowns at_;
 };

@@ -18,7 +18,9 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr std::size_t kMostKnots = 20000;
 constexpr double kRateWeight = 0.5;  // s: a velocity off by 1 m/s counts as a place off by 0.5 m
-constexpr int kProbes = 2;           // of the trace
+constexpr int kProbes = 4;           // of the trace
+// Of the trace in the score: keeps few samples from being followed one by one (Kim and Gu, 2004).
+constexpr double kCaution = 1.4;
 
 // The four cubic B-splines of an interval of length h and their derivatives at share u.
 std::array<double, 4> basis(double u, double h, int order) {
@@ -113,8 +115,8 @@ class Fit {
     const Eigen::MatrixXd seen = design_ * solver.solve(design_.transpose() * probes_);
     const double trace = probes_.cwiseProduct(seen).sum() / kProbes;
     const double n = static_cast<double>(design_.rows());
-    const double freedom = std::max(1e-3 * n, n - trace);
-    return n * misses / (freedom * freedom);
+    const double freedom = n - kCaution * trace;
+    return freedom > 0.02 * n ? n * misses / (freedom * freedom) : INFINITY;
   }
 
  private:
@@ -138,7 +140,7 @@ SmoothCurve::SmoothCurve(const CurveSamples& samples, double start, double finis
   const Fit fit(rows, count_, step_);
   double least = INFINITY;
   Eigen::MatrixXd coefficients;
-  for (int power = -8; power <= 4; ++power) {
+  for (int power = -8; power <= 6; ++power) {
     const double score = fit.score(std::pow(10.0, power), coefficients);
     if (score < least) least = score, coefficients_ = coefficients;
   }

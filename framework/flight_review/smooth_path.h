@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A smooth curve through noisy samples: a cubic spline with even knots and a penalty of its third
-// derivative, whose weight generalized cross-validation chooses (Craven and Wahba, 1979).
+// derivative, whose weight generalized cross-validation chooses (Craven and
+// Wahba, 1979).
 #pragma once
 
 #include <vector>

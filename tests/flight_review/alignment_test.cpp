@@ -51,6 +51,21 @@ TEST(Alignment, ClockAndOffsetComeBack) {
     EXPECT_LT(std::abs(found.offset[axis] + offset[axis]), 4 * found.offset_sigma[axis] + 1e-3);
 }
 
+// A coarse receiver: what is said of the uncertainty still holds.
+TEST(Alignment, ItsUncertaintyIsThatOfManyFlights) {
+  const Plan plan = wave_plan();
+  double squares = 0, said = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto states = recorded(ideal_flight(plan, 5), {.clock = 10, .noise = 0.5, .seed = seed});
+    const FlightAlignment found = align_flight(plan.trajectory, series_of(states));
+    squares += std::pow(found.clock - 10, 2) / 20;
+    said += std::pow(found.clock_sigma, 2) / 20;
+  }
+  EXPECT_LT(std::sqrt(squares), 0.08);
+  EXPECT_GT(std::sqrt(said), 0.5 * std::sqrt(squares));
+  EXPECT_LT(std::sqrt(said), 2 * std::sqrt(squares));
+}
+
 TEST(Alignment, OutliersDoNotMatter) {
   const Plan plan = wave_plan();
   auto states = recorded(ideal_flight(plan, 20), {.clock = -7.5, .noise = 0.02});

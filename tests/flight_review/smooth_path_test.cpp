@@ -46,6 +46,14 @@ TEST(SmoothCurve, LeavesNoiseOut) {
   EXPECT_NEAR(curve.residual(), 0.3, 0.05);
 }
 
+TEST(SmoothCurve, FewSamplesAreNotFollowedOneByOne) {
+  const SmoothCurve curve(sines(0.5, 1), 0, 20, 0.5);
+  double acceleration = 0;
+  for (double t = 1; t < 19; t += 0.1)
+    acceleration = std::max(acceleration, std::abs(curve.at(t, 2)[0]));
+  EXPECT_LT(acceleration, 3.5);  // 1.92 without noise
+}
+
 TEST(SmoothCurve, ItsDerivativesBelongTogether) {
   const SmoothCurve curve(sines(0.1, 10), 0, 20, 0.25);
   for (std::size_t k = 0; k + 1 < curve.intervals(); k += 7) {

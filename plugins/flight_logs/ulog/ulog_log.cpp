@@ -305,7 +305,8 @@ class Mapping {
     listener.message = [](double, std::string_view) {};
     listener.dropout = [](double, double) {};
     listener.information = [](std::string_view, std::string_view) {};
-    read_records(bytes_, formats_, listener);
+    Formats again;  // definitions count in their order, as the first time
+    read_records(bytes_, again, listener);
     if (resets_ > 0)
       builder_.log.remarks.push_back("the estimated position was reset " + std::to_string(resets_) +
                                      " times, last at " + plain_number(last_reset_, 6) + " s");
