@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/fly/live_flight.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "framework/core/error.h"
 #include "framework/core/number_text.h"
 #include "framework/fly/setpoint_audit.h"
@@ -35,6 +39,30 @@ void fly_along(LiveFlight& flight, const std::filesystem::path& folder) {
       plain_number(flight.trajectory().duration(), 4) + " s");
 }
 
+// Headings that turn faster than the vehicle may, as those of a flight upside down, follow as fast
+// as it may. Interpolation passes the rates of samples by up to a half.
+bool slow_headings(Trajectory& trajectory, double fastest) {
+  constexpr double kTurn = 2 * std::numbers::pi, kShare = 0.6, kNearLimit = 0.9;
+  std::vector<Sample>& samples = trajectory.samples;
+  std::vector<double> slow{samples.front().yaw};
+  bool slowed = false;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double step = samples[i].time - samples[i - 1].time;
+    const double turn = std::remainder(samples[i].yaw - slow.back(), kTurn);
+    const double rate = std::max(std::abs(samples[i].yaw_rate), std::abs(turn) / step);
+    slowed = slowed || rate > kNearLimit * fastest;
+    const double most = kShare * fastest * step;
+    slow.push_back(slow.back() + std::clamp(turn, -most, most));
+  }
+  if (!slowed) return false;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::size_t a = i == 0 ? 0 : i - 1, b = std::min(i + 1, samples.size() - 1);
+    samples[i].yaw = slow[i];
+    samples[i].yaw_rate = (slow[b] - slow[a]) / (samples[b].time - samples[a].time);
+  }
+  return true;
+}
+
 // Setpoints know places and headings; of a plan that states rotor thrusts, those that its forces
 // ask for.
 void fly_forces(LiveFlight& flight) {
@@ -43,6 +71,9 @@ void fly_forces(LiveFlight& flight) {
   flight.said.push_back(
       "the plan states rotor thrusts: its places, headings and accelerations are "
       "sent, and the vehicle finds the thrusts itself");
+  if (slow_headings(flight.plan.trajectory, flight.vehicle.yaw_rate_max))
+    flight.said.push_back(
+        "headings of the plan turn faster than can be streamed: slower ones are sent");
 }
 
 void require_finite(const Trajectory& trajectory) {

@@ -23,14 +23,16 @@ constexpr double kStopMargin = 0.005;  // s of the plan, before its end
 constexpr double kThere = 0.1;         // m, from the last place: near enough
 constexpr double kLastMoment = 1e-9;   // s, for rounding
 
-// The largest share of its limits that an acceleration needs.
-double share_of_limits(const Vector3d& a, const Vehicle& vehicle) {
+// The largest share of its limits that a setpoint needs, in still air.
+double share_of_limits(const Setpoint& setpoint, const Vehicle& vehicle) {
+  const Vector3d& a = setpoint.acceleration;
   double share = a.head<2>().norm() / vehicle.acceleration_across_max;
   if (vehicle.acceleration_up_max) share = std::max(share, a.z() / *vehicle.acceleration_up_max);
   if (vehicle.acceleration_down_max)
     share = std::max(share, -a.z() / *vehicle.acceleration_down_max);
   if (!vehicle.has_rotors) return share;
-  const double thrust = vehicle.mass * (a + kGravity * Vector3d::UnitZ()).norm();
+  const double thrust =
+      (vehicle.mass * (a + kGravity * Vector3d::UnitZ()) + vehicle.drag * setpoint.velocity).norm();
   share = std::max(share, thrust / vehicle.thrust_max());
   return std::max(share, vehicle.thrust_min() / std::max(thrust, 1e-9));
 }
@@ -71,8 +73,8 @@ Setpoint PlanPacer::at(const Pace& pace) const {
 
 // By how much the limits are exceeded, and those of the plan itself: a share.
 double PlanPacer::excess(const Pace& pace) const {
-  const double planned = share_of_limits(at({pace.time, 1, 0}).acceleration, vehicle_);
-  const double needed = share_of_limits(at(pace).acceleration, vehicle_);
+  const double planned = share_of_limits(at({pace.time, 1, 0}), vehicle_);
+  const double needed = share_of_limits(at(pace), vehicle_);
   return needed - std::max(1.0, planned) - kRounding;
 }
 

@@ -22,13 +22,16 @@ double speed_share(const Eigen::Vector3d& v, const Vehicle& vehicle) {
                    -v.z() / vehicle.descent_speed_max});
 }
 
-double acceleration_share(const Eigen::Vector3d& a, const Vehicle& vehicle) {
+double acceleration_share(const Setpoint& setpoint, const Vehicle& vehicle) {
+  const Eigen::Vector3d& a = setpoint.acceleration;
   double share = a.head<2>().norm() / vehicle.acceleration_across_max;
   if (vehicle.acceleration_up_max) share = std::max(share, a.z() / *vehicle.acceleration_up_max);
   if (vehicle.acceleration_down_max)
     share = std::max(share, -a.z() / *vehicle.acceleration_down_max);
   if (!vehicle.has_rotors) return share;
-  const double thrust = vehicle.mass * (a + kGravity * Eigen::Vector3d::UnitZ()).norm();
+  const double thrust =
+      (vehicle.mass * (a + kGravity * Eigen::Vector3d::UnitZ()) + vehicle.drag * setpoint.velocity)
+          .norm();
   return std::max(share, thrust / (4 * vehicle.rotors.thrust_max));
 }
 
@@ -39,7 +42,7 @@ void SetpointAudit::take(const Setpoint& setpoint, double stamp, double now) {
   if (count_++ == 0) first_ = now;
   last_ = now;
   const double speed = speed_share(setpoint.velocity, vehicle_);
-  const double acceleration = acceleration_share(setpoint.acceleration, vehicle_);
+  const double acceleration = acceleration_share(setpoint, vehicle_);
   const double yaw = std::abs(setpoint.yaw_rate) / vehicle_.yaw_rate_max;
   bool beyond = std::max({speed, acceleration, yaw}) > 1 + kSlack;
   speed_share_ = std::max(speed_share_, speed);

@@ -263,6 +263,35 @@ TEST(SetpointAudits, SeeWhatIsBeyondLimits) {
   EXPECT_EQ(beyond([](Setpoint& s) { s.velocity.z() = -2.1; }), 1u);
 }
 
+// A plan of rotor thrusts that spins faster than the vehicle may turn, as headings do upside down.
+TEST(LiveFlights, SendSlowerHeadingsOfPlansThatSpin) {
+  Plan plan = circle_plan();
+  const Vehicle vehicle = flying_drone();
+  plan.trajectory = {};
+  plan.trajectory.motion = rotors_motion();
+  plan.trajectory.inputs_held = false;
+  for (int i = 0; i <= 80; ++i) {
+    Sample sample;
+    sample.time = 0.05 * i;
+    sample.position = {0, 0, 5};
+    sample.yaw_rate = 1.8;
+    sample.yaw = sample.yaw_rate * sample.time;
+    const double half = sample.yaw / 2, thrust = vehicle.mass * 9.80665 / 4;
+    sample.columns.set("orientation", std::vector<double>{std::cos(half), 0, 0, std::sin(half)});
+    sample.columns.set("body_rates", std::vector<double>{0, 0, sample.yaw_rate});
+    sample.columns.set("rotor_thrusts", std::vector<double>(4, thrust));
+    plan.trajectory.samples.push_back(sample);
+  }
+  const LiveFlight flight = live_flight_of(plan, ".");
+  ASSERT_EQ(flight.said.size(), 2u);
+  EXPECT_THAT(flight.said[0], HasSubstr("the plan states rotor thrusts"));
+  EXPECT_THAT(flight.said[1], HasSubstr("slower ones are sent"));
+  for (const Sample& sample : flight.trajectory().samples) {
+    EXPECT_LE(std::abs(sample.yaw_rate), 0.61 * vehicle.yaw_rate_max);
+    EXPECT_LT((sample.position - Eigen::Vector3d(0, 0, 5)).norm(), 1e-9);
+  }
+}
+
 TEST(LiveFlights, RefusePlansThatCannotBeStreamed) {
   Plan plan = circle_plan();
   plan.trajectory.samples.resize(1);
