@@ -85,7 +85,7 @@ class Rehearsal {
     return options;
   }
 
-  // One period. What arrives at the session is seen by `heard` before.
+  // One period. What the session sends is seen by `sent`.
   void step() {
     std::vector<mavlink::Packet> packets = session_.step(now_);
     for (mavlink::Packet& packet : packets) {
