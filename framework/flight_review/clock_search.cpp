@@ -211,8 +211,9 @@ WarpedMatch search_places(const Trajectory& plan, const FlownSeries& flown, doub
     }
     // And it hovers at its end: the earliest of many.
     const double least = *std::min_element(row.begin(), row.end());
+    const double tie = kTie + least / kPlaces;  // of a place, as noise makes it
     std::size_t i = static_cast<std::size_t>(
-        std::find_if(row.begin(), row.end(), [&](double c) { return c <= least + kTie; }) -
+        std::find_if(row.begin(), row.end(), [&](double c) { return c <= least + tie; }) -
         row.begin());
     match.cost = row[i] / kPlaces;
     match.end = times[i];

@@ -17,7 +17,8 @@ namespace {
 using Eigen::Vector3d;
 using Unknowns = Eigen::Matrix<double, 5, 1>;  // clock, offset, turn
 
-constexpr double kNear = 0.15;      // share of lost places up to which a rigid match is good
+constexpr double kNear = 0.3;       // share of lost places up to which a rigid match is good
+constexpr double kBetter = 0.6;     // of the loss, that matching places must leave at most
 constexpr double kFlew = 0.5;       // of the bounded loss, above which it is another flight
 constexpr double kDrift = 3;        // s, that refinement may move the clock
 constexpr double kElsewhere = 200;  // m between log and plan
@@ -238,7 +239,7 @@ FlightAlignment align_flight(const Trajectory& plan, const FlownSeries& flown,
   const WarpedMatch free =
       search_places(plan, flown, flown.start(), flown.finish(),
                     flown.local ? best.offset : Vector3d::Zero(), best.turn, asked.estimate_offset);
-  if (free.cost < std::min(kFlew, lost)) {
+  if (free.cost < std::min(kFlew, kBetter * lost)) {
     best.clock = free.start - start;
     best.offset = free.offset;
     best.end = free.end - best.clock;
