@@ -234,6 +234,14 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"exporter_contents", "contents", "an empty file for a plan that has samples"},
            {"exporter_silent", "contents", "refuses a plan without a reason"},
            {"exporter_throws", "contents", "writing a plan throws: no"},
+           {"log_example", "example", "does not recognize its own example"},
+           {"log_moment", "example", "shorter than a second"},
+           {"log_repeatable", "repeatable", "equal bytes give another log"},
+           {"log_greedy", "refusals", "it takes no bytes for a log of its format"},
+           {"log_silent", "refusals", "does not refuse no bytes with a reason"},
+           {"log_cut", "cut short", "reading a log throws: too short"},
+           {"log_damage", "damage", "a number that is not finite"},
+           {"log_throws", "example", "reading a log throws: no"},
            {"map_empty", "empty", "a new map knows voxels"},
            {"map_integration", "integration", "has log odds"},
            {"map_casts", "ray casts", " meets "},
@@ -260,7 +268,7 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
 // (A sound map is among the shipped plugins.)
 TEST_F(Authoring, WithoutAMistakeEveryKindPasses) {
   for (const char* plugin :
-       {"solver", "model", "planner", "tours", "information", "utility", "exporter"}) {
+       {"solver", "model", "planner", "tours", "information", "utility", "exporter", "log"}) {
     const auto found = outcomes_of("broken_" + std::string(plugin), "broken_kinds", {});
     EXPECT_EQ(status_, 0) << plugin << ": " << message_;
     EXPECT_EQ(found.at("sidecar"), "passed");
@@ -271,8 +279,8 @@ TEST_F(Authoring, WithoutAMistakeEveryKindPasses) {
 
 // Tests that share a process are repeated each in its own where that process ends early.
 TEST_F(Authoring, ACrashOfAnyKindIsAResult) {
-  for (const char* plugin :
-       {"solver", "model", "planner", "tours", "information", "utility", "exporter", "map"}) {
+  for (const char* plugin : {"solver", "model", "planner", "tours", "information", "utility",
+                             "exporter", "log", "map"}) {
     const auto found =
         outcomes_of("broken_" + std::string(plugin) + "_crashes", "broken_kinds", {});
     EXPECT_EQ(status_, 1) << plugin;
