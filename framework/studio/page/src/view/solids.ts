@@ -60,6 +60,7 @@ function meshOf(seeThrough: boolean): THREE.Mesh<THREE.BufferGeometry, THREE.Mes
   const material = new THREE.MeshBasicMaterial({
     vertexColors: true, side: seeThrough ? THREE.DoubleSide : THREE.FrontSide,
     transparent: seeThrough, opacity: seeThrough ? 0.25 : 1, depthWrite: !seeThrough,
+    forceSinglePass: true,     // two passes would compile the material anew in every frame
   });
   const mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
   mesh.frustumCulled = false;
