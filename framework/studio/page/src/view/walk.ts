@@ -115,17 +115,18 @@ export class Walk {
     else requestAnimationFrame(this.tick);
   };
 
-  // Where the subject is now, and how far the film has run.
+  // Where the subject is now, and how far the film has run: not beyond its end.
   private step(now: number): void {
     const { studio } = this;
-    const seconds = Math.max(0, (now - this.last) / 1000);
+    const before = studio.time;
+    const seconds = this.steps.length > 0 ? Math.max(0, (now - this.last) / 1000) : 0;
+    const time = Math.min(before + seconds, studio.duration);
     this.last = now;
     for (const [key, runs] of this.held) {
       const [x, y] = ways[key] as [number, number];
-      const by = (runs ? RUN : PACE) * seconds;
+      const by = (runs ? RUN : PACE) * (time - before);
       this.place = [this.place[0] + by * x, this.place[1] + by * y, this.place[2]];
     }
-    const time = Math.min(studio.time + (this.steps.length > 0 ? seconds : 0), studio.duration);
     this.steps.push({ time, place: this.place });
     studio.seek(time);
   }
