@@ -78,7 +78,7 @@ function makePath(figure, spec) {
     svg = document.createElementNS(svgSpace, "svg");
     const set = { viewBox: `0 0 ${width} ${area.bottom + 38}`, role: "img", tabindex: 0,
       "aria-label": `${spec.title}: ${view.names[0]} from ` +
-        `${across(low, high).map(numberText).join(" to ")} m, ${view.names[1]} from ${numberText(flat(low)[1])} to ` +
+        `${across(low, high).map((v) => numberText(v)).join(" to ")} m, ${view.names[1]} from ${numberText(flat(low)[1])} to ` +
         `${numberText(flat(high)[1])} m` };
     for (const key in set) svg.setAttribute(key, set[key]);
     const step = roundTicks(x0, x1, (right - left) / 70).step;

@@ -227,7 +227,10 @@ int finish(lua_State* state) {
   object.finished = true;  // functions of terms run now, and can add nothing
   if (object.terms)
     for (ScriptTerm& term : *object.terms) add_script_term(state, term, problem);
-  problem.finish(run_of(state).settings.like.get());
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    problem.finish(run_of(state).settings.like.get());
+  }
   if (!object.terms) return 0;
   const Stages guess = problem.initial_guess();
   for (ScriptTerm& term : *object.terms) check_script_term(state, term, problem, guess);

@@ -181,7 +181,11 @@ int join_parts(lua_State* state) {
     parts[k].solution = &object_argument<SolutionObject>(state, -1, kSolutionType);
     lua_pop(state, 2);
   }
-  SolutionObject joined = join(whole, parts);
+  SolutionObject joined;
+  {
+    const Sandbox::ClockPause pause(Sandbox::of(state));
+    joined = join(whole, parts);
+  }
   joined.constraints = constraints_of(whole);
   new_object(state, kSolutionType, std::move(joined));
   return 1;

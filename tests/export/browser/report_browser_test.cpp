@@ -261,6 +261,16 @@ then(() => drag(false)).then(() => then(() => drag(true)))
   EXPECT_EQ(views[4], views[0]) << "Home resets";
 }
 
+// Bounds of a path below 1 m once asked for text with no digits, and no chart of the page was drawn.
+TEST_F(ReportInBrowser, PathsNearTheOriginAreDrawn) {
+  Plan plan = synthetic_flight(20, 101, 5);
+  for (Sample& s : plan.trajectory.samples) s.position *= 0.01;
+  const std::string dom = opened(render_html(flight_report(plan)), kListFigures);
+  EXPECT_EQ(attribute(dom, "error"), "");
+  EXPECT_NE(attribute(dom, "figures").find("Path from above:101:sized:ink"), std::string::npos)
+      << attribute(dom, "figures");
+}
+
 // A line to the east and north runs to the right for those who look from the south or the east, to
 // the left for those who look from the north or the west; a zone and a box lie on the same side.
 TEST_F(ReportInBrowser, EverySideShowsRightWhatIsRightOfTheSpectator) {
