@@ -85,3 +85,12 @@ export async function type(page, selector, text) {
   await page.keyboard.type(text);
   await page.keyboard.press("Enter");
 }
+
+// A busy machine draws late: what is held is held for so many frames, and at least so long.
+export const frames = (page, count, ms) => page.evaluate((most, least) => new Promise((done) => {
+  const start = performance.now();
+  let n = 0;
+  const next = () => (++n < most || performance.now() - start < least
+    ? requestAnimationFrame(next) : done());
+  requestAnimationFrame(next);
+}), count, ms);

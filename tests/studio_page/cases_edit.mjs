@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Editing, each once by mouse and once by keyboard.
 import assert from "node:assert/strict";
-import { centreOf, drag, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
+import { centreOf, drag, frames, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
 
 const keyframes = async (page) => (await studioState(page)).document.keyframes;
 const subjects = async (page) => (await studioState(page)).document.subjects;
@@ -286,7 +286,7 @@ export const edits = [
     await keys(page, "v");
     const hold = async (key) => {
       await page.keyboard.down(key);
-      await new Promise((done) => setTimeout(done, 150));
+      await frames(page, 4, 150);
       await page.keyboard.up(key);
     };
     await hold("w");
