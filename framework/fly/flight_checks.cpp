@@ -26,12 +26,20 @@ std::string metres(double distance) {
   return plain_number(distance, distance < 10 ? 2 : 3) + " m";
 }
 
+std::string too_old(double at, double now, double allowed) {
+  return "for " + plain_number(now - at, 3) + " s; it must be told at least every " +
+         plain_number(allowed) + " s";
+}
+
 void check_place(const VehicleReport& report, const LiveFlight& flight, double tolerance,
-                 std::vector<std::string>& missing) {
+                 double now, std::vector<std::string>& missing) {
   if (!report.position) {
     missing.push_back("the vehicle does not tell where it is");
     return;
   }
+  if (now - report.position_at >= VehicleReport::kFresh)
+    missing.push_back("the vehicle has not told its place " +
+                      too_old(report.position_at, now, VehicleReport::kFresh));
   const Eigen::Vector3d off = report.position->value - flight.trajectory().samples.front().position;
   if (off.norm() > tolerance)
     missing.push_back("the vehicle is " + place_in_words(off) + "; it must be within " +
@@ -79,7 +87,8 @@ std::string place_in_words(const Eigen::Vector3d& off) {
 
 std::vector<std::string> missing_before_flight(const VehicleReport& report,
                                                const FlightFrame& frame, const LiveFlight& flight,
-                                               const VehicleClock& clock, double start_tolerance) {
+                                               const VehicleClock& clock, double start_tolerance,
+                                               double now) {
   std::vector<std::string> missing;
   if (report.second_system)
     missing.push_back("two vehicles answer: " + std::to_string(report.system) + " and " +
@@ -92,13 +101,19 @@ std::vector<std::string> missing_before_flight(const VehicleReport& report,
                       ")");
   if (!clock.known()) missing.push_back("the vehicle does not tell its time");
   if (!report.yaw) missing.push_back("the vehicle does not tell its heading (ATTITUDE)");
-  check_place(report, flight, start_tolerance, missing);
+  if (report.yaw && now - report.yaw_at >= VehicleReport::kFresh)
+    missing.push_back("the vehicle has not told its heading " +
+                      too_old(report.yaw_at, now, VehicleReport::kFresh));
+  check_place(report, flight, start_tolerance, now, missing);
   check_home(report, frame, flight, missing);
   if (!report.estimator_good(frame.kind() == FlightFrameKind::global))
     missing.push_back(report.estimator || report.attitude_healthy
                           ? "the vehicle's estimate of its state is not valid"
                           : "the vehicle does not tell whether its estimate is valid "
                             "(ESTIMATOR_STATUS)");
+  else if (!report.tells_estimate(now))
+    missing.push_back("the vehicle has not told whether its estimate is valid " +
+                      too_old(report.estimator_at, now, VehicleReport::kFreshEstimate));
   check_battery(report, flight, missing);
   return missing;
 }

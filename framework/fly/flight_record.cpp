@@ -8,8 +8,9 @@
 namespace lapwing {
 namespace {
 
-constexpr double kKept = 5;          // s
-constexpr double kLongestGap = 0.5;  // s, between setpoints: beyond it nobody knows
+constexpr double kKept = 5;           // s
+constexpr double kLongestHeld = 0.1;  // s, after the last setpoint: it still holds
+constexpr double kLongestGap = 0.5;   // s, between setpoints: beyond it nobody knows
 
 }  // namespace
 
@@ -22,7 +23,16 @@ void FlightRecord::sent(const Setpoint& setpoint, double time) {
 std::optional<Setpoint> FlightRecord::at(double time) const {
   const auto after = std::lower_bound(sent_.begin(), sent_.end(), time,
                                       [](const Sent& s, double t) { return s.time < t; });
-  if (after == sent_.end() || after == sent_.begin()) return std::nullopt;
+  if (after == sent_.begin()) return std::nullopt;
+  if (after == sent_.end()) {
+    Setpoint last = sent_.back().setpoint;
+    const double since = time - sent_.back().time;
+    if (since > kLongestHeld) return std::nullopt;
+    last.position += since * last.velocity;
+    last.yaw += since * last.yaw_rate;
+    last.plan_time += since * last.rate;
+    return last;
+  }
   const Sent &a = *(after - 1), &b = *after;
   if (b.time - a.time > kLongestGap) return std::nullopt;
   const double share = (time - a.time) / std::max(1e-9, b.time - a.time);

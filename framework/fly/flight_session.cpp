@@ -8,6 +8,7 @@
 #include "framework/core/error.h"
 #include "framework/core/number_text.h"
 #include "framework/fly/flight_checks.h"
+#include "framework/fly/settling.h"
 #include "framework/mavlink/vocabulary.h"
 
 namespace lapwing {
@@ -26,11 +27,14 @@ constexpr double kStrayTime = 0.2;     // s
 constexpr int kLowBattery = 10;        // percent
 constexpr double kStreamFirst = 1.0;   // s of setpoints before the mode is asked for
 constexpr int kMostModeAsked = 5;
-constexpr double kSettleSpeed = 1, kSettleAcceleration = 1;  // m/s, m/s^2, at most
-constexpr double kSettled = 0.25, kSettledSpeed = 0.3;       // m, m/s
-constexpr double kRestTime = 0.5, kLongestSettling = 15;     // s
-constexpr double kLongestStall = 0.5;                        // s without a setpoint
+constexpr double kSettled = 0.25, kSettledSpeed = 0.3;    // m, m/s
+constexpr double kRestTime = 0.5, kLongestSettling = 15;  // s
+constexpr double kLongestStall = 0.5;                     // s without a setpoint
+constexpr double kBusy = 0.2;                             // s between steps: this machine was busy
 constexpr double kHalfPeriod = FlightSession::kPeriod / 2;
+constexpr double kLongestDelay = 0.1;  // s, that a setpoint is sent ahead of its time
+constexpr double kDelayChange = 0.01;  // s per s, of that in flight
+constexpr double kStartReach = 5;      // m: nobody settles from farther away
 
 Packet our_heartbeat() {
   return Message<kHeartbeat>()
@@ -53,17 +57,6 @@ Packet command(const VehicleReport& report, std::uint16_t number, double first, 
       .packet();
 }
 
-// The share of a smooth way from rest to rest, and its first two derivatives by the share of time.
-struct Ease {
-  double value, rate, change;
-};
-Ease ease(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  const double t2 = t * t, t3 = t2 * t;
-  return {t3 * (10 - 15 * t + 6 * t2), t2 * (30 - 60 * t + 30 * t2), t * (60 - 180 * t + 120 * t2)};
-}
-constexpr double kEaseRate = 1.875, kEaseChange = 5.7735;  // the largest of them
-
 }  // namespace
 
 std::string_view to_string(FlightPhase phase) {
@@ -85,7 +78,13 @@ FlightSession::FlightSession(const LiveFlight& flight, FlightFrame frame,
       fences_(std::move(fences)),
       options_(options),
       pacer_(flight.trajectory(), flight.vehicle),
-      gimbal_(options.gimbal, flight.plan, frame_) {}
+      gimbal_(options.gimbal, flight.plan, frame_),
+      way_(flight.plan.environment, flight.folder, flight.trajectory().samples.front().position,
+           kStartReach) {
+  if (!(options.start_tolerance <= kStartReach))
+    throw InputError("a vehicle settles from at most " + plain_number(kStartReach) +
+                     " m away (--start-tolerance)");
+}
 
 std::vector<std::string> FlightSession::take_said() {
   std::vector<std::string> said;
@@ -121,6 +120,11 @@ void FlightSession::abort(const std::string& reason) {
 
 void FlightSession::press(FlightKey key) {
   if (phase_ == FlightPhase::ended) return;
+  if (key == FlightKey::abort && aborting_ && phase_ != FlightPhase::holding) {
+    if (!ends_at_once_) say("the stream ends as soon as the vehicle holds");
+    ends_at_once_ = true;
+    return;
+  }
   if (key == FlightKey::abort) return abort("aborted by the user");
   if (phase_ != FlightPhase::flying || aborting_) return;
   const bool pause = key == FlightKey::pause;
@@ -174,9 +178,9 @@ void FlightSession::ask_for_streams(double now, Packets& packets) {
     packets.push_back(command(report_, kSetMessageInterval, message, seconds * 1e6));
   };
   const bool global = frame_.kind() == FlightFrameKind::global;
-  if (!report_.position) every(global ? kGlobalPosition : kLocalPosition, 0.05);
-  if (!report_.yaw) every(kAttitude, 0.05);
-  if (!report_.estimator) every(kEstimatorStatus, 1);
+  if (!report_.tells_place(now)) every(global ? kGlobalPosition : kLocalPosition, 0.05);
+  if (!report_.tells_place(now)) every(kAttitude, 0.05);
+  if (!report_.tells_estimate(now)) every(kEstimatorStatus, 1);
   if (!report_.battery_percent) every(kSysStatus, 1);
   const auto once = [&](std::uint32_t message) {
     packets.push_back(command(report_, kRequestMessage, message));
@@ -227,9 +231,21 @@ void FlightSession::hand_fence_over(double now, Packets& packets) {
   enter(FlightPhase::checking, now);
 }
 
+// What does not hold yet, and what is in the way to the plan's start.
+std::vector<std::string> FlightSession::missing(double now) const {
+  std::vector<std::string> missing =
+      missing_before_flight(report_, frame_, flight_, clock_, options_.start_tolerance, now);
+  if (!missing.empty()) return missing;
+  const Sample& start = flight_.trajectory().samples.front();
+  const std::string blocked = way_.blocked(report_.position->value, start.position, start.time);
+  if (!blocked.empty())
+    missing.push_back("the straight way from the vehicle to the plan's start is blocked: " +
+                      blocked + "; bring it nearer to the start");
+  return missing;
+}
+
 void FlightSession::check(double now) {
-  const std::vector<std::string> missing =
-      missing_before_flight(report_, frame_, flight_, clock_, options_.start_tolerance);
+  const std::vector<std::string> missing = this->missing(now);
   if (missing.empty()) {
     if (report_.has_signatures)
       say("the vehicle signs its packets: they are read, and their signatures are not checked; "
@@ -262,6 +278,9 @@ void FlightSession::ask_for_mode(double now, bool following, Packets& packets) {
 void FlightSession::wait(double now, Packets& packets) {
   if (now - report_.heard_at > kLongSilence)
     return finish(FlightEnd::refused, "the vehicle fell silent before the flight");
+  if (now - std::min(report_.position_at, report_.yaw_at) > kLongSilence)
+    return finish(FlightEnd::refused, "the vehicle does not tell its place and heading any more");
+  if (!report_.tells_place(now)) return;  // an old place is not streamed
   if (report_.armed() && report_.follows()) return begin_settling(now);
   if (now - phase_began_ > options_.wait_pilot)
     return finish(FlightEnd::refused,
@@ -284,64 +303,55 @@ void FlightSession::wait(double now, Packets& packets) {
 }
 
 void FlightSession::begin_settling(double now) {
-  const std::vector<std::string> missing =
-      missing_before_flight(report_, frame_, flight_, clock_, options_.start_tolerance);
+  const std::vector<std::string> missing = this->missing(now);
   if (!missing.empty()) return finish(FlightEnd::refused, missing.front());
-  from_ = held_;
-  from_.position = report_.position->value;
-  from_.yaw = report_.yaw->value;
-  const Setpoint start = pacer_.setpoint();
-  const double way = (start.position - from_.position).norm();
-  const double turn = std::abs(std::remainder(start.yaw - from_.yaw, 2 * std::numbers::pi));
-  const Vehicle& vehicle = flight_.vehicle;
-  const double speed = std::min({kSettleSpeed, vehicle.speed_across_max / 2,
-                                 vehicle.climb_speed_max / 2, vehicle.descent_speed_max / 2});
-  const double acceleration =
-      std::min({kSettleAcceleration, vehicle.acceleration_across_max / 2,
-                vehicle.acceleration_up_max.value_or(2 * kSettleAcceleration) / 2,
-                vehicle.acceleration_down_max.value_or(2 * kSettleAcceleration) / 2});
-  settle_time_ =
-      std::max({1.0, kEaseRate * way / speed, std::sqrt(kEaseChange * way / acceleration),
-                kEaseRate * turn / (vehicle.yaw_rate_max / 2)});
+  settling_ = std::make_unique<const Trajectory>(settling_way(
+      report_.position->value, report_.yaw->value, flight_.trajectory(), flight_.vehicle));
+  settling_pacer_.emplace(*settling_, flight_.vehicle);
+  clock_.fly();
+  delay_ = std::min(clock_.delay(), kLongestDelay);
+  jumps_ = clock_.jumps();
+  placed_at_ = now;
   rest_since_ = -1;
   say("the vehicle follows: it settles at the plan's start");
   enter(FlightPhase::settling, now);
 }
 
-void FlightSession::settle(double now, Packets& packets) {
+// The next setpoint along a pacer. It is meant for the middle of its period, and for the time of
+// its arrival.
+Setpoint FlightSession::advance(PlanPacer& pacer, double step, bool run) {
+  // Where this machine was busy, the plan has gone on; beyond that the vehicle has given up.
+  for (double left = std::min(step, kLongestStall); left > 0; left -= kPeriod)
+    pacer.advance(std::min(left, kPeriod), run);
+  const double change = kDelayChange * step;
+  delay_ += std::clamp(std::min(clock_.delay(), kLongestDelay) - delay_, -change, change);
+  return pacer.setpoint();
+}
+
+void FlightSession::settle(double now, double step, Packets& packets) {
   if (pilot_has_it(now)) return;
-  const double passed = now - phase_began_;
-  const Setpoint start = pacer_.setpoint();
-  const Ease e = ease((passed + kHalfPeriod + clock_.delay()) / settle_time_);
-  Setpoint setpoint = start;
-  const Eigen::Vector3d way = start.position - from_.position;
-  const double turn = std::remainder(start.yaw - from_.yaw, 2 * std::numbers::pi);
-  setpoint.position = from_.position + e.value * way;
-  setpoint.velocity = e.rate / settle_time_ * way;
-  setpoint.acceleration = e.change / (settle_time_ * settle_time_) * way;
-  setpoint.yaw = from_.yaw + e.value * turn;
-  setpoint.yaw_rate = e.rate / settle_time_ * turn;
-  if (aborting_) {
-    // On the way to the start it holds where it is.
-    setpoint.velocity = setpoint.acceleration = Eigen::Vector3d::Zero();
-    setpoint.yaw_rate = 0;
-    held_ = setpoint;
-    send(now, held_, packets);
-    return enter(FlightPhase::holding, now);
+  measure(now, settling_record_);
+  watch(now);
+  if (phase_ == FlightPhase::ended) return;
+  held_ = advance(*settling_pacer_, step, !aborting_);
+  settling_record_.sent(held_, now + kHalfPeriod + delay_);
+  send(now, held_, packets);
+  if (aborting_ && (settling_pacer_->stands() || settling_pacer_->finished())) {
+    say("holding");
+    return begin_holding(now);
   }
-  held_ = setpoint;
-  send(now, setpoint, packets);
-  if (passed < settle_time_) return;
-  const bool rests = (report_.position->value - start.position).norm() < kSettled &&
-                     report_.velocity->value.norm() < kSettledSpeed;
+  if (aborting_ || !settling_pacer_->finished()) return;
+  const Eigen::Vector3d off = report_.position->value - held_.position;
+  const bool rests = off.norm() < kSettled && report_.velocity->value.norm() < kSettledSpeed;
   if (!rests) rest_since_ = -1;
   if (rests && rest_since_ < 0) rest_since_ = now;
   if (rests && now - rest_since_ >= kRestTime) {
     say("flying");
-    jumps_ = clock_.jumps();
+    placed_at_ = now;
     return enter(FlightPhase::flying, now);
   }
-  if (passed > settle_time_ + kLongestSettling) abort("the vehicle does not settle at the start");
+  if (now - phase_began_ > settling_->duration() + kLongestSettling)
+    abort("the vehicle does not settle at the start");
 }
 
 // Whether somebody else steers the vehicle now.
@@ -360,12 +370,21 @@ bool FlightSession::pilot_has_it(double now) {
 
 // The link, the battery, the estimate.
 void FlightSession::watch(double now) {
-  const bool silent = now - report_.heard_at > kSilence || now - report_.position_at > kSilence;
+  // While this machine was busy, nobody listened.
+  const auto since = [&](double at) { return now - std::max(at, busy_until_); };
+  const bool unheard = since(report_.heard_at) > kSilence;
+  const double placed = std::min({report_.position_at, report_.yaw_at, placed_at_});
+  const bool unplaced = since(placed) > VehicleReport::kFresh;
+  const bool silent = unheard || unplaced;
   if (silent && !silent_) {
     silent_since_ = now;
     say("the vehicle is silent: braking along the path, then holding");
     paused_ = true;
-    if (!options_.can_resume) abort("the vehicle was silent for " + plain_number(kSilence) + " s");
+    const bool settles = phase_ == FlightPhase::settling;
+    if (!options_.can_resume || settles)
+      abort(unheard ? "the vehicle was silent for " + plain_number(kSilence) + " s"
+                    : "the vehicle told no usable place and heading for " +
+                          plain_number(VehicleReport::kFresh) + " s");
   }
   if (!silent && silent_ && !aborting_) say("the vehicle is heard again: paused; r resumes");
   silent_ = silent;
@@ -384,15 +403,20 @@ void FlightSession::watch(double now) {
     abort("the vehicle reports an emergency");
   else if (!report_.estimator_good(frame_.kind() == FlightFrameKind::global))
     abort("the vehicle's estimate of its state is not valid any more");
+  else if (phase_ == FlightPhase::settling && !silent && !report_.tells_estimate(now))
+    abort("the vehicle does not tell any more whether its estimate is valid");
 }
 
 // Compares where the vehicle was with what it was sent for that time.
-void FlightSession::measure(double now) {
+// A report that seems to come from the future is one of now: the clock is known that well only.
+void FlightSession::measure(double now, FlightRecord& record) {
   if (report_.position && report_.position->vehicle_time > measured_at_) {
     measured_at_ = report_.position->vehicle_time;
-    const auto error = record_.placed(report_.position->value, clock_.ours_at(measured_at_));
+    const double time = std::min(now, clock_.ours_at(measured_at_));
+    const auto error = record.placed(report_.position->value, time);
     if (error) {
       error_now_ = error;
+      placed_at_ = now;
       if (*error <= options_.stray) strays_since_ = -1;
       if (*error > options_.stray && strays_since_ < 0) strays_since_ = now;
       if (strays_since_ >= 0 && now - strays_since_ >= kStrayTime)
@@ -404,30 +428,28 @@ void FlightSession::measure(double now) {
   }
   if (report_.yaw && report_.yaw->vehicle_time > headed_at_) {
     headed_at_ = report_.yaw->vehicle_time;
-    record_.headed(report_.yaw->value, clock_.ours_at(headed_at_));
+    record.headed(report_.yaw->value, std::min(now, clock_.ours_at(headed_at_)));
   }
 }
 
 void FlightSession::fly(double now, double step, Packets& packets) {
   if (pilot_has_it(now)) return;
-  measure(now);
+  measure(now, record_);
   watch(now);
   if (phase_ == FlightPhase::ended) return;
-  // Where this machine was busy, the plan has gone on; beyond that the vehicle has given up.
-  for (double left = std::min(step, kLongestStall); left > 0; left -= kPeriod)
-    pacer_.advance(std::min(left, kPeriod), !paused_ && !aborting_);
-  // A setpoint holds in the middle of its period, and on its way it grows old.
-  const double ahead = kHalfPeriod + clock_.delay();
-  const Setpoint setpoint = pacer_.setpoint(ahead);
-  record_.sent(setpoint, now + ahead);
-  held_ = setpoint;
-  send(now, setpoint, packets);
+  held_ = advance(pacer_, step, !paused_ && !aborting_);
+  record_.sent(held_, now + kHalfPeriod + delay_);
+  send(now, held_, packets);
   if (!pacer_.finished() && !(aborting_ && pacer_.stands())) return;
   held_ = pacer_.setpoint();
+  say(aborting_ ? "holding" : "the plan is flown: holding at its end");
+  begin_holding(now);
+}
+
+void FlightSession::begin_holding(double now) {
   held_.velocity = held_.acceleration = Eigen::Vector3d::Zero();
   held_.yaw_rate = 0;
   mode_asked_ = 0, mode_asked_at_ = -1e9;
-  say(aborting_ ? "holding" : "the plan is flown: holding at its end");
   end_ = wanted_end_;
   enter(FlightPhase::holding, now);
 }
@@ -438,6 +460,7 @@ void FlightSession::hold(double now, Packets& packets) {
     return finish(wanted_end_ == FlightEnd::flown ? FlightEnd::link_lost : wanted_end_,
                   "the vehicle was silent while it held");
   send(now, held_, packets);
+  if (ends_at_once_) return finish(wanted_end_, reason_);
   if (now - phase_began_ < options_.hold) return;
   if (!options_.enter_mode || mode_asked_ >= kMostModeAsked) return finish(wanted_end_, reason_);
   ask_for_mode(now, false, packets);
@@ -453,6 +476,7 @@ void FlightSession::send(double now, const Setpoint& setpoint, Packets& packets)
 std::vector<Packet> FlightSession::step(double now) {
   Packets packets;
   if (!begun_) begun_ = now, phase_began_ = now, last_step_ = now;
+  if (now - *last_step_ > kBusy) busy_until_ = now;
   const double passed = clock_.advance(now - *last_step_);
   last_step_ = now;
   if (phase_ == FlightPhase::ended) return packets;
@@ -472,7 +496,7 @@ std::vector<Packet> FlightSession::step(double now) {
       wait(now, packets);
       break;
     case FlightPhase::settling:
-      settle(now, packets);
+      settle(now, passed, packets);
       break;
     case FlightPhase::flying:
       fly(now, passed, packets);

@@ -7,11 +7,13 @@
 // place of the vehicle is streamed, because PX4 enters OFFBOARD only under a stream. `settling`:
 // from where the vehicle is to the plan's start, slowly; then it must come to rest. `holding`:
 // after the plan's end or an abort, the last place is streamed, until the pilot leaves the mode, or
-// for `hold` seconds.
+// for `hold` seconds. Settling is watched as the flight is, along a straight way that keeps clear
+// of the plan's surroundings; there, silence is an abort.
 //
 // What goes wrong, and what is done:
 //   before the flight                       nothing of the plan is sent; one sentence
-//   the vehicle is silent for 1 s           brake along the path and hold; it stays paused when the
+//   the vehicle is silent for 1 s, or
+//   tells no usable place for 0.5 s         brake along the path and hold; it stays paused when the
 //                                           vehicle is heard again, and ends after 10 s; where
 //                                           nobody can resume: abort
 //   another mode, or disarmed               the stream ends at once: the pilot has the vehicle
@@ -25,6 +27,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +37,7 @@
 #include "framework/fly/gimbal_stream.h"
 #include "framework/fly/live_flight.h"
 #include "framework/fly/vehicle_report.h"
+#include "framework/verify/straight_way.h"
 
 namespace lapwing {
 
@@ -43,7 +47,7 @@ struct SessionOptions {
   bool upload_fence = true;
   bool can_resume = true;  // somebody may press keys; else silence of the vehicle aborts
   GimbalWay gimbal = GimbalWay::automatic;
-  double start_tolerance = 1;  // m
+  double start_tolerance = 1;  // m, at most 5
   double stray = 1;            // m, from what was sent: abort
   double hold = 5;             // s, after the end
   double wait_answer = 10;     // s, for a first heartbeat
@@ -62,7 +66,7 @@ class FlightSession {
  public:
   static constexpr double kPeriod = 0.02;  // s, of `step`
 
-  // Keeps a reference to the flight. Throws InputError as GimbalStream does.
+  // Keeps a reference to the flight. Throws InputError as GimbalStream and StraightWay do.
   FlightSession(const LiveFlight& flight, FlightFrame frame, std::vector<MissionFence> fences,
                 const SessionOptions& options);
 
@@ -101,11 +105,14 @@ class FlightSession {
   void hand_fence_over(double now, Packets& packets);
   void check(double now);
   void wait(double now, Packets& packets);
-  void settle(double now, Packets& packets);
+  void settle(double now, double step, Packets& packets);
   void fly(double now, double step, Packets& packets);
   void hold(double now, Packets& packets);
   void watch(double now);
-  void measure(double now);
+  void measure(double now, FlightRecord& record);
+  std::vector<std::string> missing(double now) const;
+  Setpoint advance(PlanPacer& pacer, double step, bool run);
+  void begin_holding(double now);
   void begin_settling(double now);
   void ask_for_mode(double now, bool following, Packets& packets);
   bool pilot_has_it(double now);
@@ -119,7 +126,10 @@ class FlightSession {
   VehicleClock clock_;
   PlanPacer pacer_;
   GimbalStream gimbal_;
-  FlightRecord record_;
+  StraightWay way_;
+  std::unique_ptr<const Trajectory> settling_;
+  std::optional<PlanPacer> settling_pacer_;
+  FlightRecord record_, settling_record_;
   std::optional<FenceUpload> fence_;
   FlightPhase phase_ = FlightPhase::searching;
   FlightEnd end_ = FlightEnd::none, wanted_end_ = FlightEnd::flown;
@@ -130,11 +140,13 @@ class FlightSession {
   double mode_asked_at_ = -1e9, strays_since_ = -1, rest_since_ = -1, silent_since_ = -1;
   int mode_asked_ = 0, jumps_ = 0;
   std::optional<int> mode_refused_;  // MAV_RESULT
-  bool paused_ = false, aborting_ = false, silent_ = false;
+  bool paused_ = false, aborting_ = false, silent_ = false, ends_at_once_ = false;
   std::optional<double> error_now_;
   double measured_at_ = -1, headed_at_ = -1;  // s, of the vehicle
-  Setpoint held_, from_;                      // where it holds; where the settling begins
-  double settle_time_ = 1;                    // s
+  double placed_at_ = -1;                     // s: when the vehicle's place was last compared
+  double busy_until_ = -1e9;                  // s: until then this machine did not listen
+  double delay_ = 0;                          // s, that setpoints are sent ahead; changes slowly
+  Setpoint held_;                             // where it holds
 };
 
 }  // namespace lapwing

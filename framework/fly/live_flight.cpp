@@ -102,7 +102,7 @@ void require_limits(const LiveFlight& flight) {
 }  // namespace
 
 LiveFlight live_flight_of(const Plan& plan, const std::filesystem::path& folder) {
-  LiveFlight flight{plan, vehicle_from_value(plan.vehicle), {}};
+  LiveFlight flight{plan, vehicle_from_value(plan.vehicle), {}, folder};
   if (flight.vehicle.wing)
     throw InputError("'" + flight.vehicle.name +
                      "' has a wing: live flights are for vehicles that can stop in the air; export "

@@ -15,6 +15,7 @@ struct LiveFlight {
   Plan plan;  // with the trajectory that is flown
   Vehicle vehicle;
   std::vector<std::string> said;  // for the user
+  std::filesystem::path folder;   // of the plan's meshes and maps
 
   const Trajectory& trajectory() const { return plan.trajectory; }
 };

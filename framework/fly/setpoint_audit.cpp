@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
@@ -11,11 +12,12 @@
 namespace lapwing {
 namespace {
 
-constexpr double kSlack = 2e-3;       // of a limit: numbers on the wire are rounded
-constexpr double kPlaceSlack = 0.05;  // m; degE7 are 1 cm
-constexpr double kStampSlack = 2e-3;  // s: stamps are whole ms
-constexpr double kLongestStep = 0.5;  // s between setpoints that are compared
-constexpr double kYawSlack = 0.02;    // rad
+constexpr double kSlack = 2e-3;          // of a limit: numbers on the wire are rounded
+constexpr double kPlaceSlack = 0.05;     // m; degE7 are 1 cm
+constexpr double kStampSlack = 2e-3;     // s: stamps are whole ms
+constexpr double kLongestStep = 0.5;     // s between setpoints that are compared
+constexpr double kYawSlack = 0.02;       // rad
+constexpr double kVelocitySlack = 5e-3;  // m/s; the wire has single precision
 
 double speed_share(const Eigen::Vector3d& v, const Vehicle& vehicle) {
   return std::max({v.head<2>().norm() / vehicle.speed_across_max, v.z() / vehicle.climb_speed_max,
@@ -32,7 +34,18 @@ double acceleration_share(const Setpoint& setpoint, const Vehicle& vehicle) {
   const double thrust =
       (vehicle.mass * (a + kGravity * Eigen::Vector3d::UnitZ()) + vehicle.drag * setpoint.velocity)
           .norm();
-  return std::max(share, thrust / (4 * vehicle.rotors.thrust_max));
+  share = std::max(share, thrust / (4 * vehicle.rotors.thrust_max));
+  return std::max(share, 4 * vehicle.rotors.thrust_min / std::max(thrust, 1e-9));
+}
+
+// The share of the acceleration that a change of velocity within `step` seconds needs.
+double change_share(const Eigen::Vector3d& change, double step, const Vehicle& vehicle) {
+  const auto share = [&](double part, std::optional<double> limit) {
+    return limit ? std::max(0.0, part - kVelocitySlack) / (*limit * (step + kStampSlack)) : 0.0;
+  };
+  return std::max({share(change.head<2>().norm(), vehicle.acceleration_across_max),
+                   share(change.z(), vehicle.acceleration_up_max),
+                   share(-change.z(), vehicle.acceleration_down_max)});
 }
 
 }  // namespace
@@ -59,7 +72,9 @@ void SetpointAudit::take(const Setpoint& setpoint, double stamp, double now) {
     const bool spun =
         turn > (1 + kSlack) * vehicle_.yaw_rate_max * (step + kStampSlack) + kYawSlack;
     jump_worst_ = std::max(jump_worst_, jump);
-    beyond = beyond || jump > allowed || spun;
+    const double pushed = change_share(setpoint.velocity - before_->velocity, step, vehicle_);
+    acceleration_share_ = std::max(acceleration_share_, pushed);
+    beyond = beyond || jump > allowed || spun || pushed > 1 + kSlack;
   }
   if (beyond) ++beyond_;
   before_ = setpoint;

@@ -20,6 +20,9 @@ void VehicleClock::measured(double offset) {
   measured_ = offset;
   if (!known_) {
     offset_ = offset, known_ = true;
+  } else if (!flying_) {
+    if (std::abs(offset - offset_) > kJump) last_jump_ = offset - offset_, ++jumps_;
+    offset_ = offset;
   } else if (std::abs(offset - offset_) > kJump) {
     last_jump_ = offset - offset_;
     offset_ = offset;
@@ -30,7 +33,8 @@ void VehicleClock::measured(double offset) {
 void VehicleClock::answered(double sent, double received, double vehicle) {
   const double trip = received - sent;
   if (!(trip >= 0) || trip > 2 * kLongestWay) return;
-  if (!quickest_ && known_) offset_ = vehicle - 0.5 * (sent + received);  // better than telemetry
+  // The first one is better than telemetry, and no jump of the clock.
+  if (!quickest_ && known_ && !flying_) offset_ = vehicle - 0.5 * (sent + received);
   quickest_ = quickest_ ? std::min(*quickest_, trip) : trip;
   last_answer_ = received;
   if (trip <= 1.5 * *quickest_ + kSlowTrip) measured(vehicle - 0.5 * (sent + received));
@@ -39,7 +43,7 @@ void VehicleClock::answered(double sent, double received, double vehicle) {
 void VehicleClock::telemetry(double now, double vehicle) {
   const double offset = vehicle - now;
   if (!known_) return measured(offset);
-  const double late = offset_ - offset;  // s, on its way
+  const double late = measured_ - offset;  // s, on its way
   if (late < -kJump) return measured(offset);
   early_ = late > kLongestWay ? early_ + 1 : 0;
   if (early_ >= kOldInTurn) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/fly/vehicle_report.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "framework/mavlink/vocabulary.h"
 
 namespace lapwing {
@@ -55,12 +58,16 @@ void take_place(const Packet& packet, double now, const FlightFrame& frame, Vehi
   }
 }
 
-void take_status(const Packet& packet, VehicleReport& report) {
+void take_status(const Packet& packet, double now, VehicleReport& report) {
   const Message<kSysStatus> m(packet);
   if (m.get<"battery_remaining">() >= 0) report.battery_percent = m.get<"battery_remaining">();
   const std::uint32_t enabled = m.get<"onboard_control_sensors_enabled">();
-  if (enabled & kAttitudeSystem)
-    report.attitude_healthy = m.get<"onboard_control_sensors_health">() & kAttitudeSystem;
+  const std::uint32_t healthy = enabled & m.get<"onboard_control_sensors_health">();
+  if (!(enabled & kAttitudeSystem)) return;
+  report.attitude_healthy = healthy & kAttitudeSystem;
+  report.earth_place_healthy = healthy & kGpsSensor;
+  report.place_healthy = healthy & (kGpsSensor | kFlowSensor | kVisionSensor);
+  if (!report.estimator) report.estimator_at = now;
 }
 
 void take_version(const Packet& packet, VehicleReport& report) {
@@ -86,11 +93,13 @@ void take_message(const Packet& packet, double now, FlightFrame& frame, VehicleC
       return take_place(packet, now, frame, clock, report);
     case kAttitude: {
       const Message<kAttitude> m(packet);
+      if (!std::isfinite(m.get<"yaw">())) return;
       report.yaw = {turned_yaw(m.get<"yaw">()), m.get<"time_boot_ms">() * kMilli};
+      report.yaw_at = now;
       return;
     }
     case kSysStatus:
-      return take_status(packet, report);
+      return take_status(packet, now, report);
     case kBatteryStatus: {
       const Message<kBatteryStatus> m(packet);
       if (m.get<"id">() == 0 && m.get<"battery_remaining">() >= 0)
@@ -99,6 +108,7 @@ void take_message(const Packet& packet, double now, FlightFrame& frame, VehicleC
     }
     case kEstimatorStatus:
       report.estimator = Message<kEstimatorStatus>(packet).get<"flags">();
+      report.estimator_at = now;
       return;
     case kHomePosition:
       report.home = earth_point_of(Message<kHomePosition>(packet));
@@ -157,12 +167,21 @@ std::string VehicleReport::mode_name() const {
 }
 
 bool VehicleReport::estimator_good(bool global) const {
-  if (!estimator) return attitude_healthy.value_or(false);
+  if (!estimator)
+    return attitude_healthy.value_or(false) && (global ? earth_place_healthy : place_healthy);
   const std::uint16_t needed = kAttitudeGood | kVelocityAcrossGood | kVelocityUpGood;
   const std::uint16_t place = global ? kAbsolutePlaceGood : kAbsolutePlaceGood | kRelativePlaceGood;
   const std::uint16_t height = global ? kHeightGood : kHeightGood | kHeightAboveGroundGood;
   return (*estimator & needed) == needed && (*estimator & place) && (*estimator & height) &&
          !(*estimator & (kGpsGlitch | kAccelerometerError));
+}
+
+bool VehicleReport::tells_place(double now) const {
+  return position && yaw && now - std::min(position_at, yaw_at) < kFresh;
+}
+
+bool VehicleReport::tells_estimate(double now) const {
+  return now - estimator_at < kFreshEstimate;
 }
 
 void take_report(const Packet& packet, double now, std::optional<std::uint8_t> wanted,

@@ -21,18 +21,23 @@ struct Reported {
 struct VehicleReport {
   // Times in s of our clock; before the first message: far in the past.
   static constexpr double kNever = -1e9;
+  // s: how old a place or heading, and an estimator's report, may be.
+  static constexpr double kFresh = 0.5, kFreshEstimate = 3;
 
   std::uint8_t system = 0, component = 0;
   std::optional<std::uint8_t> second_system;  // another vehicle that answers too
-  double heartbeat_at = kNever, heard_at = kNever, position_at = kNever;
+  double heartbeat_at = kNever, heard_at = kNever, position_at = kNever, yaw_at = kNever,
+         estimator_at = kNever;
   std::uint8_t type = 0, autopilot = 0, base_mode = 0, state = 0;
   std::uint32_t mode = 0;
   std::optional<Reported<Eigen::Vector3d>> position, velocity;  // m, m/s, world
   std::optional<Reported<double>> yaw;                          // rad, world
   std::optional<EarthPoint> home, local_origin;
   std::optional<int> battery_percent;
-  std::optional<std::uint16_t> estimator;     // ESTIMATOR_STATUS_FLAGS
-  std::optional<bool> attitude_healthy;       // of SYS_STATUS
+  std::optional<std::uint16_t> estimator;  // ESTIMATOR_STATUS_FLAGS
+  // Of SYS_STATUS: attitude, and a sensor of the place on the earth, or of any place.
+  std::optional<bool> attitude_healthy;
+  bool earth_place_healthy = false, place_healthy = false;
   std::optional<std::uint64_t> capabilities;  // of AUTOPILOT_VERSION
   std::optional<std::uint32_t> software;      // likewise: flight_sw_version
   std::optional<std::uint8_t> landed;         // MAV_LANDED_STATE
@@ -52,7 +57,10 @@ struct VehicleReport {
   // "OFFBOARD", "HOLD", "mode 5".
   std::string mode_name() const;
   // Estimated place, velocity and attitude are usable; `global`: the place on the earth is needed.
+  // Without ESTIMATOR_STATUS, SYS_STATUS tells it: a healthy attitude alone is no place.
   bool estimator_good(bool global) const;
+  bool tells_place(double now) const;     // place, velocity and heading are fresh
+  bool tells_estimate(double now) const;  // what estimator_good says is fresh
 };
 
 // Takes a message of the vehicle that is, or will be, flown: the first autopilot that is heard, or

@@ -48,7 +48,8 @@ inline constexpr std::uint16_t kAttitudeGood = 1, kVelocityAcrossGood = 2, kVelo
                                kHeightAboveGroundGood = 64, kGpsGlitch = 1024,
                                kAccelerometerError = 2048;
 // MAV_SYS_STATUS_SENSOR
-inline constexpr std::uint32_t kAttitudeSystem = 1u << 21;
+inline constexpr std::uint32_t kGpsSensor = 1u << 5, kFlowSensor = 1u << 6, kVisionSensor = 1u << 7,
+                               kAttitudeSystem = 1u << 21;
 // GIMBAL_MANAGER_FLAGS
 inline constexpr std::uint32_t kRollLock = 4, kPitchLock = 8, kYawLock = 16;
 // POSITION_TARGET_TYPEMASK

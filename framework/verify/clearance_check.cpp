@@ -16,7 +16,10 @@
 #include <map>
 #include <string_view>
 
+#include "framework/core/error.h"
+#include "framework/core/number_text.h"
 #include "framework/verify/checks.h"
+#include "framework/verify/straight_way.h"
 
 namespace lapwing {
 namespace {
@@ -217,6 +220,58 @@ void check_clearance(const Flight& flight, Certificate& certificate) {
 void check_flight_zones(const Flight& flight, Certificate& certificate) {
   check_side(flight, Side::keep_inside, "flight_zone", "the environment has no flight zone",
              certificate);
+}
+
+StraightWay::StraightWay(const Environment& environment, const std::filesystem::path& folder,
+                         const Eigen::Vector3d& place, double around)
+    : environment_(environment) {
+  const double room = around + environment.margin + tolerances::kMapReach;
+  const Eigen::Vector3d corner = Eigen::Vector3d::Constant(room);
+  for (std::size_t i = 0; i < environment.obstacles.size(); ++i) {
+    const Obstacle& obstacle = environment.obstacles[i];
+    const Value* file = obstacle.parameters.find("file");
+    Eigen::AlignedBox3d box(place - corner, place + corner);
+    for (const Eigen::Vector3d& move : obstacle.moves) {
+      box.extend(place - corner - move);
+      box.extend(place + corner - move);
+    }
+    try {
+      shapes_.push_back(judged_shape(
+          obstacle, file && file->is_text() ? folder / file->as_text() : std::filesystem::path(),
+          box));
+    } catch (const std::exception& error) {
+      throw InputError(obstacle.label(i + 1) + ": " + error.what());
+    }
+  }
+}
+
+StraightWay::~StraightWay() = default;
+StraightWay::StraightWay(StraightWay&&) noexcept = default;
+
+std::string StraightWay::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                 double time) const {
+  constexpr double kForgiven = 0.05;  // m
+  const auto near = [](const std::string& what, double distance, double wanted) {
+    return what + " is at " + plain_number(distance, 3) + " m of the way, " +
+           plain_number(wanted, 3) + " m are kept";
+  };
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    const Obstacle& obstacle = environment_.obstacles[i];
+    const double sign = obstacle.side == Side::keep_inside ? -1.0 : 1.0;
+    const Body body{*shapes_[i], sign, shapes_[i]->reach() + environment_.margin};
+    const Eigen::Vector3d moved = obstacle.moved(time);
+    const double distance = nearest(body, Chord{from - moved, to - moved, 0}).distance;
+    if (!(distance >= environment_.margin - kForgiven))
+      return near(obstacle.label(i + 1), distance, environment_.margin);
+  }
+  for (const Subject& subject : environment_.subjects) {
+    const Eigen::Vector3d way = to - from, off = subject.position(time) - from;
+    const double share = std::clamp(off.dot(way) / std::max(1e-12, way.squaredNorm()), 0.0, 1.0);
+    const double distance = (off - share * way).norm();
+    if (distance < subject.distance - kForgiven)
+      return near("subject '" + subject.name + "'", distance, subject.distance);
+  }
+  return {};
 }
 
 }  // namespace lapwing

@@ -76,6 +76,7 @@ TEST(VehicleClocks, TakeTheMiddleOfTheQuickestRoundTrip) {
 TEST(VehicleClocks, FollowSlowlyAndTakeJumpsAtOnce) {
   VehicleClock clock;
   clock.answered(0, 0.01, 50.005);
+  clock.fly();
   // A clock that runs early by 0.1 s: followed by 50 millionths at most.
   clock.answered(1, 1.01, 51.105);
   EXPECT_NEAR(clock.advance(1), 1.00005, 1e-12);
@@ -91,6 +92,27 @@ TEST(VehicleClocks, FollowSlowlyAndTakeJumpsAtOnce) {
   for (int i = 0; i < 5; ++i) clock.telemetry(4 + 0.02 * i, 44 + 0.02 * i);
   EXPECT_EQ(clock.jumps(), 2);
   EXPECT_NEAR(clock.vehicle_at(5), 45, 1e-6);
+}
+
+TEST(VehicleClocks, TakeTheBestBeforeTheFlightAtOnce) {
+  VehicleClock late;
+  late.telemetry(10.2, 100);  // on its way for 0.2 s
+  late.telemetry(10.22, 100.22);
+  EXPECT_NEAR(late.vehicle_at(10.22), 100.22, 1e-9);
+  VehicleClock slow;
+  slow.answered(0, 0.4, 50.4);  // all of it on the way there
+  EXPECT_NEAR(slow.vehicle_at(0.4), 50.6, 1e-9);
+  slow.answered(1, 1.01, 51.005);
+  EXPECT_NEAR(slow.vehicle_at(1), 51, 1e-9);
+  EXPECT_NEAR(slow.delay(), 0.005, 1e-9);
+  // In flight the pace follows slowly; what is measured is compared by the best trip at once.
+  VehicleClock flying;
+  flying.answered(0, 0.4, 50.4);
+  flying.fly();
+  flying.answered(1, 1.01, 51.005);
+  EXPECT_NEAR(flying.vehicle_at(1), 51.2, 1e-9);
+  EXPECT_NEAR(flying.ours_at(51), 1, 1e-9);
+  EXPECT_NEAR(flying.advance(1), 0.999, 1e-12);
 }
 
 // The share of the limits that a setpoint of the pacer needs.
@@ -259,6 +281,14 @@ TEST(SetpointAudits, SeeWhatIsBeyondLimits) {
   EXPECT_EQ(beyond([](Setpoint& s) { s.yaw_rate = 1.6; }), 1u);
   EXPECT_EQ(beyond([](Setpoint& s) { s.acceleration.y() = 4.1; }), 1u);
   EXPECT_EQ(beyond([](Setpoint& s) { s.acceleration.z() = -3.1; }), 1u);
+  // Steps of the velocity, though the places agree with them.
+  for (const double step : {0.2, 1.0, 3.0, 4.9})
+    EXPECT_EQ(beyond([&](Setpoint& s) { s.velocity.x() = step, s.position.x() = 0.01 * step; }), 1u)
+        << step;
+  EXPECT_EQ(beyond([](Setpoint& s) { s.velocity.x() = 0.07, s.position.x() = 0.0007; }), 0u);
+  EXPECT_EQ(beyond([](Setpoint& s) { s.velocity.z() = 0.1; }), 1u) << "3 m/s^2 up";
+  // A velocity that the places do not follow.
+  EXPECT_EQ(beyond([](Setpoint& s) { s.velocity.x() = 0.05, s.position.x() = -0.06; }), 1u);
   EXPECT_EQ(beyond([](Setpoint& s) { s.velocity = {10.1, 0, 0}, s.position.x() = 0.1; }), 1u);
   EXPECT_EQ(beyond([](Setpoint& s) { s.velocity.z() = -2.1; }), 1u);
 }

@@ -96,11 +96,14 @@ class Rehearsal {
     now_ += 0.02;
     for (const std::string& datagram : autopilot_.step(now_))
       for (const mavlink::Packet& packet : parser_.read(datagram, mavlink::Source::datagram))
-        if (!mute) session_.receive(packet, now_);
+        hear(packet);
     const bool plan_flown = session_.phase() == FlightPhase::flying;
     if (plan_flown)
       strayed = std::max(strayed, distance_from_path(flight_.plan, autopilot_.state().position));
     for (std::string& sentence : session_.take_said()) said.push_back(std::move(sentence));
+  }
+  void hear(mavlink::Packet packet) {
+    if (!mute && (!received || received(packet))) session_.receive(packet, now_);
   }
   // To the end of the session, or for so long.
   void run(double most = 120) {
@@ -130,6 +133,8 @@ class Rehearsal {
   double strayed = 0;               // m from the path, while flying
   std::vector<std::string> said;
   std::function<void(const mavlink::Packet&)> sent;
+  // What the session hears may be changed, or lost: false.
+  std::function<bool(mavlink::Packet&)> received;
 
  private:
   LiveFlight flight_;

@@ -330,7 +330,7 @@ TEST(Session, AbortsASilentFlightWhereNobodyCanResume) {
   rehearsal.mute = false;
   rehearsal.run();
   EXPECT_EQ(rehearsal.session().end(), FlightEnd::aborted);
-  EXPECT_THAT(rehearsal.session().reason(), HasSubstr("silent for 1 s"));
+  EXPECT_THAT(rehearsal.session().reason(), HasSubstr("no usable place and heading for 0.5 s"));
   expect_at_rest(rehearsal);
 }
 
