@@ -56,8 +56,7 @@ void print_checks(const FlightReview& review) {
 
 void print(const Plan& plan, const FlightReview& review) {
   std::printf("%s: %s\n", visible_line(plan.mission).c_str(),
-              review.kept() ? tinted(Tone::good, "flown as planned").c_str()
-                            : tinted(Tone::bad, "broke limits that the plan keeps").c_str());
+              tinted(review.kept() ? Tone::good : Tone::bad, verdict_of(review)).c_str());
   for (const std::string& sentence : alignment_sentences(review))
     std::printf("  %s\n", visible_line(sentence).c_str());
   print_errors(review);

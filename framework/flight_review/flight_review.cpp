@@ -41,6 +41,11 @@ void say_space(const FlightReview& review, std::vector<std::string>& said) {
   if (review.asked.estimate_turn)
     said.push_back("the log's local frame is turned by " +
                    spread(degrees(a.turn), degrees(a.turn_sigma), 2) + " degrees");
+  if (review.beside > review.beside_limit)
+    said.push_back("the flight was " + plain_number(review.beside, 3) +
+                   " m beside the plan throughout, more than the " +
+                   plain_number(review.beside_limit, 3) +
+                   " m of the plan's margin or of a receiver");
   if (a.confounded)
     said.emplace_back(
         "the flight is so straight and even that a later clock and an offset along the path look "
@@ -106,33 +111,6 @@ std::string cure_of(const FlownCheck& check, const Plan& plan, const FlightRevie
 }
 
 }  // namespace
-
-bool FlightReview::kept() const {
-  return std::none_of(
-      certificate.checks.begin(), certificate.checks.end(),
-      [](const FlownCheck& c) { return c.flown.required && !c.flown.pass && c.planned_pass; });
-}
-
-FlightReview review_flight(const Plan& plan, FlightLog log, const AlignmentRequest& asked,
-                           const std::filesystem::path& folder) {
-  FlightReview review;
-  review.asked = asked;
-  const FlownSeries series = flown_series(log, plan);
-  review.asked.estimate_turn = asked.estimate_turn && series.local;
-  review.source = series.source;
-  review.height_unknown = series.height_unknown;
-  review.alignment = align_flight(plan.trajectory, series, review.asked);
-  review.flown = flown_track(plan, log, series, review.alignment);
-  review.errors = flight_errors(plan, review.flown);
-  review.certificate = judge_flown(plan, review.flown, folder);
-  const auto& samples = plan.trajectory.samples;
-  const double first = review.alignment.plan_time(series.start());
-  const double last = review.alignment.plan_time(series.finish());
-  review.missing_before = std::max(0.0, first - samples.front().time);
-  review.missing_after = std::max(0.0, samples.back().time - last);
-  review.log = std::move(log);
-  return review;
-}
 
 std::vector<std::string> alignment_sentences(const FlightReview& review) {
   const FlightAlignment& a = review.alignment;

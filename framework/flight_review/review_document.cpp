@@ -88,6 +88,10 @@ Value to_value(const Plan& plan, const FlightReview& review) {
   Value value = Value::map();
   value.set("mission", plan.mission);
   value.set("kept", review.kept());
+  value.set("verdict", verdict_of(review));
+  value.set("beside", review.beside);
+  value.set("beside_limit", review.beside_limit);
+  value.set("share", review.share());
   value.set("log", made(review.log));
   value.set("positions", review.source);
   value.set("alignment", made(review.alignment));

@@ -184,7 +184,7 @@ Report review_report(const Plan& plan, const FlightReview& review,
   Report report;
   report.title = plan.mission;
   report.subtitle = "the flight against its plan";
-  report.status = review.kept() ? "flown as planned" : "limits broken";
+  report.status = verdict_of(review);
   report.status_mark = review.kept() ? Mark::pass : Mark::fail;
   report.sections.push_back(
       {"Log and plan brought together",

@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 
 #include "framework/flight_log/flight_log_reader.h"
+#include "framework/flight_log/log_builder.h"
 #include "framework/plugin/registry.h"
 #include "tests/flight_review/log_writers.h"
+#include "tests/obstacles.h"
 
 namespace lapwing {
 namespace {
@@ -161,6 +163,76 @@ TEST(Review, BrokenLimitsAreNamedWithTheirTimes) {
   EXPECT_NEAR(*clearance->flown.worst, 0.65, 0.05);
   EXPECT_NEAR(clearance->flown.at, 15, 1.5);
   EXPECT_TRUE(says(advice_of(plan, bad), "plan with `margin`"));
+}
+
+// Lapwing's own recording, in the world of the plan.
+FlightLog own_log(const Eigen::Vector3d& shift, double until = 1e9) {
+  LogBuilder builder("csv", 0);
+  builder.log.recorder = "Lapwing";
+  builder.log.clock = "the start of the plan";
+  for (const RecordedState& s : ideal_flight(wave_plan(), 20, 0, 0)) {
+    const Eigen::Vector3d p = s.position + shift;
+    if (s.time <= until) builder.add("position", s.time, {p.x(), p.y(), p.z()});
+  }
+  return builder.finish();
+}
+
+// The wave and a wall 6 m north of its northernmost place; the plan keeps 1 m from it.
+Plan plan_beside_a_wall() {
+  Plan plan = wave_plan();
+  double north = -INFINITY;
+  for (const Sample& s : plan.trajectory.samples) north = std::max(north, s.position.y());
+  plan.environment.obstacles.push_back(box_at("wall", {-30, north + 5, 0}, {30, north + 6, 15}));
+  plan.environment.margin = 1;
+  return plan;
+}
+
+TEST(Review, AFlightBesideItsPlanIsNotFlownAsPlanned) {
+  const Plan plan = plan_beside_a_wall();
+  for (const bool offset : {true, false}) {
+    const auto judged = [&](const Eigen::Vector3d& shift) {
+      return review_flight(plan, own_log(shift), {.clock = {}, .estimate_offset = offset}, ".");
+    };
+    const FlightReview good = judged({0.2, 0, 0});
+    EXPECT_TRUE(good.kept()) << verdict_of(good);
+    EXPECT_EQ(verdict_of(good), "flown as planned");
+    const FlightReview through = judged({0, 6, 0});
+    EXPECT_FALSE(through.kept());
+    EXPECT_FALSE(through.certificate.find("clearance")->flown.pass) << offset;
+    EXPECT_LT(*through.certificate.find("clearance")->flown.worst, 0);
+    EXPECT_THAT(verdict_of(through), HasSubstr("broke limits that the plan keeps, 6"));
+    const FlightReview far = judged({0, -20, 0});
+    EXPECT_FALSE(far.kept());
+    EXPECT_TRUE(far.certificate.find("clearance")->flown.pass);
+    EXPECT_NEAR(far.beside, 20, 0.1);
+    EXPECT_EQ(verdict_of(far), "20 m beside the plan");
+    const FlightReview low = judged({0, 0, -4.5});
+    EXPECT_FALSE(low.kept());
+    EXPECT_EQ(verdict_of(low), "4.5 m beside the plan");
+  }
+}
+
+TEST(Review, APartOfAFlightIsKeptAsFarAsTheLogGoes) {
+  const Plan plan = plan_beside_a_wall();
+  const FlightReview part = review_flight(plan, own_log({0, 0, 0}, 12.4), {}, ".");
+  EXPECT_FALSE(part.kept());
+  EXPECT_FALSE(part.broke());
+  EXPECT_NEAR(part.share(), 0.31, 0.005);
+  EXPECT_THAT(verdict_of(part), HasSubstr("kept as far as the log goes (3"));
+  // A gap in the middle is missing as well; half a second at the end is not.
+  FlightLog holed = own_log({0, 0, 0}, 39.6);
+  EXPECT_TRUE(review_flight(plan, holed, {}, ".").kept());
+  LogSeries& position = holed.series["position"];
+  LogSeries left{"", {}, {}};
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if (position.times[i] > 15 && position.times[i] < 25) continue;
+    left.times.push_back(position.times[i]);
+    for (std::size_t k = 0; k < 3; ++k) left.values.push_back(position.values[3 * i + k]);
+  }
+  position = left;
+  const FlightReview hole = review_flight(plan, holed, {}, ".");
+  EXPECT_FALSE(hole.kept());
+  EXPECT_NEAR(hole.share(), 0.74, 0.01);
 }
 
 TEST(Review, SpeedsAndFramingAreJudgedAsFlown) {
