@@ -159,7 +159,7 @@ void add_autopilot_command(CLI::App& app, Invocation& invocation, AutopilotReque
            });
   add_repeated(*autopilot, "--fault", "NAME=VALUE", asked.faults,
                "lost=SHARE, late=S, noise=SHARE, gap=S[@T], jump=S[@T], takeover=T, unwell=T, "
-               "refuse=arm|mode|fence, estimate=bad, battery=PERCENT, offset=M; repeatable; "
+               "refuse=arm|mode|fence|gimbal, estimate=bad, battery=PERCENT, offset=M; repeatable; "
                "default: none");
   add_seed(*autopilot, asked.options.seed, "seed of the faults; default: 1");
   autopilot->add_flag("--lockstep", asked.lockstep,

@@ -27,11 +27,11 @@
 namespace lapwing {
 namespace {
 
-constexpr std::uint8_t kOurSystem = 245;  // none that vehicles or ground stations begin with
 constexpr int kMostLogs = 999;
 constexpr double kBehind = 0.1;       // s: a period that is so late is not made up for
 constexpr double kTickTimeout = 1.0;  // s, for the first tick of a simulator in lockstep
 constexpr double kPatience = 20;      // s, for the next ones: it may be busy
+constexpr double kSlice = 0.1;        // s, after which Ctrl-C is looked for
 
 // A log that is not there yet.
 std::filesystem::path log_name(const FlyRequest& asked, const Plan& plan) {
@@ -56,6 +56,10 @@ std::filesystem::path log_name(const FlyRequest& asked, const Plan& plan) {
 // A real vehicle is flown on request alone.
 LinkAddress allowed_address(const FlyRequest& asked) {
   const LinkAddress address = link_address_from(asked.to);
+  if (asked.lockstep && (address.kind == LinkAddress::Kind::serial || !stays_here(address)))
+    throw InputError("--lockstep --to " + asked.to +
+                     ": lockstep is for `lapwing autopilot --lockstep` at an address of this "
+                     "machine, as udp:127.0.0.1:14540");
   if (asked.real || stays_here(address)) return address;
   throw InputError("--to " + asked.to +
                    ": this leaves the machine, and somebody's vehicle may answer; "
@@ -77,7 +81,7 @@ class LiveRun {
         invocation_(invocation),
         flight_(flight),
         session_(session),
-        wire_(link, kOurSystem, mavlink::kComputer),
+        wire_(link, mavlink::kOurSystem, mavlink::kComputer),
         keys_planned_(planned_keys_from(asked.press)),
         log_name_(std::move(log)),
         epoch_(microseconds_since_1970()),
@@ -86,11 +90,13 @@ class LiveRun {
     if (!keys_.there() && keys_planned_.empty()) session.nobody_resumes();
   }
 
-  void fly(const CancellationToken& token) {
+  // Ctrl-C is a key of the flight from now on: none ends the program under way.
+  void fly(const Interruption& interruption) {
+    interruption.only_count();
     if (asked_.lockstep)
-      fly_in_lockstep(token);
+      fly_in_lockstep(interruption);
     else
-      fly_in_real_time(token);
+      fly_in_real_time(interruption);
     progress_.clear();
   }
 
@@ -111,17 +117,14 @@ class LiveRun {
     wire_.begin_log(*log_, epoch_);
   }
 
-  void step(double now, const CancellationToken& token) {
-    press_keys(now, token);
+  void step(double now, const Interruption& interruption) {
+    press_keys(now, interruption);
     wire_.send(session_.step(now), now);
     tell();
   }
 
-  void press_keys(double now, const CancellationToken& token) {
-    if (token.cancelled() && !interrupted_) {
-      interrupted_ = true;
-      session_.press(FlightKey::abort);
-    }
+  void press_keys(double now, const Interruption& interruption) {
+    for (; interrupted_ < interruption.count(); ++interrupted_) session_.press(FlightKey::abort);
     while (const auto key = keys_.pressed()) session_.press(*key);
     if (!began_ && session_.phase() == FlightPhase::flying) began_ = now;
     while (began_ && next_key_ < keys_planned_.size() &&
@@ -150,13 +153,13 @@ class LiveRun {
     progress_.report(session_.plan_time() / duration, text);
   }
 
-  void fly_in_real_time(const CancellationToken& token) {
+  void fly_in_real_time(const Interruption& interruption) {
     const double begin = steady_seconds();
     double next = 0;
     while (session_.phase() != FlightPhase::ended) {
       double now = steady_seconds() - begin;
       if (now >= next) {
-        step(now, token);
+        step(now, interruption);
         next += FlightSession::kPeriod;
         if (now - next > kBehind) next = now;
         continue;
@@ -168,13 +171,18 @@ class LiveRun {
   }
 
   // Time is the simulator's, once it ticks.
-  void fly_in_lockstep(const CancellationToken& token) {
+  void fly_in_lockstep(const Interruption& interruption) {
     double now = 0;
     bool ticks = false, gone = false;
     while (session_.phase() != FlightPhase::ended) {
-      step(now, token);
+      step(now, interruption);
+      if (session_.phase() == FlightPhase::ended) break;
       if (!gone) wire_.send_tick(now);
-      const std::optional<double> later = gone ? std::nullopt : wait_for_tick(now, ticks);
+      const std::optional<double> later =
+          gone ? std::nullopt : wait_for_tick(now, ticks, interruption);
+      if (!ticks && !later && session_.report().found())
+        throw InputError("--lockstep: a vehicle answers at " + asked_.to +
+                         " but does not tick; lockstep is for `lapwing autopilot --lockstep`");
       gone = gone || (ticks && !later);
       ticks = ticks || later;
       now = later ? std::max(now, *later) : now + (ticks ? FlightSession::kPeriod : kTickTimeout);
@@ -182,14 +190,21 @@ class LiveRun {
     if (!gone) wire_.send_end();
   }
 
-  // What comes before a tick, and its time; nothing where the simulator has left or is silent.
-  std::optional<double> wait_for_tick(double now, bool ticks) {
-    for (;;) {
-      const Arrival arrival = wire_.receive(ticks ? kPatience : kTickTimeout, now);
+  // What comes before a tick, and its time; nothing where the simulator has left or does not tick
+  // in time, or in a second after Ctrl-C.
+  std::optional<double> wait_for_tick(double now, bool ticks, const Interruption& interruption) {
+    double deadline = steady_seconds() + (ticks ? kPatience : kTickTimeout);
+    bool hurries = false;
+    for (double left = deadline - steady_seconds(); left > 0; left = deadline - steady_seconds()) {
+      const Arrival arrival = wire_.receive(std::min(left, kSlice), now);
       take(arrival, arrival.tick ? *arrival.tick : now + FlightSession::kPeriod);
       if (arrival.tick) return arrival.tick;
-      if (arrival.end || !arrival.heard) return std::nullopt;
+      if (arrival.end) return std::nullopt;
+      if (hurries || interrupted_ == interruption.count()) continue;
+      hurries = true;
+      deadline = std::min(deadline, steady_seconds() + kTickTimeout);
     }
+    return std::nullopt;
   }
 
   const FlyRequest& asked_;
@@ -205,7 +220,7 @@ class LiveRun {
   std::uint64_t epoch_;
   std::optional<TelemetryLog> log_;
   ProgressLine progress_;
-  bool interrupted_ = false;
+  int interrupted_ = 0;  // Ctrl-C, as far as the session knows
 };
 
 void print_flight(const FlightSession& session, const LiveFlight& flight, double tolerance,
@@ -275,7 +290,7 @@ ExitStatus fly_plan(const FlyRequest& asked, const Invocation& invocation) {
     std::cerr << "lapwing: places are sent as " << session.frame().in_words() << std::endl;
   }
   LiveRun run(asked, invocation, flight, session, *link, log);
-  run.fly(interruption.token());
+  run.fly(interruption);
   const double tolerance = asked.tolerance.value_or(tolerances::kTracking);
   Value summary = flight_summary(session, flight, tolerance, run.counts());
   if (!run.log_file().empty()) summary.set("log", run.log_file().string());
@@ -296,7 +311,7 @@ void add_flight_limits(CLI::App& fly, FlyRequest& asked) {
     });
   };
   number("--start-tolerance", "M",
-         "distance from the plan's start from which it begins; default: 1", 100,
+         "distance from the plan's start from which it begins, at most 5; default: 1", 5,
          &SessionOptions::start_tolerance);
   number("--stray", "M", "distance from what was sent that ends the flight; default: 1", 1000,
          &SessionOptions::stray);

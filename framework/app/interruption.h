@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C: the first asks the work to end with the best so far, the second ends the program.
+// Ctrl-C: the first asks the work to end with the best so far, the second ends the program, unless
+// the work wants to be told of each.
 #pragma once
 
 #include "framework/core/progress.h"
@@ -16,6 +17,9 @@ class Interruption {
   Interruption& operator=(const Interruption&) = delete;
 
   const CancellationToken& token() const;
+  // From now on, while this lives, no signal ends the process: whoever works counts them.
+  void only_count() const;
+  int count() const;
 };
 
 }  // namespace lapwing

@@ -34,6 +34,13 @@ Message<kMissionItemInt> fence_item(std::uint16_t command, float param,
   return item;
 }
 
+template <class Message>
+bool is_for_us(const Message& message) {
+  const std::uint8_t component = message.template get<"target_component">();
+  return message.template get<"target_system">() == kOurSystem &&
+         (component == kComputer || component == 0);
+}
+
 }  // namespace
 
 std::string mission_result_in_words(int result) {
@@ -83,9 +90,9 @@ void FenceUpload::receive(const Packet& packet, double now) {
   if (state_ != State::waiting) return;
   if (packet.message == kMissionAck) {
     const Message<kMissionAck> ack(packet);
-    if (ack.get<"mission_type">() != kFenceMission) return;
+    if (ack.get<"mission_type">() != kFenceMission || !is_for_us(ack)) return;
     if (ack.get<"type">() == kMissionAccepted)
-      state_ = State::done;
+      state_ = served_ ? State::done : state_;
     else
       fail("the vehicle refuses the fence: " + mission_result_in_words(ack.get<"type">()));
     return;
@@ -94,7 +101,7 @@ void FenceUpload::receive(const Packet& packet, double now) {
   if (!asks) return;
   // Both messages have the same fields.
   const Message<kMissionRequestInt> request(packet);
-  if (request.get<"mission_type">() != kFenceMission) return;
+  if (request.get<"mission_type">() != kFenceMission || !is_for_us(request)) return;
   if (request.get<"seq">() >= items_.size())
     return fail("the vehicle asks for item " + std::to_string(request.get<"seq">()) +
                 " of a fence of " + std::to_string(items_.size()));
@@ -111,6 +118,7 @@ std::vector<Packet> FenceUpload::step(double now, std::uint8_t system, std::uint
     Item item = items_[sequence];
     item.set<"seq">(sequence).set<"target_system">(system).set<"target_component">(component);
     packets.push_back(item.packet());
+    served_ = served_ || sequence + 1u == items_.size();
   }
   const bool answered = !requested_.empty();
   requested_.clear();

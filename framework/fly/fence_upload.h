@@ -22,7 +22,8 @@ class FenceUpload {
 
   // The packets to send now; retries after 1.5 s, at most five times.
   std::vector<mavlink::Packet> step(double now, std::uint8_t system, std::uint8_t component);
-  // The answer to a request is kept for the next step.
+  // The answer to a request is kept for the next step. What is addressed to others is left out, and
+  // an acceptance before the last item was sent: it belongs to somebody else's fence.
   void receive(const mavlink::Packet& packet, double now);
 
   State state() const { return state_; }
@@ -38,6 +39,7 @@ class FenceUpload {
   State state_ = State::idle;
   std::string problem_;
   std::vector<std::uint16_t> requested_;
+  bool served_ = false;   // the last item has been sent
   bool counted_ = false;  // a request came: the vehicle knows the count
   double asked_at_ = 0;   // s
   int asked_ = 0;

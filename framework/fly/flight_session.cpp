@@ -151,6 +151,8 @@ void FlightSession::receive(const Packet& packet, double now) {
       mode_refused_ = result;
   }
   if (fence_) fence_->receive(packet, now);
+  gimbal_.receive(packet, report_);
+  if (std::string said = gimbal_.take_said(); !said.empty()) say(std::move(said));
   for (std::string& text : report_.texts) say("vehicle: " + text);
   report_.texts.clear();
 }

@@ -15,8 +15,14 @@ using namespace mavlink;
 namespace {
 
 constexpr double kCommandEvery = 0.2;  // s
+constexpr double kControlEvery = 1;    // s, for control of the gimbal
 
 constexpr std::uint32_t kLocks = kRollLock | kPitchLock | kYawLock;
+
+// The component that manages the gimbal.
+std::uint8_t manager_of(const VehicleReport& report) {
+  return report.gimbal_device ? report.gimbal_component : report.component;
+}
 
 float single(double number) {
   return static_cast<float>(number);
@@ -37,7 +43,7 @@ void set_attitude(Message<kGimbalManagerSetAttitude>& message, double yaw, doubl
 Packet attitude_packet(const Setpoint& setpoint, const VehicleReport& report) {
   Message<kGimbalManagerSetAttitude> message;
   message.set<"target_system">(report.system)
-      .set<"target_component">(report.gimbal_device ? report.gimbal_component : report.component)
+      .set<"target_component">(manager_of(report))
       .set<"flags">(kLocks)
       .set<"gimbal_device_id">(report.gimbal_device.value_or(0));
   set_attitude(message, turned_yaw(setpoint.yaw + setpoint.gimbal_yaw), setpoint.gimbal_pitch);
@@ -48,7 +54,7 @@ Packet command_packet(const Setpoint& setpoint, const VehicleReport& report) {
   const float unset = std::numeric_limits<float>::quiet_NaN();
   return Message<kCommandLong>()
       .set<"target_system">(report.system)
-      .set<"target_component">(report.component)
+      .set<"target_component">(manager_of(report))
       .set<"command">(kGimbalPitchYaw)
       .set<"param1">(single(degrees(setpoint.gimbal_pitch)))
       .set<"param2">(single(degrees(turned_yaw(setpoint.yaw + setpoint.gimbal_yaw))))
@@ -62,7 +68,7 @@ Packet command_packet(const Setpoint& setpoint, const VehicleReport& report) {
 Packet owner_packet(const VehicleReport& report) {
   return Message<kCommandLong>()
       .set<"target_system">(report.system)
-      .set<"target_component">(report.component)
+      .set<"target_component">(manager_of(report))
       .set<"command">(kGimbalConfigure)
       .set<"param1">(-2)  // the sender of this command
       .set<"param2">(-2)
@@ -104,16 +110,38 @@ GimbalStream::GimbalStream(GimbalWay way, const Plan& plan, const FlightFrame& f
   if (!plan.trajectory.has_gimbal && way != GimbalWay::target) way_ = GimbalWay::none;
 }
 
+GimbalWay GimbalStream::way_now(const VehicleReport& report) const {
+  if (way_ != GimbalWay::automatic) return way_;
+  return report.gimbal_device ? GimbalWay::manager : GimbalWay::command;
+}
+
+void GimbalStream::receive(const Packet& packet, const VehicleReport& report) {
+  if (packet.message != kCommandAck || packet.component != manager_of(report) || answered_) return;
+  const Message<kCommandAck> ack(packet);
+  const std::uint8_t target = ack.get<"target_system">();
+  if (ack.get<"command">() != kGimbalConfigure || (target != 0 && target != kOurSystem)) return;
+  const int result = ack.get<"result">();
+  if (result == kInProgress || result == kTemporarilyRejected) return;
+  answered_ = true;
+  if (result != kAccepted)
+    said_ = "the vehicle's gimbal does not listen to us (MAV_RESULT " + std::to_string(result) +
+            "): the camera may look elsewhere";
+}
+
+std::string GimbalStream::take_said() {
+  std::string said;
+  said.swap(said_);
+  return said;
+}
+
 std::vector<Packet> GimbalStream::step(double now, const Setpoint& setpoint,
                                        const VehicleReport& report, const FlightFrame& frame) {
   std::vector<Packet> packets;
-  GimbalWay way = way_;
-  if (way == GimbalWay::automatic)
-    way = report.gimbal_device ? GimbalWay::manager : GimbalWay::command;
+  const GimbalWay way = way_now(report);
   if (way == GimbalWay::none) return packets;
-  if (!owned_ && way != GimbalWay::target) {
+  if (!answered_ && way != GimbalWay::target && now - asked_at_ >= kControlEvery) {
     packets.push_back(owner_packet(report));
-    owned_ = true;
+    asked_at_ = now;
   }
   if (way == GimbalWay::manager) {
     packets.push_back(attitude_packet(setpoint, report));

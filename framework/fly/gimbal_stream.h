@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,15 +28,25 @@ class GimbalStream {
   // earth.
   GimbalStream(GimbalWay way, const Plan& plan, const FlightFrame& frame);
 
-  // What is to be sent with this setpoint. Angles are those of the earth: yaw from north,
-  // clockwise, pitch positive up, roll level.
+  // The answer to the request for control of the gimbal, from its manager.
+  void receive(const mavlink::Packet& packet, const VehicleReport& report);
+  // A sentence for the user, once: the gimbal is not ours. Else "".
+  std::string take_said();
+
+  // What is to be sent with this setpoint. Control of the gimbal
+  // (MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE, 1001) is asked for every second until its manager
+  // answers. Angles are those of the earth: yaw from north, clockwise, pitch positive up, roll
+  // level.
   std::vector<mavlink::Packet> step(double now, const Setpoint& setpoint,
                                     const VehicleReport& report, const FlightFrame& frame);
 
  private:
+  GimbalWay way_now(const VehicleReport& report) const;
+
   GimbalWay way_;
-  bool owned_ = false;
-  double sent_at_ = -1e9;  // s
+  bool answered_ = false;
+  std::string said_;
+  double sent_at_ = -1e9, asked_at_ = -1e9;  // s
 };
 
 }  // namespace lapwing

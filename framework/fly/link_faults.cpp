@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kFaultForms =
     "expected lost=SHARE, late=S, noise=SHARE, gap=S[@T], jump=S[@T], takeover=T, unwell=T, "
-    "refuse=arm|mode|fence, estimate=bad, battery=PERCENT or offset=M";
+    "refuse=arm|mode|fence|gimbal, estimate=bad, battery=PERCENT or offset=M";
 
 [[noreturn]] void refuse_fault(const std::string& text) {
   throw InputError("--fault '" + text + "': " + kFaultForms);
@@ -65,6 +65,8 @@ void add_fault(const std::string& text, SimulatedFaults& faults) {
     faults.refuse_mode = true;
   else if (text == "refuse=fence")
     faults.refuse_fence = true;
+  else if (text == "refuse=gimbal")
+    faults.refuse_gimbal = true;
   else if (text == "estimate=bad")
     faults.lose_estimate = true;
   else

@@ -20,7 +20,7 @@ struct SimulatedFaults {
   double jump = 0, jump_at = 3;  // s, that the vehicle's clock jumps by
   std::optional<double> takeover_at;  // the pilot switches to POSITION
   std::optional<double> unwell_at;    // the estimate is not valid any more
-  bool refuse_arming = false, refuse_mode = false, refuse_fence = false;
+  bool refuse_arming = false, refuse_mode = false, refuse_fence = false, refuse_gimbal = false;
   bool lose_estimate = false;  // it is not valid from the start
   int battery = 95;            // percent at the start
   double offset = 0;           // m east of the plan's start, where the vehicle stands

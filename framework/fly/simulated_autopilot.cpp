@@ -26,6 +26,7 @@ constexpr double kSink = 0.7;                         // m/s, landing
 constexpr double kAskAgain = 0.5;                     // s, for an item of the fence
 constexpr double kQuiet = 2;  // s without a packet: nobody is there any more
 constexpr double kE7 = 1e7;
+constexpr double kGroundAboveSea = 400;  // m, of an origin that does not tell it
 
 Plan with_some_origin(const Plan& plan) {
   Plan placed;
@@ -60,15 +61,24 @@ Vector3d tilt_of(const Eigen::Quaterniond& q) {
   return {roll, pitch, turned_yaw(std::atan2(r(1, 0), r(0, 0)))};
 }
 
+// What the mask leaves out is zero; the yaw is then `yaw`. Nothing where places are left out, or
+// accelerations are forces: this vehicle follows places.
 template <class Target>
-Setpoint setpoint_of(const Target& target) {
+std::optional<Setpoint> setpoint_of(const Target& target, double yaw) {
+  const std::uint16_t mask = target.template get<"type_mask">();
+  if (mask & (kIgnorePosition | kForceSet)) return std::nullopt;
+  const auto kept = [mask](std::uint16_t ignored, const Vector3d& v) -> Vector3d {
+    return mask & ignored ? Vector3d::Zero() : v;
+  };
   Setpoint setpoint;
-  setpoint.velocity = east_north_up(target.template get<"vx">(), target.template get<"vy">(),
-                                    target.template get<"vz">());
-  setpoint.acceleration = east_north_up(target.template get<"afx">(), target.template get<"afy">(),
-                                        target.template get<"afz">());
-  setpoint.yaw = turned_yaw(target.template get<"yaw">());
-  setpoint.yaw_rate = -target.template get<"yaw_rate">();
+  setpoint.velocity =
+      kept(kIgnoreVelocity, east_north_up(target.template get<"vx">(), target.template get<"vy">(),
+                                          target.template get<"vz">()));
+  setpoint.acceleration = kept(
+      kIgnoreAcceleration, east_north_up(target.template get<"afx">(), target.template get<"afy">(),
+                                         target.template get<"afz">()));
+  setpoint.yaw = mask & kIgnoreYaw ? yaw : turned_yaw(target.template get<"yaw">());
+  setpoint.yaw_rate = mask & kIgnoreYawRate ? 0 : -target.template get<"yaw_rate">();
   return setpoint;
 }
 
@@ -153,24 +163,41 @@ void SimulatedAutopilot::take_setpoint(const Setpoint& setpoint, double stamp, d
 
 void SimulatedAutopilot::take_local(const Packet& packet, double now) {
   const Message<kLocalTarget> target(packet);
-  Setpoint setpoint = setpoint_of(target);
-  setpoint.position = east_north_up(target.get<"x">(), target.get<"y">(), target.get<"z">());
-  take_setpoint(setpoint, target.get<"time_boot_ms">() * 1e-3, now);
+  auto setpoint = setpoint_of(target, body_.setpoint().yaw);
+  if (!setpoint || target.get<"coordinate_frame">() != kFrameLocalNed) {
+    ++refused_setpoints_;
+    return;
+  }
+  setpoint->position = east_north_up(target.get<"x">(), target.get<"y">(), target.get<"z">());
+  take_setpoint(*setpoint, target.get<"time_boot_ms">() * 1e-3, now);
 }
 
 void SimulatedAutopilot::take_global(const Packet& packet, double now) {
   const Message<kGlobalTarget> target(packet);
-  Setpoint setpoint = setpoint_of(target);
-  const bool relative = target.get<"coordinate_frame">() == kFrameRelativeInt;
+  auto setpoint = setpoint_of(target, body_.setpoint().yaw);
+  const std::uint8_t frame = target.get<"coordinate_frame">();
+  const bool relative = frame == kFrameRelativeInt || frame == kFrameRelative;
+  if (!setpoint || !(relative || frame == kFrameGlobalInt || frame == kFrameGlobal)) {
+    ++refused_setpoints_;
+    return;
+  }
+  // Heights of an origin above the ground are those above home.
   const bool ground = earth_.heights() == HeightOf::ground;
-  const double height = target.get<"alt">() + (relative && !ground ? home_z_ : 0);
-  setpoint.position =
+  const double height = target.get<"alt">() +
+                        (relative && !ground ? earth_.at(Vector3d::Zero()).height : 0) -
+                        (ground && !relative ? kGroundAboveSea : 0);
+  setpoint->position =
       earth_.local({target.get<"lat_int">() / kE7, target.get<"lon_int">() / kE7, height});
-  take_setpoint(setpoint, target.get<"time_boot_ms">() * 1e-3, now);
+  take_setpoint(*setpoint, target.get<"time_boot_ms">() * 1e-3, now);
 }
 
 void SimulatedAutopilot::acknowledge(std::uint16_t command, std::uint8_t result) {
-  answers_.push_back(Message<kCommandAck>().set<"command">(command).set<"result">(result).packet());
+  answers_.push_back(Message<kCommandAck>()
+                         .set<"command">(command)
+                         .set<"result">(result)
+                         .set<"target_system">(sender_)
+                         .set<"target_component">(sender_component_)
+                         .packet());
 }
 
 std::uint8_t SimulatedAutopilot::answer_mode(const std::array<double, 3>& params, double now) {
@@ -235,10 +262,8 @@ void SimulatedAutopilot::take_command(std::uint16_t command, const std::array<do
     case kSetMessageInterval:
       return acknowledge(command, kAccepted);
     case kGimbalPitchYaw:
-      ++gimbal_messages_;
-      gimbal_pitch_deg_ = params[0];
-      return acknowledge(command, kAccepted);
     case kGimbalConfigure:
+      return acknowledge(command, answer_gimbal(command, params));
     case kDoSetRoiLocation:
       return acknowledge(command, kAccepted);
     default:
@@ -246,10 +271,35 @@ void SimulatedAutopilot::take_command(std::uint16_t command, const std::array<do
   }
 }
 
+// Only whoever has asked for control (-2 in the first place: whoever asks) turns the gimbal.
+std::uint8_t SimulatedAutopilot::answer_gimbal(std::uint16_t command,
+                                               const std::array<double, 3>& params) {
+  if (options_.faults.refuse_gimbal) return kDenied;
+  if (command == kGimbalConfigure) {
+    ++gimbal_asked_;
+    gimbal_owned_ = gimbal_owned_ || params[0] == -2;
+    return kAccepted;
+  }
+  if (!gimbal_owned_) return kDenied;
+  turn_gimbal(params[0], params[1]);
+  return kAccepted;
+}
+
+void SimulatedAutopilot::turn_gimbal(double pitch_deg, double yaw_deg) {
+  if (!gimbal_owned_) return;
+  ++gimbal_messages_;
+  gimbal_pitch_deg_ = pitch_deg;
+  gimbal_yaw_deg_ = yaw_deg;
+}
+
 void SimulatedAutopilot::acknowledge_mission(std::uint8_t result) {
   fence_open_ = false;
-  answers_.push_back(
-      Message<kMissionAck>().set<"type">(result).set<"mission_type">(kFenceMission).packet());
+  answers_.push_back(Message<kMissionAck>()
+                         .set<"target_system">(sender_)
+                         .set<"target_component">(sender_component_)
+                         .set<"type">(result)
+                         .set<"mission_type">(kFenceMission)
+                         .packet());
 }
 
 // Polygons are runs of items that state how many corners theirs has.
@@ -291,6 +341,7 @@ void SimulatedAutopilot::take_mission(const Packet& packet, double now) {
     if (options_.faults.refuse_fence) return acknowledge_mission(kMissionDenied);
     fence_count_ = count.get<"count">();
     fence_next_ = 0;
+    fence_sender_ = sender_, fence_component_ = sender_component_;
     fence_items_.clear();
     fence_open_ = true;
     fence_asked_ = -1e9;
@@ -305,8 +356,41 @@ void SimulatedAutopilot::take_mission(const Packet& packet, double now) {
   if (fence_next_ == fence_count_) finish_fence();
 }
 
+// Packets for all are for us; those for others are left out.
+bool SimulatedAutopilot::is_for_us(const Packet& packet) const {
+  const auto named = [](const auto& message) {
+    const std::uint8_t target = message.template get<"target_system">();
+    return target == kSystem || target == 0;
+  };
+  switch (packet.message) {
+    case kLocalTarget:
+      return named(Message<kLocalTarget>(packet));
+    case kGlobalTarget:
+      return named(Message<kGlobalTarget>(packet));
+    case kMissionCount:
+      return named(Message<kMissionCount>(packet));
+    case kMissionItemInt:
+      return named(Message<kMissionItemInt>(packet));
+    case kCommandLong:
+      return named(Message<kCommandLong>(packet));
+    case kCommandInt:
+      return named(Message<kCommandInt>(packet));
+    case kGimbalManagerSetAttitude:
+      return named(Message<kGimbalManagerSetAttitude>(packet));
+    case kTimesync:
+      return named(Message<kTimesync>(packet));
+    default:
+      return true;
+  }
+}
+
 void SimulatedAutopilot::take(const Packet& packet, double now) {
   heard_at_ = now;
+  if (!is_for_us(packet)) {
+    ++for_others_;
+    return;
+  }
+  sender_ = packet.system, sender_component_ = packet.component;
   switch (packet.message) {
     case kLocalTarget:
       return take_local(packet, now);
@@ -327,10 +411,9 @@ void SimulatedAutopilot::take(const Packet& packet, double now) {
     }
     case kGimbalManagerSetAttitude: {
       const Message<kGimbalManagerSetAttitude> m(packet);
-      ++gimbal_messages_;
       const double w = m.get<"q">(0), x = m.get<"q">(1), y = m.get<"q">(2), z = m.get<"q">(3);
-      gimbal_pitch_deg_ = degrees(std::asin(std::clamp(2 * (w * y - z * x), -1.0, 1.0)));
-      return;
+      return turn_gimbal(degrees(std::asin(std::clamp(2 * (w * y - z * x), -1.0, 1.0))),
+                         degrees(std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))));
     }
     case kTimesync: {
       const Message<kTimesync> m(packet);
@@ -429,7 +512,6 @@ void SimulatedAutopilot::telemetry(double now, Packets& packets) {
   const EarthPoint point = earth_.at(p);
   const double home = earth_.at(Vector3d::Zero()).height;
   const bool ground = earth_.heights() == HeightOf::ground;
-  constexpr double kGroundAboveSea = 400;  // m, of an origin that does not tell it
   const auto single = [](double number) { return static_cast<float>(number); };
   packets.push_back(Message<kLocalPosition>()
                         .set<"time_boot_ms">(ms)
@@ -483,8 +565,8 @@ void SimulatedAutopilot::slow_telemetry(double now, Packets& packets) {
   const double used = armed_at_ ? 100 * (now - *armed_at_) / flight_.vehicle.flight_time : 0;
   packets.push_back(
       Message<kSysStatus>()
-          .set<"onboard_control_sensors_enabled">(kAttitudeSystem)
-          .set<"onboard_control_sensors_health">(bad ? 0 : kAttitudeSystem)
+          .set<"onboard_control_sensors_enabled">(kAttitudeSystem | kGpsSensor)
+          .set<"onboard_control_sensors_health">(bad ? 0 : kAttitudeSystem | kGpsSensor)
           .set<"battery_remaining">(static_cast<std::int8_t>(std::max(0.0, faults.battery - used)))
           .packet());
   packets.push_back(
@@ -502,6 +584,8 @@ std::vector<std::string> SimulatedAutopilot::step(double now) {
   if (fence_open_ && now - fence_asked_ > kAskAgain) {
     fence_asked_ = now;
     packets.push_back(Message<kMissionRequestInt>()
+                          .set<"target_system">(fence_sender_)
+                          .set<"target_component">(fence_component_)
                           .set<"seq">(static_cast<std::uint16_t>(fence_next_))
                           .set<"mission_type">(kFenceMission)
                           .packet());
@@ -533,6 +617,10 @@ Value SimulatedAutopilot::to_value() const {
   value.set("fence_breaches", static_cast<std::int64_t>(breaches_));
   value.set("gimbal_messages", gimbal_messages_);
   value.set("gimbal_pitch_deg", gimbal_pitch_deg_);
+  value.set("gimbal_yaw_deg", gimbal_yaw_deg_);
+  value.set("gimbal_asked", gimbal_asked_);
+  value.set("refused_setpoints", refused_setpoints_);
+  value.set("packets_for_others", for_others_);
   value.set("lost_packets", static_cast<std::int64_t>(parser_.counts().lost));
   value.set("damaged_packets", static_cast<std::int64_t>(parser_.counts().bad_checksums));
   Value& place = value.set("position", Value::list());

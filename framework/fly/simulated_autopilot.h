@@ -6,7 +6,9 @@
 // It stands, disarmed, where the plan begins. Its pilot, where there is one, arms 1 s after
 // setpoints come, and switches the mode 1 s later. Armed, it hovers. In OFFBOARD or GUIDED it
 // follows the setpoints. 0.5 s without one: it brakes and holds; 10 s later it lands. It never lets
-// itself be armed by a command.
+// itself be armed by a command. It leaves out packets for other systems, refuses setpoints without
+// a place or in a frame that it does not know, takes what their mask leaves out for zero, and turns
+// its gimbal for nobody who has not asked for control of it.
 #pragma once
 
 #include <map>
@@ -65,10 +67,13 @@ class SimulatedAutopilot {
   double following_for(double now) const { return followed_at_ ? now - *followed_at_ : -1; }
   bool link_open(double now) const;
   void take(const mavlink::Packet& packet, double now);
+  bool is_for_us(const mavlink::Packet& packet) const;
   void take_setpoint(const Setpoint& setpoint, double stamp, double now);
   void take_global(const mavlink::Packet& packet, double now);
   void take_local(const mavlink::Packet& packet, double now);
   void take_command(std::uint16_t command, const std::array<double, 3>& params, double now);
+  void turn_gimbal(double pitch_deg, double yaw_deg);
+  std::uint8_t answer_gimbal(std::uint16_t command, const std::array<double, 3>& params);
   void take_mission(const mavlink::Packet& packet, double now);
   std::uint8_t answer_mode(const std::array<double, 3>& params, double now);
   void acknowledge(std::uint16_t command, std::uint8_t result);
@@ -104,10 +109,14 @@ class SimulatedAutopilot {
   std::optional<double> followed_at_, armed_at_;
   Setpoint reference_;  // of the modes that it flies itself
   double reference_speed_ = 0;
-  int arm_requests_ = 0, gimbal_messages_ = 0;
-  double home_z_ = 0, gimbal_pitch_deg_ = 0;
+  int arm_requests_ = 0, gimbal_messages_ = 0, refused_setpoints_ = 0, for_others_ = 0;
+  bool gimbal_owned_ = false;  // somebody asked for control of it
+  int gimbal_asked_ = 0;
+  double gimbal_pitch_deg_ = 0, gimbal_yaw_deg_ = 0;  // yaw: from north, clockwise
+  std::uint8_t sender_ = 0, sender_component_ = 0;    // of the last packet
   std::size_t fence_count_ = 0, fence_next_ = 0;
   double fence_asked_ = -1e9;
+  std::uint8_t fence_sender_ = 0, fence_component_ = 0;
   bool fence_open_ = false;
   std::vector<mavlink::Message<mavlink::kMissionItemInt>> fence_items_;
   std::vector<MissionFence> fence_;

@@ -20,6 +20,8 @@ inline constexpr std::uint8_t kArmed = 128, kCustomMode = 1;
 inline constexpr std::uint8_t kStandby = 3, kActive = 4, kCritical = 5;
 // MAV_COMPONENT
 inline constexpr std::uint8_t kAutopilotComponent = 1, kComputer = 191;
+// Of our own: a number that neither vehicles nor ground stations begin with.
+inline constexpr std::uint8_t kOurSystem = 245;
 // MAV_RESULT
 inline constexpr std::uint8_t kAccepted = 0, kTemporarilyRejected = 1, kDenied = 2,
                               kUnsupported = 3, kFailed = 4, kInProgress = 5;
@@ -29,8 +31,8 @@ inline constexpr std::uint8_t kMissionAccepted = 0, kMissionError = 1, kMissionU
                               kMissionNoSpace = 4, kMissionSequence = 13, kMissionDenied = 14,
                               kMissionCancelled = 15;
 // MAV_FRAME
-inline constexpr std::uint8_t kFrameGlobal = 0, kFrameLocalNed = 1, kFrameGlobalInt = 5,
-                              kFrameRelativeInt = 6;
+inline constexpr std::uint8_t kFrameGlobal = 0, kFrameLocalNed = 1, kFrameRelative = 3,
+                              kFrameGlobalInt = 5, kFrameRelativeInt = 6;
 // MAV_CMD
 inline constexpr std::uint16_t kDoSetMode = 176, kDoSetRoiLocation = 195, kDoSetRoiNone = 197,
                                kComponentArmDisarm = 400, kSetMessageInterval = 511,
@@ -53,7 +55,9 @@ inline constexpr std::uint32_t kGpsSensor = 1u << 5, kFlowSensor = 1u << 6, kVis
 // GIMBAL_MANAGER_FLAGS
 inline constexpr std::uint32_t kRollLock = 4, kPitchLock = 8, kYawLock = 16;
 // POSITION_TARGET_TYPEMASK
-inline constexpr std::uint16_t kIgnoreAcceleration = 64 | 128 | 256, kIgnoreYawRate = 2048;
+inline constexpr std::uint16_t kIgnorePosition = 1 | 2 | 4, kIgnoreVelocity = 8 | 16 | 32,
+                               kIgnoreAcceleration = 64 | 128 | 256, kForceSet = 512,
+                               kIgnoreYaw = 1024, kIgnoreYawRate = 2048;
 
 // custom_mode of PX4: the main mode in byte 2, the part of `auto` in byte 3.
 constexpr std::uint32_t px4_mode(std::uint32_t main, std::uint32_t part = 0) {

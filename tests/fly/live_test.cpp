@@ -336,6 +336,52 @@ TEST_F(Live, ListensToKeysAndToCtrlC) {
   end_autopilot();
 }
 
+// Two at once: the session ends the flight, and the summary is written.
+TEST_F(Live, EndsThroughTheSessionAtASecondCtrlC) {
+  const std::string plan = film();
+  begin_autopilot(plan, {"--pilot", "fly"});
+  const pid_t child =
+      start({"fly", plan, "--to", to_, "--frame", "local", "--hold", "600", "--json"}, "fly");
+  const auto says = [&](const std::string& part) {
+    const fs::path file = folder_ / "fly.err";
+    for (int i = 0; i < 3000; ++i) {
+      if (fs::exists(file) && read_file(file).find(part) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  };
+  ASSERT_TRUE(says("lapwing: flying"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+  ::kill(child, SIGINT);
+  ASSERT_TRUE(says("aborted by the user"));
+  const Ended ended = finish(child, "fly", SIGINT);
+  EXPECT_EQ(ended.status, 130) << ended.err;
+  const Value summary = from_json(ended.out, "fly");
+  EXPECT_EQ(summary.at("end").as_text(), "aborted");
+  const std::string log = summary.at("log").as_text();
+  EXPECT_TRUE(fs::exists(folder_ / (log.substr(0, log.size() - 5) + ".json"))) << log;
+  end_autopilot();
+}
+
+TEST_F(Live, LockstepIsForSimulatorsThatTick) {
+  const std::string plan = film();
+  const auto lockstep = [&](const std::string& to) {
+    return Words{"fly", plan, "--frame", "local", "--lockstep", "--to", to, "--yes-a-real-vehicle"};
+  };
+  expect_refused(run(lockstep("udp:192.0.2.7:14540")), "lockstep is for `lapwing autopilot");
+  expect_refused(run(lockstep("serial:/dev/ttyACM0:57600")), "lockstep is for `lapwing autopilot");
+  begin_autopilot(plan, {"--pilot", "fly"});
+  expect_refused(run(lockstep(to_)), "a vehicle answers at " + to_ + " but does not tick");
+  finish(autopilot_, "autopilot", SIGTERM);
+  autopilot_ = 0;
+  // Nobody is there; Ctrl-C is heard.
+  Words waiting = lockstep("udp:127.0.0.1:9");
+  waiting.insert(waiting.end(), {"--answer", "80000"});
+  const pid_t child = start(waiting, "fly");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_EQ(finish(child, "fly", SIGINT).status, 130);
+}
+
 TEST_F(Live, BadInputIsToldInOneMessage) {
   const std::string plan = film();
   const Words local = {"fly", plan, "--frame", "local", "--to"};

@@ -89,6 +89,9 @@ TEST(Session, TurnsTheGimbal) {
     const Value seen = rehearsal.autopilot().to_value();
     EXPECT_GT(seen.at("gimbal_messages").as_integer(), way == GimbalWay::command ? 70 : 700);
     EXPECT_NEAR(seen.at("gimbal_pitch_deg").as_number(), degrees(-0.4), 0.01);
+    // The camera looks ahead, west, at the end of the plan.
+    EXPECT_NEAR(seen.at("gimbal_yaw_deg").as_number(), -90, 0.1);
+    EXPECT_EQ(seen.at("gimbal_asked").as_integer(), 1) << "it answers";
   }
   SessionOptions none;
   none.gimbal = GimbalWay::none;

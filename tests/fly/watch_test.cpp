@@ -240,7 +240,7 @@ TEST(Settling, IsRefusedFromOutsideOfTheFlightZoneAndNearASubject) {
   plan.environment.obstacles[0].side = Side::keep_inside;
   Rehearsal outside(plan, options, session);
   outside.run();
-  EXPECT_THAT(outside.session().reason(), HasSubstr("is blocked: inside of sphere 'tree' is at -0.5 m"));
+  EXPECT_THAT(outside.session().reason(), HasSubstr("inside of sphere 'tree' is at -0.5 m"));
   plan = circle_plan();
   Subject walker;
   walker.name = "walker";
