@@ -32,7 +32,8 @@ TEST_F(CommandLine, ASolverWithoutMemoryIsNoBadFlight) {
     GTEST_SKIP() << "sanitizers reserve more address space than any limit gives";
   write("course.lua",
         "return require 'mission.race'.course { start = {-5, 0, 2}, finish = {12, 6, 2}, "
-        "refinements = 0, closed_loop = 'reported', solver = 'ipopt', gates = { { shape = 'ball', position = {0, 0, "
+        "refinements = 0, closed_loop = 'reported', solver = 'ipopt', "
+        "gates = { { shape = 'ball', position = {0, 0, "
         "2}, radius = 1 }, { shape = 'ball', position = {8, 5, 3}, radius = 1 } } }");
   int refused = 0;
   for (int megabytes = 122; megabytes <= 162; megabytes += 4) {

@@ -261,7 +261,7 @@ then(() => drag(false)).then(() => then(() => drag(true)))
   EXPECT_EQ(views[4], views[0]) << "Home resets";
 }
 
-// Bounds of a path below 1 m once asked for text with no digits, and no chart of the page was drawn.
+// Bounds of a path below 1 m once asked for text without digits, and the page drew no chart.
 TEST_F(ReportInBrowser, PathsNearTheOriginAreDrawn) {
   Plan plan = synthetic_flight(20, 101, 5);
   for (Sample& s : plan.trajectory.samples) s.position *= 0.01;
