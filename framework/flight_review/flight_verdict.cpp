@@ -10,8 +10,8 @@
 namespace lapwing {
 namespace {
 
-constexpr double kLongGap = 2;      // s between positions, above which the part is missing
-constexpr double kMissing = 1;      // s, that may be missing,
+constexpr double kLongGap = 2;          // s between positions, above which the part is missing
+constexpr double kMissing = 1;          // s, that may be missing,
 constexpr double kMissingShare = 0.01;  // or this share of the plan
 
 bool judges_a_place(const std::string& check) {
@@ -97,9 +97,9 @@ void find_missing(const Plan& plan, const FlownSeries& series, FlightReview& rev
 }  // namespace
 
 bool FlightReview::broke() const {
-  return std::any_of(
-      certificate.checks.begin(), certificate.checks.end(),
-      [](const FlownCheck& c) { return c.flown.required && !c.flown.pass && c.planned_pass; });
+  return std::any_of(certificate.checks.begin(), certificate.checks.end(), [](const FlownCheck& c) {
+    return c.flown.required && !c.flown.pass && c.planned_pass;
+  });
 }
 
 double FlightReview::share() const {
