@@ -7,7 +7,7 @@ namespace lapwing {
 namespace {
 
 void add_log(CLI::App& command, FlightLogRequest& asked) {
-  add_text(command, "log", "LOG", "a recorded flight: .ulg, .bin, .csv, .gpx, .mcap",
+  add_text(command, "log", "LOG", "a recorded flight: .ulg, .bin, .tlog, .csv, .gpx, .mcap",
            [&](const std::string& path) { asked.log = path; })
       ->required();
   add_text(command, "--format", "NAME[:KEY=VALUE,...]",

@@ -221,17 +221,19 @@ std::uint8_t SimulatedAutopilot::answer_mode(const std::array<double, 3>& params
 void SimulatedAutopilot::send_requested(std::uint32_t message) {
   const GeodeticPoint origin = earth_.origin().point();
   const EarthPoint home = earth_.at(Vector3d::Zero());
+  const double above_sea =
+      home.height + (earth_.heights() == HeightOf::ground ? kGroundAboveSea : 0);
   if (message == kHomePosition)
     answers_.push_back(Message<kHomePosition>()
                            .set<"latitude">(e7(home.latitude_deg))
                            .set<"longitude">(e7(home.longitude_deg))
-                           .set<"altitude">(millimetres(home.height))
+                           .set<"altitude">(millimetres(above_sea))
                            .packet());
   if (message == kGlobalOrigin)
     answers_.push_back(Message<kGlobalOrigin>()
                            .set<"latitude">(e7(origin.latitude_deg))
                            .set<"longitude">(e7(origin.longitude_deg))
-                           .set<"altitude">(millimetres(home.height))
+                           .set<"altitude">(millimetres(above_sea))
                            .packet());
   if (message == kAutopilotVersion)
     answers_.push_back(Message<kAutopilotVersion>()
@@ -540,6 +542,9 @@ void SimulatedAutopilot::telemetry(double now, Packets& packets) {
                         .set<"roll">(single(tilt.x()))
                         .set<"pitch">(single(tilt.y()))
                         .set<"yaw">(single(turned_yaw(body_.yaw())))
+                        .set<"rollspeed">(single(state.body_rates.x()))
+                        .set<"pitchspeed">(single(-state.body_rates.y()))
+                        .set<"yawspeed">(single(-state.body_rates.z()))
                         .packet());
 }
 

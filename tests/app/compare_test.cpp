@@ -74,10 +74,10 @@ TEST_F(HomeAgain, BadInputIsOneMessage) {
   write("note.txt", "no log\n");
   refused({"compare", "plan.json", "note.txt"},
           {"'note.txt' is not a flight log of a known format; there are csv, dataflash, gpx, mcap, "
-           "ulog"});
+           "tlog, ulog"});
   refused({"compare", "plan.json", "note.txt", "--format", "ulog"},
           {"'note.txt': byte 0: a ULog begins with"});
-  refused({"compare", "plan.json", "note.txt", "--format", "tlog"}, {"tlog"});
+  refused({"compare", "plan.json", "note.txt", "--format", "kml"}, {"kml"});
   refused({"compare", "plan.json", "missing.ulg"}, {"missing.ulg"});
   fly("a.ulg", {});
   refused({"compare", "plan.json", "a.ulg", "--origin", "46.5,6.5,0,ground"},

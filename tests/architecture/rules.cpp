@@ -50,7 +50,7 @@ const std::map<std::string, Names>& rooms() {
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
       {"export",
        {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
-      {"flight_log", {"geometry"}},
+      {"flight_log", {"geometry", "mavlink"}},
       {"flight_review", {"geometry", "trajectory", "vehicle", "verify", "export", "flight_log"}},
       {"mavlink", {}},
       {"fly", {"geometry", "shape", "trajectory", "vehicle", "verify", "export", "map", "mavlink"}},

@@ -94,6 +94,7 @@ TEST(EveryPlugin, IsThere) {
                                    {"controller", "contouring"},
                                    {"flight_log", "ulog"},
                                    {"flight_log", "csv"},
+                                   {"flight_log", "tlog"},
                                    {"tour_solver", "greedy"},
                                    {"tour_solver", "cost_benefit"},
                                    {"tour_solver", "recursive_greedy"},

@@ -8,6 +8,7 @@
 #include "framework/flight_log/log_builder.h"
 #include "framework/plugin/registry.h"
 #include "tests/flight_review/log_writers.h"
+#include "tests/flight_review/telemetry_writer.h"
 #include "tests/obstacles.h"
 
 namespace lapwing {
@@ -56,8 +57,10 @@ TEST(Review, EveryFormatTellsTheSameFlight) {
   for (const auto& [format, bytes] : {std::pair<std::string, std::string>{"ulog", ulog_of(states)},
                                       {"dataflash", dataflash_of(states)},
                                       {"csv", airdata_of(states)},
+                                      {"tlog", tlog_of(states)},
                                       {"gpx", gpx_of(states)}}) {
-    const double clock = format == "gpx" ? 200 - states[0].time : 200;
+    const bool from_first = format == "gpx" || format == "tlog";
+    const double clock = from_first ? 200 - states[0].time : 200;
     const FlightReview review = review_flight(plan, read_by(format, bytes),
                                               {.clock = clock, .estimate_offset = false}, ".");
     EXPECT_NEAR(worst_of(review, "distance"), truth, 0.02) << format;

@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 using Words = std::vector<std::string>;
 
 struct Ended {
@@ -240,7 +241,8 @@ TEST_F(Live, TheExampleIsRehearsed) {
   const std::string said = read_file(folder_ / "said.txt");
   EXPECT_THAT(said, testing::AllOf(HasSubstr("rehearsal: calm"), HasSubstr("rehearsal: bad_link"),
                                    HasSubstr("crane over the field: flown"),
-                                   HasSubstr("beyond them, or jumps   0")));
+                                   HasSubstr("beyond them, or jumps   0"),
+                                   HasSubstr("crane over the field: flown as planned")));
   for (const char* file : {"shot.plan", "calm.tlog", "calm.json", "bad_link.json"})
     EXPECT_TRUE(fs::exists(folder_ / "out" / file)) << file;
   for (const char* name : {"calm.json", "bad_link.json"}) {
@@ -248,6 +250,41 @@ TEST_F(Live, TheExampleIsRehearsed) {
     EXPECT_TRUE(kept.at("within_tolerance").as_boolean());
     EXPECT_EQ(kept.at("fence_items").as_integer(), 4);
   }
+}
+
+// What fly has logged, told by the plan and by another one.
+TEST_F(Live, ALoggedFlightIsCompared) {
+  const std::string other = planned(
+      "return require 'mission.film'.shot { name = 'other', keyframes = {\n"
+      "  { position = {0, 0, 3}, time = 0 }, { position = {-4, 6, 9}, time = 8 } } }");
+  fs::rename(folder_ / other, folder_ / "other.json");
+  const std::string plan = planned(R"(return require 'mission.film'.shot { name = 'placed',
+  keyframes = { { position = {0, 0, 3}, time = 0 }, { position = {6, 2, 4}, time = 5 } },
+  origin = { latitude_deg = 46.5, longitude_deg = 6.6, height = 0, height_of = 'ground' } })");
+  for (const char* frame : {"global", "local"}) {
+    SCOPED_TRACE(frame);
+    const std::string take = std::string("take_") + frame;
+    const Ended flown = fly(plan, {"--frame", frame, "-o", take});
+    ASSERT_EQ(flown.status, 0) << flown.err;
+    end_autopilot();
+    const double told = from_json(flown.out, "fly").at("position_error_worst").as_number();
+    const Ended ended = run({"compare", plan, take + ".tlog", "--json"}, "compare");
+    EXPECT_EQ(ended.status, 0) << ended.err << ended.out;
+    const Value review = from_json(ended.out, "compare");
+    EXPECT_EQ(review.at("log").at("damage").as_text(), "");
+    EXPECT_EQ(review.at("missing_after").as_number(), 0);
+    // The comparison finds the clock: without the delay of the link it is nearer.
+    const double found = review.at("errors").at("distance").at("worst").as_number();
+    EXPECT_LT(found, told + 0.01);
+    EXPECT_NEAR(found, told, 0.08);
+    for (const Value& offset : review.at("alignment").at("offset").as_list())
+      EXPECT_NEAR(offset.as_number(), 0, 0.02);
+    EXPECT_THAT(run({"compare", plan, take + ".tlog"}, "compare").out,
+                HasSubstr("placed: flown as planned"));
+  }
+  const Ended wrong = run({"compare", "other.json", "take_local.tlog"}, "compare");
+  EXPECT_EQ(wrong.status, 1) << wrong.err << wrong.out;
+  EXPECT_THAT(wrong.out, Not(HasSubstr("flown as planned")));
 }
 
 struct LiveFault {

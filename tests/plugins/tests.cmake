@@ -27,7 +27,7 @@ foreach(name installed_plugin new_plugins)
 endforeach()
 set_tests_properties(new_plugins PROPERTIES LABELS long)
 
-foreach(reader ulog dataflash gpx csv mcap)
+foreach(reader ulog dataflash gpx csv mcap tlog)
   add_dependencies(test_flight_logs lapwing_flight_log_${reader})
   add_dependencies(test_flight_review lapwing_flight_log_${reader})
 endforeach()
