@@ -35,6 +35,44 @@ LogSeries sorted(const LogSeries& series, std::size_t width, std::size_t& same_t
   return result;
 }
 
+constexpr double kFarGap = 600;     // s, and ten times the recording,
+constexpr double kFewOfAll = 0.1;   // to a part with less than this share of the samples,
+constexpr double kAnyGap = 864000;  // or this, s, to any part: no battery lasts ten days
+
+// The part with the most samples, and what lies within reach of it; the rest has wrong times.
+// Returns how many samples were left out.
+std::size_t cut_far(LogSeries& series, std::size_t width) {
+  const auto& times = series.times;
+  if (times.size() < 2) return 0;
+  std::vector<std::size_t> starts{0};
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (times[i] - times[i - 1] > kFarGap) starts.push_back(i);
+  if (starts.size() == 1) return 0;
+  starts.push_back(times.size());
+  std::size_t main = 0;
+  for (std::size_t k = 1; k + 1 < starts.size(); ++k)
+    if (starts[k + 1] - starts[k] > starts[main + 1] - starts[main]) main = k;
+  const auto count = [&](std::size_t k) { return static_cast<double>(starts[k + 1] - starts[k]); };
+  const double span = times[starts[main + 1] - 1] - times[starts[main]];
+  const auto far = [&](std::size_t k, double gap) {
+    const bool few = count(k) < kFewOfAll * count(main);
+    return gap > 10 * span && (few || gap > kAnyGap);
+  };
+  std::size_t first = main, last = main;
+  while (first > 0 && !far(first - 1, times[starts[first]] - times[starts[first] - 1])) --first;
+  while (last + 2 < starts.size() &&
+         !far(last + 1, times[starts[last + 1]] - times[starts[last + 1] - 1]))
+    ++last;
+  const std::size_t from = starts[first], to = starts[last + 1], all = times.size();
+  const auto part = [](std::vector<double>& v, std::size_t a, std::size_t b) {
+    v = std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(a),
+                            v.begin() + static_cast<std::ptrdiff_t>(b));
+  };
+  part(series.values, width * from, width * to);
+  part(series.times, from, to);
+  return all - (to - from);
+}
+
 // Of the body's x axis; upright or not.
 LogSeries yaw_of(const LogSeries& orientation) {
   LogSeries yaw{orientation.source, orientation.times, {}};
@@ -85,9 +123,11 @@ bool LogBuilder::has(const char* quantity) const {
 }
 
 FlightLog LogBuilder::finish() {
-  for (auto& [name, series] : log.series)
-    series = sorted(series, static_cast<std::size_t>(log_quantity(name).width),
-                    dropped_[name].same_time);
+  for (auto& [name, series] : log.series) {
+    const auto width = static_cast<std::size_t>(log_quantity(name).width);
+    series = sorted(series, width, dropped_[name].same_time);
+    dropped_[name].far = cut_far(series, width);
+  }
   std::erase_if(log.series, [](const auto& entry) { return entry.second.times.empty(); });
   if (const LogSeries* orientation = log.find("orientation"); orientation && !log.find("yaw"))
     log.series["yaw"] = yaw_of(*orientation);
@@ -98,6 +138,7 @@ FlightLog LogBuilder::finish() {
     };
     say(dropped.not_finite, "not finite");
     say(dropped.same_time, "at a time that another has");
+    say(dropped.far, "far from the time of the recording, left out");
     say(dropped.out_of_order, "later in the file than in time");
     if (!line.empty()) log.remarks.push_back("'" + name + "': " + line);
   }

@@ -28,14 +28,14 @@ class LogBuilder {
   // Of the whole log; what is not a series is filled in directly.
   FlightLog log;
 
-  // Brings samples into the order of their times, drops all but the first of one time, and says in
-  // the remarks how many were left out. A series without a sample is none. A log with orientations
+  // Brings samples into the order of their times, drops all but the first of one time, and those
+  // far from the time of the recording, and says in the remarks how many were left out. A series without a sample is none. A log with orientations
   // and without a yaw gets theirs.
   FlightLog finish();
 
  private:
   struct Dropped {
-    std::size_t not_finite = 0, same_time = 0, out_of_order = 0;
+    std::size_t not_finite = 0, same_time = 0, out_of_order = 0, far = 0;
   };
   std::map<std::string, Dropped> dropped_;
 };

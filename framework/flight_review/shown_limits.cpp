@@ -168,8 +168,9 @@ class Collection {
                const std::string& what) {
     limits_.figures.push_back(
         {key, scale * fit.value, scale * fit.low, scale * fit.high,
-         "fit: " + what + ", 95 % within " + plain_number(scale * fit.low, 3) + " to " +
-             plain_number(scale * fit.high, 3) + ", " + plain_number(fit.time, 4) + " s of data"});
+         "fit: " + what + (fit.measured ? ", 95 % within " : ", spread over blocks ") +
+             plain_number(scale * fit.low, 3) + " to " + plain_number(scale * fit.high, 3) + ", " +
+             plain_number(fit.time, 4) + " s of data"});
   }
 
   void add_fits() {
@@ -186,12 +187,12 @@ class Collection {
       limits_.remarks.push_back(
           "it hovers at a throttle of " + plain_number(hover->value, 3) + " (" +
           (hover->time < kFewData ? std::string("too little data for an interval")
-                                  : "95 % within " + plain_number(hover->low, 3) + " to " +
+                                  : "spread over blocks " + plain_number(hover->low, 3) + " to " +
                                         plain_number(hover->high, 3)) +
           ", " + plain_number(hover->time, 3) + " s of data)");
     else
       limits_.remarks.emplace_back("the throttle of hovering was not seen");
-    const auto thrust = fit_thrust(motion_);
+    const auto thrust = fit_thrust(log_, motion_);
     if (thrust && base_.has_rotors)
       add_fit("rotors.thrust", thrust->full, base_.mass / 4,
               "full throttle for a mass of " + plain_number(base_.mass, 4) +
@@ -207,24 +208,34 @@ class Collection {
     limits_.remarks.emplace_back("mass and inertia cannot be seen in a log");
   }
 
-  // Flight time until a fifth of the charge is left.
+  // Flight time until a fifth of the charge is left, at the rate of the part in the air.
   void add_battery() {
     const LogSeries* battery = log_.find("battery");
     if (!battery || battery->size() < 10) {
       limits_.remarks.emplace_back("the flight time was not seen: the log holds no battery");
       return;
     }
-    const double used = battery->values[2] - battery->values[3 * battery->size() - 1];
-    const double span = battery->times.back() - battery->times.front();
+    double used = 0, span = 0;
+    for (std::size_t i = 1; i < battery->size(); ++i) {
+      if (!airborne_at(battery->times[i - 1]) || !airborne_at(battery->times[i])) continue;
+      used += battery->values[3 * i - 1] - battery->values[3 * i + 2];
+      span += battery->times[i] - battery->times[i - 1];
+    }
     if (used < 0.1 || span < 60) {
       limits_.remarks.push_back(
           "the flight time could not be told: " + plain_number(100 * std::max(0.0, used), 2) +
-          " % of the battery were used");
+          " % of the battery were used in the air, in " + plain_number(span, 4) + " s");
       return;
     }
     limits_.figures.push_back({"flight_time", 0.8 * span / used, std::nullopt, std::nullopt,
                                "until a fifth is left; " + plain_number(100 * used, 3) +
-                                   " % were used in " + plain_number(span, 4) + " s"});
+                                   " % were used in " + plain_number(span, 4) + " s in the air"});
+  }
+
+  bool airborne_at(double time) const {
+    const double place = std::round((time - motion_.states.front().time) / motion_.step);
+    return place >= 0 && place < static_cast<double>(motion_.states.size()) &&
+           motion_.states[static_cast<std::size_t>(place)].airborne;
   }
 
   const FlightLog& log_;

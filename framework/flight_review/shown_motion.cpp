@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kAirborne = 0.5;   // m above the lowest place
+constexpr double kAirborne = 0.5;   // m above the ground
 constexpr double kLeastFlight = 5;  // s
 
 // The positions, in a local frame.
@@ -68,6 +68,18 @@ void add_others(const FlightLog& log, ShownState& state) {
   if (const auto throttle = value_at(log, "throttle", t)) state.throttle = (*throttle)[0];
 }
 
+// Height below which the vehicle was for a fiftieth of the time: a smooth curve swings below the
+// ground after a hard landing.
+double low_height(const std::vector<ShownState>& states) {
+  std::vector<double> heights;
+  heights.reserve(states.size());
+  for (const ShownState& state : states) heights.push_back(state.position.z());
+  if (heights.empty()) return 0;
+  const auto rank = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 50);
+  std::nth_element(heights.begin(), rank, heights.end());
+  return *rank;
+}
+
 }  // namespace
 
 double ShownMotion::airborne_time() const {
@@ -85,7 +97,6 @@ ShownMotion shown_motion(const FlightLog& log) {
   const double typical = typical_step(samples.times);
   const SmoothCurve curve(samples, start, finish, std::clamp(2 * typical, 0.1, 1.0));
   motion.step = std::max(0.05, (finish - start) / 200000);
-  double lowest = INFINITY;
   const auto count = static_cast<std::size_t>((finish - start) / motion.step);
   for (std::size_t i = 0; i <= count; ++i) {
     ShownState state;
@@ -93,11 +104,11 @@ ShownMotion shown_motion(const FlightLog& log) {
     state.position = curve.at(state.time);
     state.velocity = curve.at(state.time, 1);
     state.acceleration = curve.at(state.time, 2);
-    lowest = std::min(lowest, state.position.z());
     add_others(log, state);
     motion.states.push_back(std::move(state));
   }
-  for (ShownState& state : motion.states) state.airborne = state.position.z() > lowest + kAirborne;
+  const double ground = low_height(motion.states);
+  for (ShownState& state : motion.states) state.airborne = state.position.z() > ground + kAirborne;
   if (motion.airborne_time() < kLeastFlight)
     throw InputError("the log shows " + plain_number(motion.airborne_time(), 3) +
                      " s in the air, 5 s are needed for limits");
