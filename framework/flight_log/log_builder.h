@@ -28,9 +28,9 @@ class LogBuilder {
   // Of the whole log; what is not a series is filled in directly.
   FlightLog log;
 
-  // Brings samples into the order of their times. Drops all but the first of one time, and those far
-  // from the time of the recording, and says in the remarks how many were left out. A series without
-  // a sample is none. A log with orientations and without a yaw gets theirs.
+  // Brings samples into the order of their times. Drops all but the first of one time, and those
+  // far from the time of the recording, and says in the remarks how many were left out. A series
+  // without a sample is none. A log with orientations and without a yaw gets theirs.
   FlightLog finish();
 
  private:
