@@ -264,6 +264,8 @@ then(() => drag(false)).then(() => then(() => drag(true)))
 // Bounds of a path below 1 m once asked for text without digits, and the page drew no chart.
 TEST_F(ReportInBrowser, PathsNearTheOriginAreDrawn) {
   Plan plan = synthetic_flight(20, 101, 5);
+  plan.environment = {};
+  plan.task.keyframes.clear();
   for (Sample& s : plan.trajectory.samples) s.position *= 0.01;
   const std::string dom = opened(render_html(flight_report(plan)), kListFigures);
   EXPECT_EQ(attribute(dom, "error"), "");
