@@ -25,11 +25,7 @@ readonly -A flown=(
 # Where the examples are flown: z = 0 is the ground.
 readonly origin=46.5191,6.5668,0,ground
 
-scripts/setup.sh --yes --for build
-command -v ogr2ogr >/dev/null && command -v gpsbabel >/dev/null ||
-  scripts/setup.sh --yes --for judge
-# Node from another source than Debian brings its own npm, and excludes Debian's.
-command -v node >/dev/null && command -v npm >/dev/null || scripts/setup.sh --yes --for judge
+scripts/setup.sh --yes --for build --for judge
 lapwing_build release lapwing_app lapwing_all_plugins mavlink_samples
 judges=build/judges
 mkdir -p "$judges"

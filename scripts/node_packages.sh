@@ -5,8 +5,7 @@
 # FOLDER/node_modules leads there. Nothing happens where they are there already.
 install_node_packages() {
   local folder=$1 place=build/node/$1 way
-  # Node from another source than Debian brings its own npm, and excludes Debian's.
-  command -v node >/dev/null && command -v npm >/dev/null || scripts/setup.sh --yes --for judge
+  scripts/setup.sh --yes --for studio
   mkdir -p "$place"
   if ! cmp -s "$folder/package-lock.json" "$place/package-lock.json" ||
     [ ! -e "$place/node_modules/.package-lock.json" ]; then

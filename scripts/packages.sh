@@ -18,10 +18,14 @@ lapwing_studio_packages=(nodejs npm)  # for scripts/studio.sh, beside those for 
 lapwing_check_packages=(clang-format clang-tidy)  # for scripts/format.sh and scripts/tidy.sh
 lapwing_package_packages=(dpkg-dev file)  # dpkg-shlibdeps finds the dependencies of a .deb
 
-# Prints the packages among "$@" that are not installed.
+# Prints the packages among "$@" that are not installed. A Node from another source than Debian
+# brings its own npm, and its package excludes Debian's: there the commands decide.
 lapwing_missing() {
   local package
   for package in "$@"; do
+    case "$package" in nodejs | npm)
+      if command -v node >/dev/null && command -v npm >/dev/null; then continue; fi ;;
+    esac
     [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       printf '%s\n' "$package"
   done

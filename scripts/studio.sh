@@ -16,10 +16,7 @@ fi
   page=framework/studio/page
   option=-DLAPWING_STUDIO=OFF
   if [ -f $page/package.json ]; then
-    scripts/setup.sh --for build || exit 2
-    # Node.js may have come from elsewhere.
-    command -v node >/dev/null && command -v npm >/dev/null ||
-      scripts/setup.sh --for studio || exit 2
+    scripts/setup.sh --for build --for studio || exit 2
     mkdir -p build
     echo "Building the page, log in build/page.log ..." >&2
     bash scripts/page.sh >build/page.log 2>&1 || { tail -n 30 build/page.log >&2; exit 1; }
