@@ -23,7 +23,7 @@ const std::map<std::string, Names>& rooms() {
       "geometry",    "trajectory", "vehicle",       "map",     "path",   "problem",
       "solve",       "view",       "explore",       "verify",  "export", "config",
       "conformance", "plugin",     "mission",       "surface", "shape",  "picture",
-      "symbolic",    "flight_log", "flight_review", "mavlink", "fly"};
+      "symbolic",    "flight_log", "flight_review", "mavlink", "fly",    "survey"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -37,6 +37,7 @@ const std::map<std::string, Names>& rooms() {
       {"geometry", {}},
       {"surface", {"geometry"}},
       {"picture", {"geometry"}},
+      {"survey", {"geometry"}},
       {"shape", {"geometry", "map"}},
       {"trajectory", {"geometry", "shape"}},
       {"vehicle", {"geometry", "trajectory"}},
@@ -125,11 +126,12 @@ constexpr Containment kContained[] = {
     {"expat.h", "", true},
     {"zstd.h", "", true},
     {"lz4frame.h", "", true},
+    {"proj.h", "framework/survey/", true},
 };
 // Of these, one source file of the framework alone.
-constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/",  "png.h",
-                                         "octomap/",       "opencv2/", "CGAL/",
-                                         "nanoflann",      "torch/",   "boost/math/"};
+constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/", "png.h",     "octomap/",
+                                         "opencv2/",       "CGAL/",   "nanoflann", "torch/",
+                                         "boost/math/",    "proj.h"};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
