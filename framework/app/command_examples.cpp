@@ -86,7 +86,8 @@ const std::vector<CommandExamples>& command_examples() {
        kOfFiles},
       {"lapwing tour",
        {"lapwing tour kroA150-gen1-50.oplib",
-        "lapwing tour *.oplib --solver local_search --solver milp --guard 60 --json"},
+        "lapwing tour *.oplib --solver local_search --solver milp --guard 60 --json",
+        "lapwing tour set_64_1_60.txt --team 3 --solver greedy --solver local_search"},
        "0 every solver found a tour; 1 one found none; 2 bad input; 3 internal error; 130 "
        "interrupted"},
       {"lapwing map", {"lapwing map info out/street/map.ot"}, kOfFiles},

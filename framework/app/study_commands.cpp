@@ -2,6 +2,7 @@
 // The command line of studies and of training.
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 
 #include "framework/app/command_options.h"
 #include "framework/app/evaluate_explore.h"
@@ -100,6 +101,15 @@ void add_tour_command(CLI::App& app, Invocation& invocation, TourRun& asked, Com
                "a tour solver; repeatable; default: local_search");
   add_repeated(*tour, "--set", "KEY=VALUE", invocation.overrides,
                "set one parameter of every solver; repeatable; default: none");
+  add_text(*tour, "--team", "N",
+           "number of tours that share the score, each with the N-th part of the limit; default: 1",
+           [&](const std::string& text) {
+             const double number = read_number("--team", text);
+             if (!(number >= 1 && number <= 1000) || number != std::floor(number))
+               throw CLI::ValidationError(
+                   "--team", "expected a whole number from 1 to 1000, not '" + text + "'");
+             asked.team = static_cast<int>(number);
+           });
   add_text(*tour, "--guard", "S", "wall-clock limit of one tour in s; default: none",
            [&](const std::string& text) {
              asked.guard = read_number("--guard", text);

@@ -93,7 +93,7 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
             {"cancellation", "wall clock"}};
   if (kind == TourSolver::kKind)
     return {{"creation"},
-            {"answers", "honest", "messages", "tours", "work", "upper bound"},
+            {"answers", "honest", "messages", "tours", "teams", "work", "upper bound"},
             {"repeatable"},
             {"cancellation", "wall clock"}};
   if (kind == ViewInformation::kKind)

@@ -32,6 +32,107 @@ class Listener final : public Progress {
   CancellationToken* token = nullptr;
 };
 
+// What is wrong with the walks of a team, by the definitions alone; "" for nothing.
+std::string fault_of_walks(const TeamWorld& world, const Walks& walks) {
+  if (walks.size() != world.tours.size()) return "are not as many as the tours";
+  for (std::size_t t = 0; t < walks.size(); ++t) {
+    const std::string fault = fault_of_walk(world.tours[t], walks[t]);
+    if (!fault.empty()) return "of tour " + std::to_string(t + 1) + " " + fault;
+  }
+  return "";
+}
+
+// What a solver with the extension `takes_teams` makes of teams, and one without it.
+class TeamCheck {
+ public:
+  TeamCheck(const TourSolver& solver, bool declares, Findings& findings)
+      : solver_(solver), declares_(declares), findings_(findings) {}
+
+  void run(const std::vector<TeamWorld>& worlds) {
+    for (const TeamWorld& world : worlds) {
+      if (findings_.settled()) return;
+      const TeamProblem problem = team_of(world);
+      const TeamResult result = solver_.solve(problem);
+      if (world.best >= 0 && !declares_) {
+        findings_.expect("teams", result.report.status == TourStatus::unsupported, [&] {
+          return world.name + ": it does not declare 'takes_teams', yet says " +
+                 to_string(result.report.status);
+        });
+        continue;
+      }
+      answers(world, result);
+      if (world.best > 0) {
+        repeats(world, problem, result);
+        begins(world, problem, result);
+        stops(world, problem);
+      }
+    }
+  }
+
+ private:
+  void answers(const TeamWorld& world, const TeamResult& result) {
+    const TeamReport& report = result.report;
+    const auto expect = [&](bool holds, const std::string& what) {
+      findings_.expect("teams", holds, [&] { return world.name + ": " + what; });
+    };
+    expect(!report.message.empty(), "gives no reason");
+    expect(report.status != TourStatus::failed, report.message);
+    if (world.best < 0) {
+      expect(report.status == TourStatus::infeasible,
+             std::string("no tours exist, says ") + to_string(report.status));
+      return;
+    }
+    expect(!result.walks.empty(), "declares 'takes_teams' and finds no tours: " + report.message);
+    if (result.walks.empty()) return;
+    const std::string fault = fault_of_walks(world, result.walks);
+    expect(fault.empty(), "its walks " + fault);
+    if (!fault.empty()) return;
+    const double slack = kEqual * (1 + world.best);
+    const double score = score_of_walks(world.tours.front(), result.walks);
+    expect(std::abs(score - report.score) <= slack,
+           "reports a score of " + text_of(report.score) + ", its walks have " + text_of(score));
+    expect(
+        report.upper_bound >= world.best - slack,
+        "bound " + text_of(report.upper_bound) + " below the best tours' " + text_of(world.best));
+    expect(report.status != TourStatus::optimal || score >= world.best - slack,
+           "says optimal, and is not");
+    expect(report.evaluations > 0, "reports no evaluation");
+  }
+
+  void repeats(const TeamWorld& world, const TeamProblem& problem, const TeamResult& first) {
+    const TeamResult again = solver_.solve(problem), fresh = solver_.solve(team_of(world));
+    findings_.expect("teams", again.walks == first.walks && fresh.walks == first.walks,
+                     [&] { return world.name + ": another answer the second time"; });
+  }
+
+  // From its own answer it must not come to a worse one.
+  void begins(const TeamWorld& world, const TeamProblem& problem, const TeamResult& first) {
+    TeamRequest request;
+    request.initial = first.walks;
+    const TeamResult result = solver_.solve(problem, request);
+    findings_.expect("teams", result.report.score >= first.report.score - kEqual, [&] {
+      return world.name + ": begun with tours of " + text_of(first.report.score) + " it ends at " +
+             text_of(result.report.score);
+    });
+  }
+
+  void stops(const TeamWorld& world, const TeamProblem& problem) {
+    CancellationToken token;
+    token.cancel();
+    TeamRequest request;
+    request.limits.bound = false;
+    request.limits.cancellation = &token;
+    const TourStatus status = solver_.solve(problem, request).report.status;
+    findings_.expect("teams", status == TourStatus::cancelled, [&] {
+      return world.name + ": cancelled before it began, says " + to_string(status);
+    });
+  }
+
+  const TourSolver& solver_;
+  bool declares_;
+  Findings& findings_;
+};
+
 class TourCheck {
  public:
   TourCheck(const TourSolver& solver, const CheckOptions& options, Findings& findings)
@@ -208,9 +309,12 @@ class TourCheck {
 std::vector<CheckResult> check_tour_solver(const Specimen<TourSolver>& subject,
                                            const CheckOptions& options) {
   const std::vector<TourWorld> worlds = tour_worlds();
+  const std::vector<TeamWorld> teams = team_worlds();
   return check_every_case(subject, options, "a search",
                           [&](const TourSolver& solver, Findings& findings, bool first) {
                             TourCheck(solver, options, findings).run(first, worlds);
+                            if (first && options.wants("teams"))
+                              TeamCheck(solver, subject.says(kTakesTeams), findings).run(teams);
                           });
 }
 

@@ -82,6 +82,23 @@ std::vector<double> quickest_walks(const TourDefinition& d, int n) {
   return best;
 }
 
+// Whether some tour sees exactly that set, for every set of views.
+std::vector<char> sets_within(const TourDefinition& d) {
+  const int n = d.score->views();
+  if (n > 16) throw Error("enumeration takes at most 16 views");
+  const std::vector<double> walks = quickest_walks(d, n);
+  const auto stop = [&](int v) {
+    return d.view_seconds.size() > 1 ? d.view_seconds[v] : d.view_seconds.front();
+  };
+  const double fixed = stop(d.start) + (d.start == d.end ? 0 : stop(d.end));
+  std::vector<char> within(std::size_t{1} << n, 0);
+  for (std::size_t set = 1; set < within.size(); ++set) {
+    if (d.image_limit && std::popcount(set) > *d.image_limit) continue;
+    within[set] = fixed + walks[set * n + d.end] <= d.budget + kRounding * (1 + d.budget);
+  }
+  return within;
+}
+
 std::vector<double> random_weights(Random& random, int count) {
   std::vector<double> weights(count);
   for (double& w : weights) w = random.uniform(0.5, 2);
@@ -112,19 +129,29 @@ ViewScore random_coverage(Random& random, const std::vector<double>& x,
 }  // namespace
 
 double best_score_by_enumeration(const TourDefinition& d) {
-  const int n = d.score->views();
-  if (n > 16) throw Error("enumeration takes at most 16 views");
-  const std::vector<double> walks = quickest_walks(d, n);
-  const auto stop = [&](int v) {
-    return d.view_seconds.size() > 1 ? d.view_seconds[v] : d.view_seconds.front();
-  };
-  const double fixed = stop(d.start) + (d.start == d.end ? 0 : stop(d.end));
+  const std::vector<char> seen = sets_within(d);
   double best = -1;
-  for (std::size_t set = 1; set < std::size_t{1} << n; ++set) {
-    if (d.image_limit && std::popcount(set) > *d.image_limit) continue;
-    if (fixed + walks[set * n + d.end] > d.budget + kRounding * (1 + d.budget)) continue;
-    best = std::max(best, score_of(*d.score, static_cast<unsigned>(set)));
+  for (std::size_t set = 1; set < seen.size(); ++set)
+    if (seen[set]) best = std::max(best, score_of(*d.score, static_cast<unsigned>(set)));
+  return best;
+}
+
+double best_team_score_by_enumeration(const std::vector<TourDefinition>& tours) {
+  if (tours.front().score->views() > 10) throw Error("enumeration of teams takes at most 10 views");
+  std::vector<char> unions{1};
+  unions.resize(std::size_t{1} << tours.front().score->views(), 0);
+  for (const TourDefinition& d : tours) {
+    const std::vector<char> own = sets_within(d);
+    std::vector<char> with(unions.size(), 0);
+    for (std::size_t a = 0; a < unions.size(); ++a)
+      for (std::size_t b = 0; unions[a] && b < own.size(); ++b)
+        if (own[b]) with[a | b] = 1;
+    unions = std::move(with);
   }
+  double best = -1;
+  for (std::size_t set = 0; set < unions.size(); ++set)
+    if (unions[set])
+      best = std::max(best, score_of(*tours.front().score, static_cast<unsigned>(set)));
   return best;
 }
 
@@ -169,6 +196,13 @@ std::string fault_of_walk(const TourDefinition& d, const std::vector<int>& walk)
 double score_of_walk(const TourDefinition& d, const std::vector<int>& walk) {
   unsigned set = 0;
   for (const int v : walk) set |= 1u << v;
+  return score_of(*d.score, set);
+}
+
+double score_of_walks(const TourDefinition& d, const std::vector<std::vector<int>>& walks) {
+  unsigned set = 0;
+  for (const std::vector<int>& walk : walks)
+    for (const int v : walk) set |= 1u << v;
   return score_of(*d.score, set);
 }
 
@@ -228,6 +262,44 @@ std::vector<TourWorld> tour_worlds() {
   TourDefinition lonely = random_tour(11, {});
   std::erase_if(lonely.motions, [](const Motion& m) { return m.a == 0 || m.b == 0; });
   add("a start that no motion leaves", lonely);
+  return worlds;
+}
+
+TeamProblem team_of(const TeamWorld& world) {
+  std::vector<TeamTour> tours;
+  for (std::size_t t = 0; t < world.tours.size(); ++t)
+    tours.push_back({std::to_string(t + 1), TourProblem(world.tours[t])});
+  return TeamProblem(std::move(tours));
+}
+
+std::vector<TeamWorld> team_worlds() {
+  std::vector<TeamWorld> worlds;
+  const auto add = [&](std::string name, std::vector<TourDefinition> tours) {
+    const double best = best_team_score_by_enumeration(tours);
+    worlds.push_back({std::move(name), std::move(tours), best});
+  };
+  const auto base = [](std::uint64_t seed, TourWorldOptions options) {
+    options.views = 9;
+    return random_tour(seed, options);
+  };
+  const TourDefinition loop = base(21, {.budget_share = 0.3});
+  add("two loops over motions", {loop, loop});
+  const TourDefinition way = base(22, {.legs = true, .loop = false, .budget_share = 0.4});
+  add("three ways over legs", {way, way, way});
+  const TourDefinition scores = base(23, {.legs = true, .additive = true, .budget_share = 0.3});
+  add("two tours for scores of views", {scores, scores});
+  TourDefinition home = base(24, {.budget_share = 0.3}), other = home;
+  other.start = other.end = 5;
+  other.budget *= 1.5;
+  for (Motion& motion : other.motions) motion.seconds *= 2;  // a slower vehicle
+  add("two homes and two vehicles", {home, other});
+  TourDefinition few = base(25, {.budget_share = 0.6, .image_limit = 3});
+  add("few images each", {few, few});
+  const TourDefinition rich = base(26, {.budget_share = 4});
+  add("budgets for all", {rich, rich});
+  TourDefinition poor = loop;
+  poor.budget = 0.5 * poor.view_seconds[0];
+  add("a budget too small for one view", {loop, poor});
   return worlds;
 }
 

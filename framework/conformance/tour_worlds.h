@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/view/tour_problem.h"
+#include "framework/view/team_problem.h"
 
 namespace lapwing {
 
@@ -15,11 +15,16 @@ namespace lapwing {
 // Negative where there is no tour.
 double best_score_by_enumeration(const TourDefinition& definition);
 
+// Likewise of a team, whose tours share a score: the best of all unions of sets that tours can see;
+// at most 10 views.
+double best_team_score_by_enumeration(const std::vector<TourDefinition>& tours);
+
 // What is wrong with a walk, "" when nothing is; likewise of `definition` alone: a motion for every
 // pair, ends, the budget, the number of images, nothing visited twice where legs are stated.
 std::string fault_of_walk(const TourDefinition& definition, const std::vector<int>& walk);
 // Of the views of a walk together.
 double score_of_walk(const TourDefinition& definition, const std::vector<int>& walk);
+double score_of_walks(const TourDefinition& definition, const std::vector<std::vector<int>>& walks);
 
 struct TourWorldOptions {
   int views = 10;
@@ -41,5 +46,14 @@ struct TourWorld {
 // Loops and ways, motions and legs, coverage and scores, with and without a limit of images, and
 // some that cannot be.
 std::vector<TourWorld> tour_worlds();
+
+struct TeamWorld {
+  std::string name;
+  std::vector<TourDefinition> tours;
+  double best = -1;  // negative: infeasible
+};
+TeamProblem team_of(const TeamWorld& world);
+// Tours with the same and with different ends, budgets, motions and limits of images.
+std::vector<TeamWorld> team_worlds();
 
 }  // namespace lapwing

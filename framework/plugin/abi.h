@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#define LAPWING_ABI_NUMBER 3  // raised whenever a public header changes layout or meaning
+#define LAPWING_ABI_NUMBER 4  // raised whenever a public header changes layout or meaning
 
 #define LAPWING_TEXT_(x) #x
 #define LAPWING_TEXT(x) LAPWING_TEXT_(x)

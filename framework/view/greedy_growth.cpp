@@ -9,6 +9,9 @@
 // evaluated in this step is the best, because all others are below it even with their upper bounds:
 // it is inserted. With `patience` only so many views are evaluated, and then the best of these is
 // taken. Equal promises go to the lower number, so that the result does not depend on the heap.
+//
+// Of several tours of a team each has its own places. A view is promised by the tour with room for
+// it that it lengthens least, the first one of equal ones.
 #include "framework/view/greedy_growth.h"
 
 #include <algorithm>
@@ -31,17 +34,23 @@ struct Candidate {
 
 class Round {
  public:
-  Round(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work)
-      : tour_(tour), known_(known), growth_(growth), work_(work) {
-    tour_.cheapest_places(extra_, after_);
+  Round(std::span<WorkingTour* const> tours, std::vector<double>& known, const Growth& growth,
+        TourWork& work)
+      : tours_(tours),
+        known_(known),
+        growth_(growth),
+        work_(work),
+        places_(tours.size()),
+        tour_for_(known.size(), 0) {
+    for (std::size_t t = 0; t < tours.size(); ++t)
+      tours[t]->cheapest_places(places_[t].extra, places_[t].after);
   }
 
   // One view more; false when nothing fits any more, or the work ended.
   bool step(std::int64_t iterations) {
     open_.clear();
-    const double room = tour_.room();
     for (int view = 0; view < static_cast<int>(known_.size()); ++view) {
-      if (known_[view] <= 0 || extra_[view] > room || tour_.visits(view) > 0) continue;
+      if (known_[view] <= 0 || tours_.front()->taken(view) || !choose_tour(view)) continue;
       if (!growth_.lazy && !evaluate(view, iterations)) return false;
       open_.push_back({promise(view), view, !growth_.lazy});
     }
@@ -66,25 +75,53 @@ class Round {
       }
       const int view = best.view;
       open_.pop_back();
-      if (known_[view] <= 0 || !tour_.admits(view, after_[view])) continue;
-      const int at = after_[view], before = tour_.size();
-      tour_.insert(view, at);
-      tour_.update_places(at, tour_.size() - before, extra_, after_);
-      return true;
+      if (known_[view] > 0 && insert(view)) return true;
     }
     return false;
   }
 
  private:
+  struct Places {
+    std::vector<double> extra;
+    std::vector<int> after;
+  };
+
   bool evaluate(int view, std::int64_t iterations) {
-    if (work_.ended(tour_.state().evaluations(), iterations)) return false;
-    known_[view] = tour_.state().gain(view);
+    if (work_.ended(tours_.front()->state().evaluations(), iterations)) return false;
+    known_[view] = tours_.front()->state().gain(view);
+    return true;
+  }
+
+  // False where no tour has room for it.
+  bool choose_tour(int view) {
+    int chosen = -1;
+    for (int t = 0; t < static_cast<int>(tours_.size()); ++t) {
+      const double extra = places_[t].extra[view];
+      if (extra > tours_[t]->room() || (tours_.size() > 1 && full(t))) continue;
+      if (chosen < 0 || extra < places_[chosen].extra[view]) chosen = t;
+    }
+    if (chosen >= 0) tour_for_[view] = chosen;
+    return chosen >= 0;
+  }
+
+  bool full(int tour) const {
+    const auto& limit = tours_[tour]->problem().image_limit();
+    return limit && tours_[tour]->images() >= *limit;
+  }
+
+  bool insert(int view) {
+    WorkingTour& tour = *tours_[tour_for_[view]];
+    Places& places = places_[tour_for_[view]];
+    const int at = places.after[view], before = tour.size();
+    if (!tour.admits(view, at)) return false;
+    tour.insert(view, at);
+    tour.update_places(at, tour.size() - before, places.extra, places.after);
     return true;
   }
 
   double promise(int view) const {
     double value = known_[view];
-    if (growth_.by_ratio) value /= std::max(extra_[view], kLeastSeconds);
+    if (growth_.by_ratio) value /= std::max(places_[tour_for_[view]].extra[view], kLeastSeconds);
     return growth_.favour.empty() ? value : value * growth_.favour[view];
   }
 
@@ -94,12 +131,12 @@ class Round {
     std::make_heap(open_.begin(), open_.end());
   }
 
-  WorkingTour& tour_;
+  std::span<WorkingTour* const> tours_;
   std::vector<double>& known_;
   const Growth& growth_;
   TourWork& work_;
-  std::vector<double> extra_;
-  std::vector<int> after_;
+  std::vector<Places> places_;  // per tour
+  std::vector<int> tour_for_;   // per view, of this step
   std::vector<Candidate> open_;
 };
 
@@ -111,11 +148,17 @@ std::vector<double> gains_alone(const TourProblem& problem) {
   return gains;
 }
 
-void grow(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work,
-          std::int64_t iterations) {
-  Round round(tour, known, growth, work);
+void grow(std::span<WorkingTour* const> tours, std::vector<double>& known, const Growth& growth,
+          TourWork& work, std::int64_t iterations) {
+  Round round(tours, known, growth, work);
   while (round.step(iterations)) {
   }
+}
+
+void grow(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work,
+          std::int64_t iterations) {
+  WorkingTour* const alone[] = {&tour};
+  grow(alone, known, growth, work, iterations);
 }
 
 }  // namespace lapwing

@@ -29,5 +29,8 @@ std::vector<double> gains_alone(const TourProblem& problem);
 // cannot exceed now; updated.
 void grow(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work,
           std::int64_t iterations = 0);
+// Likewise of several tours of one team: a view goes to the tour that it lengthens least.
+void grow(std::span<WorkingTour* const> tours, std::vector<double>& known, const Growth& growth,
+          TourWork& work, std::int64_t iterations = 0);
 
 }  // namespace lapwing

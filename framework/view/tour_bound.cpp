@@ -10,12 +10,17 @@
 // gains count, and their halves of legs come off the budget. Every S gives a bound; the empty set
 // and parts of a good tour in greedy order are tried, and the smallest bound is taken. The score of
 // all reachable views is one more.
+//
+// Of a team: a view of T is on some tour that can reach it, and takes at least the least of what it
+// takes there. All tours together have the sum of their rooms. One tour is a team of one.
 #include "framework/view/tour_bound.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
+#include <vector>
 
 namespace lapwing {
 namespace {
@@ -59,11 +64,29 @@ double fractional_knapsack(std::vector<Item> items, double room) {
   return value;
 }
 
+using Tours = std::vector<const TourProblem*>;
+
 class Bound {
  public:
-  explicit Bound(const TourProblem& problem)
-      : problem_(problem), reachable_(problem.reachable()), room_(room_between(problem)) {
-    for (const int view : reachable_) seconds_.push_back(least_seconds(problem, view));
+  explicit Bound(const Tours& tours) {
+    std::map<int, double> least;  // s, by view that some tour reaches
+    for (const TourProblem* tour : tours) {
+      for (const int view : tour->reachable()) {
+        const double seconds = least_seconds(*tour, view);
+        const auto [known, is_new] = least.try_emplace(view, seconds);
+        if (!is_new) known->second = std::min(known->second, seconds);
+      }
+      ends_.insert({tour->start(), tour->end()});
+      room_ += room_between(*tour);
+      if (tour->image_limit())
+        images_ += std::max(0, *tour->image_limit() - (tour->loop() ? 1 : 2));
+      else
+        limited_ = false;
+    }
+    for (const auto& [view, seconds] : least) {
+      reachable_.push_back(view);
+      seconds_.push_back(seconds);
+    }
   }
 
   const std::vector<int>& reachable() const { return reachable_; }
@@ -75,39 +98,38 @@ class Bound {
       const int view = reachable_[i];
       const double gain = state.gain(view);
       if (gain <= 0) continue;
-      if (view == problem_.start() || view == problem_.end()) {
+      if (ends_.contains(view)) {
         ends += gain;  // on every tour, and paid for
       } else {
         items.push_back({gain, seconds_[i]});
       }
     }
     double further = fractional_knapsack(items, room_);
-    if (problem_.image_limit()) further = std::min(further, largest(items));
+    if (limited_) further = std::min(further, largest(items));
     return state.score() + ends + further;
   }
 
  private:
   double largest(std::vector<Item>& items) const {
     std::sort(items.begin(), items.end(), [](auto& a, auto& b) { return a.gain > b.gain; });
-    const std::size_t ends = problem_.loop() ? 1 : 2;
-    const std::size_t limit = static_cast<std::size_t>(*problem_.image_limit());
-    const std::size_t count = std::min(items.size(), limit > ends ? limit - ends : 0);
+    const std::size_t count = std::min(items.size(), static_cast<std::size_t>(images_));
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) sum += items[i].gain;
     return sum;
   }
 
-  const TourProblem& problem_;
-  std::vector<int> reachable_;
+  std::vector<int> reachable_;  // ascending
   std::vector<double> seconds_;
-  double room_;
+  std::set<int> ends_;
+  double room_ = 0;
+  int images_ = 0;       // between starts and ends
+  bool limited_ = true;  // every tour has a limit of images
 };
 
-// The views of a walk, each once, in the order in which greedy would take them.
-std::vector<int> by_gain(const TourProblem& problem, std::span<const int> walk) {
-  const std::set<int> different(walk.begin(), walk.end());
+// The views in the order in which greedy would take them.
+std::vector<int> by_gain(const ViewScore& score, const std::set<int>& different) {
   std::vector<std::pair<double, int>> open;
-  ScoreState state(problem.score());
+  ScoreState state(score);
   for (const int view : different) open.push_back({state.gain(view), -view});
   std::make_heap(open.begin(), open.end());
   std::vector<int> order;
@@ -126,19 +148,18 @@ std::vector<int> by_gain(const TourProblem& problem, std::span<const int> walk) 
   return order;
 }
 
-}  // namespace
-
-double tour_bound_with(const TourProblem& problem, std::span<const int> views) {
-  ScoreState state(problem.score());
+double bound_with(const Tours& tours, std::span<const int> views) {
+  ScoreState state(tours.front()->score());
   for (const int view : views) state.add(view);
-  return Bound(problem).with(state);
+  return Bound(tours).with(state);
 }
 
-double tour_upper_bound(const TourProblem& problem, std::span<const int> walk) {
-  const Bound bound(problem);
-  ScoreState state(problem.score());
-  double best = std::min(bound.with(state), problem.score_of(bound.reachable()));
-  const std::vector<int> order = by_gain(problem, walk);
+double upper_bound(const Tours& tours, const std::set<int>& different) {
+  const Bound bound(tours);
+  const ViewScore& score = tours.front()->score();
+  ScoreState state(score);
+  double best = std::min(bound.with(state), tours.front()->score_of(bound.reachable()));
+  const std::vector<int> order = by_gain(score, different);
   std::size_t taken = 0;
   for (const double share : kShares) {
     const auto count =
@@ -148,6 +169,32 @@ double tour_upper_bound(const TourProblem& problem, std::span<const int> walk) {
     best = std::min(best, bound.with(state));
   }
   return best;
+}
+
+Tours tours_of(const TeamProblem& problem) {
+  Tours tours;
+  for (int t = 0; t < problem.size(); ++t) tours.push_back(&problem.tour(t));
+  return tours;
+}
+
+}  // namespace
+
+double tour_bound_with(const TourProblem& problem, std::span<const int> views) {
+  return bound_with({&problem}, views);
+}
+
+double tour_upper_bound(const TourProblem& problem, std::span<const int> walk) {
+  return upper_bound({&problem}, {walk.begin(), walk.end()});
+}
+
+double team_bound_with(const TeamProblem& problem, std::span<const int> views) {
+  return bound_with(tours_of(problem), views);
+}
+
+double team_upper_bound(const TeamProblem& problem, const Walks& walks) {
+  std::set<int> different;
+  for (const std::vector<int>& walk : walks) different.insert(walk.begin(), walk.end());
+  return upper_bound(tours_of(problem), different);
 }
 
 }  // namespace lapwing

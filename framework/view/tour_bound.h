@@ -9,7 +9,7 @@
 
 #include <span>
 
-#include "framework/view/tour_problem.h"
+#include "framework/view/team_problem.h"
 
 namespace lapwing {
 
@@ -19,5 +19,10 @@ double tour_bound_with(const TourProblem& problem, std::span<const int> views);
 // The least of several: with S empty, with all reachable views, and with parts of `walk` in the
 // order of their gains. At least the score of any tour of the problem.
 double tour_upper_bound(const TourProblem& problem, std::span<const int> walk);
+
+// The same of a team: one knapsack as large as all tours together, in which a view takes what it
+// takes on the tour where that is least.
+double team_bound_with(const TeamProblem& problem, std::span<const int> views);
+double team_upper_bound(const TeamProblem& problem, const Walks& walks);
 
 }  // namespace lapwing

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How: the seconds of views move into the legs, half to each side, so that the cost of a walk is a
 // sum of legs. Views and motions form a graph. The shortest ways from a view are a tree (Dijkstra),
-// computed at the first request and kept. If two threads compute the same tree, one is dropped. A
-// problem of `legs` has no ways: its matrix of legs is used as it is.
+// computed at the first request and kept;
+// problems that differ in their limits alone share them. If two threads compute the same tree, one
+// is dropped. A problem of `legs` has no ways: its matrix of legs is used as it is.
 #include "framework/view/tour_problem.h"
 
 #include <algorithm>
@@ -75,6 +76,11 @@ void check_motions(const TourDefinition& d, int n, Diagnostics& errors) {
   }
 }
 
+void check_limits(double budget, const std::optional<int>& image_limit, Diagnostics& errors) {
+  if (!sound(budget)) errors.add({}, "budget", "must be finite and at least 0 s");
+  if (image_limit && *image_limit < 1) errors.add({}, "image_limit", "must be at least 1");
+}
+
 void check_definition(const TourDefinition& d) {
   Diagnostics errors;
   if (!d.score || d.score->views() == 0) {
@@ -96,8 +102,7 @@ void check_definition(const TourDefinition& d) {
   }
   check_view(d.start, n, "start", errors);
   check_view(d.end, n, "end", errors);
-  if (!sound(d.budget)) errors.add({}, "budget", "must be finite and at least 0 s");
-  if (d.image_limit && *d.image_limit < 1) errors.add({}, "image_limit", "must be at least 1");
+  check_limits(d.budget, d.image_limit, errors);
   if (!d.legs.empty()) check_legs(d, static_cast<std::size_t>(n), errors);
   check_motions(d, n, errors);
   errors.throw_if_any();
@@ -157,6 +162,7 @@ const TourProblem::Ways::Tree& TourProblem::Ways::from(const TourProblem& proble
 }
 
 TourProblem::~TourProblem() = default;
+TourProblem::TourProblem(const TourProblem&) = default;
 TourProblem::TourProblem(TourProblem&&) noexcept = default;
 TourProblem& TourProblem::operator=(TourProblem&&) noexcept = default;
 
@@ -173,19 +179,18 @@ TourProblem::TourProblem(TourDefinition d) {
   if (d.view_seconds.size() > 1) stops = std::move(d.view_seconds);
   fixed_seconds_ = stops[start_] + (loop() ? 0 : stops[end_]);
   stops[start_] = stops[end_] = 0;
-  if (!d.legs.empty()) {
-    legs_ = std::move(d.legs);
-    for (int a = 0; a < n; ++a) {
-      for (int b = 0; b < a; ++b) {
-        const std::size_t there = static_cast<std::size_t>(b) * n + a;
-        legs_[there] += (stops[a] + stops[b]) / 2;
-        legs_[static_cast<std::size_t>(a) * n + b] = legs_[there];
-      }
-      legs_[static_cast<std::size_t>(a) * (n + 1)] = 0;
+  std::vector<double> legs = std::move(d.legs);
+  for (int a = 0; a < n && !legs.empty(); ++a) {
+    for (int b = 0; b < a; ++b) {
+      const std::size_t there = static_cast<std::size_t>(b) * n + a;
+      legs[there] += (stops[a] + stops[b]) / 2;
+      legs[static_cast<std::size_t>(a) * n + b] = legs[there];
     }
-    return;
+    legs[static_cast<std::size_t>(a) * (n + 1)] = 0;
   }
-  ways_ = std::make_unique<Ways>(n);
+  legs_ = std::make_shared<const std::vector<double>>(std::move(legs));
+  if (each_once()) return;
+  ways_ = std::make_shared<Ways>(n);
   std::vector<std::vector<std::pair<int, double>>> of(n);
   for (const Motion& motion : d.motions) {
     if (motion.a == motion.b) continue;
@@ -206,9 +211,19 @@ TourProblem::TourProblem(TourDefinition d) {
   }
 }
 
+TourProblem TourProblem::with_limits(double budget, std::optional<int> image_limit) const {
+  Diagnostics errors;
+  check_limits(budget, image_limit, errors);
+  errors.throw_if_any();
+  TourProblem other(*this);
+  other.budget_ = budget;
+  other.image_limit_ = image_limit;
+  return other;
+}
+
 std::span<const double> TourProblem::legs_from(int view) const {
   const std::size_t n = views();
-  if (each_once()) return {legs_.data() + view * n, n};
+  if (each_once()) return {legs_->data() + view * n, n};
   return ways_->from(*this, view).seconds;
 }
 
@@ -250,7 +265,7 @@ std::pair<double, double> TourProblem::cheapest_legs(int view) const {
 }
 
 double TourProblem::direct_leg(int a, int b) const {
-  if (each_once()) return legs_[static_cast<std::size_t>(a) * views() + b];
+  if (each_once()) return (*legs_)[static_cast<std::size_t>(a) * views() + b];
   const auto begin = neighbours_.begin() + first_neighbour_[a];
   const auto end = neighbours_.begin() + first_neighbour_[a + 1];
   const auto found = std::lower_bound(begin, end, b);

@@ -48,6 +48,9 @@ class TourProblem {
   // InputError with everything that is wrong.
   explicit TourProblem(TourDefinition definition);
   ~TourProblem();
+  // The same views, ways, start and end, but another budget (s) and image limit: ways that one of
+  // the two has searched are known to the other. InputError as above.
+  TourProblem with_limits(double budget, std::optional<int> image_limit) const;
   TourProblem(TourProblem&&) noexcept;
   TourProblem& operator=(TourProblem&&) noexcept;
 
@@ -59,7 +62,11 @@ class TourProblem {
   double budget() const { return budget_; }
   const std::optional<int>& image_limit() const { return image_limit_; }
   // Whether legs were given: each view at most once, nothing passed on the way.
-  bool each_once() const { return !legs_.empty(); }
+  bool each_once() const { return !legs_->empty(); }
+  // Whether both have the same views, ways, start and end by construction (with_limits).
+  bool same_ways(const TourProblem& other) const {
+    return legs_ == other.legs_ && ways_ == other.ways_;
+  }
   // What the views' motions lead to, ascending, and their legs; none in a problem of legs. Valid as
   // long as this object.
   std::span<const int> neighbours_of(int view) const {
@@ -102,17 +109,18 @@ class TourProblem {
 
  private:
   struct Ways;
+  TourProblem(const TourProblem&);
   double direct_leg(int a, int b) const;
   std::size_t degree(int view) const { return first_neighbour_[view + 1] - first_neighbour_[view]; }
 
   std::shared_ptr<const ViewScore> score_;
-  std::vector<double> legs_;
+  std::shared_ptr<const std::vector<double>> legs_;
   std::vector<int> first_neighbour_{0}, neighbours_;  // by view, neighbours ascending
   std::vector<double> neighbour_legs_, stops_;
   int start_ = 0, end_ = 0;
   double budget_ = 0, fixed_seconds_ = 0;
   std::optional<int> image_limit_;
-  std::unique_ptr<Ways> ways_;
+  std::shared_ptr<Ways> ways_;
 };
 
 }  // namespace lapwing

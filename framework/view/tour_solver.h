@@ -17,7 +17,7 @@
 #include "framework/core/plugin_object.h"
 #include "framework/core/progress.h"
 #include "framework/core/value.h"
-#include "framework/view/tour_problem.h"
+#include "framework/view/team_problem.h"
 
 namespace lapwing {
 
@@ -69,6 +69,32 @@ struct TourResult {
   std::vector<int> walk;
 };
 
+struct TeamRequest {
+  TourRequest limits = {};  // its `initial` is not looked at
+  // Where to begin: walks of this problem. The answer is never worse.
+  std::optional<Walks> initial = std::nullopt;
+};
+
+struct TeamTourReport {
+  std::string name;
+  double seconds_used = 0, budget = 0;  // s
+  int images = 0;                       // different views on this tour
+};
+
+// As of one tour: seconds are those of all tours, images their different views.
+struct TeamReport : TourReport {
+  std::vector<TeamTourReport> tours;
+};
+Value to_value(const TeamReport& report, const std::string& solver_name);
+
+struct TeamResult {
+  TeamReport report;
+  Walks walks;  // as TeamProblem::problem_of wants them; empty where there are none
+};
+
+// The extension (plugin/plugin.h) of a solver that takes team problems; it has no table.
+inline constexpr const char* kTakesTeams = "takes_teams";
+
 // What ends a search from outside, asked between units of work.
 class TourWork {
  public:
@@ -102,6 +128,8 @@ class TourSolver : public PluginObject {
   // Says what cannot be met, searches, checks the walk that comes back, keeps the initial tour
   // where it is better, and adds the upper bound. Thread-safe.
   TourResult solve(const TourProblem& problem, const TourRequest& request = {}) const;
+  // The same of a team; `unsupported` from a solver that does not declare kTakesTeams.
+  TeamResult solve(const TeamProblem& problem, const TeamRequest& request = {}) const;
 
  protected:
   struct Search {
@@ -115,6 +143,18 @@ class TourSolver : public PluginObject {
   };
   // There is a tour: start and end are joined within the budget. `initial` is sound.
   virtual Search search(const TourProblem& problem, TourWork& work) const = 0;
+
+  struct TeamSearch {
+    Walks walks;  // empty: none found
+    TourStatus status = TourStatus::feasible;
+    std::string message;
+    std::int64_t evaluations = 0;
+    std::int64_t iterations = 0;
+    std::optional<double> upper_bound = std::nullopt;
+  };
+  // Every tour can be flown; `initial`, null for none, is sound.
+  virtual TeamSearch search_team(const TeamProblem& problem, TourWork& work,
+                                 const Walks* initial) const;
 };
 
 }  // namespace lapwing

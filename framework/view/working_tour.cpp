@@ -19,7 +19,13 @@
 namespace lapwing {
 
 WorkingTour::WorkingTour(const TourProblem& problem)
-    : problem_(&problem), state_(problem.score()), visits_(problem.views(), 0) {
+    : problem_(&problem), own_(problem.score()), visits_(problem.views(), 0) {
+  const int ends[] = {problem.start(), problem.end()};
+  become(ends);
+}
+
+WorkingTour::WorkingTour(const TourProblem& problem, SharedViews& team)
+    : problem_(&problem), team_(&team), visits_(problem.views(), 0) {
   const int ends[] = {problem.start(), problem.end()};
   become(ends);
 }
@@ -27,13 +33,13 @@ WorkingTour::WorkingTour(const TourProblem& problem)
 void WorkingTour::visit(int view) {
   if (visits_[view]++ > 0) return;
   ++images_;
-  state_.add(view);
+  team_ ? team_->enter(view) : own_->add(view);
 }
 
 void WorkingTour::leave(int view) {
   if (--visits_[view] > 0) return;
   --images_;
-  state_.remove(view);
+  team_ ? team_->leave(view) : own_->remove(view);
 }
 
 void WorkingTour::become(std::span<const int> walk) {

@@ -2,6 +2,7 @@
 // A tour while a solver changes it: its walk, its seconds, and the score of its views. Copyable.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,10 +10,33 @@
 
 namespace lapwing {
 
+// The views of all tours of a team: one counts as long as some tour has it. Copyable.
+class SharedViews {
+ public:
+  explicit SharedViews(const ViewScore& score) : state_(score), tours_(score.views(), 0) {}
+  void enter(int view) {
+    if (tours_[view]++ == 0) state_.add(view);
+  }
+  void leave(int view) {
+    if (--tours_[view] == 0) state_.remove(view);
+  }
+  int tours_with(int view) const { return tours_[view]; }
+  ScoreState& state() { return state_; }
+  const ScoreState& state() const { return state_; }
+
+ private:
+  ScoreState state_;
+  std::vector<int> tours_;  // per view
+};
+
 class WorkingTour {
  public:
   // The shortest way from start to end; the problem outlives this object.
   explicit WorkingTour(const TourProblem& problem);
+  // Likewise of a team, whose views outlive it too: its score is that of all tours. A copy is of
+  // the same team until `join` puts it into that team's copy.
+  WorkingTour(const TourProblem& problem, SharedViews& team);
+  void join(SharedViews& team) { team_ = &team; }
   // Becomes `walk`, of which nothing is checked, by the shortest ways from view to view.
   void become(std::span<const int> walk);
 
@@ -25,8 +49,10 @@ class WorkingTour {
   double room() const { return problem_->budget() + problem_->tolerance() / 2 - seconds_; }
   int images() const { return images_; }
   int visits(int view) const { return visits_[view]; }
-  ScoreState& state() { return state_; }
-  double score() const { return state_.score(); }
+  // Whether this tour, or another one of its team, has the view.
+  bool taken(int view) const { return team_ ? team_->tours_with(view) > 0 : visits_[view] > 0; }
+  ScoreState& state() { return team_ ? team_->state() : *own_; }
+  double score() const { return team_ ? team_->state().score() : own_->score(); }
   const TourProblem& problem() const { return *problem_; }
 
   // For every view the least that putting it into the walk adds (s), and after which position.
@@ -56,7 +82,8 @@ class WorkingTour {
   void leave(int view);
 
   const TourProblem* problem_;
-  ScoreState state_;
+  std::optional<ScoreState> own_;  // of a tour without a team
+  SharedViews* team_ = nullptr;
   std::vector<int> walk_;
   std::vector<int> visits_;
   double seconds_ = 0;

@@ -203,6 +203,7 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"tours_tours", "tours", "its walk does not go from the start to the end"},
            {"tours_budget", "tours", "of a budget of"},
            {"tours_silent", "work", "reports no evaluation of a tour of"},
+           {"tours_teams", "teams", "two loops over motions: bound 0 below the best tours'"},
            {"tours_deaf", "work", "in none of its searches it asks whether the work has to end"},
            {"tours_late", "wall clock", "without any time it takes 0.3"},
            {"tours_throws", "honest", "no"},

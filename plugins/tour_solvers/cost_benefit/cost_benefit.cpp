@@ -8,6 +8,7 @@
 //   tour: {solver: cost_benefit}
 #include "framework/plugin/plugin.h"
 #include "framework/view/greedy_growth.h"
+#include "framework/view/working_team.h"
 
 namespace lapwing {
 namespace {
@@ -20,6 +21,10 @@ class CostBenefit final : public TourSolver {
   static ParameterTable parameters() {
     return ParameterTable{}.boolean("lazy", true,
                                     "skip evaluations that cannot change the choice; same tour");
+  }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kTakesTeams, nullptr}};
+    return all;
   }
   explicit CostBenefit(const Parameters& parameters) : lazy_(parameters.boolean("lazy")) {}
 
@@ -44,6 +49,28 @@ class CostBenefit final : public TourSolver {
     best.status = work.ending().value_or(TourStatus::feasible);
     if (work.ending()) best.message = "ended early, the best so far";
     best.evaluations = evaluations;
+    return best;
+  }
+
+  TeamSearch search_team(const TeamProblem& problem, TourWork& work,
+                         const Walks* initial) const override {
+    TeamSearch best;
+    double best_score = -1;
+    for (const bool by_ratio : {true, false}) {
+      WorkingTeam team(problem);
+      if (initial) team.become(*initial);
+      team.state().set_evaluations(team.state().evaluations() + best.evaluations);
+      std::vector<double> known = gains_alone(problem.tour(0));
+      team.grow_all(known, {.by_ratio = by_ratio, .lazy = lazy_}, work);
+      best.evaluations = team.state().evaluations();
+      best.iterations += team.images();
+      if (team.score() <= best_score) continue;
+      best_score = team.score();
+      best.walks = team.finished();
+      best.message = by_ratio ? "cost-benefit was the better" : "greedy was the better";
+    }
+    best.status = work.ending().value_or(TourStatus::feasible);
+    if (work.ending()) best.message = "ended early, the best so far";
     return best;
   }
 

@@ -22,18 +22,12 @@
 #include "framework/view/greedy_growth.h"
 #include "framework/view/recursive_growth.h"
 #include "plugins/tour_solvers/local_search/ruin.h"
+#include "plugins/tour_solvers/local_search/team_annealing.h"
 
 namespace lapwing {
 namespace {
 
-struct Settings {
-  std::int64_t iterations;
-  double share;      // of a tour's views, most taken out at once
-  double warmth;     // of a typical view's share in the score, at the beginning
-  double exchanges;  // share of the iterations that begin by putting in
-  double chance;     // how much promises are scattered
-  int patience;      // evaluations for one choice
-};
+using Settings = AnnealingSettings;
 
 constexpr int kMostOut = 30;
 constexpr double kColdest = 0.02;   // of the warmth, at the end
@@ -166,6 +160,10 @@ class LocalSearch final : public TourSolver {
                 between(0, 5))
         .integer("patience", 12, "largest number of evaluations per choice", between(1, 100'000));
   }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kTakesTeams, nullptr}};
+    return all;
+  }
   explicit LocalSearch(const Parameters& parameters)
       : settings_{
             parameters.integer("iterations"), parameters.number("share"),
@@ -183,6 +181,19 @@ class LocalSearch final : public TourSolver {
     if (work.ending()) result.message = "ended early, " + result.message;
     result.evaluations = annealing.evaluations();
     result.iterations = annealing.iterations();
+    return result;
+  }
+
+  TeamSearch search_team(const TeamProblem& problem, TourWork& work,
+                         const Walks* initial) const override {
+    AnnealedTeam found = anneal_team(problem, settings_, work, initial);
+    TeamSearch result;
+    result.walks = std::move(found.walks);
+    result.status = work.ending().value_or(TourStatus::feasible);
+    result.message = "the best of " + std::to_string(found.iterations) + " repaired sets of tours";
+    if (work.ending()) result.message = "ended early, " + result.message;
+    result.evaluations = found.evaluations;
+    result.iterations = found.iterations;
     return result;
   }
 

@@ -17,24 +17,10 @@
 namespace lapwing {
 namespace {
 
-// Every position of the walk where `view` is; the ends stay.
-void take_out_view(WorkingTour& tour, int view, KnownGains& known) {
-  if (tour.visits(view) == 0) return;  // went with another one
-  const double before = tour.score();
-  for (int i = 1; i + 1 < tour.size(); ++i) {
-    if (tour.walk()[i] != view) continue;
-    if (!tour.take_out(i, i)) return;
-    break;
-  }
-  if (tour.visits(view) == 0) {
-    known.left(tour.problem().score(), view, std::max(0.0, before - tour.score()));
-  }
-}
-
 // A random view that is off the tour and may bring something, and those nearest to it.
 std::vector<int> cluster(const WorkingTour& tour, int count, const KnownGains& known,
                          Random& random) {
-  const auto wanted = [&](int view) { return tour.visits(view) == 0 && known.gains[view] > 0; };
+  const auto wanted = [&](int view) { return !tour.taken(view) && known.gains[view] > 0; };
   const TourProblem& problem = tour.problem();
   const auto from_start = problem.legs_from(problem.start());
   const auto from_end = problem.legs_from(problem.end());
@@ -122,6 +108,30 @@ std::vector<int> any(const WorkingTour& tour, int count, Random& random) {
 
 }  // namespace
 
+void take_out_view(WorkingTour& tour, int view, KnownGains& known) {
+  if (tour.visits(view) == 0) return;  // went with another one
+  const double before = tour.score();
+  for (int i = 1; i + 1 < tour.size(); ++i) {
+    if (tour.walk()[i] != view) continue;
+    if (!tour.take_out(i, i)) return;
+    break;
+  }
+  if (tour.visits(view) == 0) {
+    known.left(tour.problem().score(), view, std::max(0.0, before - tour.score()));
+  }
+}
+
+void shrink_to_budget(WorkingTour& tour, const std::vector<int>& added, KnownGains& known,
+                      Random& random) {
+  while (tour.room() < 0) {
+    const int view = least_worthy(tour, known, added, random);
+    const int before = tour.size();
+    if (view < 0) break;
+    take_out_view(tour, view, known);
+    if (tour.size() >= before) break;  // another way took its place
+  }
+}
+
 Overlaps::Overlaps(const ViewScore& score)
     : bits_(static_cast<std::size_t>(score.views()) * kWords, 0), lists_(score.views()) {
   std::vector<char> seen(score.voxels(), 0);
@@ -168,16 +178,10 @@ void KnownGains::left(const ViewScore& score, int view, double loss) {
 bool exchange(WorkingTour& tour, int count, KnownGains& known, Random& random) {
   const std::vector<int> added = cluster(tour, count, known, random);
   for (const int view : added) {
-    if (tour.visits(view) == 0) insert_cheaply(tour, view);
+    if (!tour.taken(view)) insert_cheaply(tour, view);
   }
   tour.shorten();
-  while (tour.room() < 0) {
-    const int view = least_worthy(tour, known, added, random);
-    const int before = tour.size();
-    if (view < 0) break;
-    take_out_view(tour, view, known);
-    if (tour.size() >= before) break;  // another way took its place
-  }
+  shrink_to_budget(tour, added, known, random);
   return !added.empty();
 }
 

@@ -41,6 +41,14 @@ struct KnownGains {
   void left(const ViewScore& score, int view, double loss);
 };
 
+// Takes `view` out of the tour at every place but the ends.
+void take_out_view(WorkingTour& tour, int view, KnownGains& known);
+
+// Takes out what is worth least per second that it saves, what was `added` last, until the tour is
+// within its budget or nothing more can go.
+void shrink_to_budget(WorkingTour& tour, const std::vector<int>& added, KnownGains& known,
+                      Random& random);
+
 // Puts up to `count` neighbouring views that are not on the tour in, at least one and over the
 // budget if need be, and takes out what is worth least per second that it saves until the tour fits
 // again: the way into a cluster that no single view is worth. False where there is none to put in.
