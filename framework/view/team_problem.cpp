@@ -13,7 +13,8 @@ TeamProblem::TeamProblem(std::vector<TeamTour> tours) : tours_(std::move(tours))
   std::set<std::string> names;
   for (const TeamTour& tour : tours_) {
     if (!names.insert(tour.name).second)
-      throw InputError("two tours of a team are named '" + tour.name + "'; each needs its own name");
+      throw InputError("two tours of a team are named '" + tour.name +
+                       "'; each needs its own name");
     if (&tour.problem.score() != &score())
       throw InputError("tour '" + tour.name + "' has another score than tour '" + name(0) +
                        "'; the tours of a team share one");
@@ -59,15 +60,14 @@ std::string TeamProblem::why_infeasible() const {
 }
 
 TeamProblem equal_tours(TourDefinition definition, int count) {
-  if (count < 1)
-    throw InputError("a team has at least one tour, not " + std::to_string(count));
+  if (count < 1) throw InputError("a team has at least one tour, not " + std::to_string(count));
   const double budget = definition.budget;
   const std::optional<int> image_limit = definition.image_limit;
   std::vector<TeamTour> tours;
   tours.push_back({"1", TourProblem(std::move(definition))});
   while (static_cast<int>(tours.size()) < count)
-    tours.push_back({std::to_string(tours.size() + 1),
-                     tours.front().problem.with_limits(budget, image_limit)});
+    tours.push_back(
+        {std::to_string(tours.size() + 1), tours.front().problem.with_limits(budget, image_limit)});
   return TeamProblem(std::move(tours));
 }
 

@@ -93,8 +93,8 @@ TeamResult TourSolver::solve(const TeamProblem& problem, const TeamRequest& requ
       if (!wrong.empty()) return broken("the result of the solver is no set of tours: " + wrong);
     }
     result.walks = std::move(searched.walks);
-    if (request.initial && (result.walks.empty() || problem.score_of(result.walks) <
-                                                        problem.score_of(*request.initial))) {
+    if (request.initial && (result.walks.empty() ||
+                            problem.score_of(result.walks) < problem.score_of(*request.initial))) {
       result.walks = *request.initial;
       searched.message += "; the initial tours are better and are kept";
     }

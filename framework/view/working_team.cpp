@@ -40,8 +40,7 @@ bool visits_once(const WorkingTour& tour) {
 
 }  // namespace
 
-WorkingTeam::WorkingTeam(const TeamProblem& problem)
-    : problem_(&problem), views_(problem.score()) {
+WorkingTeam::WorkingTeam(const TeamProblem& problem) : problem_(&problem), views_(problem.score()) {
   for (int t = 0; t < problem.size(); ++t) tours_.emplace_back(problem.tour(t), views_);
 }
 
