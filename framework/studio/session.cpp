@@ -72,9 +72,8 @@ bool StudioSession::editable() const {
 
 std::string StudioSession::why_not() const {
   if (!why_not_.empty()) return why_not_;
-  if (!mission_kind_.empty() && mission_kind_ != "film")
-    return "a mission of kind '" + mission_kind_ +
-           "' can be looked at; only films can be edited here, others in their script";
+  if (mission_kind_ == "map")
+    return "a mission of kind 'map' has no flight to be edited; change it in its script";
   return "";
 }
 
@@ -264,6 +263,7 @@ void StudioSession::heard(WorkerRole role, Frame frame) {
   if (role == WorkerRole::solver) {
     if (what == "answer") answered(std::move(frame));
     if (what == "world") world(frame);
+    if (what == "progress") progress(frame);
     return;
   }
   if (role == WorkerRole::errands) return errand_done(std::move(frame));

@@ -193,6 +193,7 @@ class StudioSession {
   void show_again(const Remembered& shown);
   void settle(const Frame& frame);
   void world(const Frame& frame);
+  void progress(const Frame& frame);
   void solver_started();
   void add_errand(PageSocket& page, const PageMessage& message);
   Frame errand_frame(const PageMessage& message);

@@ -234,6 +234,18 @@ void StudioSession::world(const Frame& frame) {
   tell_all(world_);
 }
 
+// How far the planning of the document has come.
+void StudioSession::progress(const Frame& frame) {
+  if (!solve_ || !solve_->revision || solve_->held || solve_->rank > 0 ||
+      frame.header.at("serial") != Value(solve_->serial))
+    return;
+  Value message = Value::map();
+  message.set("type", "progress");
+  message.set("revision", static_cast<std::int64_t>(*solve_->revision));
+  for (const char* key : {"phase", "fraction", "left"}) message.set(key, frame.header.at(key));
+  tell_all(to_json(message, -1), true);
+}
+
 // ---- errands ------------------------------------------------------------------------------------
 
 void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {

@@ -14,6 +14,7 @@
 #include "framework/studio/plan_message.h"
 #include "framework/studio/worker_errands.h"
 #include "framework/studio/worker_link.h"
+#include "framework/studio/worker_progress.h"
 #include "framework/trajectory/interpolate.h"
 
 namespace lapwing {
@@ -186,6 +187,7 @@ class StudioWorker {
       }
     }
     std::optional<Trajectory> before;
+    if (kind_ != "film" && !settled) return;  // planned when it is let go of
     if (kind_ == "film") {
       if (settled && drawn) tell(*drawn_last_);
       if (!drawn) drawn_last_.reset();
@@ -204,6 +206,8 @@ class StudioWorker {
   void plan_whole(const Value& layer, const std::optional<Trajectory>& before) {
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
+    WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
+    settings.progress = &progress;
     const std::unique_ptr<Mission> mission = configured_mission(script_, settings, layer);
     MissionResult result = mission->plan();
     if (whole_->cancelled()) return;

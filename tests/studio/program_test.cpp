@@ -548,10 +548,16 @@ TEST_F(StudioProgram, OpensOtherMissionsAndFilmsOfSeveralProblems) {
   use("racing/seven_gates.lua");
   {
     PageClient page(serve(), "a");
-    EXPECT_EQ(page.welcome.at("mission").at("editable"), Value(false));
+    EXPECT_EQ(page.welcome.at("mission").at("editable"), Value(true));
     const Value answer = page.until_judged(0);
     EXPECT_EQ(answer.at("grade"), Value("certified")) << answer.at("message").as_text();
     EXPECT_EQ(answer.at("plan").at("gates").as_list().size(), 7u);
+    // A drag has no answer of its own; what it ends with is planned.
+    page.send(preview(1, {change("gates[7].position", place(-3, 6, 1.5))}));
+    page.send(gesture("g", 0, {change("gates[7].position", place(-3, 6, 1.5))}));
+    const Value moved = page.until_judged(1);
+    EXPECT_EQ(moved.at("grade"), Value("certified")) << moved.at("message").as_text();
+    EXPECT_EQ(moved.at("plan").at("gates").as_list()[6].at("position").as_list()[1], Value(6.0));
   }
   write_file_atomically(folder_ / "free.lua", R"(local film = require "mission.film"
 return film.shot { timing = "free", subject = { position = {0, 0, 2}, height = 4 },

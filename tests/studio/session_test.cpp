@@ -509,14 +509,14 @@ TEST_F(Session, WhatTheCommandLineSetsIsTheFirstEdit) {
 
 TEST_F(Session, PagesAreToldWhenNothingCanBeEditedAnyMore) {
   const auto a = page("a");
-  kind_ = "race";
-  write_file_atomically(folder_ / "shot.lua", "return 'race'");
+  kind_ = "map";
+  write_file_atomically(folder_ / "shot.lua", "return 'map'");
   loop_.after(std::chrono::milliseconds(20), [&] { loop_.stop(); });
   loop_.run();
   check_all();
   ASSERT_EQ(a->of_type("mission").size(), 1u);
   EXPECT_EQ(a->last("mission").at("mission").at("editable"), Value(false));
-  EXPECT_NE(a->last("mission").at("mission").at("why_not").as_text().find("race"),
+  EXPECT_NE(a->last("mission").at("mission").at("why_not").as_text().find("map"),
             std::string::npos);
 }
 
@@ -754,18 +754,59 @@ TEST_F(Session, SoManyErrandsMayWaitAndNoMore) {
   EXPECT_EQ(a->last("failed").at("id"), Value("l32"));
 }
 
-TEST_F(Session, OtherMissionsAreLookedAt) {
+TEST_F(Session, MissionsOfOtherKindsAreEditedToo) {
   open("race");
+  const auto a = page("a");
+  EXPECT_EQ(a->last("welcome").at("mission").at("editable"), Value(true));
+  solve(solver_.frames.back(), "certified");
+  say(*a, gesture("g", 0, {change("margin", 3)}));
+  check_all();
+  EXPECT_EQ(session_->document()->revision(), 1u);
+  EXPECT_EQ(to_json(solver_.frames.back().header.at("layer"), -1), R"({"margin":3})");
+}
+
+TEST_F(Session, AMapHasNoFlightToEdit) {
+  open("map");
   const auto a = page("a");
   const Value& mission = a->last("welcome").at("mission");
   EXPECT_EQ(mission.at("editable"), Value(false));
-  EXPECT_NE(mission.at("why_not").as_text().find("race"), std::string::npos);
+  EXPECT_NE(mission.at("why_not").as_text().find("map"), std::string::npos);
   say(*a, gesture("g", 0, {change("margin", 3)}));
   EXPECT_EQ(a->last("refused").at("id"), Value("g"));
   say(*a, preview(1, {change("margin", 3)}));
   EXPECT_EQ(a->last("refused").at("edit"), Value(1));
+}
+
+// Of the newest solve of the document alone, until it has an answer.
+TEST_F(Session, ProgressIsOfTheDocument) {
+  const auto a = page("a");
+  const auto planned = [&](const Frame& solve) {
+    Frame frame;
+    frame.header.set("said", "progress");
+    frame.header.set("serial", solve.header.at("serial"));
+    frame.header.set("phase", "path");
+    frame.header.set("fraction", 0.25);
+    frame.header.set("left", Value());
+    session_->heard(WorkerRole::solver, std::move(frame));
+  };
+  const Frame first = solver_.frames.back();
+  planned(first);
+  ASSERT_EQ(a->of_type("progress").size(), 1u);
+  const Value& told = a->last("progress");
+  EXPECT_EQ(told.at("revision"), Value(0));
+  EXPECT_EQ(told.at("phase"), Value("path"));
+  EXPECT_EQ(told.at("fraction"), Value(0.25));
+  EXPECT_TRUE(told.at("left").is_null());
+  say(*a, gesture("g", 0, {change("margin", 3)}));
+  planned(first);
+  planned(solver_.frames.back());  // it has no revision before it is checked
+  EXPECT_EQ(a->of_type("progress").size(), 1u);
+  check_all();
+  planned(solver_.frames.back());
+  EXPECT_EQ(a->last("progress").at("revision"), Value(1));
   solve(solver_.frames.back(), "certified");
-  EXPECT_EQ(a->last("answer").at("grade"), Value("certified"));
+  planned(solver_.frames.back());
+  EXPECT_EQ(a->of_type("progress").size(), 2u);
 }
 
 TEST_F(Session, AnEditedLayerIsAnEdit) {

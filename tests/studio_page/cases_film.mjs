@@ -22,6 +22,8 @@ function program() {
   return asked.status === 0 ? words : null;
 }
 
+export const hasStudio = () => program() !== null;
+
 // In a folder of its own: journal, layer and what is written stay there.
 export async function startStudio(example, folder = null) {
   const words = program();

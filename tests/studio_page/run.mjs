@@ -8,6 +8,7 @@ import { chromium, openPage, startBrowser, waitGrade } from "./browser.mjs";
 import { edits } from "./cases_edit.mjs";
 import { film } from "./cases_film.mjs";
 import { links } from "./cases_link.mjs";
+import { race } from "./cases_race.mjs";
 import { views } from "./cases_view.mjs";
 import { worlds } from "./cases_world.mjs";
 import { figures } from "./figures.mjs";
@@ -80,6 +81,11 @@ try {
   await Promise.all(browsers.slice(1).map((browser) => browser.close()));
   if (!only || only === "film") {
     failed += await film(browsers[0], async (page, file) => {
+      if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
+    });
+  }
+  if (!only || only === "race") {
+    failed += await race(browsers[0], async (page, file) => {
       if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
     });
   }

@@ -5,7 +5,7 @@ import { actionOf } from "./state/keys";
 import type { Vec3 } from "./state/types";
 import type { Rate, Studio } from "./studio";
 import { byId, forgetColours, typing } from "./view/dom";
-import { duplicate, order, pace, remove, type Selected } from "./panel/selected";
+import { duplicate, order, pace, remove, TURN, turn, type Selected } from "./panel/selected";
 import type { CompareDialog } from "./panel/compare";
 import type { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
 import type { FilmList } from "./panel/film_list";
@@ -81,6 +81,7 @@ export class Actions {
       undo: "undo", redo: "redo", fly: "fly", export: "export", report: "report", theme: "theme",
       help: "help", place: "place", insert: "insert", "add-subject": "subject", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
       frame: "frame", play: "play", cut: "cut", draw: "draw", margins: "margins", compare: "compare",
+      "place-gate": "place", "add-gate": "insert",
     };
     for (const [id, action] of Object.entries(simple)) {
       byId(id).addEventListener("click", () => this.run(action, ""));
@@ -136,7 +137,10 @@ export class Actions {
       case "margins": studio.margins = !studio.margins; studio.tell("look"); return true;
       case "compare": parts.compare.open(); return true;
       case "order": order(studio, key === "Alt+ArrowUp" ? -1 : 1); return true;
-      case "insert": parts.list.insertAtHead(); return true;
+      case "insert":
+        if (studio.course) parts.list.addGate();
+        else parts.list.insertAtHead();
+        return true;
       case "place": studio.setMode(studio.mode === "place" ? "orbit" : "place"); return true;
       case "draw": studio.setMode(studio.mode === "draw" ? "orbit" : "draw"); return true;
       case "shot":
@@ -223,6 +227,7 @@ export class Actions {
 
   private choose(by: -1 | 1): void {
     const { studio } = this.parts;
+    if (studio.course) return this.chooseGate(studio.course.gates.length, by);
     const count = studio.film.keyframes.length;
     if (count === 0) return;
     const at = studio.selection?.kind === "keyframe" ? studio.selection.index : by > 0 ? -1 : count;
@@ -231,8 +236,16 @@ export class Actions {
     studio.seek(studio.timeOf(index));
   }
 
+  private chooseGate(count: number, by: -1 | 1): void {
+    const { studio } = this.parts;
+    if (count === 0) return;
+    const at = studio.selection?.kind === "gate" ? studio.selection.index : by > 0 ? -1 : count;
+    studio.select({ kind: "gate", index: (at + by + count) % count });
+  }
+
   private retime(by: number): boolean {
     const { studio } = this.parts;
+    if (studio.selection?.kind === "gate") return turn(studio, by < 0 ? TURN : -TURN);
     if (studio.selection?.kind !== "keyframe") return false;
     const { index } = studio.selection;
     const time = studio.film.keyframes[index]?.time;

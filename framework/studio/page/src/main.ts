@@ -19,11 +19,13 @@ import { entries } from "./state/film";
 import { GestureQueue } from "./state/queue";
 import { pathOf, positionAt } from "./state/samples";
 import { Session, type Socket } from "./state/session";
+import { labelOf } from "./state/schema";
 import { trianglesOf } from "./state/shapes";
 import type { JsonObject, Vec3 } from "./state/types";
 import { Studio } from "./studio";
 import { byId, forgetColours } from "./view/dom";
 import { wireFraming } from "./view/framing";
+import { Gates } from "./view/gates";
 import { Gizmo } from "./view/gizmo";
 import { Ground } from "./view/ground";
 import { Hulls } from "./view/hulls";
@@ -93,6 +95,7 @@ gizmo.controls.addEventListener("dragging-changed", () => {
   navigation.orbit.enabled = !gizmo.controls.dragging && studio.mode !== "camera";
 });
 new Paths(studio, stage);
+new Gates(studio, stage);
 new Pins(studio, stage, byId("pins"));
 const pick = new Pick(studio, stage, solids, gizmo);
 new Walk(studio, stage, pick);
@@ -113,6 +116,7 @@ function bounds(): THREE.Box3 {
   const box = new THREE.Box3();
   for (const p of pathOf(studio.plan.columns)) box.expandByPoint(new THREE.Vector3(...p));
   for (const k of studio.film.keyframes) box.expandByPoint(new THREE.Vector3(...k.position));
+  for (const g of studio.course?.gates ?? []) box.expandByPoint(new THREE.Vector3(...g.position));
   const things = solids.bounds();
   // A large map must not make the film small.
   if (box.isEmpty() || things.getSize(new THREE.Vector3()).length() <
@@ -131,6 +135,7 @@ navigation.onButton = (button) => {
   if (button === "keyframe") keyframeHere(studio, stage, pick);
   else studio.setMode("orbit");
 };
+pick.onGate = (at) => list.addGate(at);
 const selected = new Selected(studio);
 new Actions({
   studio, selected, list, notices, exports: new ExportDialog(studio),
@@ -159,6 +164,17 @@ function obstacles(): JsonObject[] {
   return [...own, ...told, ...zones.slice(known)];
 }
 
+studio.on(["document"], () => {
+  const { kind } = session.mission;
+  if (document.body.dataset.kind === kind) return;
+  document.body.dataset.kind = kind;
+  // Missions of other kinds are edited by their options alone.
+  const listed = kind === "film" || kind === "race";
+  byId("tab-film").textContent = labelOf(kind || "film");
+  byId("tab-film").hidden = !listed;
+  byId("tab-feel").hidden = !session.schema.some((option) => option.name === "weights");
+  showTab(listed ? "film" : "setup");
+});
 studio.on(["document", "world", "standing"], () => {
   solids.set(obstacles());
   const { subjects } = studio.film;

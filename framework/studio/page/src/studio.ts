@@ -2,6 +2,7 @@
 // What the parts of the page share: the session, and what is a tab's own: selection, play head,
 // mode, view. Parts listen; nobody calls another part.
 import { filmOf, type Film } from "./state/film";
+import { courseGuess, courseOf, isCourse, type Course } from "./state/course";
 import { guessOf } from "./state/spline";
 import { passagesOf } from "./state/failures";
 import type { Edit, Item } from "./state/edits";
@@ -69,7 +70,8 @@ export class Studio {
 
   private refresh(): void {
     const document = this.session.document();
-    this.cached = { document, film: filmOf(document), guess: guessOf(document) };
+    const guess = isCourse(document) ? courseGuess(document) : guessOf(document);
+    this.cached = { document, film: filmOf(document), guess };
     if (this.flown) {
       this.flown = null;
       this.tell("flown");
@@ -89,6 +91,11 @@ export class Studio {
 
   get film(): Film {
     return this.state.film;
+  }
+
+  // Of a race; null of every other mission.
+  get course(): Course | null {
+    return isCourse(this.document) ? courseOf(this.document) : null;
   }
 
   get guess(): Plan {

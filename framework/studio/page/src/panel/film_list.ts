@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The film as a list: keyframes, subjects, obstacles; a click selects, the buttons add.
 import { obstacleKinds, addedObstacle, corneredItem, addedSubject, inserted, nameOf, sameItem, type Item } from "../state/edits";
+import { addedGate } from "../state/course";
 import { entries, targetAt } from "../state/film";
 import { shots, withShot, type Shot } from "../state/shots";
 import { positionAt } from "../state/samples";
@@ -38,18 +39,20 @@ export class FilmList {
     for (const mode of ["place", "draw"]) {
       byId(mode).setAttribute("aria-pressed", String(studio.mode === mode));
     }
+    byId("place-gate").setAttribute("aria-pressed", String(studio.mode === "place"));
     // Rows that say the same stay: one that is made again under the pointer loses the click.
     const text = JSON.stringify([
       film.keyframes.map((k) => [k.position, studio.timeOf(k.index)]), studio.selection,
       entries(document, "subjects").map((s) => s.name),
       entries(document, "obstacles").map((o) => [o.name, o.type]),
-      entries(document, "flight_zones").map((o) => o.name)]);
+      entries(document, "flight_zones").map((o) => o.name), studio.course]);
     if (text === this.shown) return;
     this.shown = text;
     const rows = film.keyframes.map((keyframe, index) => this.row(
       { kind: "keyframe", index }, `${index + 1}`,
       keyframe.position.map((v) => show(v)).join(", "), `${show(studio.timeOf(index), 4)} s`));
     refill(byId("keyframe-list"), ...rows);
+    this.showCourse();
     const others: HTMLElement[] = [];
     entries(document, "subjects").forEach((entry, index) => {
       others.push(this.row({ kind: "subject", index }, "\u25b2",
@@ -64,6 +67,27 @@ export class FilmList {
         String(entry.name || `Flight zone ${index + 1}`), "stay inside"));
     });
     refill(byId("thing-list"), ...others);
+  }
+
+  private showCourse(): void {
+    const { course, document } = this.studio;
+    if (!course) return;
+    const where = (place: Vec3): string => place.map((v) => show(v)).join(", ");
+    const rows = course.gates.map(({ position, shape }, index) => this.row(
+      { kind: "gate", index }, `${index + 1}`,
+      String(entries(document, "gates")[index]?.name || where(position)), shape));
+    if (course.start) rows.unshift(this.row({ kind: "end", index: 0 }, "S", where(course.start), "start"));
+    if (course.finish) rows.push(this.row({ kind: "end", index: 1 }, "F", where(course.finish), "finish"));
+    refill(byId("gate-list"), ...rows);
+  }
+
+  // After the selected gate, else after the last one.
+  addGate(at = this.centre()): void {
+    const { selection, document, course } = this.studio;
+    if (!course) return;
+    const after = selection?.kind === "gate" ? selection.index : course.gates.length - 1;
+    const made = addedGate(document, after, at);
+    if (this.studio.edit(made)) this.studio.select({ kind: "gate", index: made.index });
   }
 
   private row(item: Item, mark: string, text: string, more: string): HTMLElement {

@@ -89,13 +89,19 @@ export class Notices {
   }
 }
 
+const firstSteps: Record<string, string> = {
+  film: "Drag a numbered ball to move the camera\u2019s path. The picture at the right is what it sees.",
+  race: "Drag a numbered gate to move it, with Shift up and down. Alt and the arrows turn it.",
+};
+const OTHER_FIRST_STEP = "Change an option at the left. The mission is planned again.";
+
 const steps: { text: string; done: (studio: Studio) => boolean }[] = [
-  { text: "Drag a numbered ball to move the camera\u2019s path. The picture at the right is what it sees.",
+  { text: "",
     done: (studio) => studio.session.revision > 0 || studio.session.pending > 0 },
   { text: "Wait for the green \u2713 Certified above: then the drone can fly it. If it is red, the list " +
       "at the right says what to change.",
     done: (studio) => studio.standing.grade === "certified" && studio.session.revision > 0 },
-  { text: "Press Space, or the play button below, to watch your film.",
+  { text: "Press Space, or the play button below, to watch the flight.",
     done: (studio) => studio.playing },
   { text: "Press \u201cFly it\u201d above to see how a simulated drone flies it in wind.",
     done: (studio) => studio.flown !== null },
@@ -150,7 +156,8 @@ export class Hints {
     while (this.at < steps.length && steps[this.at]?.done(this.studio)) this.at += 1;
     const step = steps[this.at];
     this.box.hidden = recall("lapwing-hints") === "off" || !step || !this.studio.editable;
-    if (step) text.textContent = step.text;
+    const first = firstSteps[this.studio.session.mission.kind] ?? OTHER_FIRST_STEP;
+    if (step) text.textContent = this.at === 0 ? first : step.text;
   }
 }
 

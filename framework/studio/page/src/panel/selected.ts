@@ -3,6 +3,7 @@
 import { addedCorner, corneredItem, entryOf, nameOf, pathOfItem, retimed, timeRange, without, deleted, duplicated, reordered,
          moved, placeOfItem, slowed, type Item } from "../state/edits";
 import { entries } from "../state/film";
+import { copiedGate, reorderedGate, reshapedGate, turnedGate } from "../state/course";
 import { labelOf, type Field } from "../state/schema";
 import { isObject } from "../state/document";
 import { vec } from "../state/vector";
@@ -10,6 +11,7 @@ import type { Json, JsonObject, Option, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import { byId, el } from "../view/dom";
 import { Form } from "./form";
+import { gateFields } from "./gate_fields";
 
 const axes = ["East", "North", "Up"];
 const metres = (name: string): Option =>
@@ -69,6 +71,10 @@ export class Selected {
     const path = pathOfItem(document, item) ?? `subjects[${item.index + 1}]`;
     const place = placeOfItem(document, item);
     const fields = place ? placeFields(path, place) : [];
+    if (item.kind === "gate") {
+      const declared = session.schema.find((o) => o.name === "gates")?.table ?? [];
+      return [...fields, ...gateFields(item.index, entry, declared)];
+    }
     if (item.kind === "keyframe") {
       const keyframe = this.studio.film.keyframes[item.index];
       const base = `keyframes[${item.index + 1}]`;
@@ -120,6 +126,10 @@ export class Selected {
     if (!item) return;
     const [path, part] = field.path.split("#") as [string, string | undefined];
     if (part === "look") return this.look(item.index, String(value));
+    if (part === "shape") {
+      studio.edit(reshapedGate(studio.document, item.index, String(value)));
+      return;
+    }
     if (part !== undefined) {
       const place = placeOfItem(studio.document, item);
       if (place && /^[012]$/.test(part)) {
@@ -202,6 +212,17 @@ export class Selected {
       list.push(button("Aim", "Click a place for the camera to look at (L)",
                        () => studio.setMode("aim")));
     }
+    if (item.kind === "gate") {
+      list.push(button("Copy", "A gate like this one after it (D)", () => duplicate(studio)));
+      list.push(button("\u2191", "Fly it before the gate before (Alt + up)", () => order(studio, -1),
+                       "Swap with the one before"));
+      list.push(button("\u2193", "Fly it after the gate after (Alt + down)", () => order(studio, 1),
+                       "Swap with the one after"));
+      list.push(button("\u27f2", "Turn it to the left (Alt + left)", () => turn(studio, TURN),
+                       "Turn to the left"));
+      list.push(button("\u27f3", "Turn it to the right (Alt + right)", () => turn(studio, -TURN),
+                       "Turn to the right"));
+    }
     const cornered = corneredItem(studio.document, item);
     if (cornered) {
       list.push(button("Add corner", "A corner in the middle of the next side (D)",
@@ -211,7 +232,7 @@ export class Selected {
       list.push(button("Walk", "Walk its way with the mouse or the arrows, in real time (J)",
                        () => studio.setMode("walk")));
     }
-    if (item.kind !== "track") {
+    if (item.kind !== "track" && item.kind !== "end") {
       list.push(button("Delete", "Delete (Del)", () => remove(studio)));
     }
     this.buttons.replaceChildren(...list);
@@ -238,7 +259,21 @@ export function pace(studio: Studio, how: "faster" | "slower"): boolean {
   return true;
 }
 
+export const TURN = 5;         // degrees, a press
+
+// The selected gate, counter-clockwise.
+export function turn(studio: Studio, by: number): boolean {
+  const item = studio.selection;
+  if (item?.kind !== "gate") return false;
+  return studio.edit(turnedGate(studio.document, item.index, by)) !== null;
+}
+
 export function duplicate(studio: Studio): void {
+  if (studio.selection?.kind === "gate") {
+    const copy = copiedGate(studio.document, studio.selection.index);
+    if (copy && studio.edit(copy)) studio.select({ kind: "gate", index: copy.index });
+    return;
+  }
   if (corneredItem(studio.document, studio.selection)) return addCorner(studio);
   if (studio.selection?.kind !== "keyframe") return;
   const made = duplicated(studio.document, studio.selection.index);
@@ -247,9 +282,9 @@ export function duplicate(studio: Studio): void {
 
 export function order(studio: Studio, by: -1 | 1): void {
   const item = studio.selection;
-  if (item?.kind !== "keyframe") return;
-  const edit = reordered(studio.document, item.index, by);
-  if (edit && studio.edit(edit)) studio.select({ kind: "keyframe", index: item.index + by });
+  if (item?.kind !== "keyframe" && item?.kind !== "gate") return;
+  const edit = (item.kind === "gate" ? reorderedGate : reordered)(studio.document, item.index, by);
+  if (edit && studio.edit(edit)) studio.select({ kind: item.kind, index: item.index + by });
 }
 
 // Says why not, where something cannot go.
@@ -260,7 +295,9 @@ export function remove(studio: Studio): string | null {
   if (!edit) {
     return item.kind === "corner" ? "A zone needs at least three corners."
       : item.kind === "track" ? "Walk the way of the subject anew to change its places."
-        : "A film needs at least two keyframes.";
+        : item.kind === "gate" ? "A course needs at least one gate."
+          : item.kind === "end" ? "A course that begins or ends here keeps the place; move it."
+            : "A film needs at least two keyframes.";
   }
   studio.edit(edit);
   return null;

@@ -12,7 +12,8 @@ import { Form } from "./form";
 const kinds = ["vehicle", "camera", "model", "solver", "planner", "controller"];
 const flying = new Set(["vehicle", "camera"]);
 
-// What most films are told, in plain words; all else is for who knows how films are planned.
+// What most films are told, in plain words; all else is for who knows how films are planned. Of
+// missions of other kinds it is every option that is no part of another one.
 const rules: Record<string, string> = {
   margin: "Distance from obstacles", ground: "Height of the ground", speed_limit: "Speed limit",
   battery: "Longest flight", duration: "Length of the film", speed: "Speed between keyframes",
@@ -62,10 +63,13 @@ export class Setup {
     this.solver.show(pluginFields(choices.solver, document.solver, "solver"));
     const shown = new Set(kinds);
     const all = fieldsOf(schema.filter((o) => !shown.has(o.name) && o.name !== "weights"), document);
-    this.film.show(all.filter(({ path }) => rules[path] !== undefined)
-      .map((field) => ({ ...field, label: rules[field.path] as string })));
+    const film = this.studio.session.mission.kind === "film";
+    const ruled = (field: Field): boolean => (film ? rules[field.path] !== undefined
+      : !field.path.includes("."));
+    this.film.show(all.filter(ruled).map((field) =>
+      (film ? { ...field, label: rules[field.path] as string } : field)));
     this.planning.show([...chosen.filter(({ path }) => !flying.has(path)),
-                        ...all.filter(({ path }) => rules[path] === undefined)]);
+                        ...all.filter((field) => !ruled(field))]);
   }
 
   // A camera belongs to its vehicle: another one makes a vehicle of its own of it.

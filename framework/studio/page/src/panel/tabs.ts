@@ -15,14 +15,15 @@ export function showTab(name: string): void {
 }
 
 export function wireTabs(): void {
-  names.forEach((name, i) => {
+  names.forEach((name) => {
     const tab = byId(`tab-${name}`);
     tab.addEventListener("click", () => showTab(name));
     tab.addEventListener("keydown", (event) => {
       const by = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
       if (!by) return;
       event.preventDefault();
-      const next = names[(i + by + names.length) % names.length] as string;
+      const shown = names.filter((one) => !byId(`tab-${one}`).hidden);
+      const next = shown[(shown.indexOf(name) + by + shown.length) % shown.length] as string;
       showTab(next);
       byId(`tab-${next}`).focus();
     });

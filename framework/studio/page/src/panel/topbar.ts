@@ -2,6 +2,7 @@
 // The bar above: the film's name, how good the curve on display is, undo, and what one does with a
 // finished film.
 import type { Grade } from "../state/grades";
+import type { PlanningProgress } from "../state/types";
 import type { Studio } from "../studio";
 import { byId } from "../view/dom";
 
@@ -18,6 +19,14 @@ export const gradeLooks: Record<Grade, { sign: string; word: string; text: strin
               text: "The check failed. The red parts of the path and the list say why." },
   refused: { sign: "!", word: "Not possible", text: "This cannot be planned as it is." },
 };
+
+// "Planning: tour, 40 %, about 12 s left"
+export function progressText({ phase, fraction, left }: PlanningProgress): string {
+  const parts = [phase, fraction === null ? "" : `${Math.floor(100 * fraction)} %`,
+                 left === null ? "" : `about ${Math.max(1, Math.round(left))} s left`];
+  const known = parts.filter(Boolean).join(", ");
+  return known ? `Planning: ${known}` : "Planning\u2026";
+}
 
 export class TopBar {
   constructor(private readonly studio: Studio) {
@@ -42,7 +51,8 @@ export class TopBar {
     const more = grade === "rejected" && failing > 0
       ? `${failing} ${failing === 1 ? "place" : "places"} on the path ${
         failing === 1 ? "fails" : "fail"}.` : message || look.text;
-    byId("grade-text").textContent = session.welcomed ? more : "";
+    const planning = session.planning();
+    byId("grade-text").textContent = !session.welcomed ? "" : planning ? progressText(planning) : more;
     badge.title = ms !== null ? `${look.text} Answered after ${Math.round(ms)} ms.` : look.text;
     const button = (id: string, word: string, key: string, can: boolean, label: string): void => {
       const found = byId<HTMLButtonElement>(id);

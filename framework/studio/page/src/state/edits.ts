@@ -2,6 +2,7 @@
 // Edits of a film as patches with a label. A list that keeps its length is changed entry by entry,
 // any other is set whole.
 import { entries, filmOf } from "./film";
+import { endNames, isCourse } from "./course";
 import { freeGround, lifted } from "./room";
 import { cornersOf, flatCorners, handleOf, movedObstacle } from "./shapes";
 import type { Json, JsonObject, Patch, Vec3 } from "./types";
@@ -13,7 +14,8 @@ export interface Edit {
 }
 
 export type Item =
-  | { kind: "keyframe" | "look" | "subject" | "obstacle" | "zone"; index: number }
+  | { kind: "keyframe" | "look" | "subject" | "obstacle" | "zone" | "gate"; index: number }
+  | { kind: "end"; index: 0 | 1 }                 // where a race starts and finishes
   | { kind: "track"; index: number; point: number }
   | { kind: "corner"; of: "obstacle" | "zone"; index: number; point: number };
 
@@ -23,15 +25,20 @@ const pointOf = (item: Item): string =>
 export const sameItem = (a: Item | null, b: Item | null): boolean =>
   a !== null && b !== null && a.kind === b.kind && a.index === b.index && pointOf(a) === pointOf(b);
 
-const listNames: Record<Exclude<Item["kind"], "corner">, string> = {
+const listNames: Record<Exclude<Item["kind"], "corner" | "end">, string> = {
   keyframe: "keyframes", look: "keyframes", subject: "subjects", obstacle: "obstacles",
-  track: "subjects", zone: "flight_zones",
+  track: "subjects", zone: "flight_zones", gate: "gates",
 };
 
-const listOf = (item: Item): string => listNames[item.kind === "corner" ? item.of : item.kind];
+const listOf = (item: Exclude<Item, { kind: "end" }>): string =>
+  listNames[item.kind === "corner" ? item.of : item.kind];
 
 // A flight zone is a prism that says nothing of its type.
 export function entryOf(document: JsonObject, item: Item): JsonObject | null {
+  if (item.kind === "end") {
+    const position = isCourse(document) ? vec(document[endNames[item.index]]) : null;
+    return position && { position };
+  }
   const entry = entries(document, listOf(item))[item.index];
   if (!entry) return null;
   const shaped = listOf(item) === "flight_zones" ? { ...entry, type: "prism" } : entry;
@@ -50,6 +57,8 @@ export function nameOf(document: JsonObject, item: Item): string {
   const name = typeof entry?.name === "string" && entry.name ? entry.name : "";
   const n = item.index + 1;
   switch (item.kind) {
+    case "end": return endNames[item.index];
+    case "gate": return name ? `gate ${name}` : `gate ${n}`;
     case "keyframe": return `keyframe ${n}`;
     case "look": return `look-at point of keyframe ${n}`;
     case "subject": return name ? `subject ${name}` : `subject ${n}`;
@@ -62,8 +71,9 @@ export function nameOf(document: JsonObject, item: Item): string {
 }
 
 export function pathOfItem(document: JsonObject, item: Item): string | null {
+  if (item.kind === "end") return endNames[item.index];
   const list = `${listOf(item)}[${item.index + 1}]`;
-  if (item.kind === "keyframe") return `${list}.position`;
+  if (item.kind === "keyframe" || item.kind === "gate") return `${list}.position`;
   if (item.kind === "look") return `${list}.look_at`;
   if (item.kind === "track") return `${list}.track[${item.point + 1}].position`;
   if (item.kind === "subject") {
@@ -75,7 +85,9 @@ export function pathOfItem(document: JsonObject, item: Item): string | null {
 export function placeOfItem(document: JsonObject, item: Item): Vec3 | null {
   const entry = entryOf(document, item);
   if (!entry) return null;
-  if (item.kind === "keyframe") return vec(entry.position);
+  if (item.kind === "keyframe" || item.kind === "gate" || item.kind === "end") {
+    return vec(entry.position);
+  }
   if (item.kind === "look") return vec(entry.look_at);
   if (item.kind === "obstacle" || item.kind === "zone") return handleOf(entry);
   if (item.kind === "corner") {
@@ -93,7 +105,7 @@ export function moved(document: JsonObject, item: Item, to: Vec3): Edit | null {
   if (!from || !entry) return null;
   const label = `Move ${nameOf(document, item)}`;
   const path = pathOfItem(document, item);
-  if (path) return { label, patch: [{ path, value: rounded(to) }] };
+  if (path || item.kind === "end") return path ? { label, patch: [{ path, value: rounded(to) }] } : null;
   const list = `${listOf(item)}[${item.index + 1}]`;
   if (item.kind === "obstacle" || item.kind === "zone") {
     const patch = movedObstacle(entry, list, minus(to, from));
@@ -196,7 +208,7 @@ export function duplicated(document: JsonObject, index: number): (Edit & { index
 export function addedCorner(document: JsonObject, item: Item): (Edit & { point: number }) | null {
   const owner = corneredItem(document, item);
   const corners = cornersOf(owner && entryOf(document, owner)?.corners);
-  if (!owner || corners.length < 3) return null;
+  if (!owner || owner.kind === "end" || corners.length < 3) return null;
   const point = item.kind === "corner" ? item.point : corners.length - 1;
   const [ax, ay] = corners[point] as [number, number];
   const [bx, by] = corners[(point + 1) % corners.length] as [number, number];
@@ -217,11 +229,13 @@ export function without(document: JsonObject, label: string, index: number, key:
 }
 
 export function deleted(document: JsonObject, item: Item): Edit | null {
+  if (item.kind === "end") return null;
   const label = `Delete ${nameOf(document, item)}`;
   if (item.kind === "look") return without(document, label, item.index, "look_at");
   const name = listOf(item);
   const list = entries(document, name);
   if (item.kind === "keyframe" && list.length <= 2) return null;
+  if (item.kind === "gate" && list.length <= 1) return null;
   if (item.kind === "corner") {
     const corners = cornersOf(entryOf(document, item)?.corners);
     if (corners.length <= 3) return null;

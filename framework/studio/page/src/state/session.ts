@@ -7,7 +7,7 @@ import { Grades, type Standing } from "./grades";
 import { tryPatch } from "./queue";
 import type { Event, Link, SessionParts, Socket } from "./session_parts";
 import type {
-  Answer, Choices, Gesture, JsonObject, MissionInfo, Option, Patch, ServerMessage,
+  Answer, Choices, Gesture, JsonObject, MissionInfo, Option, Patch, PlanningProgress, ServerMessage,
   Welcome, World,
 } from "./types";
 
@@ -21,6 +21,7 @@ const MOST_AFTER = 64;                                 // as many as the server 
 export class Session {
   readonly grades: Grades;
   link: Link = "connecting";
+  private progress: PlanningProgress | null = null;
   mission: MissionInfo = { name: "", kind: "", script: "", editable: false };
   schema: Option[] = [];
   choices: Choices = {};
@@ -291,6 +292,9 @@ export class Session {
       case "world":
         this.world = message;
         return this.tell({ what: "world" });
+      case "progress":
+        this.progress = message;
+        return this.tell({ what: "standing" });
       case "flown": return this.tell({ what: "flown", message });
       case "picture": return this.tell({ what: "picture", message });
       case "wrote": return this.tell({ what: "wrote", message });
@@ -372,7 +376,15 @@ export class Session {
     this.nextStep();
   }
 
+  // How far planning has come, of the document as it is and until it has an answer.
+  planning(): PlanningProgress | null {
+    const { progress } = this;
+    const here = progress?.revision === this.revision && this.pending === 0 && !this.drag;
+    return here && ["guess", "step"].includes(this.standing().grade) ? progress : null;
+  }
+
   private answered(message: Answer): void {
+    this.progress = null;
     this.grades.take(message);
     this.tell({ what: "standing", message });
   }

@@ -2,7 +2,7 @@
 // The guess: a cubic spline through the keyframes, twice differentiable, at rest at its ends where
 // the film is. It knows no limits and no obstacles; it is there at once.
 import { filmOf, headingTo, targetAt, type Film } from "./film";
-import { quaternionOf } from "./camera";
+import { quaternionOf, type Quaternion } from "./camera";
 import type { Columns, JsonObject, Plan, Vec3 } from "./types";
 
 export interface Spline {
@@ -98,7 +98,7 @@ export function guessOf(document: JsonObject): Plan {
     const [x, y, z] = axes.map((axis) => splineAt(axis, time)) as
       [[number, number, number], [number, number, number], [number, number, number]];
     const position: Vec3 = [x[0], y[0], z[0]];
-    push(columns, time, position, [x[1], y[1], z[1]], [x[2], y[2], z[2]]);
+    pushSample(columns, time, position, [x[1], y[1], z[1]], [x[2], y[2], z[2]]);
     turn(columns, film, time, position, [x[1], y[1], z[1]]);
   }
   return {
@@ -107,14 +107,14 @@ export function guessOf(document: JsonObject): Plan {
   };
 }
 
-function emptyColumns(): Columns {
+export function emptyColumns(): Columns {
   const columns: Record<string, number[]> = {};
   for (const name of ["time", "x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", "qw", "qx", "qy",
                       "qz"]) columns[name] = [];
   return columns as Columns;
 }
 
-function push(columns: Columns, time: number, p: Vec3, v: Vec3, a: Vec3): void {
+export function pushSample(columns: Columns, time: number, p: Vec3, v: Vec3, a: Vec3): void {
   columns.time.push(time);
   ["x", "y", "z"].forEach((axis, i) => {
     columns[axis]?.push(p[i] as number);
@@ -128,7 +128,10 @@ function turn(columns: Columns, film: Film, time: number, position: Vec3, veloci
   let yaw: number, pitch = 0;
   if (target) ({ yaw, pitch } = headingTo(position, target));
   else yaw = statedYaw(film, time) ?? Math.atan2(velocity[1], velocity[0]);
-  const q = quaternionOf(yaw, pitch);
+  pushView(columns, quaternionOf(yaw, pitch));
+}
+
+export function pushView(columns: Columns, q: Quaternion): void {
   ["qw", "qx", "qy", "qz"].forEach((name, i) => columns[name]?.push(q[i] as number));
 }
 

@@ -179,7 +179,16 @@ export interface Flown {
   worst?: { position_error: number; time?: number; limit?: number; mean?: number } | null;
 }
 
+export interface PlanningProgress {
+  type: "progress";
+  revision: number;
+  phase: string;
+  fraction: number | null;   // of the whole
+  left: number | null;       // s
+}
+
 export type ServerMessage =
+  | PlanningProgress
   | Welcome
   | DocumentMessage
   | Answer

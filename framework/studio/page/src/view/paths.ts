@@ -4,7 +4,7 @@
 import * as THREE from "three";
 import { pathOf, positionAt, viewAt } from "../state/samples";
 import type { Grade } from "../state/grades";
-import type { Columns, Plan, Vec3 } from "../state/types";
+import type { Columns, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import { Ribbon } from "./ribbon";
 import { segments } from "./ground";
@@ -100,7 +100,6 @@ export class Paths {
   private drawStems(): void {
     const points = this.studio.film.keyframes.flatMap(({ position: [x, y, z] }) =>
       [x, y, z, x, y, 0, x - 0.4, y, 0.01, x + 0.4, y, 0.01, x, y - 0.4, 0.01, x, y + 0.4, 0.01]);
-    for (const gate of this.studio.plan.gates ?? []) points.push(...gateLines(gate));
     replace(this.stems, points);
   }
 
@@ -168,21 +167,6 @@ function partOf(columns: Columns, start: number, finish: number): Vec3[] {
     const p = positionAt(columns, time);
     return p ? [p] : [];
   });
-}
-
-type Gate = NonNullable<Plan["gates"]>[number];
-
-// The opening as a closed line; corners are to its left and up from its middle.
-function gateLines({ position: p, direction: d, up: u, radius, corners }: Gate): number[] {
-  const left: Vec3 = [u[1] * d[2] - u[2] * d[1], u[2] * d[0] - u[0] * d[2],
-                      u[0] * d[1] - u[1] * d[0]];
-  const rim = corners && corners.length > 2 ? corners
-    : Array.from({ length: 24 }, (_, i): [number, number] =>
-        [radius * Math.cos((i * Math.PI) / 12), radius * Math.sin((i * Math.PI) / 12)]);
-  const at = ([a, b]: [number, number]): Vec3 => [0, 1, 2].map((k) =>
-    (p[k] as number) + a * (left[k] as number) + b * (u[k] as number)) as Vec3;
-  return rim.flatMap((corner, i) =>
-    [...at(corner), ...at(rim[(i + 1) % rim.length] as [number, number])]);
 }
 
 function replace(lines: THREE.LineSegments, points: number[]): void {

@@ -134,6 +134,9 @@ export class Pick {
     return hit && hit.distanceTo(ray.origin) < FARTHEST ? [hit.x, hit.y, height] : null;
   }
 
+  // A click of a race places a gate.
+  onGate: ((at: Vec3) => void) | null = null;
+
   private click(event: { clientX: number; clientY: number }): void {
     const { studio } = this;
     if (studio.mode === "place") return this.place(event);
@@ -153,6 +156,7 @@ export class Pick {
     const { studio } = this;
     const hit = this.surfaceAt(event);
     if (!hit) return;
+    if (studio.course) return this.onGate?.(hit);
     const last = studio.film.keyframes[studio.film.keyframes.length - 1];
     const at: Vec3 = [hit[0], hit[1], last ? last.position[2] : HEIGHT];
     if (hit[2] > at[2] - 1) at[2] = hit[2] + HEIGHT;

@@ -49,6 +49,8 @@ export function itemsOf(document: JsonObject, selection: Item | null): Item[] {
     if (Array.isArray(entry.look_at)) items.push({ kind: "look", index });
   });
   entries(document, "keyframes").forEach((_, index) => items.push({ kind: "keyframe", index }));
+  for (const index of [0, 1] as const) items.push({ kind: "end", index });
+  entries(document, "gates").forEach((_, index) => items.push({ kind: "gate", index }));
   return items;
 }
 
@@ -56,8 +58,12 @@ const keyOfItem = (item: Item): string => `${item.kind}-${item.index}${
   item.kind === "track" || item.kind === "corner" ? `-${item.point}` : ""}`;
 const glyphs: Record<Item["kind"], string> = {
   keyframe: "", look: "\u25ce", subject: "\u25b2", obstacle: "\u25a0", track: "\u2022",
-  zone: "\u25a1", corner: "\u25c6",
+  zone: "\u25a1", corner: "\u25c6", gate: "", end: "",
 };
+
+const textOf = (item: Item): string =>
+  item.kind === "keyframe" || item.kind === "gate" ? String(item.index + 1)
+    : item.kind === "end" ? "SF"[item.index] as string : glyphs[item.kind];
 
 export class Pins {
   private pins: Pin[] = [];
@@ -107,7 +113,7 @@ export class Pins {
       class: `pin ${item.kind}`, type: "button", "data-pin": keyOfItem(item),
       onclick: () => this.studio.select(item),
       onfocus: () => this.studio.select(item),
-    }, item.kind === "keyframe" ? String(item.index + 1) : glyphs[item.kind]);
+    }, textOf(item));
     button.addEventListener("pointerdown", (event) => this.press(event, item, button));
     // The gizmo beneath is not meant.
     button.addEventListener("pointermove", (event) => event.stopPropagation());

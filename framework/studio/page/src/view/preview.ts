@@ -184,6 +184,7 @@ export function previewControls(studio: Studio): HTMLElement {
       studio.tell("look");
     },
   }, "Place subject");
+  framing.classList.add("film-only");
   studio.on(["look"], () => framing.setAttribute("aria-pressed", String(studio.framing)));
   return el("div", { class: "row" }, framing,
     box("Guides", "Thirds, horizon and the subject's box (G)", () => studio.guides,
