@@ -8,6 +8,7 @@
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/site_objects.h"
+#include "framework/mission/site_terrain.h"
 #include "framework/surface/surface_mesh.h"
 
 namespace lapwing {
@@ -112,6 +113,43 @@ int read_cloud(lua_State* state) {
   return push_site(state, read_site_cloud(request, site_work_of(run)));
 }
 
+ParameterTable terrain_table() {
+  ParameterTable table = site_reference_table();
+  table.text("ground", "", "raster of the terrain without buildings and plants")
+      .number("cell", 0.5, "m", "distance between corners of the mesh", above(0));
+  return table;
+}
+
+// run:read_terrain{file =, ground =, resolution =, ...}: a site from rasters of heights.
+int read_terrain(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, terrain_table(), "read_terrain");
+  TerrainRequest request;
+  request.surface_name = given.text("file");
+  request.surface = run.files.find(request.surface_name, "meshes");
+  request.ground_name = given.text("ground");
+  if (!request.ground_name.empty())
+    request.ground = run.files.find(request.ground_name, "meshes");
+  request.reference = stated_reference(given, run);
+  request.only = kept_box(given);
+  request.resolution = given.number("resolution");
+  request.cell = given.number("cell");
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  return push_site(state, read_site_terrain(request, site_work_of(run)));
+}
+
+// site:ground(x, y): height of the terrain, or nil where it is not known.
+int ground_of_site(lua_State* state) {
+  const Site& site = *object_argument<SiteObject>(state, 1, kSiteType).site;
+  const double x = luaL_checknumber(state, 2), y = luaL_checknumber(state, 3);
+  const auto height = site.ground ? site.ground->height(x, y) : std::nullopt;
+  if (height)
+    lua_pushnumber(state, *height);
+  else
+    lua_pushnil(state);
+  return 1;
+}
+
 constexpr BoundField kSiteFields[] = {
     {"name", "string", "name of its file"},
     {"description", "string", "format and size of its data"},
@@ -198,14 +236,19 @@ int add_site(lua_State* state) {
 }  // namespace
 
 void open_site_library(lua_State* state) {
-  define_type<SiteObject>(state, kSiteType, {}, &guarded<site_field>);
+  static const Binding methods[] = {
+      {"ground", &guarded<ground_of_site>, "(x: number, y: number): number?",
+       "height of the terrain at a place, m, world; nil where it is not known"}};
+  define_type<SiteObject>(state, kSiteType, {methods}, &guarded<site_field>);
   note_fields(state, kSiteType, kSiteFields);
 }
 
 std::span<const Binding> site_methods_of_run() {
   static const Binding methods[] = {
       {"read_cloud", &guarded<read_cloud>, "(cloud: @): lapwing.site",
-       "a site from a point cloud: .las, .ply, .pcd, .xyz", &cloud_table}};
+       "a site from a point cloud: .las, .ply, .pcd, .xyz", &cloud_table},
+      {"read_terrain", &guarded<read_terrain>, "(terrain: @): lapwing.site",
+       "a site from rasters of heights: GeoTIFF, .asc", &terrain_table}};
   return methods;
 }
 

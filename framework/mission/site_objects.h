@@ -19,7 +19,7 @@ inline constexpr const char* kSiteType = "site";
 
 // Adds the type above; after open_lapwing_library.
 void open_site_library(lua_State* state);
-std::span<const Binding> site_methods_of_run();    // read_cloud
+std::span<const Binding> site_methods_of_run();    // read_cloud, read_terrain
 std::span<const Binding> site_methods_of_prior();  // add_site
 
 // What every reader of a site takes.

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "framework/geometry/height_grid.h"
 #include "framework/geometry/triangle_mesh.h"
 #include "framework/map/sky_columns.h"
 #include "framework/mission/map_work.h"
@@ -30,6 +32,8 @@ struct Site {
   std::vector<Eigen::Vector3d> scanners;  // m, world
   std::optional<TriangleMesh> mesh;      // in place of points
   std::optional<SkyColumns> solid;       // of a surface model: what is under it
+  // Heights of the terrain, of a surface model; those of the surface where there are no others.
+  std::shared_ptr<const HeightGrid> ground;
   std::optional<GeodeticOrigin> origin;  // of the world, where the data tell and the mission not
 };
 

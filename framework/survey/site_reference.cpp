@@ -26,7 +26,7 @@ std::string three(const Vector3d& p, int digits = 10) {
 SiteReference without_system(const StatedReference& stated) {
   const Vector3d zero = stated.zero.value_or(Vector3d::Zero());
   const double unit = stated.unit.value_or(1);
-  SiteReference reference{SiteFrame(zero, unit), {}, {}};
+  SiteReference reference{SiteFrame(zero, unit), {}, {}, {}};
   const Vector3d place = reference.frame.to_world(stated.sample);
   if (!(place.norm() <= kFarthestSite)) {
     const Vector3d near = (stated.sample / 100).array().floor() * 100;
@@ -118,7 +118,9 @@ SiteReference of_system(const StatedReference& stated, const std::string& text) 
   const double height_unit = system.vertical() ? 1 : unit_of_heights(stated, system, notes);
   std::optional<GeodeticOrigin> found;
   GeodeticPoint point;
-  if (stated.origin) {
+  if (stated.world) {
+    point = *stated.world;
+  } else if (stated.origin) {
     point = point_of_origin(stated, system, notes);
   } else {
     point = system.to_geodetic(
@@ -138,7 +140,7 @@ SiteReference of_system(const StatedReference& stated, const std::string& text) 
   }
   notes.insert(notes.begin(), "'" + stated.name + "': reference system '" + system.name() + "'" +
                                   (system.vertical() ? "" : ", heights as they are"));
-  return {SiteFrame(system, point, height_unit), std::move(notes), found};
+  return {SiteFrame(system, point, height_unit), std::move(notes), found, point};
 }
 
 }  // namespace

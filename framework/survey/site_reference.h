@@ -25,12 +25,15 @@ struct StatedReference {
   Eigen::Vector3d sample = Eigen::Vector3d::Zero();  // a place of the data, near their middle
   double lowest = 0;                                 // z of the data, about
   std::optional<GeodeticOrigin> origin;              // of the mission
+  // The world's origin as other data of the site have settled it, in place of all other sources.
+  std::optional<GeodeticPoint> world = std::nullopt;
 };
 
 struct SiteReference {
   SiteFrame frame;
   std::vector<std::string> notes;        // sentences for the user
   std::optional<GeodeticOrigin> origin;  // of the world, where the mission has none and data tell
+  std::optional<GeodeticPoint> world;    // the world's origin as the frame has it, with a system
 };
 
 // Without a system: coordinates are in `unit`, m where that is not stated, and `zero`, or their own

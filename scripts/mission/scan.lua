@@ -229,5 +229,8 @@ M.of_prior = mission
 -- A point cloud (`--set input=PATH`).
 ---@type fun(given: lapwing.scan.of_cloud): lapwing.mission
 M.of_cloud = mission_with("cloud")
+-- A raster of heights (`--set input=PATH`).
+---@type fun(given: lapwing.scan.of_terrain): lapwing.mission
+M.of_terrain = mission_with("terrain")
 
 return M
