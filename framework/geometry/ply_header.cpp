@@ -28,7 +28,7 @@ PlyType ply_type_named(const std::string& word) {
 }
 
 PlyProperty read_ply_property(std::istringstream& words, const std::string& line,
-                       const std::string& name) {
+                              const std::string& name) {
   PlyProperty property;
   std::string type;
   words >> type;
@@ -46,7 +46,8 @@ PlyProperty read_ply_property(std::istringstream& words, const std::string& line
   return property;
 }
 
-void read_ply_line(const std::string& line, const std::string& name, bool& has_format, PlyHeader& header) {
+void read_ply_line(const std::string& line, const std::string& name, bool& has_format,
+                   PlyHeader& header) {
   std::istringstream words(line);
   std::string first, second, third;
   words >> first;
@@ -118,15 +119,15 @@ void check_ply_counts(const PlyHeader& header, std::uint64_t room, const std::st
   for (const PlyElement& e : header.elements) {
     claim += (claim.empty() ? "" : " and ") + std::to_string(e.count) + " " + e.name;
     if (e.count > 0 && e.properties.empty()) {
-      fail_ply_header(name,
-               "its " + std::to_string(e.count) + " elements '" + e.name + "' have no property");
+      fail_ply_header(
+          name, "its " + std::to_string(e.count) + " elements '" + e.name + "' have no property");
     }
     needed += static_cast<double>(e.count) * static_cast<double>(e.least_bytes(header.encoding));
   }
   // A text may lack the last line's end.
   if (needed > static_cast<double>(room) + 1) {
     fail_ply_header(name, "its header claims " + claim + ", which cannot fit in the " +
-                       std::to_string(room) + " bytes that follow");
+                              std::to_string(room) + " bytes that follow");
   }
 }
 

@@ -57,8 +57,8 @@ class BlockPyramid {
   int width() const { return width_; }
   int depth() const { return depth_; }
   const ColumnBlock& block(int level, int x, int y) const {
-    return levels_[static_cast<std::size_t>(level)][place(level, (x - x_) >> level,
-                                                          (y - y_) >> level)];
+    return levels_[static_cast<std::size_t>(level)]
+                  [place(level, (x - x_) >> level, (y - y_) >> level)];
   }
 
  private:
@@ -128,17 +128,21 @@ class VoxelBits {
       count *= static_cast<double>(size_[i]);
     }
     if (count > 0x1p34)
-      throw InputError("the box around the cloud and its scanners has more than 2^34 voxels: "
-                       "choose a larger resolution or a smaller region");
+      throw InputError(
+          "the box around the cloud and its scanners has more than 2^34 voxels: "
+          "choose a larger resolution or a smaller region");
     bits_.resize((size_[0] * size_[1] * size_[2] + 63) / 64);
   }
   bool inside(const int (&cell)[3]) const {
     for (std::size_t i = 0; i < 3; ++i)
-      if (cell[i] < low_[i] || static_cast<std::size_t>(cell[i] - low_[i]) >= size_[i]) return false;
+      if (cell[i] < low_[i] || static_cast<std::size_t>(cell[i] - low_[i]) >= size_[i])
+        return false;
     return true;
   }
   bool at(const int (&cell)[3]) const { return bits_[place(cell) / 64] >> place(cell) % 64 & 1; }
-  void set(const int (&cell)[3]) { bits_[place(cell) / 64] |= std::uint64_t{1} << place(cell) % 64; }
+  void set(const int (&cell)[3]) {
+    bits_[place(cell) / 64] |= std::uint64_t{1} << place(cell) % 64;
+  }
 
   // In the order of keys: x slowest.
   std::vector<VoxelKey> keys() const {
@@ -174,8 +178,9 @@ SkyColumns::SkyColumns(int x, int y, int width, int depth)
     : x_(x), y_(y), width_(width), depth_(depth) {
   const std::int64_t count = static_cast<std::int64_t>(width) * depth;
   if (width < 0 || depth < 0 || count > kMostColumns)
-    throw InputError("the surface has more than 2^28 columns of voxels: choose a larger "
-                     "resolution or a smaller region");
+    throw InputError(
+        "the surface has more than 2^28 columns of voxels: choose a larger "
+        "resolution or a smaller region");
   tops_.assign(static_cast<std::size_t>(count), kUnknown);
 }
 

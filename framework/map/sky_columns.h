@@ -45,10 +45,10 @@ class SkyColumns {
   std::vector<std::int32_t> tops_;  // x fastest
 };
 
-// Voxels that straight lines from a scanner to the middles of `measured` voxels pass before they meet
-// one of `occupied`, each once, in the order of keys. Of several scanners the nearest one counts for
-// each voxel. Voxels farther than `range` (m) from it give none. `scanners` in metres, world.
-// InputError for a scanner outside of the largest map, or a box of more than 2^34 voxels.
+// Voxels that straight lines from a scanner to the middles of `measured` voxels pass before they
+// meet one of `occupied`, each once, in the order of keys. Of several scanners the nearest one
+// counts for each voxel. Voxels farther than `range` (m) from it give none. `scanners` in metres,
+// world. InputError for a scanner outside of the largest map, or a box of more than 2^34 voxels.
 std::vector<VoxelKey> free_from_scanners(std::span<const VoxelKey> measured,
                                          std::span<const VoxelKey> occupied,
                                          std::span<const Eigen::Vector3d> scanners,

@@ -13,8 +13,8 @@
 #include "framework/mission/options.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scene_script.h"
-#include "framework/mission/site_objects.h"
 #include "framework/mission/script_lines.h"
+#include "framework/mission/site_objects.h"
 #include "framework/mission/term_recording.h"
 
 namespace lapwing {

@@ -128,8 +128,7 @@ int read_terrain(lua_State* state) {
   request.surface_name = given.text("file");
   request.surface = run.files.find(request.surface_name, "meshes");
   request.ground_name = given.text("ground");
-  if (!request.ground_name.empty())
-    request.ground = run.files.find(request.ground_name, "meshes");
+  if (!request.ground_name.empty()) request.ground = run.files.find(request.ground_name, "meshes");
   request.reference = stated_reference(given, run);
   request.only = kept_box(given);
   request.resolution = given.number("resolution");
@@ -196,8 +195,7 @@ TriangleMesh mesh_of_site(const Site& site, const Parameters& given) {
   try {
     return surface_from_points(site.points, {given.number("cell"), given.number("trim")});
   } catch (const InputError& error) {
-    throw InputError(given.origin(),
-                     "no mesh can be made of '" + site.name + "': " + error.what());
+    throw InputError(given.origin(), "no mesh can be made of '" + site.name + "': " + error.what());
   }
 }
 
@@ -213,8 +211,8 @@ int add_site(lua_State* state) {
   begin_planning(run);
   const Sandbox::ClockPause pause(Sandbox::of(state));
   if (run.settings.progress)
-    run.settings.progress->report(-1, "surface through " + std::to_string(site.points.size()) +
-                                          " points");
+    run.settings.progress->report(
+        -1, "surface through " + std::to_string(site.points.size()) + " points");
   TriangleMesh mesh = mesh_of_site(site, given);
   const std::string& free = given.text("free");
   try {
@@ -230,6 +228,7 @@ int add_site(lua_State* state) {
   prior.mesh = std::make_shared<MeshScene>(std::move(mesh), site.name);
   prior.mapping.source = "file '" + site.name + "'";
   prior.rays.elsewhere = site.spacing;
+  prior.surveyed = true;
   return 0;
 }
 
@@ -253,9 +252,9 @@ std::span<const Binding> site_methods_of_run() {
 }
 
 std::span<const Binding> site_methods_of_prior() {
-  static const Binding methods[] = {
-      {"add_site", &guarded<add_site>, "(site: @)",
-       "sets its map and its mesh from the data of a site", &add_site_table, kSiteObjects}};
+  static const Binding methods[] = {{"add_site", &guarded<add_site>, "(site: @)",
+                                     "sets its map and its mesh from the data of a site",
+                                     &add_site_table, kSiteObjects}};
   return methods;
 }
 

@@ -237,8 +237,7 @@ Site read_site_terrain(const TerrainRequest& request, const MapWork& work) {
   if (box.isEmpty())
     throw InputError("'" + request.surface_name + "': it does not reach into the region");
   surface.load(box);
-  const HeightGrid heights =
-      grid_of(surface, request.surface_name, box, request.resolution, work);
+  const HeightGrid heights = grid_of(surface, request.surface_name, box, request.resolution, work);
   Site site;
   site.name = request.surface_name;
   site.resolution = request.resolution;
@@ -254,7 +253,8 @@ Site read_site_terrain(const TerrainRequest& request, const MapWork& work) {
   const int stride = std::max(1, static_cast<int>(std::lround(request.cell / request.resolution)));
   site.mesh = mesh_of_heights(heights, stride);
   if (site.mesh->triangles.empty())
-    throw InputError("'" + request.surface_name + "': its data in the region have gaps everywhere, "
+    throw InputError("'" + request.surface_name +
+                     "': its data in the region have gaps everywhere, "
                      "so that there is no surface between them");
   if (!request.ground) {
     site.ground = std::make_shared<HeightGrid>(heights);
@@ -264,8 +264,8 @@ Site read_site_terrain(const TerrainRequest& request, const MapWork& work) {
   same.world = surface.reference().world;
   PlacedRaster ground(*request.ground, request.ground_name, same);
   ground.load(box);
-  site.ground = std::make_shared<HeightGrid>(
-      grid_of(ground, request.ground_name, box.intersection(ground.box()), request.resolution, work));
+  site.ground = std::make_shared<HeightGrid>(grid_of(
+      ground, request.ground_name, box.intersection(ground.box()), request.resolution, work));
   note_gaps(ground, *site.ground, request.ground_name, site.notes);
   return site;
 }

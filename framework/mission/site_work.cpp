@@ -142,7 +142,8 @@ class CloudReading {
 
   std::vector<Eigen::Vector3d> scanners_in_world() const {
     std::vector<Eigen::Vector3d> places;
-    for (const Eigen::Vector3d& place : request_.scanners) places.push_back(frame_->to_world(place));
+    for (const Eigen::Vector3d& place : request_.scanners)
+      places.push_back(frame_->to_world(place));
     return places;
   }
 
@@ -180,8 +181,7 @@ Site read_site_cloud(const CloudRequest& request, const MapWork& work) {
 
 void map_site(const Site& site, const TriangleMesh& mesh, const SiteAir& air, Map& map) {
   const VoxelGrid& grid = map.grid();
-  std::vector<VoxelKey> occupied =
-      surface_voxels(mesh.vertices, mesh.triangles, grid.resolution());
+  std::vector<VoxelKey> occupied = surface_voxels(mesh.vertices, mesh.triangles, grid.resolution());
   const std::size_t of_mesh = occupied.size();
   occupied.insert(occupied.end(), site.measured.begin(), site.measured.end());
   std::inplace_merge(occupied.begin(), occupied.begin() + static_cast<std::ptrdiff_t>(of_mesh),
@@ -195,8 +195,7 @@ void map_site(const Site& site, const TriangleMesh& mesh, const SiteAir& air, Ma
          free_from_scanners(site.measured, occupied, site.scanners, grid, air.range))
       leaves.push_back({key, 0, 0, -kSure});
   if (site.solid) {
-    const std::vector<VoxelLeaf> solid =
-        site.solid->solid_below(grid.index(site.bounds.min().z()));
+    const std::vector<VoxelLeaf> solid = site.solid->solid_below(grid.index(site.bounds.min().z()));
     leaves.insert(leaves.end(), solid.begin(), solid.end());
   }
   for (const VoxelKey& key : occupied) leaves.push_back({key, 0, 0, kSure});

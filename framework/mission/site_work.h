@@ -21,17 +21,17 @@ namespace lapwing {
 
 // A site as data show it: by points with normals, or by a mesh and what is solid beneath it.
 struct Site {
-  std::string name;         // of the file
-  std::string description;  // "LAS 1.4, point format 6, 1000 points"
-  std::vector<std::string> notes;        // sentences for the user
-  Eigen::AlignedBox3d bounds;            // m, world, of all that is kept
-  double resolution = 0;                 // m, of the voxels
-  double spacing = 0;                    // m, between points of the surface
-  std::vector<FusedPoint> points;        // of a cloud
-  std::vector<VoxelKey> measured;        // voxels with points, in the order of keys
+  std::string name;                       // of the file
+  std::string description;                // "LAS 1.4, point format 6, 1000 points"
+  std::vector<std::string> notes;         // sentences for the user
+  Eigen::AlignedBox3d bounds;             // m, world, of all that is kept
+  double resolution = 0;                  // m, of the voxels
+  double spacing = 0;                     // m, between points of the surface
+  std::vector<FusedPoint> points;         // of a cloud
+  std::vector<VoxelKey> measured;         // voxels with points, in the order of keys
   std::vector<Eigen::Vector3d> scanners;  // m, world
-  std::optional<TriangleMesh> mesh;      // in place of points
-  std::optional<SkyColumns> solid;       // of a surface model: what is under it
+  std::optional<TriangleMesh> mesh;       // in place of points
+  std::optional<SkyColumns> solid;        // of a surface model: what is under it
   // Heights of the terrain, of a surface model; those of the surface where there are no others.
   std::shared_ptr<const HeightGrid> ground;
   std::optional<GeodeticOrigin> origin;  // of the world, where the data tell and the mission not
@@ -40,9 +40,9 @@ struct Site {
 struct CloudRequest {
   std::filesystem::path file;
   CloudFileOptions options;
-  StatedReference reference;   // without what the data say; its name stands in messages
-  std::set<int> without;       // classes that are left out
-  std::vector<Eigen::Vector3d> scanners;    // in the cloud's coordinates
+  StatedReference reference;              // without what the data say; its name stands in messages
+  std::set<int> without;                  // classes that are left out
+  std::vector<Eigen::Vector3d> scanners;  // in the cloud's coordinates
   std::optional<Eigen::AlignedBox2d> only;  // m, world: what lies outside is left out
   double resolution = 0.2, spacing = 0.4;   // m
   std::size_t most = 20'000'000;            // voxels with points

@@ -152,10 +152,10 @@ class SurfaceOfCloud {
   // Above 0 where the normal's own side is the open one.
   double openness(const Vector3d& p, const Vector3d& normal) const {
     if (!settings_.scanners.empty()) {
-      const auto nearest = std::min_element(
-          settings_.scanners.begin(), settings_.scanners.end(), [&](const auto& a, const auto& b) {
-            return (a - p).squaredNorm() < (b - p).squaredNorm();
-          });
+      const auto nearest = std::min_element(settings_.scanners.begin(), settings_.scanners.end(),
+                                            [&](const auto& a, const auto& b) {
+                                              return (a - p).squaredNorm() < (b - p).squaredNorm();
+                                            });
       return normal.dot((*nearest - p).normalized());
     }
     double sum = 0;
@@ -172,7 +172,8 @@ class SurfaceOfCloud {
     parallel_for(points_.size(), settings_.threads, [&](std::size_t i) {
       if (!here_[i]) return;
       Vector3d& normal = points_[i].normal;
-      of_file_[i] = normal.norm() > 0.5 * points_[i].images ? normal.normalized().eval() : Vector3d::Zero();
+      of_file_[i] =
+          normal.norm() > 0.5 * points_[i].images ? normal.normalized().eval() : Vector3d::Zero();
       normal = of_file_[i].norm() > 0 ? of_file_[i] : across_plane(i);
       const double open = openness(points_[i].position, normal);
       if (open < 0) normal = -normal;

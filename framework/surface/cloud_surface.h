@@ -10,7 +10,7 @@
 namespace lapwing {
 
 struct CloudSurfaceSettings {
-  double spacing = 0.4;                    // m, edge of the cubes that give a point each
+  double spacing = 0.4;                   // m, edge of the cubes that give a point each
   std::vector<Eigen::Vector3d> scanners;  // m, world: from where the cloud was measured, if known
   int threads = 1;
 };

@@ -108,9 +108,10 @@ Answer answer_of(const std::vector<std::string>& words) {
 // What the program prints of the file.
 std::string asked(const fs::path& file, const std::vector<std::string>& question) {
   if (!rasters_available())
-    fail_raster(file, "Lapwing was built without GDAL, which reads rasters. On Debian, as root: "
-                      "apt-get install libgdal-dev, then build again (cmake --fresh --preset "
-                      "release)");
+    fail_raster(file,
+                "Lapwing was built without GDAL, which reads rasters. On Debian, as root: "
+                "apt-get install libgdal-dev, then build again (cmake --fresh --preset "
+                "release)");
   std::error_code error;
   if (!fs::is_regular_file(file, error)) fail_raster(file, "it is no file that can be read");
   std::vector<std::string> words{raster_program().string(), question[0], file.string()};

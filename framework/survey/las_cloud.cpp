@@ -13,7 +13,7 @@ constexpr std::size_t kShortHeader = 227, kNewHeader = 375;  // bytes; of 1.0 to
 constexpr std::array<std::size_t, 11> kPointSizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 constexpr int kFirstNewFormat = 6;  // with 8 bits of class, and flags beside them
 constexpr std::size_t kRecordHead = 54, kLateRecordHead = 60;  // bytes
-constexpr std::size_t kLongestRecord = 1 << 20;  // bytes, of those that are read
+constexpr std::size_t kLongestRecord = 1 << 20;                // bytes, of those that are read
 
 class LasCloud final : public CloudReader {
  public:
@@ -26,9 +26,9 @@ class LasCloud final : public CloudReader {
     header_.system_note = system.note;
     bytes_.seek(data_, "its points");
     if (points_ > bytes_.left() / size_)
-      bytes_.fail("it is cut short: its header states " + std::to_string(points_) +
-                  " points of " + std::to_string(size_) + " bytes, and " +
-                  std::to_string(bytes_.left() / size_) + " are there");
+      bytes_.fail("it is cut short: its header states " + std::to_string(points_) + " points of " +
+                  std::to_string(size_) + " bytes, and " + std::to_string(bytes_.left() / size_) +
+                  " are there");
     header_.points = left_ = points_;
   }
 
@@ -138,8 +138,8 @@ class LasCloud final : public CloudReader {
   void read_point(const char* bytes, CloudPoint& point) const {
     point = {};
     for (int axis = 0; axis < 3; ++axis) {
-      const auto whole = static_cast<std::int32_t>(
-          static_cast<std::uint32_t>(little_number(bytes + 4 * axis, 4)));
+      const auto whole =
+          static_cast<std::int32_t>(static_cast<std::uint32_t>(little_number(bytes + 4 * axis, 4)));
       point.position[axis] = whole * scale_[axis] + offset_[axis];
     }
     const auto byte = [&](int place) { return static_cast<unsigned char>(bytes[place]); };

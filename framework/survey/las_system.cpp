@@ -11,7 +11,7 @@ namespace {
 // Ids of keys, and values that refer to no code (OGC 19-008r4).
 constexpr int kGeographicSystem = 2048, kProjectedSystem = 3072, kProjectedCitation = 3073;
 constexpr int kCitation = 1026, kVerticalSystem = 4096, kVerticalUnit = 4099;
-constexpr int kOwn = 32767;          // user-defined
+constexpr int kOwn = 32767;           // user-defined
 constexpr int kFirstVertical = 3855;  // EPSG; below and from 5001 to 5199 are codes of old
 constexpr int kOldVertical = 5000, kLastOldVertical = 5199;
 constexpr int kTextTag = 34737;
@@ -60,8 +60,7 @@ class GeoKeys {
 };
 
 bool vertical_code(int code) {
-  return code >= kFirstVertical && code < kOwn &&
-         (code < kOldVertical || code > kLastOldVertical);
+  return code >= kFirstVertical && code < kOwn && (code < kOldVertical || code > kLastOldVertical);
 }
 
 LasSystem system_of_keys(const LasSystemRecords& records) {
@@ -95,10 +94,14 @@ LasSystem system_of_keys(const LasSystemRecords& records) {
 
 double metres_of_unit(int code) {
   switch (code) {
-    case 9001: return 1;
-    case 9002: return 0.3048;
-    case 9003: return 1200.0 / 3937.0;  // US survey foot
-    default: return 0;
+    case 9001:
+      return 1;
+    case 9002:
+      return 0.3048;
+    case 9003:
+      return 1200.0 / 3937.0;  // US survey foot
+    default:
+      return 0;
   }
 }
 

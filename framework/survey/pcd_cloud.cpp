@@ -65,14 +65,22 @@ class PcdCloud final : public CloudReader {
       if (words.empty()) continue;
       const std::string key = words.front();
       words.erase(words.begin());
-      if (key == "FIELDS" || key == "COLUMNS") fields = words;
-      else if (key == "SIZE") sizes = words;
-      else if (key == "TYPE") types = words;
-      else if (key == "COUNT") counts = words;
-      else if (key == "WIDTH") width = whole(words, key), sized = true;
-      else if (key == "HEIGHT") height = whole(words, key);
-      else if (key == "POINTS") points_ = whole(words, key), counted = true;
-      else if (key == "VIEWPOINT") read_viewpoint(words);
+      if (key == "FIELDS" || key == "COLUMNS")
+        fields = words;
+      else if (key == "SIZE")
+        sizes = words;
+      else if (key == "TYPE")
+        types = words;
+      else if (key == "COUNT")
+        counts = words;
+      else if (key == "WIDTH")
+        width = whole(words, key), sized = true;
+      else if (key == "HEIGHT")
+        height = whole(words, key);
+      else if (key == "POINTS")
+        points_ = whole(words, key), counted = true;
+      else if (key == "VIEWPOINT")
+        read_viewpoint(words);
       else if (key == "DATA") {
         data_ = data_named(words);
         if (!sized && !counted) bytes_.fail("its header states neither POINTS nor WIDTH");
@@ -166,8 +174,7 @@ class PcdCloud final : public CloudReader {
     if (points_ > (bytes_.left() + 1) / least)
       bytes_.fail("it is cut short: its header states " + std::to_string(points_) +
                   " points, and the " + std::to_string(bytes_.left()) +
-                  " bytes that follow hold at most " +
-                  std::to_string((bytes_.left() + 1) / least));
+                  " bytes that follow hold at most " + std::to_string((bytes_.left() + 1) / least));
   }
 
   void unpack() {

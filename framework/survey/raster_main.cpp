@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // lapwing_raster: tells Lapwing what GDAL reads of a raster, from a process of its own.
 //   lapwing_raster info FILE                          one JSON object
-//   lapwing_raster read FILE COLUMN ROW WIDTH HEIGHT  floats row by row, NaN where there are no data
+//   lapwing_raster read FILE COLUMN ROW WIDTH HEIGHT  floats row by row, NaN where there are no
+//   data
 // Exit status 2 with one sentence on standard error for a file that holds no heights.
 #include <cpl_conv.h>
 #include <cpl_error.h>
@@ -56,7 +57,8 @@ Raster opened(const char* file) {
   if (bands < 1) refuse("it has no raster band");
   raster.band = GDALGetRasterBand(raster.set, 1);
   const GDALDataType type = GDALGetRasterDataType(raster.band);
-  if (GDALDataTypeIsComplex(type)) refuse("its values are complex numbers, and heights are expected");
+  if (GDALDataTypeIsComplex(type))
+    refuse("its values are complex numbers, and heights are expected");
   if (bands >= 3 && type == GDT_Byte)
     refuse("it has " + std::to_string(bands) +
            " bands of bytes: it is a picture, and heights are expected");
@@ -107,12 +109,12 @@ std::string system_of(const Raster& raster) {
 void tell(const Raster& raster) {
   std::array<double, 6> transform{};
   if (GDALGetGeoTransform(raster.set, transform.data()) != CE_None)
-    refuse("it has no georeferencing: it does not state where its pixels lie. Write it with one, as "
-           "gdal_translate -a_srs EPSG:... -a_ullr LEFT UPPER RIGHT LOWER does");
+    refuse(
+        "it has no georeferencing: it does not state where its pixels lie. Write it with one, as "
+        "gdal_translate -a_srs EPSG:... -a_ullr LEFT UPPER RIGHT LOWER does");
   const int columns = std::min(raster.width, kSamples), rows = std::min(raster.height, kSamples);
   float lowest = std::numeric_limits<float>::infinity();
-  for (const float value :
-       values_of(raster, 0, 0, raster.width, raster.height, columns, rows))
+  for (const float value : values_of(raster, 0, 0, raster.width, raster.height, columns, rows))
     if (value < lowest) lowest = value;
   if (std::isinf(lowest)) refuse("none of its pixels has data");
   const char* unit = GDALGetRasterUnitType(raster.band);

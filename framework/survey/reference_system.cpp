@@ -129,8 +129,7 @@ void ReferenceSystem::Impl::read_parts(const PJ* system) {
   const Object part(proj_crs_get_sub_crs(context.get(), whole.get(), 0));
   const Object up(proj_crs_get_sub_crs(context.get(), whole.get(), 1));
   if (!part || !up) throw refusal(text, "PROJ cannot take it apart");
-  if (const char* wkt = proj_as_wkt(context.get(), part.get(), PJ_WKT2_2019, nullptr))
-    across = wkt;
+  if (const char* wkt = proj_as_wkt(context.get(), part.get(), PJ_WKT2_2019, nullptr)) across = wkt;
   read_horizontal(unbound(context.get(), part.get()).get());
   const Object up_alone = unbound(context.get(), up.get());
   const Object axes(proj_crs_get_coordinate_system(context.get(), up_alone.get()));

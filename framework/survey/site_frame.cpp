@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStep = 100;             // m, edge of the cubes
+constexpr double kStep = 100;                // m, edge of the cubes
 constexpr double kStepDegrees = 1.0 / 1024;  // of latitude and longitude, about 109 m
 
 }  // namespace
@@ -68,8 +68,8 @@ SiteFrame::SiteFrame(const ReferenceSystem& system, const GeodeticPoint& origin,
     return Vector3d(p.x(), p.y(), p.z() / height);
   };
   const double step = system.geographic() ? kStepDegrees : kStep / system.metres_per_unit();
-  forth_ = std::make_shared<LatticeFunction>(exactly_forth_,
-                                             Vector3d(step, step, kStep / height_unit));
+  forth_ =
+      std::make_shared<LatticeFunction>(exactly_forth_, Vector3d(step, step, kStep / height_unit));
   back_ = std::make_shared<LatticeFunction>(exactly_back_, Vector3d::Constant(kStep));
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRounding = 1e5;      // of a degree
+constexpr double kRounding = 1e5;  // of a degree
 constexpr double kDegreesExtent = 0.5, kDegreesShare = 0.2;
 
 [[noreturn]] void refuse_site(const StatedReference& stated, const std::string& why) {
@@ -35,7 +35,8 @@ SiteReference without_system(const StatedReference& stated) {
                     plain_number(place.norm(), 4) +
                     " m from the world's origin, and at most 1e5 m are possible. State their "
                     "reference system (" +
-                    stated.option + ".system = \"EPSG:...\"), or which of them is the world's "
+                    stated.option +
+                    ".system = \"EPSG:...\"), or which of them is the world's "
                     "origin (" +
                     stated.option + ".zero = {" + plain_number(near.x(), 10) + ", " +
                     plain_number(near.y(), 10) + ", " + plain_number(near.z(), 10) + "})");
@@ -99,8 +100,9 @@ GeodeticPoint point_of_origin(const StatedReference& stated, const ReferenceSyst
                               std::vector<std::string>& notes) {
   const GeodeticOrigin& origin = *stated.origin;
   if (origin.height_of == HeightOf::ground)
-    refuse_site(stated, "origin.height is above the ground, which does not tell how high the "
-                        "heights of the data lie: state it above the ellipsoid or the sea");
+    refuse_site(stated,
+                "origin.height is above the ground, which does not tell how high the "
+                "heights of the data lie: state it above the ellipsoid or the sea");
   if (system.vertical()) return {origin.latitude_deg, origin.longitude_deg, *origin.altitude()};
   notes.push_back("'" + stated.name + "': its heights are taken to be above the " +
                   std::string(to_string(origin.height_of)) + ", as origin.height is");
@@ -109,10 +111,11 @@ GeodeticPoint point_of_origin(const StatedReference& stated, const ReferenceSyst
 
 SiteReference of_system(const StatedReference& stated, const std::string& text) {
   if (stated.zero)
-    refuse_site(stated, stated.option + ".zero is the world's origin in coordinates without a "
-                        "reference system: give it or " + stated.option + ".system");
-  if (stated.unit)
-    refuse_site(stated, "its unit is that of its reference system: leave unit out");
+    refuse_site(stated, stated.option +
+                            ".zero is the world's origin in coordinates without a "
+                            "reference system: give it or " +
+                            stated.option + ".system");
+  if (stated.unit) refuse_site(stated, "its unit is that of its reference system: leave unit out");
   std::vector<std::string> notes;
   const ReferenceSystem system = usable_system(stated, text, notes);
   const double height_unit = system.vertical() ? 1 : unit_of_heights(stated, system, notes);
@@ -123,8 +126,7 @@ SiteReference of_system(const StatedReference& stated, const std::string& text) 
   } else if (stated.origin) {
     point = point_of_origin(stated, system, notes);
   } else {
-    point = system.to_geodetic(
-        {stated.sample.x(), stated.sample.y(), height_unit * stated.lowest});
+    point = system.to_geodetic({stated.sample.x(), stated.sample.y(), height_unit * stated.lowest});
     point.latitude_deg = std::round(point.latitude_deg * kRounding) / kRounding;
     point.longitude_deg = std::round(point.longitude_deg * kRounding) / kRounding;
     point.altitude = std::floor(point.altitude);

@@ -18,10 +18,10 @@ struct StatedReference {
   std::string name;    // of the data, in messages
   std::string option;  // of the table in which the user states the next four: "cloud"
   std::string system;  // "" where the user states none
-  std::optional<Eigen::Vector3d> zero;        // in the data's coordinates: the world's origin
-  std::optional<double> unit, height_unit;    // m, of x, y and z without a system; of z with one
-  std::string system_of_data, note_of_data;   // "" where the data say nothing
-  double height_unit_of_data = 0;             // m; 0 where they do not say
+  std::optional<Eigen::Vector3d> zero;       // in the data's coordinates: the world's origin
+  std::optional<double> unit, height_unit;   // m, of x, y and z without a system; of z with one
+  std::string system_of_data, note_of_data;  // "" where the data say nothing
+  double height_unit_of_data = 0;            // m; 0 where they do not say
   Eigen::Vector3d sample = Eigen::Vector3d::Zero();  // a place of the data, near their middle
   double lowest = 0;                                 // z of the data, about
   std::optional<GeodeticOrigin> origin;              // of the mission

@@ -36,9 +36,10 @@ Separators separators_of(std::string_view line) {
   if (line.find(',') == line.npos) return {};
   if (line.find(';') != line.npos) return {" \t;", true};
   const Words words = split_at(line, " \t");
-  const bool inside = words.size() >= 3 && std::all_of(words.begin(), words.end(), [](const auto& w) {
-    return std::count(w.begin(), w.end(), ',') <= 1 && !w.ends_with(',') && !w.starts_with(',');
-  });
+  const bool inside =
+      words.size() >= 3 && std::all_of(words.begin(), words.end(), [](const auto& w) {
+        return std::count(w.begin(), w.end(), ',') <= 1 && !w.ends_with(',') && !w.starts_with(',');
+      });
   if (inside) return {" \t", true};
   return {};
 }
@@ -122,15 +123,15 @@ class TextCloud final : public CloudReader {
     }
     for (const CloudField axis : {CloudField::x, CloudField::y, CloudField::z})
       if (std::count(fields_.begin(), fields_.end(), axis) != 1)
-        bytes_.fail(where + " names no columns x, y and z, each once: state columns = \"x y z\", "
-                            "with - for others");
+        bytes_.fail(where +
+                    " names no columns x, y and z, each once: state columns = \"x y z\", "
+                    "with - for others");
   }
 
   void read_point(CloudPoint& point) const {
     std::size_t column = 0;
     for (std::size_t at = 0; at <= line_.size() && column < fields_.size();) {
-      const std::size_t end =
-          std::min(line_.find_first_of(separators_.between, at), line_.size());
+      const std::size_t end = std::min(line_.find_first_of(separators_.between, at), line_.size());
       if (end > at) {
         if (fields_[column] != CloudField::none)
           set_cloud_field(point, fields_[column], number_of(line_.substr(at, end - at)));

@@ -93,8 +93,7 @@ TEST(CloudSurface, NormalsFaceTheScanner) {
       EXPECT_GT(point.normal.x() * (side - 5), 4.9) << side;
   }
   // Free-standing, without scanners: as the file says.
-  const CloudSurface stated =
-      surface_of_cloud(thinned_of(wall, 0.2, {-1, 0, 0}), {.spacing = 0.4});
+  const CloudSurface stated = surface_of_cloud(thinned_of(wall, 0.2, {-1, 0, 0}), {.spacing = 0.4});
   for (const FusedPoint& point : stated.points) EXPECT_LT(point.normal.x(), -0.99);
 }
 

@@ -58,8 +58,8 @@ constexpr const char* kPlyProperties =
 template <bool kBig>
 std::string binary_ply() {
   MadeBytes bytes;
-  bytes.text(ply_head(kBig ? "binary_big_endian" : "binary_little_endian", kFive.size(),
-                      kPlyProperties));
+  bytes.text(
+      ply_head(kBig ? "binary_big_endian" : "binary_little_endian", kFive.size(), kPlyProperties));
   const auto put = [&](auto value) { kBig ? bytes.put_big(value) : bytes.put(value); };
   for (const Vector3d& p : kFive) {
     put(static_cast<float>(p.x()));
@@ -111,11 +111,12 @@ TEST(PlyCloud, WhatIsWrongIsSaid) {
   EXPECT_THAT(refusal_of_cloud(whole.substr(0, whole.size() - 100), ".ply"),
               AllOf(HasSubstr("'cloud.ply'"), HasSubstr("5 vertex")));
   EXPECT_THAT(refusal_of_cloud(whole.substr(0, whole.size() - 3), ".ply"), HasSubstr("cut short"));
-  EXPECT_THAT(refusal_of_cloud(ply_head("ascii", 1, "property float x\nproperty float y\n"), ".ply"),
-              HasSubstr("claims 1 vertex"));
   EXPECT_THAT(
-      refusal_of_cloud(ply_head("ascii", 1, "property float x\nproperty float y\n") + "1 2\n", ".ply"),
-      HasSubstr("lack z"));
+      refusal_of_cloud(ply_head("ascii", 1, "property float x\nproperty float y\n"), ".ply"),
+      HasSubstr("claims 1 vertex"));
+  EXPECT_THAT(refusal_of_cloud(
+                  ply_head("ascii", 1, "property float x\nproperty float y\n") + "1 2\n", ".ply"),
+              HasSubstr("lack z"));
   EXPECT_THAT(refusal_of_cloud("ply\nformat ascii 1.0\nend_header\n", ".ply"),
               HasSubstr("no element 'vertex'"));
 }
@@ -153,11 +154,10 @@ TEST(PcdCloud, AllEncodings) {
     text += std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) +
             " 0.5\n";
   expect_positions(read_cloud_of(text, ".pcd"), kFive);
-  expect_positions(
-      read_cloud_of(pcd_head("binary", kFive.size()) + pcd_numbers(), ".pcd"), kFive);
+  expect_positions(read_cloud_of(pcd_head("binary", kFive.size()) + pcd_numbers(), ".pcd"), kFive);
   const std::string columns = pcd_columns();
-  expect_positions(
-      read_cloud_of(compressed_pcd(packed_plainly(columns), columns.size()), ".pcd"), kFive);
+  expect_positions(read_cloud_of(compressed_pcd(packed_plainly(columns), columns.size()), ".pcd"),
+                   kFive);
 }
 
 TEST(PcdCloud, PointsWithoutNumbersAndViewpoints) {
@@ -211,10 +211,11 @@ TEST(Lzf, LiteralsAndCopies) {
 TEST(TextCloud, SeparatorsHeadersAndColumns) {
   const std::vector<Vector3d> two{{1.5, 2.5, 3.5}, {4.5, -5.5, 6.5}};
   for (const char* text :
-       {"1.5 2.5 3.5\n4.5 -5.5 6.5\n", "1.5,2.5,3.5\n4.5,-5.5,6.5", "1.5, 2.5, 3.5\n4.5, -5.5, 6.5\n",
-        "1,5;2,5;3,5\n4,5;-5,5;6,5\n", "1,5 2,5 3,5\n4,5 -5,5 6,5\n", "1.5\t2.5\t3.5\n4.5\t-5.5\t6.5\n",
-        "# made\n\nX Y Z\n1.5 2.5 3.5\n4.5 -5.5 6.5\n", "//X,Y,Z\r\n1.5,2.5,3.5\r\n4.5,-5.5,6.5\r\n",
-        "2\n1.5 2.5 3.5 9 9\n+4.5 -5.5 6.5 9 9\n",
+       {"1.5 2.5 3.5\n4.5 -5.5 6.5\n", "1.5,2.5,3.5\n4.5,-5.5,6.5",
+        "1.5, 2.5, 3.5\n4.5, -5.5, 6.5\n", "1,5;2,5;3,5\n4,5;-5,5;6,5\n",
+        "1,5 2,5 3,5\n4,5 -5,5 6,5\n", "1.5\t2.5\t3.5\n4.5\t-5.5\t6.5\n",
+        "# made\n\nX Y Z\n1.5 2.5 3.5\n4.5 -5.5 6.5\n",
+        "//X,Y,Z\r\n1.5,2.5,3.5\r\n4.5,-5.5,6.5\r\n", "2\n1.5 2.5 3.5 9 9\n+4.5 -5.5 6.5 9 9\n",
         "intensity,z,\"y\",x\n9,3.5,2.5,1.5\n9,6.5,-5.5,4.5\n"}) {
     SCOPED_TRACE(text);
     expect_positions(read_cloud_of(text, ".xyz"), two);
@@ -243,7 +244,8 @@ TEST(TextCloud, WhatIsWrongIsSaid) {
 TEST(StreamBytes, LinesAndWordsAcrossBlocks) {
   std::string text;
   const int lines = 70'000;
-  for (int i = 0; i < lines; ++i) text += std::to_string(i) + " " + std::to_string(i % 7) + " 0.25 \n";
+  for (int i = 0; i < lines; ++i)
+    text += std::to_string(i) + " " + std::to_string(i % 7) + " 0.25 \n";
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "lapwing_stream_bytes.xyz";
   write_file_atomically(file, text);

@@ -87,15 +87,17 @@ TEST_F(HeightRaster, AsGdallocationinfo) {
                                 answer.string() + "'";
     ASSERT_EQ(std::system(command.c_str()), 0);
     const Eigen::Vector2d pixel = info.to_coordinates.inverse() * Eigen::Vector2d(x, y);
-    const float z = raster_values(file, {static_cast<int>(pixel.x()), static_cast<int>(pixel.y()), 1, 1}).at(0);
+    const float z =
+        raster_values(file, {static_cast<int>(pixel.x()), static_cast<int>(pixel.y()), 1, 1}).at(0);
     EXPECT_NEAR(std::stod(read_file(answer)), static_cast<double>(z), 1e-6);
   }
 }
 
 TEST_F(HeightRaster, AsciiGrids) {
-  const fs::path file = written(
-      "g.asc", "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 2\nNODATA_value -1\n"
-               "1 2 3\n4 -1 6\n");
+  const fs::path file =
+      written("g.asc",
+              "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 2\nNODATA_value -1\n"
+              "1 2 3\n4 -1 6\n");
   const RasterInfo info = raster_info(file);
   EXPECT_EQ(info.system, "");
   EXPECT_TRUE((info.to_coordinates * Eigen::Vector2d(0, 0)).isApprox(Eigen::Vector2d(100, 204)));
@@ -114,7 +116,8 @@ TEST_F(HeightRaster, WhatIsWrongIsSaid) {
   EXPECT_THAT(refusal(written("short.tif", whole.substr(0, 2000))), HasSubstr("short.tif'"));
   made = house_raster();
   made.height_at = [](double, double) { return std::nanf(""); };
-  EXPECT_THAT(refusal(written("b.tif", tiff_bytes(made))), HasSubstr("none of its pixels has data"));
+  EXPECT_THAT(refusal(written("b.tif", tiff_bytes(made))),
+              HasSubstr("none of its pixels has data"));
   EXPECT_THAT(refusal(folder_ / "none.tif"), HasSubstr("no file"));
   // A strip that reaches beyond the end of the file.
   std::string cut = whole;

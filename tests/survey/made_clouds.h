@@ -19,9 +19,9 @@ inline double slope_height(double x) {
   return 0.1 * x;
 }
 
-// Points every `step` metres, as an aircraft measures them: a slope of 40 m x 40 m, and on it a house
-// of 8 m x 6 m around the origin with a flat roof at z = 5, walls, and a canopy to its south, 2 m
-// deep at z = 3, of which only the upper side is measured. There are none under the house, and
+// Points every `step` metres, as an aircraft measures them: a slope of 40 m x 40 m, and on it a
+// house of 8 m x 6 m around the origin with a flat roof at z = 5, walls, and a canopy to its south,
+// 2 m deep at z = 3, of which only the upper side is measured. There are none under the house, and
 // under the canopy none.
 inline std::vector<Eigen::Vector3d> house_on_slope(double step) {
   std::vector<Eigen::Vector3d> points;

@@ -13,11 +13,11 @@
 namespace lapwing {
 
 struct MadeRaster {
-  int width = 40, height = 40;            // pixels
+  int width = 40, height = 40;             // pixels
   double left = 0, upper = 40, pixel = 1;  // in the raster's coordinates; rows go down
-  int system = 0;                         // EPSG of a projected one; 0: none
-  bool geographic = false;                // the EPSG code is that of a geographic system
-  bool placed = true;                     // with georeferencing
+  int system = 0;                          // EPSG of a projected one; 0: none
+  bool geographic = false;                 // the EPSG code is that of a geographic system
+  bool placed = true;                      // with georeferencing
   std::function<float(double x, double y)> height_at = [](double, double) { return 0.0f; };
 };
 
@@ -37,7 +37,9 @@ inline std::string tiff_bytes(const MadeRaster& made) {
   };
   constexpr std::uint16_t kAscii = 2, kShort = 3, kLong = 4, kDouble = 12;
   constexpr std::uint32_t kHead = 8;
-  const auto far = [&] { return kHead + static_cast<std::uint32_t>(values.size() + numbers.size()); };
+  const auto far = [&] {
+    return kHead + static_cast<std::uint32_t>(values.size() + numbers.size());
+  };
   const auto size = static_cast<std::uint32_t>(values.size());
   std::vector<Entry> entries{{256, kShort, 1, static_cast<std::uint32_t>(made.width)},
                              {257, kShort, 1, static_cast<std::uint32_t>(made.height)},
@@ -56,10 +58,22 @@ inline std::string tiff_bytes(const MadeRaster& made) {
     numbers.put(0.0).put(0.0).put(0.0).put(made.left).put(made.upper).put(0.0);
   }
   if (made.system > 0) {
-    const std::vector<std::uint16_t> keys{
-        1, 1, 0, 3, 1024, 0, 1, static_cast<std::uint16_t>(made.geographic ? 2 : 1), 1025, 0, 1, 1,
-        static_cast<std::uint16_t>(made.geographic ? 2048 : 3072), 0, 1,
-        static_cast<std::uint16_t>(made.system)};
+    const std::vector<std::uint16_t> keys{1,
+                                          1,
+                                          0,
+                                          3,
+                                          1024,
+                                          0,
+                                          1,
+                                          static_cast<std::uint16_t>(made.geographic ? 2 : 1),
+                                          1025,
+                                          0,
+                                          1,
+                                          1,
+                                          static_cast<std::uint16_t>(made.geographic ? 2048 : 3072),
+                                          0,
+                                          1,
+                                          static_cast<std::uint16_t>(made.system)};
     entries.push_back({34735, kShort, static_cast<std::uint32_t>(keys.size()), far()});
     for (const std::uint16_t key : keys) numbers.put(key);
   }

@@ -52,9 +52,10 @@ TEST(SiteFrame, WithoutASystem) {
 }
 
 TEST(SiteFrame, FarCoordinatesWantASystemOrAZero) {
-  EXPECT_THAT(refusal_of_site(stated_at({1e6, 20, 30})),
-              AllOf(HasSubstr("'site.las'"), HasSubstr("1e+06 m from the world's origin"),
-                    HasSubstr("cloud.system = \"EPSG:"), HasSubstr("cloud.zero = {1000000, 0, 0}")));
+  EXPECT_THAT(
+      refusal_of_site(stated_at({1e6, 20, 30})),
+      AllOf(HasSubstr("'site.las'"), HasSubstr("1e+06 m from the world's origin"),
+            HasSubstr("cloud.system = \"EPSG:"), HasSubstr("cloud.zero = {1000000, 0, 0}")));
   StatedReference stated = stated_at({1e6, 20, 30});
   stated.zero = Vector3d(1e6, 0, 0);
   EXPECT_EQ(refer_site(stated).frame.to_world({1e6 + 1, 2, 3}), Vector3d(1, 2, 3));
@@ -88,7 +89,7 @@ TEST(SiteFrame, ByASystem) {
   EXPECT_FALSE(found.origin) << "what heights are above is not known";
   const Vector3d at = found.frame.to_world(kDelft);
   EXPECT_LT(at.head<2>().norm(), 1);  // 1e-5 degrees
-  EXPECT_NEAR(at.z(), 0.17, 1e-3);  // interpolated
+  EXPECT_NEAR(at.z(), 0.17, 1e-3);    // interpolated
   const Vector3d east = found.frame.to_world(kDelft + Vector3d(100, 0, 0)) - at;
   EXPECT_NEAR(east.norm(), 100, 0.02);  // the scale of the grid
   EXPECT_GT(east.x(), 99.9);
@@ -137,7 +138,8 @@ TEST(SiteFrame, Feet) {
   stated.system_of_data = "EPSG:2263";
   const SiteReference found = refer_site(stated);
   EXPECT_THAT(all_notes(found), HasSubstr("in the unit of x and y, 0.30480061 m"));
-  const Vector3d up = found.frame.to_world(there + Vector3d(0, 0, 100)) - found.frame.to_world(there);
+  const Vector3d up =
+      found.frame.to_world(there + Vector3d(0, 0, 100)) - found.frame.to_world(there);
   EXPECT_NEAR(up.z(), 100 * foot, 1e-4);
   const Vector3d east =
       found.frame.to_world(there + Vector3d(100, 0, 0)) - found.frame.to_world(there);
