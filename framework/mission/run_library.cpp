@@ -11,6 +11,7 @@
 #include "framework/mission/players.h"
 #include "framework/mission/run.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/mission/site_objects.h"
 #include "framework/mission/value_path.h"
 
 namespace lapwing {
@@ -184,7 +185,7 @@ std::span<const Binding> told_methods() {
 BindingLists all_methods() {
   return {problem_methods_of_run(), solving_methods_of_run(), planning_methods_of_run(),
           told_methods(),           flight_methods_of_run(),  map_methods_of_run(),
-          scan_methods_of_run()};
+          scan_methods_of_run(),    site_methods_of_run()};
 }
 
 int run_field(lua_State* state) {

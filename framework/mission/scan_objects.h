@@ -31,6 +31,7 @@ struct Prior {
   std::shared_ptr<const MeshScene> mesh;   // null until it is made or read
   std::vector<Viewpoint> views;            // from which depth images were taken
   MapRays rays;                            // of those images, and of files
+  bool surveyed = false;                   // map and mesh are of a surveyor's data
   std::optional<Picture> scene;            // of the scene flown in, for the report alone
   std::shared_ptr<const MeshScene> truth;  // that scene, for the report's figures alone
 };

@@ -83,6 +83,7 @@ struct ReferenceSystem::Impl {
   void check_area(const GeodeticPoint& point, const std::string& what) const;
 
   std::string text, name, unit;
+  std::string across;  // the system without its vertical part as WKT, of one that has both
   bool geographic = false, vertical = false;
   double metres_per_unit = 0, metres_per_height = 1;
   double west = -180, south = -90, east = 180, north = 90;  // degrees, the area of use
@@ -125,10 +126,11 @@ ReferenceSystem::Impl::Impl(const std::string& stated)
 void ReferenceSystem::Impl::read_parts(const PJ* system) {
   const Object whole = unbound(context.get(), system);
   if (proj_get_type(whole.get()) != PJ_TYPE_COMPOUND_CRS) return read_horizontal(whole.get());
-  const Object across(proj_crs_get_sub_crs(context.get(), whole.get(), 0));
+  const Object part(proj_crs_get_sub_crs(context.get(), whole.get(), 0));
   const Object up(proj_crs_get_sub_crs(context.get(), whole.get(), 1));
-  if (!across || !up) throw refusal(text, "PROJ cannot take it apart");
-  read_horizontal(unbound(context.get(), across.get()).get());
+  if (!part || !up) throw refusal(text, "PROJ cannot take it apart");
+  if (const char* wkt = proj_as_wkt(context.get(), part.get(), PJ_WKT2_2019, nullptr)) across = wkt;
+  read_horizontal(unbound(context.get(), part.get()).get());
   const Object up_alone = unbound(context.get(), up.get());
   const Object axes(proj_crs_get_coordinate_system(context.get(), up_alone.get()));
   if (!axes || proj_get_type(up_alone.get()) != PJ_TYPE_VERTICAL_CRS)
@@ -200,6 +202,10 @@ bool ReferenceSystem::available() {
   return true;
 }
 
+ReferenceSystem ReferenceSystem::horizontal() const {
+  return impl_->across.empty() ? *this : of(impl_->across);
+}
+
 GeodeticPoint ReferenceSystem::to_geodetic(const Eigen::Vector3d& p) const {
   const Impl& in = *impl_;
   if (!p.allFinite()) throw refusal(in.text, "expected finite numbers, got " + point_text(p));
@@ -245,6 +251,10 @@ ReferenceSystem ReferenceSystem::of(const std::string& text) {
 
 bool ReferenceSystem::available() {
   return false;
+}
+
+ReferenceSystem ReferenceSystem::horizontal() const {
+  return *this;
 }
 
 GeodeticPoint ReferenceSystem::to_geodetic(const Eigen::Vector3d&) const {

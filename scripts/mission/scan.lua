@@ -15,6 +15,7 @@ local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
+local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
 local words = require "mission.scan_words"
@@ -207,6 +208,16 @@ end
 
 local function mission(given) return mission_of("scan", DECLARATIONS, given, planned) end
 
+-- Likewise of a surveyor's data, which are known in place of a first flight.
+local function mission_with(source)
+  return function(given)
+    return mission_of("scan", DECLARATIONS, given, function(run)
+      site.expect(run, source)
+      return planned(run)
+    end)
+  end
+end
+
 -- A scene of scripts/scene, a mesh file of the user (`--set input=PATH`), or files of a real flight
 -- (`prior`).
 ---@type fun(given: lapwing.scan.of_scene): lapwing.mission
@@ -215,5 +226,11 @@ M.of_scene = mission
 M.of_mesh = mission
 ---@type fun(given: lapwing.scan.of_prior): lapwing.mission
 M.of_prior = mission
+-- A point cloud (`--set input=PATH`).
+---@type fun(given: lapwing.scan.of_cloud): lapwing.mission
+M.of_cloud = mission_with("cloud")
+-- A raster of heights (`--set input=PATH`).
+---@type fun(given: lapwing.scan.of_terrain): lapwing.mission
+M.of_terrain = mission_with("terrain")
 
 return M

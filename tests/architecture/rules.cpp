@@ -127,11 +127,14 @@ constexpr Containment kContained[] = {
     {"zstd.h", "", true},
     {"lz4frame.h", "", true},
     {"proj.h", "framework/survey/", true},
+    {"gdal", "framework/survey/", true},
+    {"cpl_", "framework/survey/", true},
+    {"ogr_", "framework/survey/", true},
 };
 // Of these, one source file of the framework alone.
 constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/", "png.h",     "octomap/",
                                          "opencv2/",       "CGAL/",   "nanoflann", "torch/",
-                                         "boost/math/",    "proj.h"};
+                                         "boost/math/",    "proj.h",  "gdal.h"};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
