@@ -58,6 +58,8 @@ std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun
   SightSettings sight;
   sight.pinhole = pinhole_of(given.table("camera"));
   sight.range = given.number("range");
+  if (given.has("usable_range")) sight.usable_range = given.number("usable_range");
+  sight.usable_incidence = radians(given.number("usable_incidence_deg"));
   sight.region = box_of(given.table("region"), "the region of interest");
   work.prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
   work.visible = std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
@@ -146,6 +148,11 @@ ParameterTable graph_table() {
       .integer("across", 0, "pixels per row in the evaluation of candidates; 0: all",
                between(0, 10000))
       .number("range", 60, "m", "length of a ray", above(0))
+      .optional_number("usable_range", "m",
+                       "distance beyond which an image shows nothing of use; absent: any", above(0))
+      .number("usable_incidence_deg", 90, "deg",
+              "known angle of incidence beyond which an image shows nothing of use",
+              {.minimum = 0, .maximum = 90, .minimum_excluded = true})
       .table("flight", flight_table(), "speeds along a tour");
   return table;
 }

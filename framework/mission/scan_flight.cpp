@@ -146,14 +146,13 @@ ScanTask task_of_scan(const ScanWork& work, const std::vector<int>& views,
   task.views = std::move(taken);
   const std::vector<ViewKind> kinds = kinds_of(work, views);
   for (std::size_t i = 0; i < kinds.size(); ++i) task.views[i].kind = kinds[i];
-  std::vector<std::vector<SeenVoxel>> seen(views.size());
+  std::vector<std::vector<VoxelKey>> seen(views.size());
   parallel_for(views.size(), threads, [&](std::size_t i) {
-    seen[i] = work.visible->seen_from(
+    seen[i] = work.visible->voxels_from(
         work.graph.candidates.viewpoints[static_cast<std::size_t>(views[i])]);
   });
   std::vector<VoxelKey> all;
-  for (const auto& one : seen)
-    for (const SeenVoxel& voxel : one) all.push_back(voxel.voxel);
+  for (const auto& one : seen) all.insert(all.end(), one.begin(), one.end());
   std::sort(all.begin(), all.end());
   task.seen = std::unique(all.begin(), all.end()) - all.begin();
   return task;
