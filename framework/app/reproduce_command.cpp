@@ -196,8 +196,9 @@ class Reproducing {
     if (!folder.empty()) return records_in(studies() / study / folder);
     const fs::path answer = answer_of(study);
     const Value all = from_json(read_file(answer), answer.string());
-    const Value* rows = all.find("rows");
-    return rows && rows->is_list() ? rows->as_list() : Value::List{all};
+    for (const char* key : {"rows", "tours"})
+      if (const Value* rows = all.find(key); rows && rows->is_list()) return rows->as_list();
+    return {all};
   }
 
   static Value::List records_in(const fs::path& folder) {

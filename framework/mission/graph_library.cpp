@@ -33,16 +33,21 @@ std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, co
   return stops;
 }
 
-std::size_t ScanWork::motion_between(int a, int b) const {
+std::optional<std::size_t> ScanWork::find_motion(int a, int b) const {
   const auto& motions = graph.motions.motions;  // by a, then b
   const std::pair<int, int> wanted = std::minmax(a, b);
   const auto found = std::lower_bound(motions.begin(), motions.end(), wanted,
                                       [](const ViewMotion& m, const std::pair<int, int>& pair) {
                                         return std::pair(m.a, m.b) < pair;
                                       });
-  if (found == motions.end() || std::pair(found->a, found->b) != wanted)
-    throw Error("a tour passes from view to view without a motion");
+  if (found == motions.end() || std::pair(found->a, found->b) != wanted) return std::nullopt;
   return static_cast<std::size_t>(found - motions.begin());
+}
+
+std::size_t ScanWork::motion_between(int a, int b) const {
+  const auto found = find_motion(a, b);
+  if (!found) throw Error("a tour passes from view to view without a motion");
+  return *found;
 }
 
 std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {

@@ -92,6 +92,13 @@ std::string title_of(const ScanSummary& s) {
   return s.mission + ", a budget of " + text_of("%g", s.budget) + " s";
 }
 
+// What recall is measured against.
+std::string share_in_words(const ScanSummary& s) {
+  if (s.surface_share == 1) return "";
+  return "; recall of the " + text_of("%.1f", 100 * s.surface_share) +
+         " % of the surface that can be seen from a free place";
+}
+
 std::string remark_of(const ScanSummary& s) {
   std::string remark;
   if (s.counted < s.rows) {
@@ -138,9 +145,8 @@ std::string tables_text(const std::vector<ScanSummary>& summaries) {
     for (std::size_t i = first; i < end; ++i) width = std::max(width, summaries[i].method.size());
     const int seeds = summaries[first].rows;
     out += (out.empty() ? "" : "\n") + title_of(summaries[first]) + ", " + std::to_string(seeds) +
-           (seeds > 1 ? " seeds: means +- standard errors, in percent\n" : " seed, in percent\n") +
-           "recall of the " + text_of("%.1f", 100 * summaries[first].surface_share) +
-           " % of the surface in the region that can be seen from a free place\n";
+           (seeds > 1 ? " seeds: means +- standard errors, in percent" : " seed, in percent") +
+           share_in_words(summaries[first]) + "\n";
     constexpr std::size_t kWide = 15;
     out += padded("", width) + padded("with the first flight's images", 3 * kWide) +
            padded("without", 3 * kWide) + "\n" + padded("method", width, true);
@@ -217,8 +223,7 @@ Table table_of(const std::vector<ScanSummary>& summaries, std::size_t first, std
   Table table;
   table.title = title_of(summaries[first]) + ", " + std::to_string(summaries[first].rows) +
                 (summaries[first].rows > 1 ? " seeds: means and standard errors" : " seed") +
-                "; recall of the " + text_of("%.1f", 100 * summaries[first].surface_share) +
-                " % of the surface that can be seen from a free place";
+                share_in_words(summaries[first]);
   table.columns = {{"method", ""},   {"precision", "%"},       {"recall", "%"},
                    {"F", "%"},       {"precision alone", "%"}, {"recall alone", "%"},
                    {"F alone", "%"}, {"score", "%"},           {"gap", "%"},
