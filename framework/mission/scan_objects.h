@@ -67,7 +67,8 @@ struct ScanWork : LegFlight {
   std::vector<std::vector<int>> passes;
   std::vector<double> courses;
 
-  // The place of the motion between two views; Error where there is none.
+  // The place of the motion between two views; nothing, or Error, where there is none.
+  std::optional<std::size_t> find_motion(int a, int b) const;
   std::size_t motion_between(int a, int b) const;
   double leg_seconds(int a, int b) const { return seconds[motion_between(a, b)]; }
 };

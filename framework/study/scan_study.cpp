@@ -10,6 +10,7 @@
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/parallel.h"
+#include "framework/study/counted_surface.h"
 #include "framework/study/scan_photos.h"
 #include "framework/study/stopwatch.h"
 
@@ -90,7 +91,7 @@ class StudyRun {
 
   Value statement() const {
     Value value = Value::map();
-    value.set("format", 1);
+    value.set("format", 2);
     const auto list = [&](const char* key, const auto& entries, const auto& entry_of) {
       Value& made = value.set(key, Value::list());
       for (const auto& entry : entries) made.push_back(entry_of(entry));
@@ -105,6 +106,8 @@ class StudyRun {
       noise.set("dropped", study_.noise->dropped);
       noise.set("sigma", study_.noise->sigma);
     }
+    if (study_.range) value.set("range", *study_.range);
+    if (study_.incidence) value.set("incidence", *study_.incidence);
     if (study_.guard) value.set("guard", *study_.guard);
     if (study_.photos) value.set("photos", true);
     value.set("from", study_.statement);
@@ -135,9 +138,7 @@ class StudyRun {
     const Stopwatch preparing;
     const ScanCase scan = study_.prepare(m, s);
     const double prepared = preparing.seconds();
-    ReconstructionSettings settings = study_.reconstruction;
-    settings.region = scan.region;
-    const SurfaceSample surface(scan.surface->mesh(), settings, study_.threads);
+    const SurfaceSample surface = ground_truth(scan, study_.missions[m]);
     // One problem for each budget: its shortest ways serve all methods.
     std::vector<TourProblem> problems;
     for (std::size_t b = 0; b < budgets(); ++b) {
@@ -176,6 +177,17 @@ class StudyRun {
                     score, row.images, row.seconds);
       say_(name + ", " + row.method + (row.found ? text : ": no tour (" + row.message + ")"));
     });
+  }
+
+  SurfaceSample ground_truth(const ScanCase& scan, const std::string& mission) const {
+    const ReconstructionSettings judge = judged_by(study_, scan);
+    SurfaceSample surface(scan.surface->mesh(), judge, study_.threads);
+    if (!scan.viewing) return surface;
+    std::vector<Eigen::Vector3d> from;
+    for (const Pose& camera : scan.first_flight) from.push_back(camera.position);
+    count_visible(surface, scan.surface, judge, *scan.viewing, from, folder_ / "surface",
+                  file_name(mission), study_.threads, say_);
+    return surface;
   }
 
   // Before the row is written: where there is a row there is what its photographs came to.

@@ -18,6 +18,7 @@
 #include "framework/core/value.h"
 #include "framework/plugin/registry.h"
 #include "framework/study/scan_row.h"
+#include "framework/surface/viewing_space.h"
 #include "framework/view/pattern_tour.h"
 #include "framework/view/tour_solver.h"
 
@@ -34,6 +35,11 @@ struct ScanCase {
   double pattern_height = 30;                // m above the region's floor
   LegSeconds leg_seconds;                    // of patterns flown freely: as of every other tour
   std::shared_ptr<const MeshScene> surface;  // the true one
+  // m and rad, of what planning takes to be of use to a model.
+  double usable_range = ReconstructionSettings{}.range;
+  double usable_incidence = ReconstructionSettings{}.incidence;
+  // Where vehicles fly; absent: all of the surface counts. Its range and incidence are the judge's.
+  std::optional<ViewingSettings> viewing;
 };
 
 struct ScanStudy {
@@ -41,15 +47,19 @@ struct ScanStudy {
   std::vector<std::uint64_t> seeds;
   std::vector<double> budgets;  // s; empty: each mission's own
   std::vector<ScanMethod> methods;
-  std::optional<DepthNoise> noise;        // of the judged depth; absent: ideal
-  std::optional<double> guard = 300;      // s of wall clock for one solver
-  ReconstructionSettings reconstruction;  // its region is the case's
+  std::optional<DepthNoise> noise;         // of the judged depth; absent: ideal
+  std::optional<double> guard = 300;       // s of wall clock for one solver
+  ReconstructionSettings reconstruction;   // its region, range and incidence are the case's
+  std::optional<double> range, incidence;  // m and rad, that are judged by in place of the case's
   Value statement;      // of all else that rows depend on: scripts, configurations
   bool photos = false;  // whether COLMAP is asked to register photographs (study/scan_photos.h)
   int threads = 1;      // rows at once; results are the same
   // Makes a case: mission and seed, by their places. Called once for each that lacks a row.
   std::function<ScanCase(std::size_t mission, std::size_t seed)> prepare;
 };
+
+// What a case is judged by.
+ReconstructionSettings judged_by(const ScanStudy& study, const ScanCase& scan);
 
 // One row; `work_seconds` is set to what planning took, `cameras` to the tour's images.
 ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceSample& surface,
@@ -58,7 +68,8 @@ ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceS
                 double& work_seconds, std::vector<Pose>& cameras);
 
 // Rows of the whole study in their order: mission, budget, method, seed. Files go to `folder`:
-// study.json, rows/, times/ and, with photographs, photos/. Without `resume` a folder with another
+// study.json, rows/, times/, surface/ (study/counted_surface.h) and, with photographs, photos/.
+// Without `resume` a folder with another
 // study's rows is refused, with it one of a study that differs. InputError; Cancelled when told to
 // stop, rows so far are kept.
 std::vector<ScanRow> run_study(const ScanStudy& study, const std::filesystem::path& folder,

@@ -18,6 +18,7 @@ local phases = require "mission.scan_phases"
 local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
+local usable = require "mission.scan_usable"
 local words = require "mission.scan_words"
 local DECLARATIONS = require "mission.scan_options"
 
@@ -87,6 +88,7 @@ local function graph_of(run, known, vehicle, starts, finish)
       pitch_min_deg = gimbal and math.max(-90, math.deg(gimbal.pitch_min)) or -90,
       pitch_max_deg = gimbal and math.min(0, math.deg(gimbal.pitch_max)) or 0 },
     motions = o.motions, camera = o.camera, across = o.effort.pixels, range = space.range(run),
+    usable_range = usable.range(run), usable_incidence_deg = o.usable.incidence_deg,
     flight = o.flight,
     information = o.information, planner = o.planner,
   }

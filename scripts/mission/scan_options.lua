@@ -96,6 +96,12 @@ local DECLARATIONS = {
     number("sigma", 0, "m", "standard deviation of the depth", { minimum = 0, maximum = 100 }) } },
   number("range", nil, "m", "largest depth; absent: 60 m, up to 200 m if the first flight needs it "
          .. "to see the floor", POSITIVE),
+  { name = "usable", type = "table", summary = "limits within which an image is of use to the model; "
+    .. "`lapwing evaluate scan` judges by the same", table = {
+    number("range", nil, "m", "largest distance of a surface; absent: 30 m for a focal length of "
+           .. "345 px, in proportion to it; for images in passing, any", POSITIVE),
+    number("incidence_deg", 75, "deg", "largest angle between the ray and the normal of a surface",
+           { above = 0, maximum = 90 }) } },
   { name = "effort", type = "table", summary = "effort of computing", table = {
     integer("pixels", 0, 0, 10000, "pixels per row in the first flight and in the evaluation of "
             .. "views; 0: those of the camera. The plan keeps the camera"),
