@@ -3,6 +3,7 @@
 -- path. It is then flown as fast as the limits of the vehicle allow, with the times of keyframes as
 -- wishes, and slower until the vehicle keeps the tolerance.
 local attempts = require "mission.film_attempt"
+local film_times = require "mission.film_times"
 local requests = require "mission.film_request"
 local paths = require "mission.paths"
 local times = require "mission.keyframe_times"
@@ -87,7 +88,7 @@ local function at_share(run, request, memory)
   for i = 1, #stops - 1 do
     legs[i] = math.max(SHORTEST, timed.times[stops[i + 1]] - timed.times[stops[i]])
   end
-  local chosen, refused = run:keyframe_times { wishes = memory.wishes, legs = legs }
+  local chosen, refused = run:keyframe_times { wishes = request.wishes, legs = legs }
   if not chosen then
     if memory.share < 1 then return nil end
     local least = 0
@@ -96,16 +97,10 @@ local function at_share(run, request, memory)
       "cannot be passed at its time: from the keyframe before, the path takes at least %.3g s, "
       .. "from the start %.3g s", legs[refused - 1] or 0, least))
   end
-  local keyframes = {}
-  for i, k in ipairs(request.keyframes) do
-    keyframes[i] = { position = k.position, yaw = k.yaw, look_at = k.look_at,
-                     subject = k.subject, time = chosen[i] }
-  end
   times.check_battery(run, request.vehicle, chosen[#chosen])
   local places = places_of(timed, stops, chosen)
-  return requests.with(request, { keyframes = keyframes, duration = chosen[#chosen],
-                                  track = { places = places, weight = PULL / #places },
-                                  memory = memory })
+  return film_times.set(request, chosen, { track = { places = places, weight = PULL / #places },
+                                           memory = memory })
 end
 
 -- The film at its own pace, which gives the path.
@@ -119,7 +114,7 @@ function M.first(run, film)
   local keyframes = times.with_yaw((times.filled(untimed, nil, film.vehicle)))
   return requests.first { vehicle = film.vehicle, subjects = film.subjects, cuts = film.cuts,
                           terms = film.terms, origin = film.origin, keyframes = keyframes,
-                          duration = keyframes[#keyframes].time, memory = { wishes = asked } }
+                          duration = keyframes[#keyframes].time, wishes = asked, memory = {} }
 end
 
 -- The next request after an outcome; told are {notes, figures}.
@@ -130,7 +125,7 @@ function M.next(run, outcome)
       return nil, { notes = { "the path at its fastest times is not certified: "
                               .. attempts.complaint(outcome) } }
     end
-    local timed = { wishes = memory.wishes, path = outcome.solution.path, share = 1 }
+    local timed = { path = outcome.solution.path, share = 1 }
     local told = { notes = { "cancelled before the path was timed" } }
     if run:cancelled() then return nil, told end
     return at_share(run, requests.with(request, { legs = outcome.legs }), timed), told
@@ -146,7 +141,7 @@ function M.next(run, outcome)
     "no timing down to %.2g of the limits of the vehicle keeps the path within %.3g m", share,
     run.options.path_tolerance) } }
   if share <= SLOWEST or run:cancelled() then return nil, told end
-  local slower = { wishes = memory.wishes, path = memory.path, share = share }
+  local slower = { path = memory.path, share = share }
   return at_share(run, requests.with(request, { legs = outcome.legs }), slower), told
 end
 

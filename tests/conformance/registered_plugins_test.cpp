@@ -60,6 +60,7 @@ TEST(EveryPlugin, IsThere) {
                                    {"cost_term", "camera_angle"},
                                    {"cost_term", "skewness"},
                                    {"cost_term", "framing"},
+                                   {"cost_term", "subject_target"},
                                    {"cost_term", "occlusion"},
                                    {"constraint", "obstacle"},
                                    {"shape", "sphere"},

@@ -1,0 +1,124 @@
+-- SPDX-License-Identifier: Apache-2.0
+-- Film and times in one problem (thesis 3.5 to 3.7, 6.1): flight, camera, terms of the script and
+-- the times of keyframes are optimised together. It begins at a film whose times were found without the
+-- camera. The film is solved once more at the times that it finds, on stages of its own, so that
+-- both films are compared by the same cost. The cheaper one is kept, if it is certified.
+local attempts = require "mission.film_attempt"
+local film_problem = require "mission.film_problem"
+local film_times = require "mission.film_times"
+local horizons = require "mission.film_horizon"
+local keyframe_times = require "mission.keyframe_times"
+local requests = require "mission.film_request"
+local surroundings = require "mission.film_environment"
+
+local M = {}
+
+-- s, between stages. Where flights keep distances, they keep them between stages too, and longer
+-- steps need more room.
+local STEP, STEP_NEAR_THINGS = 0.2, 0.1
+local MOST_STAGES = 3000
+local FEWEST = 4         -- intervals of a leg
+local LONGEST = 4        -- times its duration so far, that a leg may take
+local NEARLY = 1e-3      -- first barrier parameter: the start is nearly optimal
+local NOTICED = 1e-6     -- relative, of a cost: less is no change
+
+-- Legs of free durations that begin at the times of keyframes, s.
+local function legs_of(run, outcome, list)
+  local step = run.options.step or STEP
+  if surroundings.near_things(run.options, outcome.request.subjects) then
+    step = math.min(step, STEP_NEAR_THINGS)
+  end
+  step = math.max(step, list[#list] / (MOST_STAGES - 1))
+  local legs = {}
+  for i = 2, #list do
+    local span = list[i] - list[i - 1]
+    legs[i - 1] = { duration = span, mode = "free", longest = LONGEST * span,
+                    intervals = math.max(FEWEST, math.ceil(span / step - 1e-9)) }
+  end
+  return legs
+end
+
+local function times_of(request)
+  local list = {}
+  for i, k in ipairs(request.keyframes) do list[i] = k.time end
+  return list
+end
+
+-- The solver for a problem that begins near its solution.
+local function finishing(solver)
+  if not solver.first_barrier then return solver end
+  local copy = {}
+  for name, value in pairs(solver) do copy[name] = value end
+  copy.first_barrier = math.min(copy.first_barrier, NEARLY)
+  return copy
+end
+
+-- The solution of the problem of a film and its times, from an outcome at given times.
+local function together(run, outcome)
+  local request, list = outcome.request, times_of(outcome.request)
+  local free = requests.with(request, { legs = outcome.legs, free = {
+    legs = legs_of(run, outcome, list), share = request.memory.share } })
+  local stated = film_problem.state(run, free)
+  local begin = run:plan { solution = outcome.solution, task = outcome.task,
+                           controller = run.options.controller,
+                           cuts = outcome.camera and outcome.camera.cuts or {} }
+  return run:solve(stated.problem, finishing(run.options.solver), { start = begin })
+end
+
+-- What an outcome costs, its times included.
+local function cost_of(run, outcome)
+  return outcome.solution.cost + film_times.cost(run.options.weights.time, outcome.request.wishes,
+                                                 times_of(outcome.request))
+end
+
+-- Whether the film asks for more than the flight, and for times that are not all given.
+function M.matters(run, outcome)
+  local o = run.options
+  return (outcome.camera or #o.costs > 0 or #o.constraints > 0)
+    and film_times.open(outcome.request.wishes)
+end
+
+-- The film at the times of a solution: an outcome; or nil, and why there is none that holds.
+local function film_at(run, outcome, solution)
+  local request = outcome.request
+  local list = film_times.of(solution, request.wishes)
+  keyframe_times.check_battery(run, request.vehicle, list[#list])
+  local film = attempts.attempt(run, film_times.set(request, list, {
+    legs = outcome.legs, may_fail = true }))
+  if film.holds then return film end
+  return nil, film.fault or attempts.complaint(film)
+end
+
+-- The better of a certified film and the one at times found together with its camera, and what is
+-- told of it: {notes, figures}.
+function M.improved(run, outcome, told)
+  if not M.matters(run, outcome) or run:cancelled() then return outcome, told end
+  local figures, notes = {}, table.move(told.notes, 1, #told.notes, 1, {})
+  for name, value in pairs(told.figures or {}) do figures[name] = value end
+  local all = { notes = notes, figures = figures }
+  local function kept(why)
+    notes[#notes + 1] = "the times are those found without the camera: " .. why
+    return outcome, all
+  end
+  if horizons.wanted(run, outcome.request) then return kept("the film is solved in parts") end
+  run:phase("film and times together")
+  local fine, solution = pcall(together, run, outcome)
+  if not fine then return kept("one problem of both cannot be stated: " .. tostring(solution)) end
+  local status = solution.status
+  if status ~= "optimal" and status ~= "feasible" then
+    local message = solution.message ~= "" and ": " .. solution.message or ""
+    return kept("the solver of both together ended with " .. status .. message)
+  end
+  local fits, film, why = pcall(film_at, run, outcome, solution)
+  if not fits then film, why = nil, tostring(film) end
+  if not film then return kept("at those found with it, " .. why) end
+  figures.cost_apart, figures.cost_together = cost_of(run, outcome), cost_of(run, film)
+  if figures.cost_together > figures.cost_apart * (1 + NOTICED) then
+    return kept(string.format("with those found with it, the film costs %.6g, not %.6g",
+                              figures.cost_together, figures.cost_apart))
+  end
+  figures.duration = film.request.duration
+  return film, all
+end
+
+return M
