@@ -123,7 +123,9 @@ local function fill(run, request, film, part)
   end
   surroundings.add_cruise(p, request, o.weights.speed, part)
   surroundings.add_speed_limit(p, o, limited)
-  if track and scope ~= "flight" then
+  if track and free then
+    film_times.add_path(p, track, keyframes.times)
+  elseif track and scope ~= "flight" then
     p:add_cost { type = "keyframe", name = "path", weight = track.weight,
                  keyframes = parts.entries(part, track.places) }
   end
@@ -149,7 +151,7 @@ local function fill(run, request, film, part)
   if scope == "film" or scope == "unconstrained" then
     own.add(p, o, request.terms, scope == "film")
   end
-  if free then film_times.add(p, o.weights.time, request.wishes, keyframes.times) end
+  if free then film_times.add(p, free.second, request.wishes, keyframes.times) end
   local guessed = guess(keyframes, camera, path)
   if not p:rests() then guessed.yaws = point_mass.courses(guessed.positions) end
   p:guess_path(guessed)

@@ -19,9 +19,11 @@ local requests = record.type("request", {
   stretch = "factor on all times",
   legs = "known paths between keyframes, from ways.planned",
   corridor = "whether the flight stays within free boxes around its path",
-  track = "places and times that attract the flight: {places, weight}, or nil",
+  track = "places and times that attract the flight: {places, weight}, or nil; legs: the path from "
+    .. "keyframe to keyframe as flat lists, if times are to be variables",
   wishes = "what keyframes ask of times that are found, from timing.wishes; nil: times are given",
-  free = "times are variables: {legs, as run:problem takes them, share of the inputs}, or nil",
+  free = "times are variables: {legs, as run:problem takes them; share of the inputs; second, the "
+    .. "cost of one}, or nil",
   may_fail = "whether an error of its statement is an outcome, with a `fault`",
   -- The part of the film in the problem:
   --   "film"           all of it

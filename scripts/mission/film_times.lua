@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Times of keyframes as variables of a problem: legs with a step each, and what keyframes wish of
 -- their times (thesis 3.5, 3.7).
+local paths = require "mission.paths"
 local requests = require "mission.film_request"
 
 local M = {}
@@ -32,6 +33,16 @@ function M.add(p, weight, wishes, list)
   end
 end
 
+-- Adds the path of a `track` to a problem whose times are variables, guessed in `list`: the flight
+-- is drawn to it at any time, and not to the places of the track at theirs.
+function M.add_path(p, track, list)
+  local weight = track.weight * #track.places / list[#list]
+  for i, points in ipairs(track.legs) do
+    p:add_cost { type = "path_distance", name = "path of leg " .. i, weight = weight,
+                 points = points, spans = { { start = list[i], finish = list[i + 1] } } }
+  end
+end
+
 -- The times of keyframes in a solution: the ends of its legs, and exact times exactly.
 function M.of(solution, wishes)
   local list, clock = { 0 }, 0
@@ -49,6 +60,28 @@ function M.cost(weight, wishes, list)
     if wish.time_weight then sum = sum + wish.time_weight * (list[i] - wish.time) ^ 2 end
   end
   return sum
+end
+
+-- Places of the flight of a solution with free `legs`, about `apart` s from each other, at their
+-- times: {time, value}.
+function M.places(solution, legs, apart)
+  local found, stage, clock = {}, 1, 0
+  local function add(time, number)
+    found[#found + 1] = { time = time, value = paths.point(solution.path, number) }
+  end
+  add(0, 1)
+  for i, leg in ipairs(legs) do
+    local step = solution.legs[i] / leg.intervals
+    local every = math.max(1, math.floor(apart / step + 0.5))
+    for k = 1, leg.intervals do
+      if k % every == 0 and k + every <= leg.intervals or k == leg.intervals then
+        add(clock + k * step, stage + k)
+      end
+    end
+    clock, stage = clock + solution.legs[i], stage + leg.intervals
+  end
+  found[#found].time = math.min(found[#found].time, clock)
+  return found
 end
 
 -- Whether any time is more than the script states.

@@ -15,6 +15,7 @@ local ROUNDING = 0.4    -- m, of the corners that stages make of a smooth path
 local PLACES = 0.2      -- s, between the places that draw the flight to the path
 local PULL = 2e4        -- weight of all those places together, per m^2
 local SHORTEST = 0.05   -- s, of a leg
+M.SECOND = 10           -- times weights.time: cost of a second in a problem of film and times
 local SLOWER, SLOWEST = 0.93, 0.25  -- share of what the vehicle can do, when it cannot follow
 
 local function wishes(k) return k.time_weight or k.earliest or k.latest end
@@ -75,6 +76,20 @@ local function places_of(timed, stops, chosen)
   return places
 end
 
+-- The points of the path from keyframe to keyframe, each as a flat list.
+local function legs_of(timed, stops)
+  local legs = {}
+  for i = 1, #stops - 1 do
+    local first, last = stops[i], math.max(stops[i + 1], stops[i] + 1)
+    legs[i] = table.move(timed.points, 3 * first - 2, 3 * last, 1, {})
+  end
+  return legs
+end
+
+local function track_of(places, legs)
+  return { places = places, weight = PULL / #places, legs = legs }
+end
+
 -- The film along the path of `memory` with its share of what the vehicle can do; nil where no times
 -- at that pace grant all wishes, but did at a faster one.
 local function at_share(run, request, memory)
@@ -98,9 +113,8 @@ local function at_share(run, request, memory)
       .. "from the start %.3g s", legs[refused - 1] or 0, least))
   end
   times.check_battery(run, request.vehicle, chosen[#chosen])
-  local places = places_of(timed, stops, chosen)
-  return film_times.set(request, chosen, { track = { places = places, weight = PULL / #places },
-                                           memory = memory })
+  return film_times.set(request, chosen, { memory = memory, track = track_of(
+    places_of(timed, stops, chosen), legs_of(timed, stops)) })
 end
 
 -- The film at its own pace, which gives the path.
@@ -117,6 +131,18 @@ function M.first(run, film)
                           duration = keyframes[#keyframes].time, wishes = asked, memory = {} }
 end
 
+-- Whether an outcome holds and keeps the path; its largest distance from it goes to `figures`.
+function M.keeps_path(run, outcome, figures)
+  figures.path_error = run:path_distance { points = outcome.solution.path,
+                                           path = outcome.request.memory.path }
+  return outcome.holds and figures.path_error <= run.options.path_tolerance
+end
+
+-- The track of a film along the same path at the times of a solution with free `legs`.
+function M.retimed(request, solution, legs)
+  return track_of(film_times.places(solution, legs, PLACES), request.track.legs)
+end
+
 -- The next request after an outcome; told are {notes, figures}.
 function M.next(run, outcome)
   local request, memory = outcome.request, outcome.request.memory
@@ -130,12 +156,8 @@ function M.next(run, outcome)
     if run:cancelled() then return nil, told end
     return at_share(run, requests.with(request, { legs = outcome.legs }), timed), told
   end
-  local figures = { duration = request.duration, share = memory.share,
-                    path_error = run:path_distance { points = outcome.solution.path,
-                                                     path = memory.path } }
-  if outcome.holds and figures.path_error <= run.options.path_tolerance then
-    return nil, { notes = {}, figures = figures }
-  end
+  local figures = { duration = request.duration, share = memory.share }
+  if M.keeps_path(run, outcome, figures) then return nil, { notes = {}, figures = figures } end
   local share = memory.share * SLOWER
   local told = { figures = figures, notes = { string.format(
     "no timing down to %.2g of the limits of the vehicle keeps the path within %.3g m", share,

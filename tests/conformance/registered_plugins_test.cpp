@@ -61,6 +61,7 @@ TEST(EveryPlugin, IsThere) {
                                    {"cost_term", "skewness"},
                                    {"cost_term", "framing"},
                                    {"cost_term", "subject_target"},
+                                   {"cost_term", "path_distance"},
                                    {"cost_term", "occlusion"},
                                    {"constraint", "obstacle"},
                                    {"shape", "sphere"},

@@ -200,6 +200,14 @@ TEST_F(FilmsAndTimes, WindowsHoldAndPreferredTimesArePaidFor) {
   EXPECT_GE(figure(held, "cost_together"), figure(free, "cost_together"));
 }
 
+TEST_F(FilmsAndTimes, APathIsKeptAtTimesThatTheCameraLikes) {
+  const Flown film =
+      flown(std::string(kWalked) + " }, { position = {20, 2, 3} } }", "--set timing=path_first");
+  ASSERT_EQ(film.status, 0) << to_json(film.result);
+  EXPECT_LT(figure(film, "cost_together"), 0.9 * figure(film, "cost_apart"));
+  EXPECT_LE(figure(film, "path_error"), 0.25);
+}
+
 TEST_F(FilmsAndTimes, ASolveThatComesToNoEndLeavesTheTimesAsTheyWere) {
   const std::string film = std::string(kWalked) + " }, { position = {20, 2, 3} } }";
   const Flown stopped = flown(film, "--set solver.steps=18");
