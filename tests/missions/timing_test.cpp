@@ -185,18 +185,18 @@ TEST_F(FilmsAndTimes, TheBestTimeIsThatOfTheWholeCost) {
   EXPECT_NEAR(figure(film, "cost_together"), cost(best), 0.3);
 }
 
-TEST_F(FilmsAndTimes, WindowsHoldAndPreferredTimesArePaidFor) {
+TEST_F(FilmsAndTimes, AWindowIsUsedFromItsBeginning) {
   const std::string open = std::string(kWalked) + " }, { position = {20, 2, 3} } }";
   const Flown free = flown(open);
   ASSERT_EQ(free.status, 0) << to_json(free.result);
   EXPECT_LT(figure(free, "cost_together"), 0.99 * figure(free, "cost_apart")) << "the camera waits";
   const double found = read_plan(free.folder / "plan.json").task.keyframes.at(1).time;
-  // A window that ends before the best time is used up to its end.
-  const std::string latest = std::to_string(found - 1);
+  // A window that begins after the best time is used from its beginning.
+  const std::string earliest = std::to_string(found + 1);
   const Flown held =
-      flown(std::string(kWalked) + ", latest = " + latest + "}, { position = {20, 2, 3} } }");
+      flown(std::string(kWalked) + ", earliest = " + earliest + "}, { position = {20, 2, 3} } }");
   ASSERT_EQ(held.status, 0) << to_json(held.result);
-  EXPECT_NEAR(read_plan(held.folder / "plan.json").task.keyframes.at(1).time, found - 1, 1e-3);
+  EXPECT_NEAR(read_plan(held.folder / "plan.json").task.keyframes.at(1).time, found + 1, 1e-3);
   EXPECT_GE(figure(held, "cost_together"), figure(free, "cost_together"));
 }
 
