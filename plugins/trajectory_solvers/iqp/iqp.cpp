@@ -142,6 +142,8 @@ class Solve {
   }
   bool made_up(double merit) const;
   double worst_violation() const;
+  // Of the last program.
+  double fine_tolerance() const { return std::max(kProgramFinest, kProgramShare * tolerance_); }
   void record(double step);
   std::string explain(const Step& step) const;
   double seconds() const {
@@ -187,6 +189,8 @@ SolveResult Solve::run() {
   if (!problem_.quadratic()) {
     move_inside_bounds();
     program_tolerance_ = kProgramCoarsest;
+  } else if (request_.memory) {  // one of many edits: as exact as is asked for, and no more
+    program_tolerance_ = fine_tolerance();
   }
   record(0.0);
   report_.status = iterate();
@@ -253,7 +257,7 @@ SolveStatus Solve::iterate() {
     const double promised =
         -(model_.gradient.dot(step.d) +
           0.5 * step.d.dot(model_.hessian.selfadjointView<Eigen::Lower>() * step.d));
-    const double fine = std::max(kProgramFinest, kProgramShare * tolerance_);
+    const double fine = fine_tolerance();
     const bool coarse = program_tolerance_ > fine;
     program_tolerance_ =
         std::clamp(kProgramShare * std::abs(promised) / (1.0 + std::abs(model_.cost)),
