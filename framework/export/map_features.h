@@ -32,9 +32,6 @@ struct MapZone {
 // Those that stand still. Obstacles of other types have no outline on the ground.
 std::vector<MapZone> map_zones(const Plan& plan);
 
-// The text as XML holds it: & < > " ' as references, what XML cannot hold as U+FFFD.
-std::string xml_text(const std::string& text);
-
 // The name of the mission, with " (not certified)" after it where the plan is not.
 std::string stated_name(const Plan& plan);
 

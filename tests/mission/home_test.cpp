@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The take-off place of a mission: stated once for every kind, kept in its plan.
+#include <gmock/gmock.h>
+
+#include "tests/mission/mission_fixture.h"
+
+namespace lapwing {
+namespace {
+
+using testing::HasSubstr;
+
+class Homes : public MissionTest {
+ protected:
+  std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    try {
+      const auto mission = load(text);
+      mission->configure({}, overrides);
+      mission->judge();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(Homes, PlansOfEveryKindHaveTheirs) {
+  const std::string home =
+      "home = { position = {1, 2, -0.5}, max_height = '400 ft', max_distance = 300, "
+      "rally_points = { { position = {20, 0, 15} } } }";
+  for (const std::string& text :
+       {kFilm + home + " }",
+        "return require 'mission.race'.course { start = {0, 0, 2}, gates = { { shape = 'ball', "
+        "radius = 1, position = {8, 4, 2} } }, closed_loop = 'reported', " +
+            home + " }",
+        "return require 'mission.light_painting'.text { text = 'i', " + home + " }"}) {
+    const auto mission = load(text);
+    mission->configure({}, {});
+    const Plan plan = mission->plan().plan;
+    ASSERT_TRUE(plan.home) << text;
+    EXPECT_EQ(plan.home->position, Eigen::Vector3d(1, 2, -0.5));
+    EXPECT_NEAR(*plan.home->max_height, 121.92, 1e-9);
+    EXPECT_EQ(plan.home->max_distance, 300);
+    ASSERT_EQ(plan.home->rally_points.size(), 1u);
+    EXPECT_EQ(plan.home->rally_points[0], Eigen::Vector3d(20, 0, 15));
+  }
+  const auto mission = load(std::string(kFilm) + "}");
+  mission->configure({}, {});
+  EXPECT_FALSE(mission->plan().plan.home);
+}
+
+TEST_F(Homes, BadOnesAreRefusedByFileAndKeyBeforePlanning) {
+  const auto with = [](const std::string& home) {
+    return std::string(kFilm) + "home = {" + home + "} }";
+  };
+  EXPECT_THAT(refusal(with("max_height = 120")),
+              HasSubstr("shot.lua:8: home.position: missing; expected the take-off place"));
+  EXPECT_THAT(refusal(with("rally_points = { { position = {1, 2, 3} } }")),
+              HasSubstr("home.position: missing"));
+  EXPECT_THAT(refusal(with("position = {1, 2}")), HasSubstr("home.position"));
+  EXPECT_THAT(refusal(with("position = {1, 2, 3}, max_height = 0")), HasSubstr("home.max_height"));
+  EXPECT_THAT(refusal(with("position = {1, 2, 3}, rally_points = { {1, 2, 3} }")),
+              HasSubstr("home.rally_points"));
+  EXPECT_THAT(refusal(with("position = {1, 2, 3}, max_hight = 120")), HasSubstr("max_height"));
+}
+
+}  // namespace
+}  // namespace lapwing
