@@ -55,6 +55,15 @@ std::vector<MapPoint> map_points(const Plan& plan) {
                       {},
                       {}});
   }
+  if (!plan.home) return points;
+  points.push_back({"home", "home", plan.home->position, {}, {}, {}});
+  for (std::size_t i = 0; i < plan.home->rally_points.size(); ++i)
+    points.push_back({"rally_point",
+                      numbered("", "rally point", i + 1),
+                      plan.home->rally_points[i],
+                      {},
+                      {},
+                      {}});
   return points;
 }
 

@@ -3,6 +3,7 @@
 
 #include <lua.hpp>
 
+#include "framework/core/number_text.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/run.h"
 #include "framework/mission/value_path.h"
@@ -54,6 +55,31 @@ Eigen::Vector3d place_from(const Value& numbers) {
   return {entries.at(0).as_number(), entries.at(1).as_number(), entries.at(2).as_number()};
 }
 
+// Keyframes beyond the limits, as far as options state them in the world: no flight to them could
+// be certified. A keyframe may be missed by its tolerance.
+void require_keyframes_within(lua_State* state, const MissionRun& run, const Home& home) {
+  constexpr double kTolerance = 0.5;  // m
+  const Value* keyframes = at_path(run.configuration, "keyframes");
+  if (!keyframes || !keyframes->is_list()) return;
+  for (std::size_t i = 0; i < keyframes->as_list().size(); ++i) {
+    const Value& keyframe = keyframes->as_list()[i];
+    if (!keyframe.is_map() || stated_entry(&keyframe, "beside")) continue;
+    const Value* position = stated_entry(&keyframe, "position");
+    if (!position || !position->is_list() || position->as_list().size() != 3) continue;
+    const Eigen::Vector3d off = place_from(*position) - home.position;
+    const std::string path = "keyframes[" + std::to_string(i + 1) + "].position";
+    const auto refuse = [&](double off_home, const char* way, double limit, const char* option) {
+      throw InputError(place_of_option(state, path), path + ": " + plain_number(off_home) + " m " +
+                                                         way + " home, beyond home." + option +
+                                                         " = " + plain_number(limit) + " m");
+    };
+    if (home.max_height && off.z() > *home.max_height + kTolerance)
+      refuse(off.z(), "above", *home.max_height, "max_height");
+    if (home.max_distance && off.head<2>().norm() > *home.max_distance + kTolerance)
+      refuse(off.head<2>().norm(), "from", *home.max_distance, "max_distance");
+  }
+}
+
 // run:take_home("home"): the option of that name is the take-off place of all plans that the
 // mission makes.
 int take_home(lua_State* state) {
@@ -78,6 +104,7 @@ int take_home(lua_State* state) {
   if (points)
     for (const Value& point : points->as_list())
       home.rally_points.push_back(place_from(point.at("position")));
+  require_keyframes_within(state, run, home);
   run.home = std::move(home);
   return 0;
 }

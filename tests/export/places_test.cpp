@@ -53,11 +53,13 @@ TEST(MapFeatures, PointsAreNamedByThemselvesOrByKindAndNumber) {
   plan.task.gates = {gate, gate};
   plan.task.gates[1].name = "north";
   plan.environment.subjects = {{"boat", {0, 5}, {{1, 2, 3}, {4, 5, 6}}}, {"", {0}, {{7, 8, 9}}}};
+  plan.home = Home{{0, -3, 0}, std::nullopt, std::nullopt, {{0, -3, 20}}};
   std::vector<std::string> names;
   for (const MapPoint& point : map_points(plan)) names.push_back(point.kind + ":" + point.name);
   EXPECT_EQ(names,
             (std::vector<std::string>{"keyframe:keyframe 1", "keyframe:keyframe 2", "gate:gate 1",
-                                      "gate:north", "subject:boat", "subject:subject 2"}));
+                                      "gate:north", "subject:boat", "subject:subject 2",
+                                      "home:home", "rally_point:rally point 1"}));
   const std::vector<MapPoint> points = map_points(plan);
   EXPECT_EQ(points[1].time, 4.0);
   EXPECT_FALSE(points[2].time);

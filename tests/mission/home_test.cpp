@@ -63,5 +63,18 @@ TEST_F(Homes, BadOnesAreRefusedByFileAndKeyBeforePlanning) {
   EXPECT_THAT(refusal(with("position = {1, 2, 3}, max_hight = 120")), HasSubstr("max_height"));
 }
 
+TEST_F(Homes, KeyframesBeyondTheLimitsAreRefusedAtTheirLine) {
+  const auto film = [](const std::string& home) {
+    return "local film = require 'mission.film'\nreturn film.shot {\n  keyframes = {\n"
+           "    { position = {0, 0, 2} },\n    { position = {30, 40, 20} } },\n" +
+           ("  home = {" + home + "} }");
+  };
+  EXPECT_EQ(refusal(film("position = {0, 0, 0}, max_height = 20, max_distance = 50")), "");
+  EXPECT_THAT(refusal(film("position = {0, 0, -3}, max_height = 20")),
+              HasSubstr("keyframes[2].position: 23 m above home, beyond home.max_height = 20 m"));
+  EXPECT_THAT(refusal(film("position = {0, 0, 0}, max_distance = '40 m'")),
+              HasSubstr("keyframes[2].position: 50 m from home, beyond home.max_distance = 40 m"));
+}
+
 }  // namespace
 }  // namespace lapwing

@@ -33,7 +33,10 @@ export const views = [
         await page.keyboard.type(x);
         await keys(page, "Enter");
       });
-      await page.evaluate(() => window.lapwing.drawn());
+      await page.evaluate(async () => {
+        window.lapwing.redraw();
+        await window.lapwing.drawn();
+      });
       const pins = await page.$$eval('[data-pin^="keyframe"]', (all) => all.map((p) => !p.hidden));
       assert.deepEqual(new Set(pins), new Set([true]), `${x}: ${pins}`);
       const [eye, farthest] = await page.evaluate(() => [window.lapwing.eye, window.lapwing.farthest]);
