@@ -76,5 +76,17 @@ TEST_F(Homes, KeyframesBeyondTheLimitsAreRefusedAtTheirLine) {
               HasSubstr("keyframes[2].position: 50 m from home, beyond home.max_distance = 40 m"));
 }
 
+// What fails is told as it is, and not as a flight of another vehicle would have it.
+TEST_F(Homes, AFilmThatBreaksALimitSaysWhich) {
+  const auto mission =
+      load(kFilm + std::string("home = { position = {0, 0, 0}, max_height = 3.6 } }"));
+  mission->configure({}, {});
+  const MissionResult result = mission->plan();
+  std::string said;
+  for (const std::string& note : result.notes) said += note + "\n";
+  EXPECT_THAT(said, HasSubstr("height_above_home"));
+  EXPECT_THAT(said, testing::Not(HasSubstr("without the limits of the vehicle")));
+}
+
 }  // namespace
 }  // namespace lapwing

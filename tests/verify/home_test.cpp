@@ -19,7 +19,7 @@ std::set<std::string> failures_of_plan(const Plan& plan) {
   return names;
 }
 
-Check check_of(const Plan& plan, const char* name) {
+Check home_check_of(const Plan& plan, const char* name) {
   const Certificate certificate = verify(plan);
   const Check* check = certificate.find(name);
   EXPECT_NE(check, nullptr) << name;
@@ -50,11 +50,11 @@ TEST(HomeChecks, TheLargestHeightIsKeptToTheMillimetre) {
   Plan plan = plan_from_home();
   const double climb = climb_of(plan);
   plan.home->max_height = climb + 0.01;
-  EXPECT_NEAR(*check_of(plan, "height_above_home").worst, climb, 1e-3);
+  EXPECT_NEAR(*home_check_of(plan, "height_above_home").worst, climb, 1e-3);
   EXPECT_TRUE(verify(plan).feasible());
   plan.home->max_height = 0.999 * climb;
   EXPECT_EQ(failures_of_plan(plan), std::set<std::string>{"height_above_home"});
-  EXPECT_THAT(check_of(plan, "height_above_home").detail,
+  EXPECT_THAT(home_check_of(plan, "height_above_home").detail,
               HasSubstr("take-off place is at z = 6 m"));
 }
 
@@ -65,7 +65,7 @@ TEST(HomeChecks, ThePathBetweenSamplesCounts) {
   start.velocity = {0, 0, 1};
   Plan plan = PlanBuilder(true, start).add(4, {{0, 0, -0.5}}).finish({{0, 0, -0.5}});
   plan.home = Home{{0, 0, 0}, 10.9, std::nullopt, {}};
-  const Check check = check_of(plan, "height_above_home");
+  const Check check = home_check_of(plan, "height_above_home");
   EXPECT_NEAR(*check.worst, 11, 1e-3);
   EXPECT_NEAR(check.at, 2, 0.05);
   EXPECT_FALSE(check.pass);
@@ -77,7 +77,7 @@ TEST(HomeChecks, TheLargestDistanceIsThatAcrossTheGround) {
   const Eigen::Vector3d end = plan.trajectory.samples.back().position;
   const double distance = std::hypot(end.x() + 8, end.y() - 3);
   plan.home->max_distance = distance + 0.01;
-  EXPECT_NEAR(*check_of(plan, "distance_from_home").worst, distance, 1e-3);
+  EXPECT_NEAR(*home_check_of(plan, "distance_from_home").worst, distance, 1e-3);
   EXPECT_TRUE(verify(plan).feasible());
   plan.home->max_distance = distance - 0.1;
   EXPECT_EQ(failures_of_plan(plan), std::set<std::string>{"distance_from_home"});
@@ -87,19 +87,19 @@ TEST(HomeChecks, WithAnOriginHeightsFollowTheEllipsoid) {
   Plan plan = plan_from_home();
   plan.home->position = {-10008, 0, 6};  // 10 km away
   plan.home->max_height = 120;
-  const double flat = *check_of(plan, "height_above_home").worst;
+  const double flat = *home_check_of(plan, "height_above_home").worst;
   plan.geodetic_origin = GeodeticOrigin{46.5, 6.6, 400, HeightOf::ellipsoid};
   // The origin's plane is 10008^2 / 2R above the ellipsoid at home, and R is 6,390 km along the
   // prime vertical at that latitude.
-  EXPECT_NEAR(*check_of(plan, "height_above_home").worst, flat - 10008.0 * 10008 / (2 * 6.39e6),
-              0.01);
+  EXPECT_NEAR(*home_check_of(plan, "height_above_home").worst,
+              flat - 10008.0 * 10008 / (2 * 6.39e6), 0.01);
 }
 
 TEST(HomeChecks, NothingFliesBelowTheGroundOfItsOrigin) {
   Plan plan = reference_plan({.lift = -0.4});
   const double lowest = plan.trajectory.samples.back().position.z();
   plan.geodetic_origin = GeodeticOrigin{46.5, 6.6, -lowest + 0.01, HeightOf::ground};
-  EXPECT_NEAR(*check_of(plan, "height_above_ground").worst, 0.01, 1e-3);
+  EXPECT_NEAR(*home_check_of(plan, "height_above_ground").worst, 0.01, 1e-3);
   EXPECT_TRUE(verify(plan).feasible());
   plan.geodetic_origin->height = -lowest - 0.1;
   EXPECT_EQ(failures_of_plan(plan), std::set<std::string>{"height_above_ground"});
@@ -111,12 +111,12 @@ TEST(HomeChecks, NothingFliesBelowTheGroundOfItsOrigin) {
 TEST(HomeChecks, RallyPointsKeepWhatTheFlightKeeps) {
   Plan plan = plan_from_home();
   plan.home->rally_points = {{-8, 0, 8}};
-  EXPECT_TRUE(check_of(plan, "rally_points").pass);
+  EXPECT_TRUE(home_check_of(plan, "rally_points").pass);
   const auto broken = [&](const Eigen::Vector3d& point, const std::string& by) {
     Plan bad = plan;
     bad.home->rally_points.push_back(point);
     EXPECT_EQ(failures_of_plan(bad), std::set<std::string>{"rally_points"}) << by;
-    EXPECT_THAT(check_of(bad, "rally_points").detail, HasSubstr("rally point 2, " + by));
+    EXPECT_THAT(home_check_of(bad, "rally_points").detail, HasSubstr("rally point 2, " + by));
   };
   const Obstacle& tree = plan.environment.obstacles[0];
   const auto center = recorded_numbers(tree.parameters, "center");
@@ -136,7 +136,7 @@ TEST(HomeChecks, ARallyPointWithNothingToKeepIsNotJudged) {
   Plan plan = plan_from_home();
   plan.environment.obstacles.clear();
   plan.home->rally_points = {{0, 0, 20}};
-  EXPECT_THAT(check_of(plan, "rally_points").skipped, HasSubstr("no obstacle and no limit"));
+  EXPECT_THAT(home_check_of(plan, "rally_points").skipped, HasSubstr("no obstacle and no limit"));
 }
 
 TEST(HomeChecks, NumbersThatNobodyCanMeanFailTheDocument) {
@@ -144,7 +144,7 @@ TEST(HomeChecks, NumbersThatNobodyCanMeanFailTheDocument) {
   const auto problem = [](const std::function<void(Home&)>& change) {
     Plan plan = plan_from_home();
     change(*plan.home);
-    return check_of(plan, "document").detail;
+    return home_check_of(plan, "document").detail;
   };
   EXPECT_THAT(problem([&](Home& h) { h.position.z() = nan; }), HasSubstr("take-off place"));
   EXPECT_THAT(problem([&](Home& h) { h.max_height = nan; }), HasSubstr("largest height"));
