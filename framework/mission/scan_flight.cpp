@@ -335,6 +335,7 @@ int scan_plan_of_run(lua_State* state) {
     keep("prior", "mesh", "prior.ply", ply_bytes(prior.mesh->mesh()));
     keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *prior.mapping.map));
     plan.geodetic_origin = run.origin;
+    plan.home = run.home;
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
     const auto record = record_of_scan(*told, run.settings.threads);
