@@ -143,8 +143,9 @@ TEST_F(FreeFilms, WhatCannotBeGrantedIsNamed) {
   const Flown early = timed(", latest = 1.5", "", "", "", 2);
   EXPECT_EQ(early.status, 2);
   // 13.1 m from rest at 4 m/s^2, 0.1 s early and late.
-  EXPECT_NE(to_json(early.result).find("keyframes[2]: no times meet every wish: vehicle "
-                                       "'vehicles/solo' takes at least 2.339 s from keyframe 1"),
+  EXPECT_NE(to_json(early.result)
+                .find("keyframes[2]: no times meet every wish: vehicle "
+                      "'vehicles/solo' takes at least 2.339 s from keyframe 1"),
             std::string::npos)
       << to_json(early.result);
   const Flown fixed = timed("", "", "stretch = 2,", "", 2);
