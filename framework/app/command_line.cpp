@@ -8,6 +8,7 @@
 #include "framework/app/flight_log_commands.h"
 #include "framework/app/fly_command.h"
 #include "framework/app/help_commands.h"
+#include "framework/app/item_command.h"
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
 #include "framework/app/plugin_guard.h"
