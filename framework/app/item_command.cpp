@@ -88,7 +88,13 @@ void add_items(CLI::App& command, ItemOptions& options, const std::string& resum
   add_text(command, "--shard", "K/N",
            "make part K of N of the items, K from 1 to N (0 is N), as one process of a batch "
            "array; keeps what is there; default: all",
-           [&](const std::string& text) { options.shard = read_shard(text); });
+           [&](const std::string& text) {
+             try {
+               options.shard = read_shard(text);
+             } catch (const InputError& error) {
+               throw CLI::ValidationError(error.what());
+             }
+           });
   command.add_flag("--gather", options.gather,
                    "make no items: read those of all shards, which must be complete");
   command.add_flag("--schedule", options.schedule,

@@ -98,7 +98,7 @@ std::vector<std::pair<std::string, std::string>> portable_environment() {
           {"OPENBLAS_CORETYPE", "PRESCOTT"},
           {"ONEDNN_MAX_CPU_ISA", "SSE41"},
           {"DNNL_MAX_CPU_ISA", "SSE41"},
-          {"OPENCV_CPU_DISABLE", "SSE4.2,AVX,FP16,AVX2,FMA3,AVX512_SKX"}};
+          {"OPENCV_CPU_DISABLE", "SSE4.2,AVX,FP16,AVX2,FMA3,AVX512-SKX"}};
 }
 
 bool is_portable() {

@@ -71,6 +71,7 @@ ItemRun::ItemRun(Executor& executor, const ItemOptions& options, int threads,
       threads_(threads > 0 ? threads : executor.default_threads()),
       cancellation_(cancellation),
       say_(std::move(say)) {
+  if (threads_ <= 0) threads_ = options.usual_threads;
   if (threads_ <= 0) threads_ = available_threads();
 }
 

@@ -21,6 +21,7 @@ struct ItemOptions {
   bool gather = false;         // make none: all must be there
   bool schedule = false;       // make none: simulate a schedule from measured times
   std::string executor;        // NAME[:KEY=VALUE,...]; "": as the program was started
+  int usual_threads = 0;       // of an executor that leaves it open; 0: one per core
   bool portable = false;       // the same numbers on every processor (core/portable.h)
 
   // Whether items that are there are kept.

@@ -22,15 +22,16 @@ std::string text_of_entry(const Value* value) {
 
 std::string statement_difference(const Value& there, const Value& here) {
   if (!there.is_map()) return "it is not a statement";
+  const Value *their_machine = there.find(kMachineEntry), *own_machine = here.find(kMachineEntry);
+  if (own_machine && !(their_machine && *their_machine == *own_machine))
+    return "it is of another machine (" + text_of_entry(their_machine) + "; this one is " +
+           text_of_entry(own_machine) +
+           "), whose results differ in their last digits; use --portable on all machines";
   std::string names;
   for (const Value* one : {&here, &there})
     for (const auto& [name, ignored] : one->as_map()) {
       const Value *a = there.find(name), *b = here.find(name);
       if (a && b && *a == *b) continue;
-      if (name == kMachineEntry)
-        return "it is of another machine (" + text_of_entry(a) + "; this one is " +
-               text_of_entry(b) +
-               "), whose results differ in their last digits; use --portable on all machines";
       if (one == &here || !b) names += (names.empty() ? "" : ", ") + name;
     }
   return names.empty() ? "" : "it has other inputs: " + names;

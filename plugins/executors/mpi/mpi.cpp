@@ -191,11 +191,13 @@ class Mpi final : public Executor {
                     true);
     std::exception_ptr failure;
     bool cancelled = false;
+    const auto look_for_cancellation = [&] {
+      if (!work.cancellation || !work.cancellation->cancelled() || work.queue.left() == 0) return;
+      cancelled = true;
+      work.queue.close();
+    };
     for (int others = ranks_ - 1; others > 0 || !own.ended();) {
-      if (work.cancellation && work.cancellation->cancelled() && work.queue.left() > 0) {
-        cancelled = true;
-        work.queue.close();
-      }
+      look_for_cancellation();
       int sender = 0;
       const std::optional<std::string> message = next_message(sender);
       if (!message) {
@@ -228,6 +230,7 @@ class Mpi final : public Executor {
       }
     }
     own.join();
+    look_for_cancellation();
     if (own.failure()) failure = own.failure();
     if (failure) std::rethrow_exception(failure);
     if (cancelled) throw Cancelled();

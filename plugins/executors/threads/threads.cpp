@@ -9,7 +9,7 @@ namespace {
 
 class Threads final : public Executor {
  public:
-  static constexpr PluginText kText{"threads", "1.0.0", "the threads of one process", ""};
+  static constexpr PluginText kText{"threads", "1.0.0", "the threads of one process", "own"};
   static ParameterTable parameters() { return {}; }
   explicit Threads(const Parameters&) {}
 
