@@ -182,8 +182,8 @@ void ItemRun::warn_of_few(const ItemList& list, const std::vector<std::size_t>& 
        count_of(static_cast<std::size_t>(threads_), "thread") +
        ": in a simulated schedule the threads work for " + busy + " of the time" +
        (enough < executor_.ranks()
-            ? ", and " + count_of(static_cast<std::size_t>(enough), "process") +
-                  (enough == 1 ? "" : "es") + " would take as long"
+            ? ", and " + std::to_string(enough) + (enough == 1 ? " process" : " processes") +
+                  " would take as long"
             : ""));
 }
 
