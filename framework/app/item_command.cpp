@@ -31,7 +31,7 @@ int number_of_launcher(const char* variable) {
 }
 
 std::unique_ptr<Executor> executor_for(const ItemOptions& options, const Registry& registry) {
-  const int processes = number_of_launcher("OMPI_COMM_WORLD_SIZE");
+  const int processes = launched_processes();
   const bool launched = options.executor.empty() && processes > 1;
   const std::string asked = options.executor.empty() ? (launched ? kMpi : kThreads)
                                                      : options.executor;
@@ -81,6 +81,10 @@ void become_portable() {
 
 int launched_rank() {
   return std::max(0, number_of_launcher("OMPI_COMM_WORLD_RANK"));
+}
+
+int launched_processes() {
+  return std::max(1, number_of_launcher("OMPI_COMM_WORLD_SIZE"));
 }
 
 void add_items(CLI::App& command, ItemOptions& options, const std::string& resume_help) {

@@ -18,8 +18,10 @@ namespace lapwing {
 // --resume keeps.
 void add_items(CLI::App& command, ItemOptions& options, const std::string& resume_help);
 
-// The number of this process among those that mpirun started; 0 where it started none.
+// The number of this process among those that mpirun started, and how many there are; 0 and 1 where
+// it started none.
 int launched_rank();
+int launched_processes();
 
 // Runs a command: chooses the executor, calls `body`, and sees to it that no process waits for one
 // that failed. Process 0 throws what is to be said; other processes return without a word.

@@ -308,6 +308,32 @@ TEST_F(LongItems, ASweepRunsInAllProcesses) {
               read_file(folder_ / "two" / run / "plan.json"));
 }
 
+// Kept runs read back as the same bits: output and page are those of runs that are not kept.
+TEST_F(LongItems, KeptRunsAreThoseThatAreNotKept) {
+  write("shot.lua", film("name = 'hop',"));
+  const std::string program = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing ";
+  ASSERT_EQ(shell(program + "run shot.lua --quiet -o hop").status, 0);
+  const std::string simulate = program +
+                               "simulate hop/plan.json --runs 6 --mass-error 5 "
+                               "--noise 0.01,0.02,0.2,1 --tolerance 0.5 --json ";
+  const Finished apart = shell(simulate + "-o apart.html");
+  ASSERT_EQ(apart.status, 0) << apart.err;
+  EXPECT_EQ(shell(simulate + "--shard 1/3 --keep-runs kept").status, 0);
+  const Finished kept = shell(mpirun(2) + simulate + "--resume --keep-runs kept -o kept.html");
+  ASSERT_EQ(kept.status, 0) << kept.err;
+  EXPECT_EQ(kept.out, apart.out);
+  EXPECT_EQ(read_file(folder_ / "kept.html"), read_file(folder_ / "apart.html"));
+  EXPECT_TRUE(fs::exists(folder_ / "kept/runs/seed_6.json"));
+  const Finished other = shell(simulate + "--resume --keep-runs kept --wind 1,0");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("has other inputs: conditions"));
+  for (const char* without : {"--resume", "--shard 1/2", "--executor threads"}) {
+    const Finished refused = shell(simulate + without);
+    EXPECT_EQ(refused.status, 2) << without;
+    EXPECT_THAT(refused.err, HasSubstr("need --runs N and --keep-runs DIR")) << without;
+  }
+}
+
 TEST_F(LongItems, TooFewItemsAreWarnedOf) {
   const Finished finished = shell(mpirun(5) + explore("few", "", 6));
   EXPECT_EQ(finished.status, 0);
