@@ -331,7 +331,7 @@ int run_command_line(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool success = dynamic_cast<const CLI::Success*>(&error) != nullptr;  // --help, --version
-    if (launched_rank() > 0) return static_cast<int>(ExitStatus::done);  // process 0 says it
+    if (launched_rank() > 0) return static_cast<int>(ExitStatus::done);         // process 0 says it
     if (success && !help_of_unknown(app)) return app.exit(error);
     std::cerr << tinted_error(Tone::bad, "lapwing:") << " " << visible_text(usage_error(app, error))
               << "\n";

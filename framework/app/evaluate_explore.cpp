@@ -231,8 +231,8 @@ Evaluation evaluation_of(const ExploreEvaluation& request, const Invocation& inv
   made.stated = settings_stated(request, made, invocation);
   // Worlds and utilities may join, so that they are not part of an episode's mark.
   made.mark = made_by(made.stated.at("program").as_text(), made.stated);
-  made.records = records_of(made.worlds, made.utilities, made.parameters, made.setup, registry,
-                            invocation);
+  made.records =
+      records_of(made.worlds, made.utilities, made.parameters, made.setup, registry, invocation);
   if (!made.records.moves.as_map().empty()) made.stated.set("world_moves", made.records.moves);
   made.stated.set("files", made.records.files);
   return made;
@@ -332,8 +332,7 @@ void print_figures(const Evaluation& evaluation, const ExplorationTables& tables
 }
 
 ExitStatus evaluate(const ExploreEvaluation& request, const Invocation& invocation,
-                    const Registry& registry, ItemRun& run,
-                    const CancellationToken& cancellation) {
+                    const Registry& registry, ItemRun& run, const CancellationToken& cancellation) {
   Evaluation evaluation = evaluation_of(request, invocation, registry);
   evaluation.setup.episode.cancellation = &cancellation;
   if (!request.against.empty())
@@ -355,9 +354,9 @@ ExitStatus evaluate(const ExploreEvaluation& request, const Invocation& invocati
   }
   std::vector<std::string> worlds;
   for (const WorldName& name : evaluation.worlds) worlds.push_back(name.text());
-  const ExplorationTables tables = write_exploration_figures(
-      {request.folder, request.against, settings, worlds, evaluation.utilities, request.episodes,
-       request.steps});
+  const ExplorationTables tables =
+      write_exploration_figures({request.folder, request.against, settings, worlds,
+                                 evaluation.utilities, request.episodes, request.steps});
   print_figures(evaluation, tables, (request.folder / "report.html").string(), invocation);
   return ExitStatus::done;
 }

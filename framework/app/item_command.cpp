@@ -33,8 +33,8 @@ int number_of_launcher(const char* variable) {
 std::unique_ptr<Executor> executor_for(const ItemOptions& options, const Registry& registry) {
   const int processes = launched_processes();
   const bool launched = options.executor.empty() && processes > 1;
-  const std::string asked = options.executor.empty() ? (launched ? kMpi : kThreads)
-                                                     : options.executor;
+  const std::string asked =
+      options.executor.empty() ? (launched ? kMpi : kThreads) : options.executor;
   const auto named = named_parameters_from(asked);
   if (!named)
     throw InputError("--executor: expected NAME or NAME:KEY=VALUE,..., not '" + asked + "'");

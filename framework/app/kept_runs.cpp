@@ -25,17 +25,16 @@ struct PathFigure {
   const char* name;
   double FlownPath::*field;
 };
-constexpr PathFigure kFigures[] = {
-    {"position_error_worst", &FlownPath::position_error_worst},
-    {"position_error_at", &FlownPath::position_error_at},
-    {"position_error_mean", &FlownPath::position_error_mean},
-    {"yaw_error_worst", &FlownPath::yaw_error_worst},
-    {"yaw_error_at", &FlownPath::yaw_error_at},
-    {"clock_error_worst", &FlownPath::clock_error_worst},
-    {"clock_error_at", &FlownPath::clock_error_at},
-    {"late_worst", &FlownPath::late_worst},
-    {"saturated_share", &FlownPath::saturated_share},
-    {"rotor_speed_worst", &FlownPath::rotor_speed_worst}};
+constexpr PathFigure kFigures[] = {{"position_error_worst", &FlownPath::position_error_worst},
+                                   {"position_error_at", &FlownPath::position_error_at},
+                                   {"position_error_mean", &FlownPath::position_error_mean},
+                                   {"yaw_error_worst", &FlownPath::yaw_error_worst},
+                                   {"yaw_error_at", &FlownPath::yaw_error_at},
+                                   {"clock_error_worst", &FlownPath::clock_error_worst},
+                                   {"clock_error_at", &FlownPath::clock_error_at},
+                                   {"late_worst", &FlownPath::late_worst},
+                                   {"saturated_share", &FlownPath::saturated_share},
+                                   {"rotor_speed_worst", &FlownPath::rotor_speed_worst}};
 
 constexpr std::pair<const char*, std::optional<bool> RunVerdict::*> kParts[] = {
     {"gates", &RunVerdict::gates},

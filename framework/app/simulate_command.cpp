@@ -221,9 +221,8 @@ std::optional<SimulatedRuns> kept_runs(const PlannedFlight& flight, const Simula
                                        const Registry& registry, ItemRun& items,
                                        const CancellationToken& token) {
   const std::filesystem::path folder = flight.file.parent_path();
-  const Value statement =
-      statement_of(RunInputs{flight.file, text_of(flight.choice, registry),
-                             to_value(flight.conditions), flight.tolerance});
+  const Value statement = statement_of(RunInputs{flight.file, text_of(flight.choice, registry),
+                                                 to_value(flight.conditions), flight.tolerance});
   const ItemList list = run_items_of(
       asked.kept, flight.conditions.seed, static_cast<std::size_t>(asked.runs),
       made_by(statement.at("program").as_text(), statement), [&](std::uint64_t seed) {
@@ -307,9 +306,8 @@ ExitStatus simulate(const std::filesystem::path& file, const SimulationRequest& 
   object.set("plan", file.string());
   object.set("mission", plan.mission);
   if (asked.runs > 0) {
-    const PlannedFlight flight{file,       plan,
-                               controlled, choice,
-                               conditions, asked.tolerance.value_or(tolerances::kTracking)};
+    const PlannedFlight flight{file,   plan,       controlled,
+                               choice, conditions, asked.tolerance.value_or(tolerances::kTracking)};
     const std::optional<SimulatedRuns> made =
         items ? kept_runs(flight, asked, invocation.registry(), *items, token)
               : judged_runs(flight, asked.runs, invocation, token);

@@ -85,10 +85,10 @@ bool has_samples(const TrainRequest& request, const std::string& world, std::int
                      "' exists: --resume keeps it and makes the missing ones; another " +
                      "folder keeps both");
   const SampleSet there = read_samples(file);
-  const std::string difference =
-      there.world != world        ? "its world is " + there.world
-      : there.episode != episode  ? "it is episode " + std::to_string(there.episode)
-                                  : settings_difference(there.made_by, made_by);
+  const std::string difference = there.world != world ? "its world is " + there.world
+                                 : there.episode != episode
+                                     ? "it is episode " + std::to_string(there.episode)
+                                     : settings_difference(there.made_by, made_by);
   if (!difference.empty())
     throw InputError("'" + file.string() + "' was made with other settings: " + difference +
                      "; another folder keeps both");
@@ -99,9 +99,9 @@ bool has_samples(const TrainRequest& request, const std::string& world, std::int
 struct Dataset {
   GridShape shape;
   std::vector<WorldName> worlds;
-  Value explorer = Value::map();           // its parameters
-  std::vector<Value> made_by;              // by world: what its files state
-  std::vector<ExplorationSetup> setups;    // by world
+  Value explorer = Value::map();         // its parameters
+  std::vector<Value> made_by;            // by world: what its files state
+  std::vector<ExplorationSetup> setups;  // by world
 };
 
 Dataset dataset_of(const TrainRequest& request, const Invocation& invocation,
@@ -180,10 +180,10 @@ class SampledEpisodes {
     list.make = [this](std::size_t item, const void* prepared) {
       const auto& used = *static_cast<const WorldInUse*>(prepared);
       const std::size_t world = world_of(item);
-      const SampleSet set = sampled_episode(
-          used.world, used.truth, dataset_.setups[world], registry_, request_.explorer,
-          dataset_.explorer, dataset_.made_by[world], dataset_.shape, episode_of(item),
-          invocation_.seed);
+      const SampleSet set =
+          sampled_episode(used.world, used.truth, dataset_.setups[world], registry_,
+                          request_.explorer, dataset_.explorer, dataset_.made_by[world],
+                          dataset_.shape, episode_of(item), invocation_.seed);
       if (cancellation_.cancelled()) throw Cancelled();
       write_samples(set, request_.target / file_name(name_of(world), episode_of(item)));
     };

@@ -114,7 +114,7 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
   if (kind == FlightLogReader::kKind)
     return {{"creation"}, {"example", "repeatable"}, {"refusals"}, {"cut short"}, {"damage"}};
   if (kind == Executor::kKind)
-    return {{"creation"}, {"exchange"}, {"items", "order"}, {"threads"},
+    return {{"creation"}, {"exchange"},     {"items", "order"}, {"threads"},
             {"failure"},  {"cancellation"}, {"dispatch"}};
   return {};
 }

@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr double kPatience = 5;    // s for threads that must be at work together
+constexpr double kPatience = 5;     // s for threads that must be at work together
 constexpr double kDispatch = 2e-3;  // s of an executor's own work for an item
 
 double seconds_since(steady_clock::time_point begun) {
@@ -37,7 +37,8 @@ class Workbench {
   }
 
   // `make` is called for each item beside the notes that are taken of it.
-  ItemWork work(int threads, std::function<void(std::size_t)> make = [](std::size_t) {}) {
+  ItemWork work(
+      int threads, std::function<void(std::size_t)> make = [](std::size_t) {}) {
     return {.queue = *queue_,
             .threads = threads,
             .make =
@@ -102,9 +103,10 @@ void check_exchange(Executor& executor, Findings& findings) {
       return "it returns " + std::to_string(all.size()) + " texts of " + std::to_string(ranks) +
              " processes";
     });
-    findings.expect("exchange",
-                    static_cast<int>(all.size()) > rank && all[static_cast<std::size_t>(rank)] == text,
-                    [] { return "the text of this process comes back as another one"; });
+    findings.expect(
+        "exchange",
+        static_cast<int>(all.size()) > rank && all[static_cast<std::size_t>(rank)] == text,
+        [] { return "the text of this process comes back as another one"; });
   }
 }
 
@@ -135,10 +137,10 @@ void check_items(Executor& executor, Findings& findings) {
       });
       if (threads > 1) continue;
       for (std::size_t i = 1; i < bench.order.size(); ++i)
-        findings.expect("order",
-                        bench.seconds()[bench.order[i - 1]] + 1e-9 >=
-                            0.5 * bench.seconds()[bench.order[i]],
-                        [] { return "it does not take items in the order of the queue"; });
+        findings.expect(
+            "order",
+            bench.seconds()[bench.order[i - 1]] + 1e-9 >= 0.5 * bench.seconds()[bench.order[i]],
+            [] { return "it does not take items in the order of the queue"; });
     }
 }
 
@@ -156,7 +158,7 @@ void check_threads(Executor& executor, Findings& findings) {
     ++begun;
     changed.notify_all();
     together = together && changed.wait_for(lock, std::chrono::duration<double>(kPatience),
-                                 [&] { return begun == kThreads; });
+                                            [&] { return begun == kThreads; });
   }));
   findings.expect("threads", together,
                   [] { return "with 3 threads it does not make 3 items at the same time"; });
@@ -176,12 +178,12 @@ void check_failure(Executor& executor, Findings& findings) {
     } catch (const InputError& error) {
       thrown = error.what();
     }
-    findings.expect("failure", thrown == "the disk is full", [] {
-      return "it does not throw the exception of an item";
-    });
-    findings.expect("failure", begun <= kFails + 3 * static_cast<std::size_t>(threads) &&
-                                   (threads > 1 || begun == kFails),
-                    [] { return "it begins items after one has failed"; });
+    findings.expect("failure", thrown == "the disk is full",
+                    [] { return "it does not throw the exception of an item"; });
+    findings.expect(
+        "failure",
+        begun <= kFails + 3 * static_cast<std::size_t>(threads) && (threads > 1 || begun == kFails),
+        [] { return "it begins items after one has failed"; });
   }
   Workbench again(3, 1);
   executor.run(again.work(1));
@@ -219,8 +221,9 @@ void check_dispatch(Executor& executor, Findings& findings) {
   if (each <= kDispatch)
     findings.expect("dispatch", true, {});
   else
-    findings.warn("dispatch", "it takes " + std::to_string(1e3 * each) + " ms for an item, beside "
-                              "what the item takes; 2 ms are allowed");
+    findings.warn("dispatch", "it takes " + std::to_string(1e3 * each) +
+                                  " ms for an item, beside "
+                                  "what the item takes; 2 ms are allowed");
 }
 
 }  // namespace

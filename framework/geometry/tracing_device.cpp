@@ -13,7 +13,7 @@
 namespace lapwing {
 
 RTCDeviceTy* tracing_device() {
-  static const RTCDevice shared = 
+  static const RTCDevice shared =
       rtcNewDevice(is_portable() ? "set_affinity=0,isa=sse2" : "set_affinity=0");
   // The library forgets the reason once it was asked for.
   static const RTCError reason = shared ? RTC_ERROR_NONE : rtcGetDeviceError(nullptr);

@@ -50,8 +50,8 @@ std::optional<std::size_t> ItemQueue::take(int asker, const std::vector<std::siz
     const double seconds = groups_[g].back().seconds;
     if (seconds < kShorter * longest) continue;
     const int rank = own.count(g) ? 2 : of_another(asker, g) ? 0 : 1;
-    const bool better = rank != best_rank ? rank > best_rank
-                                          : seconds > groups_[best].back().seconds;
+    const bool better =
+        rank != best_rank ? rank > best_rank : seconds > groups_[best].back().seconds;
     if (!better) continue;
     best = g;
     best_rank = rank;

@@ -36,8 +36,9 @@ class ItemQueue {
   bool of_another(int asker, std::size_t group) const;
 
   mutable std::mutex mutex_;
-  std::vector<std::vector<Entry>> groups_;       // each with its longest item last
-  std::vector<std::set<std::size_t>> prepared_;  // by process: groups that it was last known to have
+  std::vector<std::vector<Entry>> groups_;  // each with its longest item last
+  std::vector<std::set<std::size_t>>
+      prepared_;  // by process: groups that it was last known to have
   std::size_t left_ = 0;
 };
 

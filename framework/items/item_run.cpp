@@ -59,13 +59,15 @@ std::string count_of(std::size_t count, const char* what) {
 }  // namespace
 
 std::string ItemOptions::name() const {
-  return gather ? "--gather" : schedule ? "--schedule" : shard ? "--shard" : resume ? "--resume"
-                                                                                    : "";
+  return gather     ? "--gather"
+         : schedule ? "--schedule"
+         : shard    ? "--shard"
+         : resume   ? "--resume"
+                    : "";
 }
 
 ItemRun::ItemRun(Executor& executor, const ItemOptions& options, int threads,
-                 const CancellationToken& cancellation,
-                 std::function<void(const std::string&)> say)
+                 const CancellationToken& cancellation, std::function<void(const std::string&)> say)
     : executor_(executor),
       options_(options),
       threads_(threads > 0 ? threads : executor.default_threads()),
@@ -201,26 +203,27 @@ void ItemRun::work(const ItemList& list, const std::vector<std::size_t>& todo) {
   }
   PreparedGroups prepared(list.prepare);
   ItemQueue queue(list.items, todo, expected);
-  const ItemWork work{
-      .queue = queue,
-      .threads = threads_,
-      .make =
-          [&](std::size_t item) {
-            ItemSeconds seconds;
-            std::shared_ptr<const void> group;
-            if (list.prepare) group = prepared.use(list.items[item].group, seconds.preparation);
-            const auto begun = Clock::now();
-            list.make(item, group.get());
-            seconds.item = std::chrono::duration<double>(Clock::now() - begun).count();
-            return seconds;
-          },
-      .prepared = [&] { return prepared.held(); },
-      .done =
-          [&](std::size_t item, const ItemSeconds& seconds) {
-            log->add(list.items[item].file, seconds);
-            if (list.done) list.done(item);
-          },
-      .cancellation = &cancellation_};
+  const ItemWork work{.queue = queue,
+                      .threads = threads_,
+                      .make =
+                          [&](std::size_t item) {
+                            ItemSeconds seconds;
+                            std::shared_ptr<const void> group;
+                            if (list.prepare)
+                              group = prepared.use(list.items[item].group, seconds.preparation);
+                            const auto begun = Clock::now();
+                            list.make(item, group.get());
+                            seconds.item =
+                                std::chrono::duration<double>(Clock::now() - begun).count();
+                            return seconds;
+                          },
+                      .prepared = [&] { return prepared.held(); },
+                      .done =
+                          [&](std::size_t item, const ItemSeconds& seconds) {
+                            log->add(list.items[item].file, seconds);
+                            if (list.done) list.done(item);
+                          },
+                      .cancellation = &cancellation_};
   executor_.run(work);
 }
 

@@ -32,8 +32,8 @@ class ItemThreads {
   ItemThreads(const ItemThreads&) = delete;
   ItemThreads& operator=(const ItemThreads&) = delete;
 
-  bool ended() const;        // all threads
-  void join();               // waits for their end
+  bool ended() const;                  // all threads
+  void join();                         // waits for their end
   std::exception_ptr failure() const;  // the first; null for none
 
  private:

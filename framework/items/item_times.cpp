@@ -109,8 +109,7 @@ std::size_t ItemTimes::count(const std::vector<Item>& items) const {
 }
 
 ItemTimesLog::ItemTimesLog(const fs::path& folder, const std::string& part) {
-  const fs::path file =
-      folder / kTimes / (part.empty() ? "items.txt" : "items." + part + ".txt");
+  const fs::path file = folder / kTimes / (part.empty() ? "items.txt" : "items." + part + ".txt");
   const auto refuse = [&](const std::string& why) {
     throw InputError("cannot write '" + file.string() + "': " + why);
   };

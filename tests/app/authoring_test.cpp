@@ -281,9 +281,8 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
 
 // (A sound map is among the shipped plugins.)
 TEST_F(Authoring, WithoutAMistakeEveryKindPasses) {
-  for (const char* plugin :
-       {"solver", "model", "planner", "tours", "information", "utility", "exporter", "log",
-        "executor"}) {
+  for (const char* plugin : {"solver", "model", "planner", "tours", "information", "utility",
+                             "exporter", "log", "executor"}) {
     const auto found = outcomes_of("broken_" + std::string(plugin), "broken_kinds", {});
     EXPECT_EQ(status_, 0) << plugin << ": " << message_;
     EXPECT_EQ(found.at("sidecar"), "passed");

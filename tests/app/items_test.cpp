@@ -42,8 +42,8 @@ class Items : public CommandLine {
   // Of a line of the shell, in the test's folder.
   Finished shell(const std::string& line) const {
     Finished finished;
-    const int status = std::system(
-        ("cd '" + folder_.string() + "' && " + line + " > out.txt 2> err.txt").c_str());
+    const int status =
+        std::system(("cd '" + folder_.string() + "' && " + line + " > out.txt 2> err.txt").c_str());
     finished.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
     finished.out = read_file(folder_ / "out.txt");
     finished.err = read_file(folder_ / "err.txt");
@@ -69,9 +69,8 @@ TEST_F(Items, ShardsAreGatheredToTheSameBytes) {
   EXPECT_THAT(first.out, HasSubstr("\"shard\": \"1/2\""));
   const Finished incomplete = shell(explore("parts", "--gather"));
   EXPECT_EQ(incomplete.status, 2);
-  EXPECT_THAT(incomplete.err,
-              AllOf(HasSubstr("--gather: 3 of 6 items in 'parts' are missing: "),
-                    HasSubstr("'episodes/yard.obj_frontier_1.json', ")));
+  EXPECT_THAT(incomplete.err, AllOf(HasSubstr("--gather: 3 of 6 items in 'parts' are missing: "),
+                                    HasSubstr("'episodes/yard.obj_frontier_1.json', ")));
   EXPECT_FALSE(fs::exists(folder_ / "parts/table.csv"));
   const Finished second = shell(explore("parts", "--shard 0/2"));
   EXPECT_EQ(second.status, 0) << second.err;
@@ -243,8 +242,8 @@ TEST_F(LongItems, TwoProcessesThatResumeOneFolderEndAtTheSameBytes) {
   sleep(0.7);
   kill_all(process);
   const std::string resume = work(1, "both");
-  const Finished both = shell("(" + resume + "; echo $? > first.txt) & " + resume +
-                              "; echo $? > second.txt; wait");
+  const Finished both =
+      shell("(" + resume + "; echo $? > first.txt) & " + resume + "; echo $? > second.txt; wait");
   const int first = std::stoi(read_file(folder_ / "first.txt"));
   const int second = std::stoi(read_file(folder_ / "second.txt"));
   EXPECT_EQ(std::min(first, second), 0) << both.err;

@@ -20,11 +20,10 @@ using Names = std::set<std::string>;
 // What a room may include besides itself and core.
 const std::map<std::string, Names>& rooms() {
   static const Names kAllButApp{
-      "geometry",    "trajectory", "vehicle",       "map",     "path",   "problem",
-      "solve",       "view",       "explore",       "verify",  "export", "config",
-      "conformance", "plugin",     "mission",       "surface", "shape",  "picture",
-      "symbolic",    "flight_log", "flight_review", "mavlink", "fly",    "survey",
-      "items"};
+      "geometry", "trajectory", "vehicle", "map",     "path",     "problem",     "solve",
+      "view",     "explore",    "verify",  "export",  "config",   "conformance", "plugin",
+      "mission",  "surface",    "shape",   "picture", "symbolic", "flight_log",  "flight_review",
+      "mavlink",  "fly",        "survey",  "items"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;

@@ -19,10 +19,9 @@ const Registry& plugins() {
 std::vector<PluginEntry> checked_entries() {
   std::vector<PluginEntry> result;
   for (const PluginEntry& entry : plugins().entries())
-    for (const char* kind :
-         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner",
-          "tour_solver", "information", "utility", "exporter", "shape", "controller", "flight_log",
-          "executor"})
+    for (const char* kind : {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map",
+                             "path_planner", "tour_solver", "information", "utility", "exporter",
+                             "shape", "controller", "flight_log", "executor"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }

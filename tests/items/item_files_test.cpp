@@ -127,8 +127,9 @@ TEST_F(ItemFiles, AStatementIsWrittenOnceAndCompared) {
   EXPECT_THAT(refusal_of([&] { open_statement(file, statement, resume, "study"); }),
               HasSubstr("states another study: it has other inputs: seed; --resume continues"));
   statement.set("machine", "m68k");
-  EXPECT_THAT(refusal_of([&] { open_statement(file, statement, shard, "study"); }),
-              HasSubstr("it is of another machine (" + machine_of_numbers() + "; this one is m68k"));
+  EXPECT_THAT(
+      refusal_of([&] { open_statement(file, statement, shard, "study"); }),
+      HasSubstr("it is of another machine (" + machine_of_numbers() + "; this one is m68k"));
 }
 
 TEST_F(ItemFiles, OneOfSeveralWritersCreatesAFile) {

@@ -89,7 +89,7 @@ TEST(ItemSchedule, OfTwoProcessesIsTheBestOne) {
   EXPECT_NEAR(simulate_schedule(input, 1, 2).seconds, 5, 1e-9);
   // The longest item bounds every schedule.
   EXPECT_NEAR(simulate_schedule(input, 1000, 1).seconds, 3, 0.01);
-  EXPECT_EQ(enough_ranks(input, 1000, 1), 3);  // process 0 takes 3 s, and 3 s, 2 + 2 s are others'
+  EXPECT_EQ(enough_ranks(input, 1000, 1), 4);  // of three, one has 2 + 2 s
 }
 
 // Longest first is at most a third longer than any schedule (Graham 1969), which takes at least the
@@ -102,9 +102,8 @@ TEST(ItemSchedule, KeepsGrahamsBound) {
     for (std::size_t i = 0; i < items.size(); ++i) seconds.push_back(random.uniform(1, 50));
     const int ranks = static_cast<int>(random.integer(1, 40));
     const Schedule schedule = simulate_schedule({items, all_of(items), seconds, {0}}, ranks, 1);
-    const double bound =
-        std::max(std::accumulate(seconds.begin(), seconds.end(), 0.0) / ranks,
-                 *std::max_element(seconds.begin(), seconds.end()));
+    const double bound = std::max(std::accumulate(seconds.begin(), seconds.end(), 0.0) / ranks,
+                                  *std::max_element(seconds.begin(), seconds.end()));
     EXPECT_GE(schedule.seconds, bound - 1e-9);
     EXPECT_LE(schedule.seconds, 4.0 / 3 * bound + 0.1) << ranks;
   }

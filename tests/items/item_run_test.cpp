@@ -154,13 +154,13 @@ TEST_F(ItemRuns, ShardsMakeTheirPartsAndGatheringNamesWhatIsMissing) {
 }
 
 TEST_F(ItemRuns, AFailureAnywhereIsSaidOnceByProcess0) {
-  EXPECT_THAT(run(3, {}, 5, 2),
-              testing::ElementsAre(testing::AllOf(HasSubstr("process 2 on '"),
-                                                  HasSubstr("': no such file")),
-                                   "told by another", "told by another"));
+  EXPECT_THAT(run(3, {}, 5, 2), testing::ElementsAre(testing::AllOf(HasSubstr("process 2 on '"),
+                                                                    HasSubstr("': no such file")),
+                                                     "told by another", "told by another"));
   EXPECT_THAT(run(2, {}, 5, 0), testing::ElementsAre("no such file", "told by another"));
-  EXPECT_THAT(run(2, {}, 5, -1, 1),
-              testing::ElementsAre(HasSubstr("has other inputs than process 0"), "told by another"));
+  EXPECT_THAT(
+      run(2, {}, 5, -1, 1),
+      testing::ElementsAre(HasSubstr("has other inputs than process 0"), "told by another"));
   EXPECT_EQ(opened_, 0);
   broken_ = 2;
   EXPECT_THAT(run(2, {}, 5), testing::ElementsAre("the disk is full", "nothing"));

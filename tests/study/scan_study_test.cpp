@@ -128,15 +128,17 @@ class ScanStudies : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(base_); }
 
-  std::vector<ScanRow> run(const ScanStudy& study, const std::string& folder,
-                           bool resume = false, int threads = 1) const {
+  std::vector<ScanRow> run(const ScanStudy& study, const std::string& folder, bool resume = false,
+                           int threads = 1) const {
     const auto executor = plugins().create<Executor>("threads");
     const CancellationToken token;
     ItemOptions options;
     options.resume = resume;
     ItemRun items(*executor, options, threads, token, [](const std::string&) {});
     const auto nothing = [](const std::string&) {};
-    return run_study(study, base_ / folder, items, plugins(), nullptr, [] {}, nothing).value();
+    return run_study(
+               study, base_ / folder, items, plugins(), nullptr, [] {}, nothing)
+        .value();
   }
   // Rows and what is made of them; times are the clock's.
   std::map<std::string, std::string> bytes(const std::string& folder) const {

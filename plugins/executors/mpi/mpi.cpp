@@ -140,8 +140,8 @@ class Mpi final : public Executor {
     wait(request);
     std::vector<std::string> texts;
     for (int r = 0; r < ranks_; ++r)
-      texts.push_back(all.substr(static_cast<std::size_t>(places[r]),
-                                 static_cast<std::size_t>(sizes[r])));
+      texts.push_back(
+          all.substr(static_cast<std::size_t>(places[r]), static_cast<std::size_t>(sizes[r])));
     return texts;
   }
 
@@ -185,10 +185,10 @@ class Mpi final : public Executor {
       const std::lock_guard lock(reporting);
       work.done(item, seconds);
     };
-    ItemThreads own(work,
-                    {[&] { return work.queue.take(0, work.prepared()); }, done,
-                     [&] { work.queue.close(); }},
-                    true);
+    ItemThreads own(
+        work,
+        {[&] { return work.queue.take(0, work.prepared()); }, done, [&] { work.queue.close(); }},
+        true);
     std::exception_ptr failure;
     bool cancelled = false;
     const auto look_for_cancellation = [&] {
@@ -226,7 +226,9 @@ class Mpi final : public Executor {
           if (!failure) failure = failure_in(reader, sender);
           work.queue.close();
           break;
-        case Kind::end: --others; break;
+        case Kind::end:
+          --others;
+          break;
       }
     }
     own.join();
@@ -240,10 +242,10 @@ class Mpi final : public Executor {
   struct Desk {
     std::mutex mutex;
     std::condition_variable changed;
-    int waiting = 0;                    // threads without an item
-    bool closed = false;                // no item comes any more
-    std::deque<std::size_t> items;      // for waiting threads
-    std::deque<std::string> messages;   // for process 0
+    int waiting = 0;                   // threads without an item
+    bool closed = false;               // no item comes any more
+    std::deque<std::size_t> items;     // for waiting threads
+    std::deque<std::string> messages;  // for process 0
   };
 
   void ask(const ItemWork& work) const {
