@@ -7,6 +7,12 @@ set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lapwing)
 set_target_properties(lapwing_app lapwing_sidecar PROPERTIES
   INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 install(TARGETS lapwing lapwing_app lapwing_sidecar EXPORT lapwing_targets)
+if(TARGET lapwing_projection)
+  install(TARGETS lapwing_projection LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/lapwing)
+endif()
+if(TARGET lapwing_raster)
+  install(TARGETS lapwing_raster RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/lapwing)
+endif()
 install(EXPORT lapwing_targets NAMESPACE lapwing:: DESTINATION ${package})
 export(EXPORT lapwing_targets NAMESPACE lapwing:: FILE ${CMAKE_BINARY_DIR}/lapwing_targets.cmake)
 

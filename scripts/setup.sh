@@ -5,7 +5,8 @@
 # Prints the packages to install. Asks first on a terminal, unless --yes. Default: build and test.
 # `fuzz` is for scripts/fuzz.sh, `learn` for the preset `learn`, `fresh` for tests/fresh_machine,
 # `judge` for scripts/judge.sh, `studio` for scripts/studio.sh, `check` for scripts/format.sh and scripts/tidy.sh, `package` for scripts/package.sh.
-# `sites` is for coordinates of surveyors, `cluster` for many processes by mpirun: build again after them.
+# `sites` is for coordinates and rasters of surveyors, `cluster` for many processes by mpirun: build
+# again after them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh

@@ -21,6 +21,7 @@ struct CommandExamples {
   const char* path;
   std::vector<const char*> lines;
   const char* statuses;
+  const char* more = "";  // a paragraph of its own
 };
 
 const std::vector<CommandExamples>& command_examples() {
@@ -77,7 +78,9 @@ const std::vector<CommandExamples>& command_examples() {
         "lapwing fly out/shot/plan.json --to udpin:0.0.0.0:14550 --yes-a-real-vehicle"},
        "0 flown within the tolerance; 1 not certified and not flown, strayed, aborted, taken over "
        "by the pilot, or link lost; 2 bad input, or the vehicle is not ready; 3 internal error; "
-       "130 aborted by Ctrl-C"},
+       "130 aborted by Ctrl-C",
+       "Keys during the flight: space pauses, r resumes, a or q aborts (brakes along the path and "
+       "holds). Without a terminal, --press presses them."},
       {"lapwing autopilot",
        {"lapwing autopilot out/shot/plan.json --pilot fly",
         "lapwing autopilot out/shot/plan.json --pilot fly --fault lost=0.2 --fault gap=5@4 --once"},
@@ -128,6 +131,9 @@ const std::vector<CommandExamples>& command_examples() {
       {"lapwing evaluate explore",
        {"lapwing evaluate explore --world suburb --utility proximity_count --episodes 3"},
        kOfStudies},
+      {"lapwing reproduce",
+       {"lapwing reproduce list", "lapwing reproduce 4.3 --quick"},
+       kOfStudies},
       {"lapwing version", {"lapwing version"}, "0 done"},
       {"lapwing help", {"lapwing help run", "lapwing help map convert"}, kOfFiles},
       {"lapwing completion",
@@ -144,6 +150,7 @@ std::string footer_of(const std::string& path) {
     if (one.path != path) continue;
     std::string text = one.lines.size() == 1 ? "Example:" : "Examples:";
     for (const char* line : one.lines) text += std::string("\n  ") + line;
+    if (*one.more) text += std::string("\n\n") + one.more;
     return text + "\n\nExit status: " + one.statuses + ".";
   }
   throw std::logic_error("no example for '" + path + "'");

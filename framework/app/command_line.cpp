@@ -13,6 +13,7 @@
 #include "framework/app/plugin_check.h"
 #include "framework/app/plugin_guard.h"
 #include "framework/app/provenance.h"
+#include "framework/app/reproduce_command.h"
 #include "framework/app/simulation_request.h"
 #include "framework/app/studio_command.h"
 #include "framework/app/sweep_command.h"
@@ -261,6 +262,7 @@ struct Requests {
   StudioRequest studio;
   PlanDifference difference;
   ScanEvaluation scanning;
+  ReproduceRequest reproducing;
   ExploreEvaluation exploring;
   HelpRequest help;
   Command command;
@@ -297,6 +299,7 @@ void declare_commands(CLI::App& app, Requests& asked) {
   CLI::App* evaluate = app.add_subcommand("evaluate", "studies that compare methods");
   evaluate->require_subcommand(1);
   add_evaluate_scan(*evaluate, invocation, asked.scanning, command);
+  add_reproduce_command(app, invocation, asked.reproducing, command);
   add_evaluate_explore(*evaluate, invocation, asked.exploring, command);
   add_help_commands(app, invocation, asked.help, command);
   add_footers(app);

@@ -92,9 +92,10 @@ struct ScanEvaluation {
   std::vector<std::uint64_t> seeds{1};
   std::vector<double> budgets;  // s; none: each mission's own
   std::optional<DepthNoise> noise;
-  double guard = 300;   // s of wall clock for one solver
-  bool photos = false;  // render photographs and ask COLMAP to register them
-  ItemOptions items;    // an item is a row
+  std::optional<double> range, incidence;  // m and rad, of the judge; none: those of planning
+  double guard = 300;                      // s of wall clock for one solver
+  bool photos = false;                     // render photographs and ask COLMAP to register them
+  ItemOptions items;                       // an item is a row
 };
 ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocation);
 

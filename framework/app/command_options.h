@@ -24,6 +24,7 @@ struct Description;
 struct ExploreEvaluation;
 struct NewFiles;
 struct PluginCheck;
+struct ReproduceRequest;
 struct TourRun;
 struct TrainRequest;
 
@@ -66,6 +67,8 @@ void add_new_commands(CLI::App& app, Invocation& invocation, NewFiles& wanted, C
 void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& request,
                         Command& command);
 void add_tour_command(CLI::App& app, Invocation& invocation, TourRun& asked, Command& command);
+void add_reproduce_command(CLI::App& app, Invocation& invocation, ReproduceRequest& asked,
+                           Command& command);
 void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluation& asked,
                        Command& command);
 void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,

@@ -13,6 +13,7 @@
 #include "framework/core/files.h"
 #include "framework/core/units.h"
 #include "framework/core/visible_text.h"
+#include "framework/flight_log/log_time.h"
 #include "framework/flight_review/flight_review.h"
 #include "framework/mission/environment_source.h"
 
@@ -133,23 +134,37 @@ Value log_value(const FlightLog& log) {
   return value;
 }
 
+// A time of the log, alone; of a clock that counts from 1970 as a date.
+std::string short_moment(const FlightLog& log, double time) {
+  if (log.utc && *log.utc == 0) return utc_text(time, 3);
+  char text[64];
+  std::snprintf(text, sizeof text, "%.3f s", time);
+  return text;
+}
+
 void print(const FlightLog& log) {
   std::printf("%s%s%s, %.6g s\n", log.format.c_str(), log.recorder.empty() ? "" : ", ",
               visible_line(log.recorder).c_str(), log.finish() - log.start());
+  if (log.utc) {
+    const std::string begin = utc_text(*log.utc + log.start(), 0);
+    if (!begin.empty()) std::printf("  from %s\n", begin.c_str());
+  }
   if (!log.damage.empty())
     std::printf("  damaged: %s; %zu of %zu bytes were read\n", visible_line(log.damage).c_str(),
                 log.bytes_read, log.bytes);
   for (const LogQuantity& quantity : log_quantities()) {
     const LogSeries* series = log.find(quantity.name);
     if (!series) continue;
-    std::printf("  %-18s %8zu samples from %.3f s to %.3f s  %s%s%s\n", quantity.name,
-                series->size(), series->times.front(), series->times.back(), quantity.summary,
+    std::printf("  %-18s %8zu samples from %s to %s  %s%s%s\n", quantity.name, series->size(),
+                short_moment(log, series->times.front()).c_str(),
+                short_moment(log, series->times.back()).c_str(), quantity.summary,
                 series->source.empty() ? "" : "; ", visible_line(series->source).c_str());
   }
   if (!log.photographs.empty()) std::printf("  %zu photographs\n", log.photographs.size());
   for (const std::string& remark : log.remarks) std::printf("  %s\n", visible_line(remark).c_str());
   for (const LogMessage& message : log.messages)
-    std::printf("  %10.3f s  %s\n", message.time, visible_line(message.text).c_str());
+    std::printf("  %12s  %s\n", short_moment(log, message.time).c_str(),
+                visible_line(message.text).c_str());
 }
 
 }  // namespace

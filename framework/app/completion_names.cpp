@@ -8,6 +8,7 @@
 #include "framework/app/mission_loading.h"
 #include "framework/config/shipped.h"
 #include "framework/core/files.h"
+#include "framework/study/reproduction.h"
 
 namespace lapwing {
 namespace {
@@ -66,6 +67,13 @@ Names without_signs(Names names) {
   return names;
 }
 
+// What `lapwing reproduce` makes.
+Names tables() {
+  Names names = reproduction_names(shipped_folder("configs") / "reproduce");
+  names.push_back("list");
+  return names;
+}
+
 using List = Names (*)(const Invocation&);
 
 const std::map<std::string, List>& lists() {
@@ -73,9 +81,11 @@ const std::map<std::string, List>& lists() {
       {"config",
        [](const Invocation&) {
          return configurations([](const std::string& folder) {
-           return !folder.empty() && folder != "vehicles" && folder != "cameras";
+           return !folder.empty() && folder != "vehicles" && folder != "cameras" &&
+                  folder != "reproduce";
          });
        }},
+      {"table", [](const Invocation&) { return tables(); }},
       {"vehicle",
        [](const Invocation&) {
          return configurations([](const std::string& folder) { return folder == "vehicles"; });
@@ -130,6 +140,7 @@ const std::vector<NamedValue>& named_values() {
       {"lapwing config", "--set", kSettings, false},
       {"lapwing sweep", "--set", kSettings, false},
       {"lapwing sweep", "--vary", kSettings, false},
+      {"lapwing reproduce", "table", "table", false},
       {"", "--utility", "utility", false},
       {"", "--explorer", "utility", false},
       {"", "--world", "world", true},

@@ -140,6 +140,55 @@ void compare_zones(const Plan& plan, ConfigurationComparison& found) {
     found.faults.push_back("the volume of its configuration is not in the plan as stated there");
 }
 
+// What the take-off place is asked to be, and what counts from it.
+void compare_home(const Plan& plan, ConfigurationComparison& found) {
+  const Value* asked = plan.configuration.find("home");
+  const auto position = asked ? stated_numbers(*asked, "position") : std::nullopt;
+  if (!position) return;
+  if (!plan.home) {
+    found.faults.emplace_back("the plan has no home, and its configuration states one");
+    return;
+  }
+  const Home& home = *plan.home;
+  if (!same_vector(*position, home.position))
+    found.faults.emplace_back("home.position is not in the plan as its configuration states it");
+  const auto compare = [&](const std::string& key, const std::optional<double>& here) {
+    const auto limit = stated_number(*asked, key.c_str());
+    if (limit && !here)
+      found.faults.push_back("the plan has no home." + key + ", and its configuration states one");
+    else if (limit)
+      compare_number("home." + key, *here, limit, " m", Than::above, found);
+  };
+  compare("max_height", home.max_height);
+  compare("max_distance", home.max_distance);
+  const auto& points = stated_tables(*asked, "rally_points");
+  bool same = points.size() == home.rally_points.size();
+  for (std::size_t i = 0; same && i < points.size(); ++i) {
+    const auto point = stated_numbers(points[i], "position");
+    same = point && same_vector(*point, home.rally_points[i]);
+  }
+  if (!same)
+    found.faults.emplace_back(
+        "home.rally_points are not in the plan as its configuration states "
+        "them");
+}
+
+// The place of the world on the earth, from which heights count.
+void compare_origin(const Plan& plan, ConfigurationComparison& found) {
+  const Value* asked = plan.configuration.find("origin");
+  const auto latitude = asked ? stated_number(*asked, "latitude_deg") : std::nullopt;
+  const auto longitude = asked ? stated_number(*asked, "longitude_deg") : std::nullopt;
+  const auto height = asked ? stated_number(*asked, "height") : std::nullopt;
+  if (!latitude || !longitude || !height) return;
+  const auto& here = plan.geodetic_origin;
+  if (here && same_number(here->latitude_deg, *latitude) &&
+      same_number(here->longitude_deg, *longitude) && same_number(here->height, *height) &&
+      to_string(here->height_of) == stated_text(*asked, "height_of"))
+    return;
+  found.faults.emplace_back(here ? "the origin is not in the plan as its configuration states it"
+                                 : "the plan has no origin, and its configuration states one");
+}
+
 }  // namespace
 
 std::string otherwise(const std::string& what, const std::string& here, const std::string& asked) {
@@ -166,6 +215,8 @@ ConfigurationComparison compare_with_configuration(const Plan& plan) {
     found.not_compared.push_back("obstacles and task: the plan states no configuration");
     return found;
   }
+  compare_origin(plan, found);
+  compare_home(plan, found);
   for (const Kind& kind : kinds()) {
     // The options tell the kind where another name was put on the plan.
     const bool by_options = has_all(plan.configuration, kind.options);

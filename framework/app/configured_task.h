@@ -14,11 +14,11 @@ struct ConfigurationComparison {
   std::vector<std::string> not_compared;  // what was left out and why, a phrase each
 };
 
-// Compares a plan with its configuration: obstacles, zones, margin, keyframes with their times,
-// yaws and tolerances, subjects, framing, cuts, bystanders, constraints and budget of films; gates
-// of races; region, camera, margin, budget and tolerances of scans; tolerance and view of light
-// paintings. A plan may ask for more. What the configuration leaves to a file or to the script, and
-// missions of other kinds, are said to be not compared.
+// Compares a plan with its configuration: origin and home of every kind; obstacles, zones, margin,
+// keyframes with their times, yaws and tolerances, subjects, framing, cuts, bystanders, constraints
+// and budget of films; gates of races; region, camera, margin, budget and tolerances of scans;
+// tolerance and view of light paintings. A plan may ask for more. What the configuration leaves to
+// a file or to the script, and missions of other kinds, are said to be not compared.
 ConfigurationComparison compare_with_configuration(const Plan& plan);
 
 // ---- parts, by the kind of mission --------------------------------------------------------------

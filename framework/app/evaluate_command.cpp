@@ -80,6 +80,12 @@ ScanCase case_of(const fs::path& script, std::uint64_t seed, const Invocation& g
     scan.camera = work.visible->settings().pinhole;
     scan.region = work.visible->settings().region;
     scan.pattern_height = height_of_patterns(scan);
+    const SightSettings& sight = work.visible->settings();
+    scan.usable_range = std::min(sight.range, sight.usable_range);
+    scan.usable_incidence = sight.usable_incidence;
+    scan.viewing.emplace();
+    scan.viewing->room = work.allowed;
+    scan.viewing->body = work.body;
     scan.leg_seconds = [flight = LegFlight(work)](const Viewpoint& from, const Viewpoint& to) {
       return flight.seconds({from.position, to.position}, from, to);
     };
@@ -163,6 +169,8 @@ ScanStudy study_of(const ScanEvaluation& asked, const Invocation& invocation,
     if (!(budget > 0)) throw InputError("--budgets: a budget must be above 0 s");
   }
   study.noise = asked.noise;
+  study.range = asked.range;
+  study.incidence = asked.incidence;
   study.guard = asked.guard;
   study.photos = asked.photos;
   if (asked.photos) require_colmap();

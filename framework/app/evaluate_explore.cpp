@@ -65,6 +65,8 @@ void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   object.set("observed", Value(Value::List(curve.begin(), curve.end())));
   object.set(kMadeByEntry, mark);
   Value time = Value::map();
+  time.set("world", world.name);
+  time.set("utility", trial.utility);
   time.set("seconds_per_step",
            seconds / static_cast<double>(std::max<std::size_t>(1, curve.size())));
   write_file_atomically(folder / "seconds" / (trial.name() + ".json"), to_json(time) + "\n");

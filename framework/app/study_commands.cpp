@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "framework/app/command_options.h"
 #include "framework/app/evaluate_explore.h"
+#include "framework/app/reproduce_command.h"
 #include "framework/app/tour_command.h"
 #include "framework/app/train_command.h"
 
@@ -29,6 +31,13 @@ std::uint64_t read_seed(const std::string& text) {
   if (error != std::errc{} || end != text.data() + text.size() || seed > kLargestSeed)
     throw CLI::ValidationError("--seeds", "expected whole numbers, not '" + text + "'");
   return seed;
+}
+
+double above_zero(const char* option, const std::string& text, double most) {
+  const double number = read_within(option, text, most);
+  if (!(number > 0))
+    throw CLI::ValidationError(option, "expected a number above 0, not '" + text + "'");
+  return number;
 }
 
 }  // namespace
@@ -68,6 +77,15 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
                throw CLI::ValidationError("--noise", "expected SIGMA or SIGMA,DROPPED");
              asked.noise = DepthNoise{numbers.size() > 1 ? numbers[1] : 0, numbers[0]};
            });
+  add_text(*scan, "--range", "M",
+           "largest distance of evaluated depth in m; default: `usable.range` of each mission",
+           [&](const std::string& text) { asked.range = above_zero("--range", text, 1000); });
+  add_text(*scan, "--angle", "DEG",
+           "largest angle of incidence of evaluated depth; default: `usable.incidence_deg` of each "
+           "mission",
+           [&](const std::string& text) {
+             asked.incidence = above_zero("--angle", text, 90) * std::numbers::pi / 180;
+           });
   add_text(*scan, "--guard", "S", "wall-clock limit of a solver in s; default: 300",
            [&](const std::string& text) { asked.guard = read_number("--guard", text); });
   scan->add_flag("--photos", asked.photos,
@@ -86,6 +104,25 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
   scan->add_flag("--quiet", invocation.quiet, "no progress, no tables");
   add_json(*scan, invocation);
   scan->callback([&] { command = [&] { return evaluate_scan(asked, invocation); }; });
+}
+
+void add_reproduce_command(CLI::App& app, Invocation& invocation, ReproduceRequest& asked,
+                           Command& command) {
+  CLI::App* made = app.add_subcommand(
+      "reproduce", "make a table or a figure of the thesis again, its own figures beside ours");
+  add_text(*made, "table", "TABLE", "`list`, or a name that it prints: 4.3",
+           [&](const std::string& name) { asked.table = name; })
+      ->required();
+  made->add_flag("--quick", asked.quick, "less of it, within five minutes; the caption says what");
+  made->add_flag("--resume", asked.resume, "continue an interrupted reproduction");
+  add_repeated(*made, "--data", "DIR", invocation.data,
+               "a folder of real meshes; repeatable; default: those of LAPWING_DATA");
+  add_text(*made, "-o,--out", "DIR", "folder of all reproductions; default: out/reproduce",
+           [&](const std::string& path) { invocation.out = path; });
+  add_threads(*made, invocation, "threads to use; default: one per core");
+  made->add_flag("--quiet", invocation.quiet, "no progress, no table");
+  add_json(*made, invocation);
+  made->callback([&] { command = [&] { return reproduce_table(asked, invocation); }; });
 }
 
 void add_tour_command(CLI::App& app, Invocation& invocation, TourRun& asked, Command& command) {

@@ -14,12 +14,24 @@ namespace {
 constexpr std::string_view kReads = "reads ";
 constexpr std::string_view kDebug = "debug: ";
 
+thread_local const std::function<void(const fs::path&)>* listener = nullptr;
+
 }  // namespace
 
 void note_read(const fs::path& path) {
   std::error_code code;
   const fs::path whole = fs::weakly_canonical(path, code);
   logging::debug(std::string(kReads) + (code ? path : whole).string());
+  if (listener) (*listener)(code ? path : whole);
+}
+
+ReadListener::ReadListener(std::function<void(const fs::path&)> hear)
+    : hear_(std::move(hear)), before_(listener) {
+  listener = &hear_;
+}
+
+ReadListener::~ReadListener() {
+  listener = before_;
 }
 
 std::set<std::string> noted_reads(std::string_view log) {

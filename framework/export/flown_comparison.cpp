@@ -70,6 +70,8 @@ Plan plan_as_flown(const Plan& plan, const FlownFile& flown, const PlanProgress&
   Plan made;
   made.mission = plan.mission;
   made.kind = plan.kind;
+  made.geodetic_origin = plan.geodetic_origin;
+  made.home = plan.home;
   made.vehicle = plan.vehicle;
   made.environment = plan.environment;
   made.trajectory = flown.trajectory;
@@ -126,7 +128,8 @@ void judge_flight(const Plan& plan, const Plan& flown, const std::filesystem::pa
   for (const Check& check : certificate.checks) {
     if (!check.required || !check.skipped.empty() || check.pass || known.count(check.name)) {
       const bool told = check.name == "clearance" || check.name == "subject_distance" ||
-                        check.name == "flight_zone" || check.name == "framing";
+                        check.name == "flight_zone" || check.name == "framing" ||
+                        check.name == "height_above_home" || check.name == "distance_from_home";
       if (told && check.skipped.empty()) result.sentences.push_back("flown so: " + to_line(check));
       continue;
     }
@@ -135,28 +138,35 @@ void judge_flight(const Plan& plan, const Plan& flown, const std::filesystem::pa
   }
 }
 
+// m, s and degrees of a comparison mean nothing below a thousandth.
+std::string thousandths(double value) {
+  return plain_number(std::round(value * 1e3) / 1e3 + 0.0, 3);
+}
+
 std::string at_time(double time) {
   return " (at " + plain_number(time, 4) + " s)";
 }
 
 void say(const Plan& plan, const FlownFile& flown, FlownComparison& r) {
-  std::string line = "as a vehicle flies the file, it is at most " + plain_number(r.across, 3) +
+  std::string line = "as a vehicle flies the file, it is at most " + thousandths(r.across) +
                      " m across the path of the plan" + at_time(r.across_time) + " and " +
-                     plain_number(std::abs(r.late), 3) + (r.late < 0 ? " s early" : " s late") +
+                     thousandths(std::abs(r.late)) + (r.late < 0 ? " s early" : " s late") +
                      at_time(r.late_time);
   if (flown.trajectory.has_gimbal)
-    line += "; its camera is at most " + plain_number(degrees(r.camera), 3) +
+    line += "; its camera is at most " + thousandths(degrees(r.camera)) +
             " deg from that of the plan" + at_time(r.camera_time);
   else
-    line += "; its heading is at most " + plain_number(degrees(r.heading), 3) +
+    line += "; its heading is at most " + thousandths(degrees(r.heading)) +
             " deg from that of the plan" + at_time(r.heading_time);
   r.sentences.push_back(line);
-  r.sentences.push_back("it takes " + plain_number(std::abs(r.longer), 3) + " s " +
-                        (r.longer < 0 ? "less" : "more") +
-                        " than the plan, without take-off and landing");
+  const std::string longer = thousandths(std::abs(r.longer));
+  r.sentences.push_back(longer == "0"
+                            ? "it takes as long as the plan, without take-off and landing"
+                            : "it takes " + longer + " s " + (r.longer < 0 ? "less" : "more") +
+                                  " than the plan, without take-off and landing");
   if (!films(plan, flown)) return;
-  std::string images = "its images are at most " + plain_number(r.image_distance, 3) + " m and " +
-                       plain_number(degrees(r.image_angle), 3) + " deg from their views";
+  std::string images = "its images are at most " + thousandths(r.image_distance) + " m and " +
+                       thousandths(degrees(r.image_angle)) + " deg from their views";
   if (r.images_missed > 0) images += "; " + std::to_string(r.images_missed) + " are not taken";
   r.sentences.push_back(images);
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "framework/core/json.h"
 #include "framework/export/camera_track.h"
 
 namespace lapwing {
@@ -56,6 +55,15 @@ std::vector<MapPoint> map_points(const Plan& plan) {
                       {},
                       {}});
   }
+  if (!plan.home) return points;
+  points.push_back({"home", "home", plan.home->position, {}, {}, {}});
+  for (std::size_t i = 0; i < plan.home->rally_points.size(); ++i)
+    points.push_back({"rally_point",
+                      numbered("", "rally point", i + 1),
+                      plan.home->rally_points[i],
+                      {},
+                      {},
+                      {}});
   return points;
 }
 
@@ -77,28 +85,6 @@ std::vector<MapZone> map_zones(const Plan& plan) {
     zones.push_back(std::move(zone));
   }
   return zones;
-}
-
-std::string xml_text(const std::string& text) {
-  std::string out;
-  for (const char c : as_utf8(text)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (c == '\'')
-      out += "&apos;";
-    else if (byte < 0x20 && c != '\n' && c != '\t')
-      out += "\xef\xbf\xbd";
-    else
-      out += c;
-  }
-  return out;
 }
 
 std::string stated_name(const Plan& plan) {

@@ -11,14 +11,15 @@
 namespace lapwing {
 
 struct MapPoint {
-  std::string kind;                                    // keyframe, gate, view, subject
-  std::string name;                                    // its own, or kind and number
+  std::string kind;  // keyframe, gate, view, subject, home, rally_point
+  std::string name;  // its own, or kind and number
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, world
   std::optional<double> time;                          // s, when the flight is there
   std::optional<double> yaw, pitch;                    // rad, of the camera of a view
 };
 
-// Keyframes, gates, views and subjects (where they begin), in the order of the plan.
+// Keyframes, gates, views, subjects (where they begin), home and rally points, in the order of the
+// plan.
 std::vector<MapPoint> map_points(const Plan& plan);
 
 // A prism over a polygon: closed to flight, or not to be left.
@@ -31,9 +32,6 @@ struct MapZone {
 
 // Those that stand still. Obstacles of other types have no outline on the ground.
 std::vector<MapZone> map_zones(const Plan& plan);
-
-// The text as XML holds it: & < > " ' as references, what XML cannot hold as U+FFFD.
-std::string xml_text(const std::string& text);
 
 // The name of the mission, with " (not certified)" after it where the plan is not.
 std::string stated_name(const Plan& plan);

@@ -53,19 +53,30 @@ std::vector<MissionFence> mission_fences(const Plan& plan, std::vector<std::stri
   }
   for (std::size_t i = 0; i < plan.environment.obstacles.size(); ++i)
     add_circle(plan.environment.obstacles[i], i, all);
-  std::string left_out;
+  std::string passed, on_ground;
+  const auto add = [](std::string& list, const std::string& name) {
+    list += (list.empty() ? "" : ", ") + name;
+  };
   for (const MissionFence& fence : all) {
+    const auto breached = [&](const Eigen::Vector3d& p) {
+      return holds(fence, p.head<2>()) != fence.inclusion;
+    };
     const auto& samples = plan.trajectory.samples;
-    const bool breached = std::any_of(samples.begin(), samples.end(), [&](const Sample& s) {
-      return holds(fence, s.position.head<2>()) != fence.inclusion;
-    });
-    if (breached)
-      left_out += (left_out.empty() ? "" : ", ") + fence.name;
+    const bool home = plan.home && (breached(plan.home->position) ||
+                                    std::any_of(plan.home->rally_points.begin(),
+                                                plan.home->rally_points.end(), breached));
+    if (std::any_of(samples.begin(), samples.end(),
+                    [&](const Sample& s) { return breached(s.position); }))
+      add(passed, fence.name);
+    else if (home)
+      add(on_ground, fence.name);
     else
       kept.push_back(fence);
   }
-  if (!left_out.empty())
-    said.push_back("no fence is made of what the flight passes above or below: " + left_out);
+  if (!passed.empty())
+    said.push_back("no fence is made of what the flight passes above or below: " + passed);
+  if (!on_ground.empty())
+    said.push_back("no fence is made of what home or a rally point would break: " + on_ground);
   return kept;
 }
 

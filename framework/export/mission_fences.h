@@ -21,7 +21,8 @@ struct MissionFence {
 };
 
 // Of flight zones and zones as polygons, of balls and upright cylinders as circles. What the flight
-// passes above or below is left out, because a fence has no height; `said` takes a sentence on it.
+// passes above or below, and what the plan's home or a rally point would break, is left out,
+// because a fence has no height; `said` takes a sentence on it.
 std::vector<MissionFence> mission_fences(const Plan& plan, std::vector<std::string>& said);
 
 }  // namespace lapwing

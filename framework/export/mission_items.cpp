@@ -8,6 +8,7 @@
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
 #include "framework/export/mission_fences.h"
+#include "framework/export/take_off_place.h"
 #include "framework/export/waypoint_timing.h"
 
 namespace lapwing {
@@ -38,14 +39,14 @@ MissionItem order(int command, std::array<double, 7> params) {
 
 class Builder {
  public:
-  Builder(const Plan& plan, const MissionOptions& options, const std::string& format)
+  Builder(const Plan& plan, const MissionFileOptions& options, const std::string& format)
       : plan_(plan),
         options_(options),
         format_(format),
         frame_(plan, std::nullopt, format),
         vehicle_(vehicle_from_value(plan.vehicle)),
         waypoints_(fewest_waypoints(plan, options.tolerance, format)) {
-    mission_.home_z = home_z_of(plan, options);
+    mission_.home_z = take_off_z(plan, options.home_z);
     if (options.ardupilot)  // it holds whole seconds
       for (PlannedWaypoint& w : waypoints_) w.hold = std::ceil(w.hold - 1e-6);
     time_waypoints(waypoints_, vehicle_, options.tolerance.across);
@@ -54,7 +55,8 @@ class Builder {
   PlannedMission build() {
     const auto [first, last] = chosen_part();
     const PlannedWaypoint& begin = waypoints_[first];
-    mission_.home = frame_.at({begin.position.x(), begin.position.y(), mission_.home_z});
+    home_ = take_off_place(plan_, options_.home_z, begin.position);
+    mission_.home = frame_.at(home_);
     mission_.start = begin.time;
     mission_.finish = waypoints_[last].time;
     mission_.waypoints = last - first + 1;
@@ -65,6 +67,11 @@ class Builder {
     for (std::size_t k = first; k <= last; ++k)
       mission_.cruise = std::max(mission_.cruise, waypoints_[k].speed);
     mission_.fences = mission_fences(plan_, mission_.said);
+    if (plan_.home)
+      for (const Eigen::Vector3d& point : plan_.home->rally_points) {
+        const auto p = at(point, {});
+        mission_.rally_points.push_back({p[4], p[5], p[6]});
+      }
     say(first, last);
     return std::move(mission_);
   }
@@ -121,8 +128,10 @@ class Builder {
   void add_start(std::size_t first, std::size_t last) {
     const PlannedWaypoint& w = waypoints_[first];
     if (options_.take_off) {
-      check_column(w.position, "take-off", "`take_off=false`", w.time);
-      add({mav::kTakeOff, mav::kRelative, at(w.position, {0, 0, 0, rounded(yaw_of(first), 100)})});
+      const Eigen::Vector3d above{home_.x(), home_.y(), w.position.z()};
+      check_column(above, "take-off", "`take_off=false`", w.time);
+      check_way_to(w.position, above, w.time);
+      add({mav::kTakeOff, mav::kRelative, at(above, {0, 0, 0, rounded(yaw_of(first), 100)})});
     }
     if (!plan_.trajectory.has_gimbal) return;
     if (options_.gimbal == mav::kGimbal) add(order(mav::kGimbalOwner, {-2, -2, -1, -1, 0, 0, 0}));
@@ -207,7 +216,7 @@ class Builder {
 
   // A take-off climbs, a landing descends, and no waypoint lies in the ground where the origin
   // tells where that is.
-  void check_heights(std::size_t first, std::size_t last) const {
+  void check_heights(std::size_t first, std::size_t last) {
     const double begin = above_home(first), end = above_home(last);
     if (options_.take_off && begin <= 0)
       throw InputError(format_ + ": take-off: the first waypoint (z = " + z_of(first) + ") is " +
@@ -220,21 +229,21 @@ class Builder {
                        " m below the landing place (z = " + plain_number(mission_.home_z, 4) +
                        " m); expected one above it: a lower `home_z`, `finish=return` or "
                        "`finish=hover`");
-    if (frame_.heights() != HeightOf::ground) return;
-    for (std::size_t k = first; k <= last; ++k) {
-      const double height = rounded(frame_.at(waypoints_[k].position).height, 1e3);
-      if (height > 0) continue;
-      throw InputError(format_ + ": waypoint " + std::to_string(k - first + 1) + " (at " +
-                       plain_number(waypoints_[k].time, 4) + " s of the plan, z = " + z_of(k) +
-                       ") is " + plain_number(height, 4) +
-                       " m above the ground of the origin; expected more than 0 m: a higher "
-                       "flight, or an origin that states its true height above the ground");
-    }
+    const std::vector<FilePlace> places = places_of(first, last);
+    require_above_ground(places, frame_, format_);
+    const std::string below = below_take_off(places, frame_, mission_.home);
+    if (!below.empty()) mission_.said.push_back(below);
   }
 
-  // m, as the file has it.
+  std::vector<FilePlace> places_of(std::size_t first, std::size_t last) const {
+    std::vector<FilePlace> places;
+    for (std::size_t k = first; k <= last; ++k)
+      places.push_back({waypoints_[k].time, waypoints_[k].position});
+    return places;
+  }
+
   double above_home(std::size_t k) const {
-    return rounded(frame_.at(waypoints_[k].position).height - mission_.home.height, 1e3);
+    return height_above(mission_.home, frame_, waypoints_[k].position);
   }
 
   std::string z_of(std::size_t k) const {
@@ -254,6 +263,25 @@ class Builder {
                          " m, the way comes within " + plain_number(nearest.distance, 3) +
                          " m of '" + nearest.name + "' (at z = " + plain_number(z, 3) + " m); " +
                          help + " leaves it to the pilot");
+    }
+  }
+
+  // The level way from above the plan's home to the first waypoint, as far as shapes are open.
+  void check_way_to(const Eigen::Vector3d& first, const Eigen::Vector3d& above, double time) const {
+    const double margin = plan_.environment.margin, length = (first - above).norm();
+    const auto refuse = [&](const NearestObstacle& nearest) {
+      throw InputError(format_ + ": take-off: the level way from above the take-off place to the " +
+                       "first waypoint comes within " + plain_number(nearest.distance, 3) +
+                       " m of '" + nearest.name + "', and " + plain_number(margin, 3) +
+                       " m are kept; expected another `home`, or `take_off=false`, which leaves "
+                       "the way to the pilot");
+    };
+    for (double s = 0; s < length; s += kColumn) {
+      const Eigen::Vector3d p = above + s / length * (first - above);
+      const NearestObstacle outside = nearest_obstacle(plan_.environment, p, time);
+      if (outside.distance < margin - 1e-3) refuse(outside);
+      const NearestObstacle inside = least_inside(plan_.environment, p, time);
+      if (inside.distance < margin - 1e-3) refuse(inside);
     }
   }
 
@@ -278,12 +306,13 @@ class Builder {
   }
 
   const Plan& plan_;
-  const MissionOptions& options_;
+  const MissionFileOptions& options_;
   const std::string& format_;
   EarthFrame frame_;
   Vehicle vehicle_;
   std::vector<PlannedWaypoint> waypoints_;
   PlannedMission mission_;
+  Eigen::Vector3d home_ = Eigen::Vector3d::Zero();
   double speed_ = 0, heading_ = 0, pitch_ = 0, yaw_ = 0, photographs_ = 0;
   int subject_ = -1;
   bool ordered_ = false;
@@ -303,18 +332,15 @@ ParameterTable mission_parameters() {
               "autopilot for which the commands are written")
       .integer("gimbal", 1000, "command that turns the gimbal: 1000, or 205 for older autopilots",
                between(205, 1000))
-      .optional_number(
-          "home_z", "m",
-          "z of the take-off place, world; absent: the ground if the origin has height_of = "
-          "ground, otherwise 0")
+      .optional_number("home_z", "m", kHomeParameter)
       .boolean("take_off", true, "whether the mission begins with a take-off")
       .choice("finish", "land", {"land", "return", "hover"}, "action after the last waypoint")
       .integer("part", 0, "part of a plan that is too long for one file; 0: it must fit",
                between(0, 1000));
 }
 
-MissionOptions mission_options(const Parameters& given) {
-  MissionOptions options;
+MissionFileOptions mission_file_options(const Parameters& given) {
+  MissionFileOptions options;
   options.tolerance = {given.number("tolerance"), given.number("time_tolerance"),
                        radians(given.number("angle_tolerance"))};
   options.ardupilot = given.text("autopilot") == "ardupilot";
@@ -326,12 +352,6 @@ MissionOptions mission_options(const Parameters& given) {
   options.finish = given.text("finish");
   options.part = static_cast<int>(given.integer("part"));
   return options;
-}
-
-double home_z_of(const Plan& plan, const MissionOptions& options) {
-  const auto& origin = plan.geodetic_origin;
-  const bool known = origin && origin->height_of == HeightOf::ground;
-  return options.home_z.value_or(known ? 0.0 - origin->height : 0);
 }
 
 std::optional<double> home_above_sea(const EarthFrame& frame, const EarthPoint& home,
@@ -350,7 +370,7 @@ std::optional<double> home_above_sea(const EarthFrame& frame, const EarthPoint& 
   return std::nullopt;
 }
 
-PlannedMission mission_of(const Plan& plan, const MissionOptions& options,
+PlannedMission mission_of(const Plan& plan, const MissionFileOptions& options,
                           const std::string& format) {
   return Builder(plan, options, format).build();
 }

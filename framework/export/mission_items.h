@@ -33,7 +33,7 @@ struct MissionItem {
   std::array<double, 7> params{};
 };
 
-struct MissionOptions {
+struct MissionFileOptions {
   WaypointTolerance tolerance;
   bool ardupilot = false;
   int gimbal = mav::kGimbal;     // or kMountControl
@@ -44,29 +44,30 @@ struct MissionOptions {
 };
 // The parameters of exporters of missions, and what was given for them.
 ParameterTable mission_parameters();
-MissionOptions mission_options(const Parameters& given);
+MissionFileOptions mission_file_options(const Parameters& given);
 
 struct PlannedMission {
   std::vector<MissionItem> items;
-  EarthPoint home;               // the take-off place, on the ground below the first waypoint
+  EarthPoint home;               // the take-off place: the plan's, or below the first waypoint
   double home_z = 0;             // m, world
   double cruise = 0;             // m/s, the fastest leg
   double start = 0, finish = 0;  // s of the plan
   int part = 1, parts = 1;
   std::size_t waypoints = 0;
   std::vector<MissionFence> fences;
+  // Degrees north and east, m above the take-off place.
+  std::vector<std::array<double, 3>> rally_points;
   std::vector<std::string> said;  // for the user
 };
 
 // Throws InputError beginning with `format`: no origin, no length, a take-off to a waypoint that is
 // not above its place, a landing from below, with an origin above the ground a waypoint that is
-// not above it, climbing or descending through an obstacle, more items than the autopilot holds
-// (2000 of PX4, 700 of ArduPilot; it says how many parts there are), a part that there is not.
-PlannedMission mission_of(const Plan& plan, const MissionOptions& options,
+// not above it, climbing, descending or going to the first waypoint through an obstacle, more items
+// than the autopilot holds (2000 of PX4, 700 of ArduPilot; it says how many parts there are), a
+// part that there is not.
+PlannedMission mission_of(const Plan& plan, const MissionFileOptions& options,
                           const std::string& format);
 
-// m, world: what the options say, else the ground where the origin tells it, else 0.
-double home_z_of(const Plan& plan, const MissionOptions& options);
 // m above the sea of the take-off place; nothing where the origin does not tell it: a height above
 // the ground, or one above the ellipsoid and no model of the geoid. `said` takes a sentence then.
 std::optional<double> home_above_sea(const EarthFrame& frame, const EarthPoint& home,

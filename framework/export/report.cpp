@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "framework/core/error.h"
+#include "framework/core/markup.h"
 #include "framework/export/report_assets.h"
 #include "framework/export/report_data.h"
 
@@ -16,27 +17,6 @@ const std::vector<std::string>& projection_names() {
 }
 
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (c == '\'')
-      out += "&#39;";
-    else if ((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f)
-      out += "\xEF\xBF\xBD";  // a control character, which HTML may not hold
-    else
-      out += c;
-  }
-  return out;
-}
 
 std::string base64(const std::string& bytes) {
   static constexpr char kLetters[] =
@@ -71,12 +51,14 @@ const char* mark_word(Mark mark) {
 }
 
 std::string with_unit(const std::string& name, const std::string& unit) {
-  return escaped(name) + (unit.empty() ? "" : " <span class=\"unit\">" + escaped(unit) + "</span>");
+  return markup_text(name) +
+         (unit.empty() ? "" : " <span class=\"unit\">" + markup_text(unit) + "</span>");
 }
 
 std::string column_title(const TableColumn& column) {
-  const std::string unit = escaped(column.unit);
-  return escaped(column.name) + (unit.empty() ? "" : " <span class=\"unit\">[" + unit + "]</span>");
+  const std::string unit = markup_text(column.unit);
+  return markup_text(column.name) +
+         (unit.empty() ? "" : " <span class=\"unit\">[" + unit + "]</span>");
 }
 
 class Page {
@@ -96,7 +78,7 @@ class Page {
 
  private:
   void head() {
-    const std::string title = escaped(report_.title);
+    const std::string title = markup_text(report_.title);
     out_ += "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
             title +
             "</title>\n"
@@ -113,16 +95,16 @@ class Page {
         title + "</h1>";
     if (!report_.status.empty()) {
       out_ += "<span class=\"badge " + std::string(mark_word(report_.status_mark)) + "\">" +
-              escaped(report_.status) + "</span>";
+              markup_text(report_.status) + "</span>";
     }
     out_ += "</div>\n";
     if (!report_.subtitle.empty()) {
-      out_ += "<p class=\"subtitle\">" + escaped(report_.subtitle) + "</p>\n";
+      out_ += "<p class=\"subtitle\">" + markup_text(report_.subtitle) + "</p>\n";
     }
     out_ += "<nav aria-label=\"Sections\">";
     for (std::size_t i = 0; i < report_.sections.size(); ++i) {
       out_ += "<a href=\"#section-" + std::to_string(i + 1) + "\">" +
-              escaped(report_.sections[i].title) + "</a>";
+              markup_text(report_.sections[i].title) + "</a>";
     }
     out_ +=
         "</nav>\n</header>\n<main>\n<noscript><p class=\"notice\">The drawings of this page are "
@@ -138,7 +120,7 @@ class Page {
     section_ = &s;
     const std::string id = "section-" + std::to_string(index + 1);
     out_ += "<section id=\"" + id + "\" aria-labelledby=\"" + id + "-title\">\n<h2 id=\"" + id +
-            "-title\">" + escaped(s.title) + "</h2>\n<div class=\"blocks\">\n";
+            "-title\">" + markup_text(s.title) + "</h2>\n<div class=\"blocks\">\n";
     for (std::size_t i = 0, run = 0; i < s.blocks.size(); ++i) {
       // Two drawings share a row; the odd one of a run has a row of its own.
       run = half_width(s.blocks[i]) ? run + 1 : 0;
@@ -155,17 +137,17 @@ class Page {
 
   void block(const TextBlock& text) {
     if (!text.folded_title.empty()) {
-      out_ +=
-          "<details class=\"block wide\"><summary>" + escaped(text.folded_title) + "</summary>\n";
+      out_ += "<details class=\"block wide\"><summary>" + markup_text(text.folded_title) +
+              "</summary>\n";
     } else {
       out_ += "<div class=\"block text wide\">\n";
     }
     if (text.preformatted) {
-      out_ += "<pre tabindex=\"0\">" + escaped(text.text) + "</pre>\n";
+      out_ += "<pre tabindex=\"0\">" + markup_text(text.text) + "</pre>\n";
     } else {
       for (std::size_t begin = 0; begin < text.text.size();) {
         const std::size_t end = std::min(text.text.find("\n\n", begin), text.text.size());
-        out_ += "<p>" + escaped(text.text.substr(begin, end - begin)) + "</p>\n";
+        out_ += "<p>" + markup_text(text.text.substr(begin, end - begin)) + "</p>\n";
         begin = end + 2;
       }
     }
@@ -175,7 +157,7 @@ class Page {
   void block(const Facts& facts) {
     out_ += "<dl class=\"block facts wide\">\n";
     for (const Fact& f : facts.facts) {
-      out_ += "<div class=\"" + std::string(mark_word(f.mark)) + "\"><dt>" + escaped(f.label) +
+      out_ += "<div class=\"" + std::string(mark_word(f.mark)) + "\"><dt>" + markup_text(f.label) +
               "</dt><dd>" + with_unit(f.value, f.unit) + "</dd></div>\n";
     }
     out_ += "</dl>\n";
@@ -196,8 +178,8 @@ class Page {
       }
     }
     out_ += "<div class=\"block table wide\" tabindex=\"0\" role=\"region\" aria-label=\"" +
-            escaped(table.title) + "\"><table>";
-    if (!table.title.empty()) out_ += "<caption>" + escaped(table.title) + "</caption>";
+            markup_text(table.title) + "\"><table>";
+    if (!table.title.empty()) out_ += "<caption>" + markup_text(table.title) + "</caption>";
     out_ += "\n<thead><tr>";
     const auto kind = [&](std::size_t i) { return numeric[i] ? " class=\"number\"" : ""; };
     if (marked) out_ += "<th scope=\"col\">result</th>";
@@ -212,7 +194,7 @@ class Page {
       for (std::size_t i = 0; i < row.cells.size(); ++i) {
         const auto* value = std::get_if<double>(&row.cells[i]);
         out_ += std::string("<td") + kind(i) + ">" +
-                (value ? number_text(*value) : escaped(std::get<std::string>(row.cells[i]))) +
+                (value ? number_text(*value) : markup_text(std::get<std::string>(row.cells[i]))) +
                 "</td>";
       }
       out_ += "</tr>\n";
@@ -226,27 +208,28 @@ class Page {
 
   void figure(const std::string& kind, const std::string& title) {
     out_ += "<figure class=\"block " + kind + (wide_ ? " wide" : "") + "\" data-block=\"" +
-            std::to_string(drawn_++) + "\"><figcaption>" + escaped(title) +
+            std::to_string(drawn_++) + "\"><figcaption>" + markup_text(title) +
             "</figcaption></figure>\n";
   }
 
   void block(const Image& image) {
     require_png(image.png, image.caption);
-    out_ += "<figure class=\"block image wide\"><img alt=\"" + escaped(image.caption) +
+    out_ += "<figure class=\"block image wide\"><img alt=\"" + markup_text(image.caption) +
             "\" src=\"data:image/png;base64," + base64(image.png) + "\"><figcaption>" +
-            escaped(image.caption) + "</figcaption></figure>\n";
+            markup_text(image.caption) + "</figcaption></figure>\n";
   }
 
   void block(const FilmStrip& strip) {
-    out_ += "<figure class=\"block strip wide\"><figcaption>" + escaped(strip.title) +
+    out_ += "<figure class=\"block strip wide\"><figcaption>" + markup_text(strip.title) +
             "</figcaption>\n<div class=\"frames\">\n";
     for (const FilmFrame& frame : strip.frames) {
       require_png(frame.png, strip.title);
-      out_ += "<div><div class=\"picture\"><img alt=\"" + escaped(frame.caption) + "\" width=\"" +
-              std::to_string(frame.width) + "\" height=\"" + std::to_string(frame.height) +
-              "\" src=\"data:image/png;base64," + base64(frame.png) + "\">";
+      out_ += "<div><div class=\"picture\"><img alt=\"" + markup_text(frame.caption) +
+              "\" width=\"" + std::to_string(frame.width) + "\" height=\"" +
+              std::to_string(frame.height) + "\" src=\"data:image/png;base64," + base64(frame.png) +
+              "\">";
       frame_boxes(frame, strip.title);
-      out_ += "</div>" + escaped(frame.caption) + "</div>\n";
+      out_ += "</div>" + markup_text(frame.caption) + "</div>\n";
     }
     out_ += "</div></figure>\n";
   }
@@ -266,7 +249,7 @@ class Page {
       };
       out_ += "<rect x=\"" + share(box.left) + "\" y=\"" + share(box.top) + "\" width=\"" +
               size(box.left, box.right) + "\" height=\"" + size(box.top, box.bottom) +
-              "\"><title>" + escaped(box.label) + "</title></rect>";
+              "\"><title>" + markup_text(box.label) + "</title></rect>";
     }
     out_ += "</svg>";
   }

@@ -8,6 +8,7 @@
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
 #include "framework/export/camera_track.h"
+#include "framework/export/take_off_place.h"
 #include "framework/export/waypoint_timing.h"
 #include "framework/trajectory/interpolate.h"
 
@@ -88,6 +89,24 @@ std::pair<std::size_t, std::size_t> part_of(std::size_t count, const RouteOption
   return {first, std::min(first + lines, count - 1)};
 }
 
+// A drone climbs to its first point, and no point lies in the ground where the origin tells where
+// that is. A sentence on points below the take-off place; empty where there are none.
+std::string check_heights(const PlannedRoute& route, const EarthFrame& frame,
+                          const std::string& format) {
+  std::vector<FilePlace> places;
+  for (const RoutePoint& point : route.points) places.push_back({point.at.time, point.at.position});
+  const double begin = height_above(route.home, frame, places.front().position);
+  if (begin <= 0)
+    throw InputError(format +
+                     ": the first waypoint (z = " + plain_number(places.front().position.z(), 4) +
+                     " m) is " + plain_number(0 - begin, 4) +
+                     " m below the take-off place (z = " + plain_number(route.home_z, 4) +
+                     " m); expected one above it: a lower `home_z`, or a `home` of the mission "
+                     "that is lower");
+  require_above_ground(places, frame, format);
+  return below_take_off(places, frame, route.home);
+}
+
 }  // namespace
 
 ParameterTable route_parameters(std::int64_t most) {
@@ -99,10 +118,7 @@ ParameterTable route_parameters(std::int64_t most) {
       .number("angle_tolerance", 20, "deg", "half of the largest turn of the camera on a line",
               between(0.5, 90))
       .integer("most_points", most, "points that a file may hold", between(2, 65535))
-      .optional_number(
-          "home_z", "m",
-          "z of the take-off place, world; absent: the ground if the origin has height_of = "
-          "ground, otherwise 0")
+      .optional_number("home_z", "m", kHomeParameter)
       .integer("part", 0, "part of a plan that is too long for one file; 0: it must fit",
                between(0, 10000));
 }
@@ -135,11 +151,10 @@ PlannedRoute route_of(const Plan& plan, const RouteOptions& options, const std::
     route.points.front().images.clear();
     route.points.front().at.hold = 0;
   }
-  const auto& origin = plan.geodetic_origin;
-  route.home_z =
-      options.home_z.value_or(origin->height_of == HeightOf::ground ? 0.0 - origin->height : 0);
-  const Eigen::Vector3d begin = route.points.front().at.position;
-  route.home = frame.at({begin.x(), begin.y(), route.home_z});
+  const Eigen::Vector3d home =
+      take_off_place(plan, options.home_z, route.points.front().at.position);
+  route.home_z = home.z();
+  route.home = frame.at(home);
   route.start =
       route.part > 1 ? route.points.front().at.time + 1e-3 : plan.trajectory.samples.front().time;
   route.finish = route.points.back().at.time;
@@ -155,6 +170,7 @@ PlannedRoute route_of(const Plan& plan, const RouteOptions& options, const std::
                      plain_number(most, 4) + " m above the take-off place; the format has " +
                      plain_number(lowest) + " m to " + plain_number(highest) +
                      " m; `home_z` states another take-off place");
+  const std::string below = check_heights(route, frame, format);
   route.said = {frame.sentence(places),
                 "heights in the file are above the take-off place, which is at z = " +
                     plain_number(route.home_z) + " m of the plan: from " + plain_number(least, 4) +
@@ -163,6 +179,7 @@ PlannedRoute route_of(const Plan& plan, const RouteOptions& options, const std::
                     plain_number(route.start, 5) + " s to " + plain_number(route.finish, 5) +
                     " s of the plan; the vehicle turns with the camera; take-off and landing are "
                     "the application's"};
+  if (!below.empty()) route.said.push_back(below);
   return route;
 }
 

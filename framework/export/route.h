@@ -35,7 +35,7 @@ RouteOptions route_options(const Parameters& given);
 
 struct PlannedRoute {
   std::vector<RoutePoint> points;
-  EarthPoint home;               // on the ground below the first point
+  EarthPoint home;               // the plan's, or below the first point
   double home_z = 0;             // m, world
   double start = 0, finish = 0;  // s of the plan
   int part = 1, parts = 1;
@@ -47,7 +47,8 @@ struct PlannedRoute {
 
 // No faster than 15 m/s, no two points nearer than 0.5 m: what lies between is a stop. Throws
 // InputError beginning with `format`: no origin, no camera, no length, too many points (it says
-// how many parts there are), heights beyond `lowest` and `highest` (m above the take-off place).
+// how many parts there are), heights beyond `lowest` and `highest` (m above the take-off place), a
+// first point that is not above that place, points below the ground of the origin.
 PlannedRoute route_of(const Plan& plan, const RouteOptions& options, const std::string& format,
                       double lowest, double highest);
 

@@ -45,7 +45,8 @@ Image overview_image(const MeshScene& scene, const Eigen::AlignedBox3d& box, dou
 }
 
 Section known_section(const ScanRecord& record, const Eigen::AlignedBox3d& region) {
-  Section section{"Knowledge of the first flight", {}};
+  Section section{record.surveyed ? "Knowledge before the tour" : "Knowledge of the first flight",
+                  {}};
   if (record.scene)
     section.blocks.push_back(Image{encode_png(*record.scene),
                                    "The scene of the simulation; the planner does not know it"});
@@ -61,7 +62,10 @@ Section known_section(const ScanRecord& record, const Eigen::AlignedBox3d& regio
             "The map at " + number_text(low, 3) +
                 " m: black is occupied, light is free to fly, grey and dark are unknown"});
   section.blocks.push_back(overview_image(*record.prior, region, 1.05,
-                                          "The prior mesh, from the images of the first flight"));
+                                          record.surveyed
+                                              ? "The prior mesh, from the surveyor's data"
+                                              : "The prior mesh, from the images of the first "
+                                                "flight"));
   return section;
 }
 
@@ -204,7 +208,8 @@ std::string openings_in_words(const std::vector<Opening>& openings) {
 std::string unknown_warning(const ScanRecord& record) {
   std::string text;
   if (unknown_area(record) > kMuchUnknown * record.areas.known)
-    text += ". This is a large share: the first flight did not see behind it";
+    text += record.surveyed ? ". This is a large share: the data do not show what is behind it"
+                            : ". This is a large share: the first flight did not see behind it";
   const auto passable = std::find_if(record.openings.begin(), record.openings.end(),
                                      [](const Opening& o) { return o.passable; });
   if (passable != record.openings.end()) {
@@ -214,6 +219,8 @@ std::string unknown_warning(const ScanRecord& record) {
             ": the hidden surface behind it may be far larger";
   }
   if (text.empty()) return "";
+  if (record.surveyed)
+    return text + ". Data that were measured from other sides, such as from the ground, show more";
   return text +
          ". Fly the first flight lower, more obliquely or wider (flights), or plan again with "
          "the images of this tour (rounds = 2)";
@@ -269,8 +276,8 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   const std::string caption =
       "Information of the tour about the known surface, from little (violet) to all (yellow). Red: "
       "seen from a candidate view, but not by the tour. Dark: seen from no candidate. Light grey: "
-      "outside the region. Magenta: openings to space that the first flight did not see. No "
-      "surface is known elsewhere";
+      "outside the region. Magenta: openings to space that nobody measured. No surface is known "
+      "elsewhere";
   TextBlock words;
   words.text = areas_in_words(record);
   if (record.truth) words.text += "\n\n" + truth_in_words(record);

@@ -29,6 +29,7 @@ struct ScanRecord {
   std::optional<Picture> scene;            // the scene that was flown in, where there was one
   std::shared_ptr<const Map> map;          // what the first flight knew
   std::shared_ptr<const MeshScene> prior;  // likewise
+  bool surveyed = false;  // map and mesh are of a surveyor's data, not of a first flight
   std::vector<Eigen::Vector3d> first_views;
   std::vector<Eigen::Vector3d> candidates;
   std::vector<std::pair<int, int>> motions;  // between candidates

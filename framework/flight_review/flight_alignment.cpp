@@ -20,6 +20,8 @@ using Unknowns = Eigen::Matrix<double, 5, 1>;  // clock, offset, turn
 constexpr double kNear = 0.3;       // share of lost places up to which a rigid match is good
 constexpr double kBetter = 0.6;     // of the loss, that matching places must leave at most
 constexpr double kFlew = 0.5;       // of the bounded loss, above which it is another flight
+constexpr double kPart = 0.05;      // of the plan, that may be missing where the match is coarse
+constexpr double kBeside = 5;       // m, across the ground, that a receiver may be off
 constexpr double kDrift = 3;        // s, that refinement may move the clock
 constexpr double kElsewhere = 200;  // m between log and plan
 constexpr int kParts = 10;          // of the flight, left out in turn
@@ -248,6 +250,12 @@ FlightAlignment align_flight(const Trajectory& plan, const FlownSeries& flown,
     return best;
   }
   if (lost > kFlew) refuse("at the best time " + near);
+  // With a free offset, the end of one flight fits the beginning of many others coarsely.
+  const double beside = flown.local ? INFINITY : best.offset.head<2>().norm();
+  if (missing > kPart && beside > kBeside)
+    refuse("the best match is a part, " + plain_number(100 * (1 - missing), 2) + " % of the plan" +
+           (flown.local ? "" : ", " + plain_number(beside, 3) + " m beside it") + ", of which " +
+           near);
   return best;
 }
 

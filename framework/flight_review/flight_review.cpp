@@ -6,6 +6,7 @@
 
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
+#include "framework/flight_log/log_time.h"
 
 namespace lapwing {
 namespace {
@@ -94,6 +95,12 @@ std::string cure_of(const FlownCheck& check, const Plan& plan, const FlightRevie
   }
   if (c.name == "subject_distance")
     return "keep " + rounded_up(c.limit - worst, 0.1) + " m more distance from the subject";
+  if (c.name == "height_above_home" || c.name == "distance_from_home") {
+    const char* option = c.name == "height_above_home" ? "home.max_height" : "home.max_distance";
+    return std::string("plan with `") + option +
+           "` = " + plain_number(c.limit - (worst - c.limit)) + " m: the flight went " +
+           plain_number(worst - c.limit, 3) + " m beyond it";
+  }
   if (c.name == "framing" || c.name == "line_of_sight") {
     const ErrorSeries* camera = find_error(review.errors, "camera");
     return "frame the subject with more room: " +
@@ -117,10 +124,11 @@ std::vector<std::string> alignment_sentences(const FlightReview& review) {
   std::vector<std::string> said;
   said.push_back("positions are " + review.source + ", " +
                  std::to_string(review.flown.poses.size()) + " of them within the plan");
-  said.push_back("time 0 of the plan is " +
-                 (review.asked.clock ? plain_number(a.clock, 9) + " s of the log, as stated"
-                                     : spread(a.clock, a.clock_sigma, 3) + " s of the log") +
-                 ", whose clock counts from " + review.log.clock);
+  said.push_back("time 0 of the plan is " + moment_in_words(review.log, a.clock, 3) +
+                 (review.asked.clock
+                      ? ", as stated"
+                      : ", \u00b1 " + plain_number(std::max(a.clock_sigma, 0.001), 2) + " s") +
+                 "; the log's clock counts from " + review.log.clock);
   if (a.stretched)
     said.emplace_back(
         "the flight took another time than the plan: the clocks are brought together "

@@ -5,18 +5,25 @@
 
 #include "framework/core/units.h"
 #include "framework/export/flight_charts.h"
+#include "framework/flight_log/log_time.h"
 #include "framework/flight_review/flight_review.h"
 #include "framework/trajectory/interpolate.h"
 
 namespace lapwing {
 namespace {
 
+// What is measured of a flight is not known below a tenth of a millimetre or of a millisecond.
+double to_least(double value) {
+  constexpr double kLeast = 1e-4;
+  return std::round(value / kLeast) * kLeast + 0.0;
+}
+
 bool is_angle(const std::string& unit) {
   return unit.starts_with("rad");
 }
 
 double shown(double value, const std::string& unit) {
-  return is_angle(unit) ? degrees(value) : value;
+  return to_least(is_angle(unit) ? degrees(value) : value);
 }
 
 std::string shown_unit(const std::string& unit) {
@@ -54,11 +61,11 @@ Facts facts_of(const FlightReview& review) {
                   review.log.format +
                       (review.log.recorder.empty() ? std::string() : ", " + review.log.recorder),
                   ""},
-                 {"time 0 of the plan in the log", number_text(a.clock, 8), "s"},
-                 {"uncertainty of it", number_text(a.clock_sigma, 2), "s"},
-                 {"correction east", number_text(a.offset.x(), 3), "m"},
-                 {"correction north", number_text(a.offset.y(), 3), "m"},
-                 {"correction up", number_text(a.offset.z(), 3), "m"},
+                 {"time 0 of the plan", moment_in_words(review.log, a.clock, 3), ""},
+                 {"uncertainty of it", number_text(to_least(a.clock_sigma), 2), "s"},
+                 {"correction east", number_text(to_least(a.offset.x()), 3), "m"},
+                 {"correction north", number_text(to_least(a.offset.y()), 3), "m"},
+                 {"correction up", number_text(to_least(a.offset.z()), 3), "m"},
                  {"compared from", number_text(review.flown.start, 5), "s"},
                  {"compared to", number_text(review.flown.finish, 5), "s"}};
   const double missing = review.missing_before + review.missing_after;

@@ -14,6 +14,7 @@ using namespace mavlink;
 namespace {
 
 constexpr double kReserve = 20;         // percent of the battery, left at the end
+constexpr double kOffHome = 10;         // m, of the plan's home
 constexpr double kFarFromHome = 10000;  // m, of the plan's start
 
 bool hovers(std::uint8_t type) {
@@ -53,12 +54,22 @@ void check_home(const VehicleReport& report, const FlightFrame& frame, const Liv
     missing.push_back("the vehicle has no home position (HOME_POSITION)");
     return;
   }
-  const auto start = frame.on_earth(flight.trajectory().samples.front().position);
-  const Eigen::Vector3d off = to_local({report.home->latitude_deg, report.home->longitude_deg, 0},
-                                       {start->latitude_deg, start->longitude_deg, 0});
-  if (off.head<2>().norm() > kFarFromHome)
-    missing.push_back("the plan begins " + plain_number(off.head<2>().norm() / 1000, 3) +
+  const auto distance_to = [&](const Eigen::Vector3d& place) {
+    const auto there = frame.on_earth(place);
+    return to_local({report.home->latitude_deg, report.home->longitude_deg, 0},
+                    {there->latitude_deg, there->longitude_deg, 0})
+        .head<2>()
+        .norm();
+  };
+  const double start = distance_to(flight.trajectory().samples.front().position);
+  if (start > kFarFromHome)
+    missing.push_back("the plan begins " + plain_number(start / 1000, 3) +
                       " km from the vehicle's home: is this the plan's origin?");
+  const double off = flight.plan.home ? distance_to(flight.plan.home->position) : 0;
+  if (start <= kFarFromHome && off > kOffHome)
+    missing.push_back("the vehicle's home is " + metres(off) +
+                      " from the plan's; it must be within " + metres(kOffHome) +
+                      " of it, because the plan's limits count from there");
 }
 
 void check_battery(const VehicleReport& report, const LiveFlight& flight,

@@ -47,7 +47,21 @@ Target common_fields(const Setpoint& setpoint, double vehicle_time, std::uint8_t
   return target;
 }
 
+Plan placed_above_home(const Plan& plan) {
+  Plan placed;
+  placed.mission = plan.mission;
+  placed.geodetic_origin = origin_above_home(plan);
+  return placed;
+}
+
 }  // namespace
+
+std::optional<GeodeticOrigin> origin_above_home(const Plan& plan) {
+  std::optional<GeodeticOrigin> origin = plan.geodetic_origin;
+  if (origin && plan.home && origin->height_of == HeightOf::ground)
+    origin->height -= to_geodetic(origin->point(), plan.home->position).altitude;
+  return origin;
+}
 
 double turned_yaw(double yaw) {
   const double turned = std::remainder(std::numbers::pi / 2 - yaw, 2 * std::numbers::pi);
@@ -65,7 +79,7 @@ FlightFrame::FlightFrame(const Plan& plan, FlightFrameKind kind) : kind_(kind) {
                      "' has no origin on the earth. State `origin` in the mission, or `--origin "
                      "LAT,LON,HEIGHT,OF`, or `--frame local` where the plan's world is the "
                      "vehicle's own local frame");
-  earth_.emplace(plan, heights_of(plan), "fly");
+  earth_.emplace(placed_above_home(plan), heights_of(plan), "fly");
 }
 
 std::string FlightFrame::in_words() const {

@@ -5,7 +5,8 @@
 //   vehicle: north, east, down; yaw 0 along north, clockwise: yaw_NED = 90 degrees - yaw
 //
 // `global`: latitude, longitude and height of the plan's origin (SET_POSITION_TARGET_GLOBAL_INT).
-// Heights are those above the sea; of an origin above the ground, those above the vehicle's home.
+// Heights are those above the sea; of an origin above the ground, those above the vehicle's home,
+// which is the plan's home or, without one, on the ground of the origin.
 // `local`: the plan's world is the vehicle's own local frame, whose origin is where its estimator
 // began (SET_POSITION_TARGET_LOCAL_NED).
 #pragma once
@@ -49,6 +50,9 @@ class FlightFrame {
   std::optional<EarthFrame> earth_;
   std::optional<GeodeticPoint> local_origin_;
 };
+
+// The plan's origin, for the earth; one above the ground is above the level of the plan's home.
+std::optional<GeodeticOrigin> origin_above_home(const Plan& plan);
 
 // Of the world, rad, from one of the vehicle's frame, and back: the map is its own inverse. In
 // (-pi, pi].

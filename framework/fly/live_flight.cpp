@@ -99,6 +99,19 @@ void require_limits(const LiveFlight& flight) {
   }
 }
 
+// The subject of the mission that is filmed as it moves; empty where there is none.
+std::string live_subject(const Plan& plan) {
+  const Value* subjects = plan.configuration.find("subjects");
+  if (!subjects || !subjects->is_list()) return "";
+  for (const Value& subject : subjects->as_list()) {
+    const Value* live = subject.is_map() ? subject.find("live") : nullptr;
+    const Value* name = subject.is_map() ? subject.find("name") : nullptr;
+    if (live && live->type() == Value::Type::boolean && live->as_boolean())
+      return name && name->is_text() ? name->as_text() : "?";
+  }
+  return "";
+}
+
 }  // namespace
 
 LiveFlight live_flight_of(const Plan& plan, const std::filesystem::path& folder) {
@@ -120,6 +133,10 @@ LiveFlight live_flight_of(const Plan& plan, const std::filesystem::path& folder)
           "which it keeps clear of them");
       break;
     }
+  if (const std::string name = live_subject(plan); !name.empty())
+    flight.said.push_back("the subject '" + name +
+                          "' is live in the mission: this flight repeats the plan, made from the "
+                          "track in the mission, and does not follow the subject");
   return flight;
 }
 

@@ -16,7 +16,8 @@ constexpr double kRest = 0.05;         // m/s: a plan begins or ends at rest bel
 constexpr double kLeastSpeed = 0.3;    // m/s, for the change of pace where the plan hardly moves
 constexpr double kRampTime = 0.4;      // s, to the full brake
 constexpr double kLongestRamp = 4;     // 1/s, of the rate where the plan hardly moves
-constexpr double kStands = 1e-3;       // of the rate
+constexpr double kStands = 1e-9;       // of the rate
+constexpr double kGentle = 0.6;        // of the jerk, that a change of pace ends with
 constexpr double kRounding = 1e-6;     // of a limit
 constexpr double kSimulated = 0.02;    // s, of a brake that is tried
 constexpr double kStopMargin = 0.005;  // s of the plan, before its end
@@ -37,6 +38,16 @@ double share_of_limits(const Setpoint& setpoint, const Vehicle& vehicle) {
   return std::max(share, vehicle.thrust_min() / std::max(thrust, 1e-9));
 }
 
+// The largest change of pace from which steps of `jerk` * `step` lead to none, with the pace just
+// there: the steps after it cover, with it, no more than what is `left`. Of a change (m + f) jerk
+// step, 0 <= f < 1, they cover jerk step^2 (m + 1) (m / 2 + f).
+double ending_change(double left, double jerk, double step) {
+  if (!(left > 0)) return 0;
+  const double covered = left / (jerk * step * step);
+  const double m = std::floor((std::sqrt(8 * covered + 1) - 1) / 2);
+  return (m / 2 + covered / (m + 1)) * jerk * step;
+}
+
 }  // namespace
 
 PlanPacer::PlanPacer(const Trajectory& trajectory, const Vehicle& vehicle)
@@ -50,7 +61,7 @@ PlanPacer::PlanPacer(const Trajectory& trajectory, const Vehicle& vehicle)
   ends_in_motion_ = trajectory.samples.back().velocity.norm() > kRest;
   double fastest = 0;
   for (const Sample& s : trajectory.samples) fastest = std::max(fastest, s.velocity.norm());
-  longest_brake_ = fastest / brake_ + 4 * kRampTime;
+  longest_brake_ = fastest / brake_ + 6 * brake_ / jerk_;
 }
 
 Setpoint PlanPacer::at(const Pace& pace) const {
@@ -78,43 +89,48 @@ double PlanPacer::excess(const Pace& pace) const {
   return needed - std::max(1.0, planned) - kRounding;
 }
 
-double PlanPacer::wanted_change(const Pace& pace, bool run) const {
-  const double speed =
-      std::max(kLeastSpeed, sample_at(trajectory_, std::min(pace.time, end_)).velocity.norm());
+double PlanPacer::speed_at(double time) const {
+  return std::max(kLeastSpeed, sample_at(trajectory_, std::min(time, end_)).velocity.norm());
+}
+
+double PlanPacer::wanted_change(const Pace& pace, double step, bool run) const {
+  const double speed = speed_at(pace.time);
   const double most = std::min(brake_ / speed, kLongestRamp);
-  const double ramp = jerk_ / speed;
   const double left = run ? 1 - pace.rate : pace.rate;
-  const double wanted = std::min(most, std::sqrt(2 * ramp * std::max(0.0, left)));
+  const double wanted = std::min(most, ending_change(left, kGentle * jerk_ / speed, step));
   return run ? wanted : -wanted;
 }
 
 PlanPacer::Pace PlanPacer::after(const Pace& pace, double step, bool run) const {
-  const double wanted = wanted_change(pace, run);
-  const double speed =
-      std::max(kLeastSpeed, sample_at(trajectory_, std::min(pace.time, end_)).velocity.norm());
-  const double ramp = jerk_ / speed * step;
+  const double ramp = jerk_ / speed_at(pace.time) * step;
+  const double low = pace.change - ramp, high = pace.change + ramp;
   const auto moved = [&](double change) {
     Pace next{pace.time, std::clamp(pace.rate + change * step, 0.0, 1.0), change};
     next.time += 0.5 * (pace.rate + next.rate) * step;
-    // At an end of the range the pace does not change any more.
-    if ((next.rate == 0 && change < 0) || (next.rate == 1 && change > 0)) next.change = 0;
-    if (!run && next.rate < kStands) next.rate = 0, next.change = 0;
+    if (!run && next.rate < kStands) next.rate = 0;
     return next;
   };
-  const double smooth = std::clamp(wanted, pace.change - ramp, pace.change + ramp);
+  const double smooth = std::clamp(wanted_change(pace, step, run), low, high);
   Pace best = moved(smooth);
   double least = excess(best);
+  const auto allowed = [&](double change) {
+    const Pace tried = moved(change);
+    const double over = excess(tried);
+    if (over < least) best = tried, least = over;
+    return least <= 0;
+  };
   if (least <= 0) return best;
-  // The nearest change that the limits allow; else the one that exceeds them least.
+  // The nearest change that the limits allow within the jerk; else the nearest one that they allow;
+  // else the one that exceeds them least.
   constexpr int kTried = 16;
-  for (int k = 0; k <= kTried; ++k) {
+  for (int k = 1; k <= kTried; ++k) {
     const double share = static_cast<double>(k) / kTried;
-    for (const double change : {smooth * (1 - share), -smooth * share}) {
-      const Pace tried = moved(change);
-      const double over = excess(tried);
-      if (over < least) best = tried, least = over;
-      if (least <= 0) return best;
-    }
+    if (allowed(smooth + share * (low - smooth)) || allowed(smooth + share * (high - smooth)))
+      return best;
+  }
+  for (int k = 1; k <= kTried; ++k) {
+    const double share = static_cast<double>(k) / kTried;
+    if (allowed(smooth * (1 - share)) || allowed(-smooth * share)) return best;
   }
   return best;
 }

@@ -10,8 +10,9 @@
 // so that every place lies on the certified path. Speeds are never above those of the plan. Of the
 // changes of pace, that next to the wanted one is taken whose acceleration and thrust stay within
 // the limits of the vehicle, or at those of the plan itself where it is at a limit already: then
-// the brake waits. A stop takes half of the acceleration across that the vehicle has, and a jerk
-// that reaches it in 0.4 s.
+// the brake waits. A stop takes half of the acceleration across that the vehicle has. q changes, at
+// the ends of a change of pace too, by no more than a jerk |p'| dq/dt that reaches that brake in
+// 0.4 s, or half of the vehicle's jerk, unless the limits of acceleration ask for more.
 #pragma once
 
 #include <Eigen/Core>
@@ -55,7 +56,8 @@ class PlanPacer {
   };
   Setpoint at(const Pace& pace) const;
   double excess(const Pace& pace) const;
-  double wanted_change(const Pace& pace, bool run) const;
+  double speed_at(double time) const;
+  double wanted_change(const Pace& pace, double step, bool run) const;
   Pace after(const Pace& pace, double step, bool run) const;
   bool stops_in_time(Pace pace) const;
   bool may_run(double step) const;

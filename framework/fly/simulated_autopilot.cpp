@@ -31,7 +31,7 @@ constexpr double kGroundAboveSea = 400;  // m, of an origin that does not tell i
 Plan with_some_origin(const Plan& plan) {
   Plan placed;
   placed.mission = plan.mission;
-  placed.geodetic_origin = plan.geodetic_origin;
+  placed.geodetic_origin = origin_above_home(plan);
   if (!placed.geodetic_origin)
     placed.geodetic_origin = GeodeticOrigin{46.5191, 6.5668, 395, HeightOf::sea, 0};
   return placed;
@@ -100,6 +100,7 @@ SimulatedAutopilot::SimulatedAutopilot(const LiveFlight& flight, const Autopilot
       options_(options),
       earth_plan_(with_some_origin(flight.plan)),
       earth_(earth_plan_, std::nullopt, "autopilot"),
+      home_(flight.plan.home ? flight.plan.home->position : Vector3d::Zero()),
       body_(flight.vehicle, start_of(flight, options.faults),
             flight.trajectory().samples.front().yaw),
       audit_(flight.vehicle),
@@ -183,8 +184,7 @@ void SimulatedAutopilot::take_global(const Packet& packet, double now) {
   }
   // Heights of an origin above the ground are those above home.
   const bool ground = earth_.heights() == HeightOf::ground;
-  const double height = target.get<"alt">() +
-                        (relative && !ground ? earth_.at(Vector3d::Zero()).height : 0) -
+  const double height = target.get<"alt">() + (relative && !ground ? earth_.at(home_).height : 0) -
                         (ground && !relative ? kGroundAboveSea : 0);
   setpoint->position =
       earth_.local({target.get<"lat_int">() / kE7, target.get<"lon_int">() / kE7, height});
@@ -220,21 +220,21 @@ std::uint8_t SimulatedAutopilot::answer_mode(const std::array<double, 3>& params
 
 void SimulatedAutopilot::send_requested(std::uint32_t message) {
   const GeodeticPoint origin = earth_.origin().point();
-  const EarthPoint home = earth_.at(Vector3d::Zero());
-  const double above_sea =
-      home.height + (earth_.heights() == HeightOf::ground ? kGroundAboveSea : 0);
+  const EarthPoint home = earth_.at(home_);
+  const double ground = earth_.heights() == HeightOf::ground ? kGroundAboveSea : 0;
   if (message == kHomePosition)
     answers_.push_back(Message<kHomePosition>()
                            .set<"latitude">(e7(home.latitude_deg))
                            .set<"longitude">(e7(home.longitude_deg))
-                           .set<"altitude">(millimetres(above_sea))
+                           .set<"altitude">(millimetres(home.height + ground))
                            .packet());
   if (message == kGlobalOrigin)
-    answers_.push_back(Message<kGlobalOrigin>()
-                           .set<"latitude">(e7(origin.latitude_deg))
-                           .set<"longitude">(e7(origin.longitude_deg))
-                           .set<"altitude">(millimetres(above_sea))
-                           .packet());
+    answers_.push_back(
+        Message<kGlobalOrigin>()
+            .set<"latitude">(e7(origin.latitude_deg))
+            .set<"longitude">(e7(origin.longitude_deg))
+            .set<"altitude">(millimetres(earth_.at(Vector3d::Zero()).height + ground))
+            .packet());
   if (message == kAutopilotVersion)
     answers_.push_back(Message<kAutopilotVersion>()
                            .set<"capabilities">(1u << 13)
@@ -311,7 +311,7 @@ void SimulatedAutopilot::finish_fence() {
     const auto& first = fence_items_[i];
     const std::uint16_t command = first.get<"command">();
     const auto place = [&](const Message<kMissionItemInt>& item) -> Eigen::Vector2d {
-      const double height = earth_.at(Vector3d::Zero()).height;
+      const double height = earth_.at(home_).height;
       return earth_.local({item.get<"x">() / kE7, item.get<"y">() / kE7, height}).head<2>();
     };
     MissionFence fence;
@@ -512,7 +512,7 @@ void SimulatedAutopilot::telemetry(double now, Packets& packets) {
   const Vector3d& p = state.position;
   const Vector3d& v = state.velocity;
   const EarthPoint point = earth_.at(p);
-  const double home = earth_.at(Vector3d::Zero()).height;
+  const double home = earth_.at(home_).height;
   const bool ground = earth_.heights() == HeightOf::ground;
   const auto single = [](double number) { return static_cast<float>(number); };
   packets.push_back(Message<kLocalPosition>()

@@ -94,6 +94,7 @@ class SimulatedAutopilot {
   AutopilotOptions options_;
   Plan earth_plan_;
   EarthFrame earth_;
+  Eigen::Vector3d home_;  // m, world
   SimulatedBody body_;
   SetpointAudit audit_;
   FaultyChannel incoming_, outgoing_;

@@ -156,6 +156,7 @@ int plan_exploration(lua_State* state) {
   document.trajectory = trajectory_of(e, vehicle.gimbal.has_value());
   document.budget = e.settings.budget;
   document.geodetic_origin = run.origin;
+  document.home = run.home;
   document.configuration = run.configuration;
   document.solver = to_value(made.report, made.solver);
   Obstacle obstacle;

@@ -33,16 +33,21 @@ std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, co
   return stops;
 }
 
-std::size_t ScanWork::motion_between(int a, int b) const {
+std::optional<std::size_t> ScanWork::find_motion(int a, int b) const {
   const auto& motions = graph.motions.motions;  // by a, then b
   const std::pair<int, int> wanted = std::minmax(a, b);
   const auto found = std::lower_bound(motions.begin(), motions.end(), wanted,
                                       [](const ViewMotion& m, const std::pair<int, int>& pair) {
                                         return std::pair(m.a, m.b) < pair;
                                       });
-  if (found == motions.end() || std::pair(found->a, found->b) != wanted)
-    throw Error("a tour passes from view to view without a motion");
+  if (found == motions.end() || std::pair(found->a, found->b) != wanted) return std::nullopt;
   return static_cast<std::size_t>(found - motions.begin());
+}
+
+std::size_t ScanWork::motion_between(int a, int b) const {
+  const auto found = find_motion(a, b);
+  if (!found) throw Error("a tour passes from view to view without a motion");
+  return *found;
 }
 
 std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {
@@ -58,6 +63,8 @@ std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun
   SightSettings sight;
   sight.pinhole = pinhole_of(given.table("camera"));
   sight.range = given.number("range");
+  if (given.has("usable_range")) sight.usable_range = given.number("usable_range");
+  sight.usable_incidence = radians(given.number("usable_incidence_deg"));
   sight.region = box_of(given.table("region"), "the region of interest");
   work.prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
   work.visible = std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
@@ -146,6 +153,11 @@ ParameterTable graph_table() {
       .integer("across", 0, "pixels per row in the evaluation of candidates; 0: all",
                between(0, 10000))
       .number("range", 60, "m", "length of a ray", above(0))
+      .optional_number("usable_range", "m",
+                       "distance beyond which an image shows nothing of use; absent: any", above(0))
+      .number("usable_incidence_deg", 90, "deg",
+              "known angle of incidence beyond which an image shows nothing of use",
+              {.minimum = 0, .maximum = 90, .minimum_excluded = true})
       .table("flight", flight_table(), "speeds along a tour");
   return table;
 }

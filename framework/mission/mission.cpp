@@ -14,6 +14,7 @@
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scene_script.h"
 #include "framework/mission/script_lines.h"
+#include "framework/mission/site_objects.h"
 #include "framework/mission/term_recording.h"
 
 namespace lapwing {
@@ -71,6 +72,7 @@ void open_script_libraries(lua_State* state, MissionRun& run) {
   open_plan_library(state);
   open_run_library(state);
   open_map_library(state);
+  open_site_library(state);
   open_scan_library(state);
   open_explore_library(state);
   open_scene_library(state);

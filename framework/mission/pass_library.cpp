@@ -40,7 +40,12 @@ ParameterTable pass_graph_table() {
       .number("mesh_room", 1, "m", "additional distance from the prior mesh", at_least(0))
       .table("camera", pinhole_table(), "camera of the images")
       .integer("across", 0, "pixels per row in the evaluation of views; 0: all", between(0, 10000))
-      .number("range", 60, "m", "length of a ray", above(0));
+      .number("range", 60, "m", "length of a ray", above(0))
+      .optional_number("usable_range", "m",
+                       "distance beyond which an image shows nothing of use; absent: any", above(0))
+      .number("usable_incidence_deg", 90, "deg",
+              "known angle of incidence beyond which an image shows nothing of use",
+              {.minimum = 0, .maximum = 90, .minimum_excluded = true});
   return table;
 }
 

@@ -220,6 +220,7 @@ int plan(lua_State* state) {
     document.lights.push_back({light.number("start"), light.number("finish")});
   if (given.has("budget")) document.budget = given.number("budget");
   document.geodetic_origin = origin_of(run, given.table("geodetic_origin"));
+  document.home = run.home;
   document.configuration = run.configuration;
   document.solver = to_value(solution.result.report, solution.solver);
   if (solution.started_from.is_map()) document.solver.set("started_from", solution.started_from);

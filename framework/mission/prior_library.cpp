@@ -10,6 +10,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/mission/site_objects.h"
 #include "framework/picture/mesh_picture.h"
 #include "framework/surface/surface_mesh.h"
 
@@ -383,7 +384,8 @@ void open_prior_type(lua_State* state) {
        &earlier_table},
       {"reconstruct", &guarded<reconstruct>, "(settings: @)",
        "reconstructs its mesh from all images", &reconstruct_table}};
-  define_type<PriorObject>(state, kPriorType, {methods}, &guarded<prior_field>);
+  define_type<PriorObject>(state, kPriorType, {methods, site_methods_of_prior()},
+                           &guarded<prior_field>);
   note_fields(state, kPriorType, kPriorFields);
 }
 

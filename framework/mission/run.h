@@ -118,6 +118,7 @@ struct MissionRun {
   bool planning_began = false;                // since the plan function was called
   MissionStatement* stating = nullptr;        // the plan function ends where its first plan is made
   std::optional<GeodeticOrigin> origin = {};  // of the world frame, where the mission states it
+  std::optional<Home> home = {};              // likewise, the take-off place
 };
 
 // Ends the plan function of a mission that is only judged; no error of anybody.
@@ -138,6 +139,9 @@ void begin_planning(MissionRun& run);
 
 // The run that a state belongs to.
 MissionRun& run_of(lua_State* state);
+
+// The place of an option's value, or of the script where nobody wrote it.
+Origin place_of_option(lua_State* state, const std::string& path);
 
 // Type names as error messages show them.
 inline constexpr const char* kRunType = "run";

@@ -8,9 +8,11 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
+#include "framework/mission/place_library.h"
 #include "framework/mission/players.h"
 #include "framework/mission/run.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/mission/site_objects.h"
 #include "framework/mission/value_path.h"
 
 namespace lapwing {
@@ -18,6 +20,13 @@ namespace lapwing {
 void begin_planning(MissionRun& run) {
   run.planning_began = true;
   if (run.judging) throw PlanningBegins();
+}
+
+Origin place_of_option(lua_State* state, const std::string& path) {
+  const Origin origin = innermost_at(run_of(state).configuration, path).origin();
+  if (origin.source.empty() || origin.source == "default")
+    return Sandbox::of(state).script_position(state);
+  return origin;
 }
 
 namespace {
@@ -58,19 +67,11 @@ int phase(lua_State* state) {
   return 0;
 }
 
-// The place of an option's value, or of the script where nobody wrote it.
-Origin place_of(lua_State* state, const std::string& path) {
-  const Origin origin = innermost_at(run_of(state).configuration, path).origin();
-  if (origin.source.empty() || origin.source == "default")
-    return Sandbox::of(state).script_position(state);
-  return origin;
-}
-
 // run:fail("keyframes[2].time", "message"): an error at the place of that option.
 int fail(lua_State* state) {
   const std::string path = text_argument(state, 2, "fail");
   const std::string message = text_argument(state, 3, "fail");
-  throw InputError(place_of(state, path), path + ": " + message);
+  throw InputError(place_of_option(state, path), path + ": " + message);
 }
 
 // run:expect_plugin("tour.begin", "tour_solver"): an error where that option is given and names no
@@ -119,42 +120,6 @@ int stated(lua_State* state) {
   return 1;
 }
 
-// run:take_origin("origin"): the option of that name is the origin of the world frame, of all plans
-// that the mission makes.
-int take_origin(lua_State* state) {
-  const std::string path = text_argument(state, 2, "take_origin");
-  MissionRun& run = run_of(state);
-  const Value* given = at_path(run.configuration, path);
-  const auto stated = [&](const std::string& key) -> const Value* {
-    const Value* value = given ? given->find(key) : nullptr;
-    return value && !value->is_null() ? value : nullptr;
-  };
-  std::string missing;
-  double figures[3] = {};
-  for (int i = 0; const char* key : {"latitude_deg", "longitude_deg", "height"}) {
-    if (const Value* value = stated(key))
-      figures[i] = value->as_number();
-    else
-      missing += std::string(missing.empty() ? "" : ", ") + key;
-    ++i;
-  }
-  const Value* word = stated("height_of");
-  if (!word && missing == "latitude_deg, longitude_deg, height") return 0;
-  if (!word)
-    throw InputError(place_of(state, path),
-                     path + ".height_of: expected ellipsoid, sea or ground: heights of the three " +
-                         "differ by up to 100 m and more");
-  if (!missing.empty()) throw InputError(place_of(state, path), path + ": " + missing + " missing");
-  try {
-    run.origin =
-        stated_origin(figures[0], figures[1], figures[2], *height_of_named(word->as_text()), path);
-  } catch (const InputError& error) {  // it begins with the key
-    const std::string message = error.what();
-    throw InputError(place_of(state, message.substr(0, message.find(':'))), message);
-  }
-  return 0;
-}
-
 std::span<const Binding> told_methods() {
   static const Binding methods[] = {
       {"cancelled", &guarded<cancelled>, "(): boolean", "whether the user cancelled the run"},
@@ -172,9 +137,6 @@ std::span<const Binding> told_methods() {
        "raises an error at the option if it names no controller, or an unknown parameter of it"},
       {"expect_players", &guarded<expect_players>, "(option: string)",
        "raises an error at the option if it names a stick log that cannot be read"},
-      {"take_origin", &guarded<take_origin>, "(option: string)",
-       "sets the geodetic origin of all plans of the mission from the option: {latitude_deg, "
-       "longitude_deg, height, height_of}"},
       {"stated", &guarded<stated>, "(option: string): boolean",
        "true if the option was set, false if it has its default"}};
   return methods;
@@ -183,8 +145,8 @@ std::span<const Binding> told_methods() {
 // All that `run` can be asked, by library.
 BindingLists all_methods() {
   return {problem_methods_of_run(), solving_methods_of_run(), planning_methods_of_run(),
-          told_methods(),           flight_methods_of_run(),  map_methods_of_run(),
-          scan_methods_of_run()};
+          told_methods(),           place_methods_of_run(),   flight_methods_of_run(),
+          map_methods_of_run(),     scan_methods_of_run(),    site_methods_of_run()};
 }
 
 int run_field(lua_State* state) {

@@ -104,14 +104,24 @@ void turn_gimbal(Trajectory& trajectory, const Walk& walk, const std::vector<Vie
   }
 }
 
-// Views that tell next to nothing are there for those before and after them.
+// Whether the images before and after one could not be matched without it: no motion joins them.
+bool joins_its_neighbours(const ScanWork& work, const std::vector<int>& views, std::size_t k) {
+  if (k == 0 || k + 1 >= views.size() || views[k - 1] == views[k + 1]) return false;
+  return !work.find_motion(views[k - 1], views[k + 1]);
+}
+
+// A view is there for matching if those before and after it need it, and it tells next to nothing
+// itself. Of passes, which have no motions, by the latter alone.
 std::vector<ViewKind> kinds_of(const ScanWork& work, const std::vector<int>& views) {
   ScoreState state(*work.graph.score);
   for (const int v : views) state.add(v);
   const double mean = state.score() / static_cast<double>(std::max<std::size_t>(views.size(), 1));
   std::vector<ViewKind> kinds;
-  for (const int v : views)
-    kinds.push_back(state.loss(v) < kMatchingShare * mean ? ViewKind::matching : ViewKind::planned);
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const bool little = state.loss(views[k]) < kMatchingShare * mean;
+    const bool needed = !work.passes.empty() || joins_its_neighbours(work, views, k);
+    kinds.push_back(little && needed ? ViewKind::matching : ViewKind::planned);
+  }
   return kinds;
 }
 
@@ -146,14 +156,13 @@ ScanTask task_of_scan(const ScanWork& work, const std::vector<int>& views,
   task.views = std::move(taken);
   const std::vector<ViewKind> kinds = kinds_of(work, views);
   for (std::size_t i = 0; i < kinds.size(); ++i) task.views[i].kind = kinds[i];
-  std::vector<std::vector<SeenVoxel>> seen(views.size());
+  std::vector<std::vector<VoxelKey>> seen(views.size());
   parallel_for(views.size(), threads, [&](std::size_t i) {
-    seen[i] = work.visible->seen_from(
+    seen[i] = work.visible->voxels_from(
         work.graph.candidates.viewpoints[static_cast<std::size_t>(views[i])]);
   });
   std::vector<VoxelKey> all;
-  for (const auto& one : seen)
-    for (const SeenVoxel& voxel : one) all.push_back(voxel.voxel);
+  for (const auto& one : seen) all.insert(all.end(), one.begin(), one.end());
   std::sort(all.begin(), all.end());
   task.seen = std::unique(all.begin(), all.end()) - all.begin();
   return task;
@@ -326,6 +335,7 @@ int scan_plan_of_run(lua_State* state) {
     keep("prior", "mesh", "prior.ply", ply_bytes(prior.mesh->mesh()));
     keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *prior.mapping.map));
     plan.geodetic_origin = run.origin;
+    plan.home = run.home;
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
     const auto record = record_of_scan(*told, run.settings.threads);

@@ -31,6 +31,7 @@ struct Prior {
   std::shared_ptr<const MeshScene> mesh;   // null until it is made or read
   std::vector<Viewpoint> views;            // from which depth images were taken
   MapRays rays;                            // of those images, and of files
+  bool surveyed = false;                   // map and mesh are of a surveyor's data
   std::optional<Picture> scene;            // of the scene flown in, for the report alone
   std::shared_ptr<const MeshScene> truth;  // that scene, for the report's figures alone
 };
@@ -66,7 +67,8 @@ struct ScanWork : LegFlight {
   std::vector<std::vector<int>> passes;
   std::vector<double> courses;
 
-  // The place of the motion between two views; Error where there is none.
+  // The place of the motion between two views; nothing, or Error, where there is none.
+  std::optional<std::size_t> find_motion(int a, int b) const;
   std::size_t motion_between(int a, int b) const;
   double leg_seconds(int a, int b) const { return seconds[motion_between(a, b)]; }
 };

@@ -79,6 +79,7 @@ std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int thr
   record->scene = work.prior->scene;
   record->map = work.prior->mapping.map;
   record->prior = work.prior->mesh;
+  record->surveyed = work.prior->surveyed;
   for (const Viewpoint& v : work.prior->views) record->first_views.push_back(v.position);
   for (const Viewpoint& v : graph.candidates.viewpoints) record->candidates.push_back(v.position);
   for (const ViewMotion& m : graph.motions.motions) record->motions.emplace_back(m.a, m.b);

@@ -20,7 +20,6 @@ constexpr double kLeastOfRows = 1e-9;
 constexpr double kWeaker = 0.1;
 constexpr double kStronger = 100.0;  // factor of each further try
 constexpr int kTries = 4;
-constexpr int kRefinements = 15;
 
 using Eigen::VectorXd;
 using Entry = Eigen::SparseMatrix<double>::InnerIterator;
@@ -145,11 +144,11 @@ bool KktSystem::factorise(const VectorXd& diagonal) {
 }
 
 // K x with the symmetric matrix, without the regularisation.
-VectorXd KktSystem::product(const VectorXd& x) const {
+void KktSystem::product(const VectorXd& x, VectorXd& result) const {
   const int* const outer = matrix_.outerIndexPtr();
   const int* const inner = matrix_.innerIndexPtr();
   const double* const value = matrix_.valuePtr();
-  VectorXd result = -regularisation_.cwiseProduct(x);
+  result = -regularisation_.cwiseProduct(x);
   for (int j = 0; j < n_ + m_; ++j) {
     const double factor = x(j);
     double sum = 0;
@@ -160,7 +159,6 @@ VectorXd KktSystem::product(const VectorXd& x) const {
     }
     result(j) += sum;
   }
-  return result;
 }
 
 // Generalised conjugate residuals, the factors being the preconditioner (Eisenstat, Elman, Schultz
@@ -169,22 +167,26 @@ VectorXd KktSystem::product(const VectorXd& x) const {
 // of a row's variables; the few such directions cost a Krylov method a few steps.
 VectorXd KktSystem::solve(const VectorXd& right, double refined) {
   const int size = n_ + m_;
-  VectorXd ordered(size), x, correction;
+  // Vectors of the size of the problem are kept from solve to solve: a program takes many.
+  VectorXd &ordered = scratch_.right, &x = scratch_.x, &residual = scratch_.residual;
+  ordered.resize(size);
   for (int i = 0; i < size; ++i) ordered(place_[i]) = right(i);
   // The first step is taken whole: where the matrix is singular it is long, which shows a ray.
   x = ordered;
   factors_.solve(x);
-  VectorXd residual = weight_.cwiseProduct(ordered - product(x));
+  product(x, scratch_.product);
+  residual = weight_.cwiseProduct(ordered - scratch_.product);
   const double scale = weight_.cwiseProduct(ordered).norm();
-  std::vector<VectorXd> directions, images;
-  for (int k = 0; k < kRefinements && residual.norm() > refined * scale; ++k) {
+  for (std::size_t k = 0; k < kRefinements && residual.norm() > refined * scale; ++k) {
+    VectorXd &correction = scratch_.directions[k], &image = scratch_.images[k];
     correction = residual.cwiseQuotient(weight_);
     factors_.solve(correction);
-    VectorXd image = weight_.cwiseProduct(product(correction));
-    for (std::size_t b = 0; b < images.size(); ++b) {
-      const double share = images[b].dot(image);
-      image -= share * images[b];
-      correction -= share * directions[b];
+    product(correction, scratch_.product);
+    image = weight_.cwiseProduct(scratch_.product);
+    for (std::size_t b = 0; b < k; ++b) {
+      const double share = scratch_.images[b].dot(image);
+      image -= share * scratch_.images[b];
+      correction -= share * scratch_.directions[b];
     }
     const double length = image.norm();
     if (!(length > 0) || !std::isfinite(length)) break;
@@ -193,8 +195,6 @@ VectorXd KktSystem::solve(const VectorXd& right, double refined) {
     const double step = image.dot(residual);
     x += step * correction;
     residual -= step * image;
-    directions.push_back(correction);
-    images.push_back(image);
   }
   if (scale > 0) error_ = std::max(error_, residual.norm() / scale);
   VectorXd result(size);

@@ -3,6 +3,7 @@
 // diagonals. Internal to the room.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "framework/solve/equilibration.h"
@@ -30,7 +31,7 @@ class KktSystem {
  private:
   bool same_pattern(const QuadraticProgram& problem) const;
   void analyse(const QuadraticProgram& problem);
-  Eigen::VectorXd product(const Eigen::VectorXd& x) const;
+  void product(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
 
   int n_ = 0, m_ = 0;
   std::vector<int> hessian_outer_, hessian_inner_, jacobian_outer_, jacobian_inner_;
@@ -48,6 +49,12 @@ class KktSystem {
   Eigen::VectorXd weight_;
   Eigen::SparseMatrix<double> matrix_;  // upper triangle, in order
   SupernodalFactors factors_;
+  static constexpr std::size_t kRefinements = 15;
+  struct Scratch {
+    Eigen::VectorXd right, x, residual, product;
+    std::array<Eigen::VectorXd, kRefinements> directions, images;
+  };
+  Scratch scratch_;
 };
 
 }  // namespace lapwing

@@ -125,15 +125,11 @@ Value camera_value(const Camera& camera) {
   return value;
 }
 
+// What a file leaves out is filled in.
 Value limits_value(const Vehicle& v) {
-  Value value = Value::map();
-  value.set("speed_across", v.speed_across_max);
-  value.set("climb_speed", v.climb_speed_max);
-  value.set("descent_speed", v.descent_speed_max);
-  value.set("acceleration_across", v.acceleration_across_max);
+  Value value = limits_to_value(v);
   value.set("acceleration_up", v.largest_acceleration_up());
   value.set("acceleration_down", v.largest_acceleration_down());
-  value.set("yaw_rate", v.yaw_rate_max);
   if (v.has_rotors) {
     value.set("thrust_max", v.thrust_max());
     value.set("thrust_min", v.thrust_min());

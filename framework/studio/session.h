@@ -169,6 +169,8 @@ class StudioSession {
   void acknowledge(const Proposal& proposal);
   void check_script();
   void watch(const Frame& frame);
+  void watch(const Value* files, bool all, std::set<std::filesystem::path>& watched);
+  std::string look_of_all() const;
   void remark(const std::string& what);
   void remark_words(const std::string& why);
   void glance();
@@ -227,11 +229,12 @@ class StudioSession {
   std::deque<Errand> errand_queue_;
   bool errand_under_way_ = false;
   std::int64_t serial_ = 0;
-  std::deque<Remembered> remembered_;                // of the script as it is; the newest first
-  std::vector<std::filesystem::path> script_files_;  // that the script requires
-  std::string watched_;                              // what the script's files looked like
-  std::string told_mission_;                         // as JSON; "" before the first page
-  std::vector<std::string> remarks_;                 // of the start, for every page
+  std::deque<Remembered> remembered_;             // of the script as it is; the newest first
+  std::set<std::filesystem::path> script_files_;  // that the script requires
+  std::set<std::filesystem::path> data_files_;    // that the mission has read
+  std::string watched_;                           // what the script's files looked like
+  std::string told_mission_;                      // as JSON; "" before the first page
+  std::vector<std::string> remarks_;              // of the start, for every page
 };
 
 }  // namespace lapwing

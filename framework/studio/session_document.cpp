@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changes of the document and of its script.
-#include <sys/stat.h>
-
 #include "framework/core/json.h"
+#include "framework/studio/file_look.h"
 #include "framework/studio/layer_file.h"
 #include "framework/studio/session.h"
 
@@ -14,21 +13,12 @@ constexpr const char* kWordsLabel = "--config and --set";
 // Edits of pages that wait to be checked, all pages together (PROTOCOL.md).
 constexpr std::size_t kMostWaiting = 64, kMostWaitingBytes = std::size_t{8} << 20;
 
-// What a file looks like without reading it; "" where there is none.
-std::string look_of(const std::filesystem::path& file) {
-  struct stat found {};
-  if (::stat(file.c_str(), &found) != 0) return "";
-  return std::to_string(found.st_ino) + " " + std::to_string(found.st_size) + " " +
-         std::to_string(found.st_mtim.tv_sec) + "." + std::to_string(found.st_mtim.tv_nsec);
-}
-
 }  // namespace
 
 // ---- the script ---------------------------------------------------------------------------------
 
 void StudioSession::glance() {
-  std::string look = look_of(settings_.script);
-  for (const std::filesystem::path& file : script_files_) look += "\n" + look_of(file);
+  std::string look = look_of_all();
   if (look != watched_) {
     watched_ = std::move(look);
     check_script();
@@ -38,20 +28,25 @@ void StudioSession::glance() {
   });
 }
 
-// The script and its modules, also those that were read before one failed; what was there before
-// stays watched then.
-void StudioSession::watch(const Frame& frame) {
-  const Value* files = frame.header.find("files");
+std::string StudioSession::look_of_all() const {
+  return look_of(settings_.script) + looks_of(script_files_) + looks_of(data_files_);
+}
+
+// Files that a working process has read: in the place of those before, or beside them where it
+// failed before it had read all.
+void StudioSession::watch(const Value* files, bool all, std::set<std::filesystem::path>& watched) {
   if (!files) return;
-  std::set<std::filesystem::path> all;
-  if (frame.header.at("said") == Value("refused"))
-    all.insert(script_files_.begin(), script_files_.end());
-  for (const Value& file : files->as_list()) all.insert(file.as_text());
-  std::vector<std::filesystem::path> found(all.begin(), all.end());
-  if (found == script_files_) return;
-  script_files_ = std::move(found);
-  watched_ = look_of(settings_.script);
-  for (const std::filesystem::path& file : script_files_) watched_ += "\n" + look_of(file);
+  std::set<std::filesystem::path> found;
+  if (!all) found = watched;
+  for (const Value& file : files->as_list()) found.insert(file.as_text());
+  if (found == watched) return;
+  watched = std::move(found);
+  watched_ = look_of_all();
+}
+
+// The script's modules.
+void StudioSession::watch(const Frame& frame) {
+  watch(frame.header.find("files"), frame.header.at("said") != Value("refused"), script_files_);
 }
 
 void StudioSession::check_script() {

@@ -176,6 +176,7 @@ void StudioSession::solver_started() {
 
 void StudioSession::answered(Frame frame) {
   if (!solve_ || frame.header.at("serial") != Value(solve_->serial)) return;
+  watch(frame.header.find("reads"), frame.header.at("grade") != Value("refused"), data_files_);
   const int rank = rank_of(frame.header.at("grade").as_text());
   if (rank < solve_->rank || (rank == solve_->rank && rank > 0)) return;  // late, or said again
   if (rank == solve_->rank) solve_->answers.pop_back();

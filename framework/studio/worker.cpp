@@ -8,8 +8,10 @@
 #include <csignal>
 #include <deque>
 #include <mutex>
+#include <set>
 #include <thread>
 
+#include "framework/config/read_note.h"
 #include "framework/core/json.h"
 #include "framework/studio/plan_message.h"
 #include "framework/studio/worker_errands.h"
@@ -163,7 +165,13 @@ class StudioWorker {
     answer.header.set("said", "answer");
     answer.header.set("grade", to_string(AnswerGrade::refused));
     answer.header.set("message", as_utf8(why));
+    set_reads(answer);
     send(std::move(answer), serial);
+  }
+
+  // The data files that the mission has read, once it was planned as `lapwing run` does or failed.
+  void set_reads(Frame& answer) const {
+    answer.header.set("reads", Value(Value::List(reads_.begin(), reads_.end())));
   }
 
   void send(Frame answer, std::int64_t serial) {
@@ -204,6 +212,9 @@ class StudioWorker {
   // sought, missions of other kinds), which is drawn when it is done. `before`: what is drawn of it
   // already.
   void plan_whole(const Value& layer, const std::optional<Trajectory>& before) {
+    reads_.clear();
+    const ReadListener listener(
+        [this](const std::filesystem::path& file) { reads_.insert(file.string()); });
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
     WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
@@ -267,6 +278,7 @@ class StudioWorker {
     frame.header.set("message", as_utf8(edited.answer.message));
     frame.header.set("seconds", std::chrono::duration<double>(Clock::now() - began_).count());
     const bool ended = grade != AnswerGrade::step;
+    if (edited.certificate) set_reads(frame);
     frame.parts.push_back(plan_message(*edited.plan, edited.answer.result.report, ended));
     Plan whole = *edited.plan;
     if (edited.certificate) whole.certificate = edited.certificate->to_value();
@@ -304,6 +316,7 @@ class StudioWorker {
   double dragged_step_ = 0;  // s between stages while a long film is dragged; 0: as the film says
   DrawnSurfaces drawn_;
   std::string told_world_;
+  std::set<std::string> reads_;  // of the mission planned last
 
   std::mutex mutex_;  // of what follows
   std::condition_variable changed_;

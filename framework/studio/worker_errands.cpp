@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "framework/config/read_note.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/export/exporter.h"
@@ -20,6 +21,7 @@
 #include "framework/export/run_folder.h"
 #include "framework/mission/controller_source.h"
 #include "framework/mission/environment_source.h"
+#include "framework/studio/file_look.h"
 #include "framework/studio/plan_message.h"
 #include "framework/verify/certificate.h"
 #include "framework/verify/tolerances.h"
@@ -190,10 +192,13 @@ Plan WorkerErrands::with_shapes(const Frame& asked) {
   Plan plan = plan_in(asked);
   const Value& layer = asked.header.at("layer");
   const std::string stated = to_json(layer, -1) + read_file(script_);
-  if (stated != stated_layer_ || !stated_mission_) {
+  if (stated != stated_layer_ || !stated_mission_ || looks_of(stated_reads_) != stated_looks_) {
     stated_mission_.reset();
+    stated_reads_.clear();
+    const ReadListener listener([this](const fs::path& file) { stated_reads_.insert(file); });
     state_environment(plan, layer);
     stated_layer_ = stated;
+    stated_looks_ = looks_of(stated_reads_);
   }
   plan.environment = stated_environment_;
   return plan;

@@ -57,6 +57,8 @@ class WorkerErrands {
   std::unique_ptr<Mission> stated_mission_;
   Environment stated_environment_;
   std::filesystem::path stated_folder_;  // of the files that it names
+  std::set<std::filesystem::path> stated_reads_;
+  std::string stated_looks_;  // of those files, when they were read
 };
 
 // What a page shows in forms: declared options, parameters of plugins, names to choose from.

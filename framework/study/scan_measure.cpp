@@ -69,9 +69,8 @@ class Measuring {
 
   void judge(const SurfaceSample& surface) {
     if (!row_.found) return;
-    ReconstructionSettings settings = study_.reconstruction;
-    settings.region = scan_.region;
-    Reconstruction made(settings);
+    Reconstruction made(judged_by(study_, scan_));
+    row_.surface_share = surface.counted_share();
     made.add(*scan_.surface, cameras(), scan_.camera, study_.noise, seed_, 1, cancellation_);
     row_.alone = surface.score(made.points(1), 1);
     row_.with_first = row_.alone;
@@ -186,6 +185,14 @@ class Measuring {
 };
 
 }  // namespace
+
+ReconstructionSettings judged_by(const ScanStudy& study, const ScanCase& scan) {
+  ReconstructionSettings settings = study.reconstruction;
+  settings.region = scan.region;
+  settings.range = study.range.value_or(scan.usable_range);
+  settings.incidence = study.incidence.value_or(scan.usable_incidence);
+  return settings;
+}
 
 ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceSample& surface,
                 const ScanMethod& method, const ScanStudy& study, std::uint64_t seed,

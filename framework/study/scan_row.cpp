@@ -96,6 +96,7 @@ Value to_value(const ScanRow& row) {
   value.set("first_images", row.first_images);
   value.set("candidates", row.candidates);
   value.set("evaluations", row.evaluations);
+  value.set("surface_share", row.surface_share);
   value.set("with_first", to_value(row.with_first));
   value.set("alone", to_value(row.alone));
   return value;
@@ -122,6 +123,7 @@ ScanRow scan_row_from(const Value& value) {
   row.first_images = static_cast<int>(value.at("first_images").as_integer());
   row.candidates = static_cast<int>(value.at("candidates").as_integer());
   row.evaluations = value.at("evaluations").as_integer();
+  row.surface_share = value.at("surface_share").as_number();
   row.with_first = reconstruction_from(value.at("with_first"));
   row.alone = reconstruction_from(value.at("alone"));
   return row;

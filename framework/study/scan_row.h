@@ -43,6 +43,7 @@ struct ScanRow {
   double seconds = 0;  // of flight
   int images = 0, first_images = 0, candidates = 0;
   std::int64_t evaluations = 0;
+  double surface_share = 1;                         // of the region's surface, that counts
   ReconstructionScore with_first = {}, alone = {};  // with and without the first flight's images
 };
 Value to_value(const ScanRow& row);

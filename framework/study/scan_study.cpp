@@ -11,6 +11,7 @@
 #include "framework/core/json.h"
 #include "framework/core/portable.h"
 #include "framework/items/statement.h"
+#include "framework/study/counted_surface.h"
 #include "framework/study/scan_photos.h"
 #include "framework/study/stopwatch.h"
 
@@ -124,6 +125,8 @@ class StudyRun {
       noise.set("dropped", study_.noise->dropped);
       noise.set("sigma", study_.noise->sigma);
     }
+    if (study_.range) value.set("range", *study_.range);
+    if (study_.incidence) value.set("incidence", *study_.incidence);
     if (study_.guard) value.set("guard", *study_.guard);
     if (study_.photos) value.set("photos", true);
     value.set("from", study_.statement);
@@ -156,9 +159,8 @@ class StudyRun {
     const Stopwatch preparing;
     made->scan = study_.prepare(mission, seed);
     made->seconds = preparing.seconds();
-    ReconstructionSettings settings = study_.reconstruction;
-    settings.region = made->scan.region;
-    made->surface = std::make_unique<SurfaceSample>(made->scan.surface->mesh(), settings, threads_);
+    made->surface =
+        std::make_unique<SurfaceSample>(ground_truth(made->scan, study_.missions[mission]));
     for (std::size_t b = 0; b < budgets(); ++b) {
       TourDefinition definition = made->scan.definition;
       if (!study_.budgets.empty()) definition.budget = study_.budgets[b];
@@ -199,6 +201,17 @@ class StudyRun {
                   score, row.images, row.seconds);
     say_(row.mission + ", seed " + std::to_string(row.seed) + ", " + row.method +
          (row.found ? text : ": no tour (" + row.message + ")"));
+  }
+
+  SurfaceSample ground_truth(const ScanCase& scan, const std::string& mission) const {
+    const ReconstructionSettings judge = judged_by(study_, scan);
+    SurfaceSample surface(scan.surface->mesh(), judge, threads_);
+    if (!scan.viewing) return surface;
+    std::vector<Eigen::Vector3d> from;
+    for (const Pose& camera : scan.first_flight) from.push_back(camera.position);
+    count_visible(surface, scan.surface, judge, *scan.viewing, from, folder_ / "surface",
+                  file_name(mission), threads_, say_);
+    return surface;
   }
 
   // Before the row is written: where there is a row there is what its photographs came to.

@@ -20,6 +20,7 @@
 #include "framework/items/item_run.h"
 #include "framework/plugin/registry.h"
 #include "framework/study/scan_row.h"
+#include "framework/surface/viewing_space.h"
 #include "framework/view/pattern_tour.h"
 #include "framework/view/tour_solver.h"
 
@@ -36,6 +37,11 @@ struct ScanCase {
   double pattern_height = 30;                // m above the region's floor
   LegSeconds leg_seconds;                    // of patterns flown freely: as of every other tour
   std::shared_ptr<const MeshScene> surface;  // the true one
+  // m and rad, of what planning takes to be of use to a model.
+  double usable_range = ReconstructionSettings{}.range;
+  double usable_incidence = ReconstructionSettings{}.incidence;
+  // Where vehicles fly; absent: all of the surface counts. Its range and incidence are the judge's.
+  std::optional<ViewingSettings> viewing;
 };
 
 struct ScanStudy {
@@ -43,9 +49,10 @@ struct ScanStudy {
   std::vector<std::uint64_t> seeds;
   std::vector<double> budgets;  // s; empty: each mission's own
   std::vector<ScanMethod> methods;
-  std::optional<DepthNoise> noise;        // of the judged depth; absent: ideal
-  std::optional<double> guard = 300;      // s of wall clock for one solver
-  ReconstructionSettings reconstruction;  // its region is the case's
+  std::optional<DepthNoise> noise;         // of the judged depth; absent: ideal
+  std::optional<double> guard = 300;       // s of wall clock for one solver
+  ReconstructionSettings reconstruction;   // its region, range and incidence are the case's
+  std::optional<double> range, incidence;  // m and rad, that are judged by in place of the case's
   Value statement;      // of all else that rows depend on: scripts, configurations
   bool photos = false;  // whether COLMAP is asked to register photographs (study/scan_photos.h)
   std::string program;  // name and version, for the rows' marks (items/statement.h)
@@ -54,6 +61,9 @@ struct ScanStudy {
   std::function<ScanCase(std::size_t mission, std::size_t seed)> prepare;
 };
 
+// What a case is judged by.
+ReconstructionSettings judged_by(const ScanStudy& study, const ScanCase& scan);
+
 // One row; `work_seconds` is set to what planning took, `cameras` to the tour's images.
 ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceSample& surface,
                 const ScanMethod& method, const ScanStudy& study, std::uint64_t seed,
@@ -61,11 +71,11 @@ ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceS
                 double& work_seconds, std::vector<Pose>& cameras);
 
 // Rows of the whole study in their order: mission, budget, method, seed. Files go to `folder`:
-// study.json, rows/, times/ and, with photographs, photos/. The rows are the items of `run`, and
-// those of one case are a group; nothing where `run` leaves no results to this process. `claim` is
-// called in process 0 before the folder is used. Without an option that continues a study, a folder
-// with another study's rows is refused, with it one of a study that differs. InputError; Cancelled
-// when told to stop, rows so far are kept.
+// study.json, rows/, times/, surface/ (study/counted_surface.h) and, with photographs, photos/. The
+// rows are the items of `run`, and those of one case are a group; nothing where `run` leaves no
+// results to this process. `claim` is called in process 0 before the folder is used. Without an
+// option that continues a study, a folder with another study's rows is refused, with it one of a
+// study that differs. InputError; Cancelled when told to stop, rows so far are kept.
 std::optional<std::vector<ScanRow>> run_study(const ScanStudy& study,
                                               const std::filesystem::path& folder, ItemRun& run,
                                               const Registry& registry,

@@ -37,6 +37,7 @@ ScanSummary summary_of(const std::vector<const ScanRow*>& all) {
   s.method = all.front()->method;
   s.budget = all.front()->budget;
   s.rows = static_cast<int>(all.size());
+  s.surface_share = all.front()->surface_share;
   std::vector<const ScanRow*> rows;
   for (const ScanRow* row : all) {
     if (!row->reproducible) s.reproducible = false;
@@ -91,6 +92,13 @@ std::string title_of(const ScanSummary& s) {
   return s.mission + ", a budget of " + text_of("%g", s.budget) + " s";
 }
 
+// What recall is measured against.
+std::string share_in_words(const ScanSummary& s) {
+  if (s.surface_share == 1) return "";
+  return "; recall of the " + text_of("%.1f", 100 * s.surface_share) +
+         " % of the surface that can be seen from a free place";
+}
+
 std::string remark_of(const ScanSummary& s) {
   std::string remark;
   if (s.counted < s.rows) {
@@ -137,7 +145,8 @@ std::string tables_text(const std::vector<ScanSummary>& summaries) {
     for (std::size_t i = first; i < end; ++i) width = std::max(width, summaries[i].method.size());
     const int seeds = summaries[first].rows;
     out += (out.empty() ? "" : "\n") + title_of(summaries[first]) + ", " + std::to_string(seeds) +
-           (seeds > 1 ? " seeds: means +- standard errors, in percent\n" : " seed, in percent\n");
+           (seeds > 1 ? " seeds: means +- standard errors, in percent" : " seed, in percent") +
+           share_in_words(summaries[first]) + "\n";
     constexpr std::size_t kWide = 15;
     out += padded("", width) + padded("with the first flight's images", 3 * kWide) +
            padded("without", 3 * kWide) + "\n" + padded("method", width, true);
@@ -162,7 +171,7 @@ std::string tables_text(const std::vector<ScanSummary>& summaries) {
 }
 
 std::string tables_csv(const std::vector<ScanSummary>& summaries) {
-  std::string out = "mission,budget [s],method,rows,counted,reproducible";
+  std::string out = "mission,budget [s],method,rows,counted,reproducible,surface that counts [%]";
   for (const char* name : {"precision", "recall", "F", "precision alone", "recall alone", "F alone",
                            "score", "score share", "gap", "images", "seconds"}) {
     const std::string column = name;
@@ -173,7 +182,7 @@ std::string tables_csv(const std::vector<ScanSummary>& summaries) {
   for (const ScanSummary& s : summaries) {
     out += csv_text(s.mission) + "," + csv_number(s.budget) + "," + csv_text(s.method) + "," +
            std::to_string(s.rows) + "," + std::to_string(s.counted) + "," +
-           (s.reproducible ? "true" : "false");
+           (s.reproducible ? "true" : "false") + "," + csv_number(100 * s.surface_share);
     for (const MeanOf* mean :
          {&s.precision, &s.recall, &s.f, &s.precision_alone, &s.recall_alone, &s.f_alone, &s.score,
           &s.score_share, &s.gap, &s.images, &s.seconds}) {
@@ -188,7 +197,7 @@ std::string rows_csv(const std::vector<ScanRow>& rows) {
   std::string out =
       "mission,budget [s],method,seed,status,found,counts,reproducible,score,score share,upper "
       "bound,flight [s],images,first images,candidates,evaluations,precision,recall,F,points,"
-      "precision alone,recall alone,F alone,points alone,surface points,message\n";
+      "precision alone,recall alone,F alone,points alone,surface points,surface share,message\n";
   const auto flag = [](bool value) { return value ? "true" : "false"; };
   for (const ScanRow& r : rows) {
     out += csv_text(r.mission) + "," + csv_number(r.budget) + "," + csv_text(r.method) + "," +
@@ -202,7 +211,8 @@ std::string rows_csv(const std::vector<ScanRow>& rows) {
       out += "," + csv_number(score->precision) + "," + csv_number(score->recall) + "," +
              csv_number(score->f) + "," + std::to_string(score->points);
     }
-    out += "," + std::to_string(r.alone.surface_points) + "," + csv_text(r.message) + "\n";
+    out += "," + std::to_string(r.alone.surface_points) + "," + csv_number(r.surface_share) + "," +
+           csv_text(r.message) + "\n";
   }
   return out;
 }
@@ -212,7 +222,8 @@ namespace {
 Table table_of(const std::vector<ScanSummary>& summaries, std::size_t first, std::size_t end) {
   Table table;
   table.title = title_of(summaries[first]) + ", " + std::to_string(summaries[first].rows) +
-                (summaries[first].rows > 1 ? " seeds: means and standard errors" : " seed");
+                (summaries[first].rows > 1 ? " seeds: means and standard errors" : " seed") +
+                share_in_words(summaries[first]);
   table.columns = {{"method", ""},   {"precision", "%"},       {"recall", "%"},
                    {"F", "%"},       {"precision alone", "%"}, {"recall alone", "%"},
                    {"F alone", "%"}, {"score", "%"},           {"gap", "%"},

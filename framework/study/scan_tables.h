@@ -22,7 +22,8 @@ struct ScanSummary {
   int rows = 0;     // asked for
   int counted = 0;  // of them with a tour that counts
   bool reproducible = true;
-  MeanOf precision, recall, f;                    // with the first flight's images
+  double surface_share = 1;     // of the region's surface, that recall is measured against
+  MeanOf precision, recall, f;  // with the first flight's images
   MeanOf precision_alone, recall_alone, f_alone;  // without
   MeanOf score, score_share, seconds, images, gap;
 };

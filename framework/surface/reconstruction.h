@@ -8,6 +8,7 @@
 // points.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,13 +34,17 @@ using GridPoints = std::vector<Eigen::Vector3f>;
 
 struct ReconstructionScore {
   double precision = 0;  // share of reconstructed points that are close to the surface
-  double recall = 0;     // share of the surface's points that are close to a reconstructed one
-  double f = 0;          // their harmonic mean; 0 where one of them is
+  double recall = 0;  // share of the counted surface points that are close to a reconstructed one
+  double f = 0;       // their harmonic mean; 0 where one of them is
   std::int64_t points = 0, surface_points = 0;
 };
 
+// Whether the surface at a point with a unit normal counts; asked by several threads at once.
+using SurfaceCounts =
+    std::function<bool(const Eigen::Vector3d& point, const Eigen::Vector3d& normal)>;
+
 // The surface's points: triangles are cut until each has less than 0.25 m^2, each of those gives
-// 100 points, and those are averaged on the grid. Immutable; thread-safe.
+// 100 points, and those are averaged on the grid. Thread-safe but for `count_only`.
 class SurfaceSample {
  public:
   // InputError for settings that make no sense, a region without surface, or one of more than 2^20
@@ -49,6 +54,15 @@ class SurfaceSample {
   SurfaceSample(SurfaceSample&&) noexcept;
 
   const GridPoints& points() const;  // within the region
+
+  // Which of `points` have a part of the surface that counts: a quarter of a cut triangle does if
+  // its middle does. The same for any number of threads.
+  std::vector<bool> counted(const TriangleMesh& mesh, const SurfaceCounts& counts,
+                            int threads) const;
+  // From now on recall is measured against these of `points` alone; precision stays against all.
+  // InputError unless there is one entry for each point and at least one of them counts.
+  void count_only(const std::vector<bool>& counted);
+  double counted_share() const;  // of `points`; 1 unless `count_only` said otherwise
   // Points outside the region are left out. The same for any number of threads.
   ReconstructionScore score(const GridPoints& reconstructed, int threads) const;
 

@@ -34,6 +34,8 @@ class ReferenceSystem {
   // Without, z is in metres and passes unchanged, and what it is above is for the caller to know.
   bool vertical() const;
   double metres_per_height() const;  // of z; 1 without a vertical part
+  // The system without its vertical part; itself where it has none.
+  ReferenceSystem horizontal() const;
 
   // InputError, which names the text and the point: a figure is not finite, PROJ cannot transform
   // the point, or it lies more than 1 degree outside of the area where the system is in use, as

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "framework/core/error.h"
@@ -12,41 +11,59 @@ namespace lapwing {
 
 namespace {
 
-constexpr double kGrid = 0.05;        // s
-constexpr double kMostTimes = 20000;  // of the grid
-constexpr double kSame = 1e-9;        // s
-constexpr std::size_t kMostEntries = 50'000'000;
+constexpr double kSame = 1e-9;  // s
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// The cost of passing a keyframe at `time`; infinite where it may not be passed then.
-double price_of(const TimeWish& wish, double time, bool is_last) {
-  const double cost = is_last ? time : 0;
-  if (wish.time_weight) {
-    const double late = time - *wish.time;
-    return cost + *wish.time_weight * (late * late);
+// What one keyframe asks of s, its time less the legs before it.
+struct Ask {
+  double lower = 0, upper = kNever;
+  double square = 0, slope = 0;  // it costs square s^2 + slope s
+};
+
+// Keyframes that are passed as soon after each other as their legs allow: they share one s.
+struct Pool {
+  std::size_t first = 0;
+  double lower = 0, upper = 0, square = 0, slope = 0;
+
+  // The smallest s at which the pool costs least.
+  double best() const {
+    if (square == 0) return lower;
+    return std::clamp(-0.5 * slope / square, lower, std::max(lower, upper));
   }
-  if (wish.time && std::abs(time - *wish.time) > kSame) return kNever;
-  if (time < wish.earliest.value_or(0) - kSame || time > wish.latest.value_or(kNever) + kSame)
-    return kNever;
-  return cost;
+};
+
+Ask ask_of(const TimeWish& wish, double before, bool is_last) {
+  Ask ask;
+  if (wish.time_weight) {
+    ask.square = *wish.time_weight;
+    ask.slope = -2 * *wish.time_weight * (*wish.time - before);
+  } else if (wish.time) {
+    ask.lower = ask.upper = *wish.time - before;
+  } else {
+    ask.lower = wish.earliest.value_or(0) - before;
+    ask.upper = wish.latest.value_or(kNever) - before;
+  }
+  if (is_last) ask.slope += 1;
+  return ask;
 }
 
-// The grid and every time that a wish names, in rising order.
-std::vector<double> candidate_times(std::span<const TimeWish> wishes, double fastest) {
-  std::vector<double> times;
-  double finish = fastest;
-  for (const TimeWish& wish : wishes) {
-    for (const double time :
-         {wish.time.value_or(0), wish.earliest.value_or(0), wish.latest.value_or(0)}) {
-      finish = std::max(finish, time);
-      times.push_back(time);
-    }
+// What all keyframes ask, with bounds that rise: none is earlier than the one before, or later than
+// the one after. The first keyframe that can have none of its times, where there is one.
+std::optional<std::size_t> list_asks(std::span<const TimeWish> wishes, std::span<const double> legs,
+                                     std::vector<Ask>& asks) {
+  double before = 0;
+  for (std::size_t k = 0; k < wishes.size(); ++k) {
+    if (k > 0) before += legs[k - 1];
+    Ask ask = ask_of(wishes[k], before, k + 1 == wishes.size());
+    ask.lower = std::max(ask.lower, k > 0 ? asks.back().lower : 0);
+    if (k == 0) ask.upper = std::min(ask.upper, 0.0);  // the film begins in it
+    if (ask.lower > ask.upper + kSame) return k;
+    ask.upper = std::max(ask.upper, ask.lower);
+    asks.push_back(ask);
   }
-  const double room = finish + fastest, step = std::max(kGrid, room / kMostTimes);
-  const double steps = std::ceil(room / step);
-  for (double i = 0; i <= steps; ++i) times.push_back(i * step);
-  std::sort(times.begin(), times.end());
-  return times;
+  for (std::size_t k = asks.size() - 1; k-- > 0;)
+    asks[k].upper = std::max(asks[k].lower, std::min(asks[k].upper, asks[k + 1].upper));
+  return {};
 }
 
 }  // namespace
@@ -54,49 +71,30 @@ std::vector<double> candidate_times(std::span<const TimeWish> wishes, double fas
 KeyframeTimes cheapest_times(std::span<const TimeWish> wishes, std::span<const double> legs) {
   if (wishes.empty() || legs.size() + 1 != wishes.size())
     throw Error("cheapest_times: one leg fewer than keyframes is needed");
-  double fastest = 0;
-  for (const double leg : legs) fastest += leg;
-  const std::vector<double> times = candidate_times(wishes, fastest);
-  const std::size_t count = wishes.size();
-  if (times.size() > kMostEntries / count)
-    throw InputError("keyframe times: " + std::to_string(count) + " keyframes over " +
-                     std::to_string(times.size()) + " times are too many; expected " +
-                     std::to_string(kMostEntries) + " pairs at most");
-  // least[j]: the least cost of all keyframes so far, the last of them at times[j]. came[k - 1][j]:
-  // the time of the keyframe before on the way to it.
-  std::vector<double> least(times.size(), kNever);
-  std::vector<std::vector<std::uint32_t>> came;
-  for (std::size_t j = 0; j < times.size(); ++j)
-    if (times[j] == 0) least[j] = price_of(wishes[0], 0, count == 1);
-  for (std::size_t k = 1; k < count; ++k) {
-    std::vector<double> next(times.size(), kNever);
-    std::vector<std::uint32_t>& from = came.emplace_back(times.size(), 0);
-    double best = kNever;
-    std::uint32_t place = 0, i = 0;
-    for (std::size_t j = 0; j < times.size(); ++j) {
-      for (; i < times.size() && times[i] <= times[j] - legs[k - 1] + kSame; ++i) {
-        if (least[i] < best) {
-          best = least[i];
-          place = i;
-        }
-      }
-      if (best < kNever) next[j] = best + price_of(wishes[k], times[j], k + 1 == count);
-      from[j] = place;
+  std::vector<Ask> asks;
+  if (const auto refused = list_asks(wishes, legs, asks)) return {.times = {}, .refused = refused};
+  std::vector<Pool> pools;
+  for (std::size_t k = 0; k < asks.size(); ++k) {
+    pools.push_back({k, asks[k].lower, asks[k].upper, asks[k].square, asks[k].slope});
+    while (pools.size() > 1 && pools[pools.size() - 2].best() > pools.back().best()) {
+      const Pool later = pools.back();
+      pools.pop_back();
+      Pool& pool = pools.back();
+      pool.lower = later.lower;  // the bounds rise
+      pool.square += later.square;
+      pool.slope += later.slope;
     }
-    least = std::move(next);
-    if (*std::min_element(least.begin(), least.end()) == kNever) return {.times = {}, .refused = k};
   }
-  auto last =
-      static_cast<std::size_t>(std::min_element(least.begin(), least.end()) - least.begin());
-  if (least[last] == kNever) return {.times = {}, .refused = 0};
-  std::vector<double> chosen(count);
-  for (std::size_t k = count; k-- > 0;) {
-    chosen[k] = times[last];
-    if (k > 0) last = came[k - 1][last];
+  std::vector<double> times(asks.size());
+  double before = 0;
+  std::size_t pool = 0;
+  for (std::size_t k = 0; k < asks.size(); ++k) {
+    if (k > 0) before += legs[k - 1];
+    if (pool + 1 < pools.size() && pools[pool + 1].first == k) ++pool;
+    times[k] = pools[pool].best() + before;
+    if (wishes[k].time && !wishes[k].time_weight) times[k] = *wishes[k].time;
   }
-  for (std::size_t k = 1; k < count; ++k)
-    if (!wishes[k].any()) chosen[k] = std::min(chosen[k], chosen[k - 1] + legs[k - 1]);
-  return {.times = std::move(chosen), .refused = std::nullopt};
+  return {.times = std::move(times), .refused = std::nullopt};
 }
 
 std::vector<std::size_t> keyframe_stops(const Points& path, const Points& keyframes) {

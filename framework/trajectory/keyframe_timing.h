@@ -28,12 +28,11 @@ struct KeyframeTimes {
 };
 
 // Minimises  t[n-1] + sum of time_weight[k] (t[k] - time[k])^2  over t[0] = 0 and
-// t[k] - t[k-1] >= legs[k-1], within exact times and windows. Method: dynamic programming from
-// keyframe to keyframe (Bellman) over a grid of 0.05 s, or as much wider as leaves 20,000 times,
-// and every time that a wish names. The work is keyframes times grid. Keyframes without a wish are
-// then passed as early as their leg allows.
-// `legs`: shortest durations, s, above 0, one fewer than wishes. InputError where the table of
-// keyframes times grid would exceed 50 million entries. Error for another number of legs.
+// t[k] - t[k-1] >= legs[k-1], within exact times and windows. Method: in s[k] = t[k] - (legs before
+// k) this is an isotonic regression within bounds; pooling adjacent violators finds its exact
+// optimum in linear time (Best, Chakravarti and Ubhaya, SIAM J. Optim. 10, 2000). Of several optima
+// it takes the one at which keyframes are passed earliest.
+// `legs`: shortest durations, s, above 0, one fewer than wishes. Error for another number of legs.
 KeyframeTimes cheapest_times(std::span<const TimeWish> wishes, std::span<const double> legs);
 
 // For each keyframe the number of the nearest point of the path, in order: no stop comes before the

@@ -105,6 +105,7 @@ Value to_value(const Plan& plan) {
   value.set("mission", plan.mission);
   value.set("kind", plan.kind);
   value.set("frame", frame_to_value(plan.geodetic_origin));
+  if (plan.home) value.set("home", home_to_value(*plan.home));
   value.set("vehicle", plan.vehicle);
   value.set("motion", motion_to_value(plan.trajectory));
   value.set("samples", std::move(samples));
@@ -128,6 +129,7 @@ Plan plan_from_value(const Value& value) {
   plan.mission = fields.text("mission");
   plan.kind = fields.text("kind");
   plan.geodetic_origin = frame_from(fields.table("frame"));
+  if (fields.has("home")) plan.home = home_from(fields.table("home"));
   fields.table("vehicle");  // opaque here, but it must be there and be a map
   plan.vehicle = fields.opaque("vehicle");
   plan.trajectory = motion_from(fields.table("motion"));

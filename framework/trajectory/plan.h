@@ -14,6 +14,7 @@
 #include "framework/geometry/geodetic_origin.h"
 #include "framework/trajectory/environment.h"
 #include "framework/trajectory/gate.h"
+#include "framework/trajectory/home.h"
 #include "framework/trajectory/polyline.h"
 #include "framework/trajectory/scan_task.h"
 #include "framework/trajectory/stated_constraint.h"
@@ -58,6 +59,7 @@ struct Plan {
   std::string mission;                            // name as the script gave it
   std::string kind;                               // film, race, ...
   std::optional<GeodeticOrigin> geodetic_origin;  // of the world frame
+  std::optional<Home> home;                       // the take-off place, where it is stated
   Value vehicle;                                  // as vehicle/vehicle.h writes it, camera included
   Trajectory trajectory;
   Environment environment;
@@ -72,7 +74,7 @@ struct Plan {
 };
 
 // The document. SI and radians; a sample has the fields of its motion model alone; sections that
-// are absent (no origin, no budget, null values) have no key.
+// are absent (no origin, no home, no budget, null values) have no key.
 Value to_value(const Plan& plan);
 // Throws InputError listing every missing, misspelt, mistyped or non-finite field, and another
 // format number; a digest is not compared (plan_digest.h). It judges form alone: times out of order

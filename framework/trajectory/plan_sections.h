@@ -18,6 +18,9 @@ inline Value list_of(const Eigen::Vector3d& v) {
 Value environment_to_value(const Environment& environment);
 Environment environment_from(Fields fields, int format);
 
+Value home_to_value(const Home& home);
+Home home_from(Fields fields);
+
 Value spans_to_value(const std::vector<TimeSpan>& cuts);
 std::vector<TimeSpan> spans_from(std::vector<Fields> entries);
 

@@ -54,6 +54,7 @@ class Estimator {
         random_(Random(conditions.seed).split(kNoiseStream)) {}
 
   BodyState estimate(const BodyState& state) {
+    if (late_ == 0 && !noisy_) return state;
     known_.push_back(state);
     if (known_.size() > late_ + 1) known_.pop_front();
     BodyState estimate = known_.front();
@@ -91,9 +92,12 @@ class Actuators {
         sent_(late_, start.rotor_thrusts) {}
 
   Eigen::Vector4d arriving(const Eigen::Vector4d& command, double flown) {
-    sent_.push_back(command);
-    const Eigen::Vector4d now = sent_.front();
-    sent_.pop_front();
+    Eigen::Vector4d now = command;
+    if (late_ > 0) {
+      sent_.push_back(command);
+      now = sent_.front();
+      sent_.pop_front();
+    }
     if (d_.battery_loss == 0) return now;
     return (1 - d_.battery_loss * std::min(1.0, d_.battery_used + flown / flight_time_)) * now;
   }

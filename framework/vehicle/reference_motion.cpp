@@ -89,31 +89,28 @@ ReferenceMotion::ReferenceMotion(const Trajectory& trajectory, const Vehicle& ve
     : forces_(as_forces(trajectory, vehicle)),
       trajectory_(forces_ ? *forces_ : trajectory),
       mass_(vehicle.mass),
-      drag_(vehicle.drag),
-      yaw_inertia_(vehicle.inertia.z()) {
+      drag_(vehicle.drag) {
   if (trajectory.samples.size() < 2) throw InputError({}, "a flight needs two samples at least");
+  for (const Sample& s : trajectory_.samples) {
+    times_.push_back(s.time);
+    accelerations_.push_back(s.columns.vector3("force") / mass_ - Vector3d(0, 0, kGravity));
+    spins_.push_back(s.columns.scalar("yaw_torque") / vehicle.inertia.z());
+  }
 }
 
 std::size_t ReferenceMotion::interval(double time) const {
-  const auto& samples = trajectory_.samples;
-  const auto next = std::upper_bound(samples.begin() + 1, samples.end() - 1, time,
-                                     [](double t, const Sample& s) { return t < s.time; });
-  return static_cast<std::size_t>(next - samples.begin()) - 1;
-}
-
-Vector3d ReferenceMotion::acceleration(std::size_t sample) const {
-  return trajectory_.samples[sample].columns.vector3("force") / mass_ - Vector3d(0, 0, kGravity);
+  const auto next = std::upper_bound(times_.begin() + 1, times_.end() - 1, time);
+  return static_cast<std::size_t>(next - times_.begin()) - 1;
 }
 
 Vector3d ReferenceMotion::smoothed_acceleration(std::size_t interval, double time) const {
-  const auto& samples = trajectory_.samples;
-  const auto length = [&](std::size_t i) { return samples[i + 1].time - samples[i].time; };
-  const bool early = 2 * (time - samples[interval].time) < length(interval);
-  if ((early && interval == 0) || (!early && interval + 2 == samples.size()))
+  const auto length = [&](std::size_t i) { return times_[i + 1] - times_[i]; };
+  const bool early = 2 * (time - times_[interval]) < length(interval);
+  if ((early && interval == 0) || (!early && interval + 2 == times_.size()))
     return acceleration(interval);
   const std::size_t from = early ? interval - 1 : interval;  // the ramp's jump comes after it
   const double ramp = std::min({length(from), length(from + 1), kLongestRamp});
-  const double share = std::clamp((time - samples[from + 1].time) / ramp + 0.5, 0.0, 1.0);
+  const double share = std::clamp((time - times_[from + 1]) / ramp + 0.5, 0.0, 1.0);
   return acceleration(from) + share * (acceleration(from + 1) - acceleration(from));
 }
 
@@ -135,12 +132,12 @@ ReferencePoint ReferenceMotion::at(double time) const {
   const Sample& s = samples[i];
   const double t = time - s.time, h = samples[i + 1].time - s.time;
   const Vector3d a = acceleration(i);
-  const double spin = s.columns.scalar("yaw_torque") / yaw_inertia_;
+  const double spin = spins_[i];
   Vector3d jerk = Vector3d::Zero();
   double spin_rate = 0;
   if (!trajectory_.inputs_held) {
     jerk = (acceleration(i + 1) - a) / h;
-    spin_rate = (samples[i + 1].columns.scalar("yaw_torque") / yaw_inertia_ - spin) / h;
+    spin_rate = (spins_[i + 1] - spin) / h;
   }
   point.position = s.position + t * (s.velocity + t * (a / 2 + t * jerk / 6));
   point.velocity = s.velocity + t * (a + t * jerk / 2);

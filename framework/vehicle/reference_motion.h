@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "framework/trajectory/trajectory.h"
 #include "framework/vehicle/vehicle.h"
@@ -43,12 +44,16 @@ class ReferenceMotion {
 
  private:
   std::size_t interval(double time) const;
-  Eigen::Vector3d acceleration(std::size_t sample) const;
+  const Eigen::Vector3d& acceleration(std::size_t sample) const { return accelerations_[sample]; }
   Eigen::Vector3d smoothed_acceleration(std::size_t interval, double time) const;
 
   const std::optional<Trajectory> forces_;  // of a trajectory of rotors
   const Trajectory& trajectory_;            // that, or the one that was given
-  double mass_, drag_, yaw_inertia_;
+  double mass_, drag_;
+  // Of each sample; a flight reads them at every step of the controller.
+  std::vector<double> times_;                   // s
+  std::vector<Eigen::Vector3d> accelerations_;  // m/s^2, world
+  std::vector<double> spins_;                   // rad/s^2, of the yaw
 };
 
 }  // namespace lapwing

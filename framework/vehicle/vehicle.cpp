@@ -49,20 +49,6 @@ Value rotors_to_value(const Rotors& rotors) {
   return value;
 }
 
-Value limits_to_value(const Vehicle& vehicle) {
-  Value value = Value::map();
-  value.set("speed_across", vehicle.speed_across_max);
-  value.set("climb_speed", vehicle.climb_speed_max);
-  value.set("descent_speed", vehicle.descent_speed_max);
-  value.set("acceleration_across", vehicle.acceleration_across_max);
-  if (vehicle.acceleration_up_max) value.set("acceleration_up", *vehicle.acceleration_up_max);
-  if (vehicle.acceleration_down_max) value.set("acceleration_down", *vehicle.acceleration_down_max);
-  if (vehicle.jerk_max) value.set("jerk", *vehicle.jerk_max);
-  value.set("yaw_rate", vehicle.yaw_rate_max);
-  if (vehicle.tilt_rate_max) value.set("tilt_rate", *vehicle.tilt_rate_max);
-  return value;
-}
-
 Value wing_to_value(const Wing& wing) {
   Value value = Value::map();
   value.set("stall_speed", wing.stall_speed);
@@ -187,6 +173,20 @@ Camera read_camera(Fields fields) {
 }
 
 }  // namespace
+
+Value limits_to_value(const Vehicle& vehicle) {
+  Value value = Value::map();
+  value.set("speed_across", vehicle.speed_across_max);
+  value.set("climb_speed", vehicle.climb_speed_max);
+  value.set("descent_speed", vehicle.descent_speed_max);
+  value.set("acceleration_across", vehicle.acceleration_across_max);
+  if (vehicle.acceleration_up_max) value.set("acceleration_up", *vehicle.acceleration_up_max);
+  if (vehicle.acceleration_down_max) value.set("acceleration_down", *vehicle.acceleration_down_max);
+  if (vehicle.jerk_max) value.set("jerk", *vehicle.jerk_max);
+  value.set("yaw_rate", vehicle.yaw_rate_max);
+  if (vehicle.tilt_rate_max) value.set("tilt_rate", *vehicle.tilt_rate_max);
+  return value;
+}
 
 Value to_value(const Vehicle& vehicle) {
   Value value = Value::map();

@@ -101,5 +101,7 @@ Vehicle vehicle_from(const Parameters& vehicle, const Parameters& camera, std::s
 // missing, misspelt, mistyped or non-finite field, and every contradiction.
 Value to_value(const Vehicle& vehicle);
 Vehicle vehicle_from_value(const Value& value);
+// Its `limits` alone: those that it states, by the names of vehicle files, SI and radians.
+Value limits_to_value(const Vehicle& vehicle);
 
 }  // namespace lapwing

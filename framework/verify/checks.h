@@ -90,6 +90,14 @@ inline constexpr std::array kMotionCheckKinds{
     CheckKind{"sideslip", CheckGroup::safety, true, "rad"},
 };
 
+// Listed for plans alone that state what they need, behind the distances that all have.
+inline constexpr std::array kHomeCheckKinds{
+    CheckKind{"height_above_home", CheckGroup::safety, true, "m"},
+    CheckKind{"distance_from_home", CheckGroup::safety, true, "m"},
+    CheckKind{"height_above_ground", CheckGroup::safety, true, "m"},
+    CheckKind{"rally_points", CheckGroup::safety, true, "m"},
+};
+
 // A check of that name, with its group, unit and whether it is required.
 Check make_check(std::string_view name);
 Check skipped_check(std::string_view name, std::string reason);
@@ -144,6 +152,7 @@ void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);
 void check_flight_zones(const Flight& flight, Certificate& certificate);
 void check_subject_distance(const Flight& flight, Certificate& certificate);
+void check_home(const Flight& flight, Certificate& certificate);
 // What was flown, where the motion model can be.
 std::optional<FlownPath> check_closed_loop(const Flight& flight, Certificate& certificate);
 void check_time(const Flight& flight, Certificate& certificate);
@@ -162,6 +171,7 @@ void skip_constraints(const Plan& plan, const std::string& reason, Certificate& 
 // What of the environment, the cuts and the framing does not hold together, in words. The spans are
 // judged against a flight that ends at `finish`.
 void list_problems(const Environment& environment, std::vector<std::string>& problems);
+void list_home_problems(const Plan& plan, std::vector<std::string>& problems);
 void list_gate_problems(const Task& task, std::vector<std::string>& problems);
 void list_scan_problems(const Plan& plan, std::vector<std::string>& problems);
 void list_constraint_problems(const Plan& plan, std::vector<std::string>& problems);

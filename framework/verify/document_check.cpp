@@ -92,6 +92,8 @@ class Reader {
       for (const Subject& subject : plan_.environment.subjects)
         if (subject.name == asked.subject)
           for (const Eigen::Vector3d& place : subject.positions) box.extend(place);
+    if (plan_.home)
+      for (const Eigen::Vector3d& place : plan_.home->rally_points) box.extend(place);
     const Eigen::Vector3d room = Eigen::Vector3d::Constant(
         std::max(plan_.environment.margin + tolerances::kMapReach, map_reach()));
     Eigen::AlignedBox3d around(box.min() - room, box.max() + room);
@@ -178,6 +180,7 @@ class Reader {
     if (plan_.budget && !(*plan_.budget > 0 && sound(*plan_.budget))) {
       add("the budget must be above 0");
     }
+    list_home_problems(plan_, problems_);
     list_gate_problems(plan_.task, problems_);
     if (plan_.task.scan) list_scan_problems(plan_, problems_);
     for (std::size_t i = 0; i < plan_.task.keyframes.size(); ++i) {

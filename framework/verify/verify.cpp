@@ -36,11 +36,22 @@ struct Family {
   const char* name;
   double walks;
 };
-enum : std::size_t { kDynamics, kLimits, kClearance, kZones, kSubjects, kLoop, kTask, kCoverage };
-constexpr std::array kFamilies{
-    Family{"dynamics", 1},     Family{"limits", 1},           Family{"clearance", 1},
-    Family{"flight zones", 1}, Family{"subject distance", 1}, Family{"closed loop", 0},
-    Family{"task", 3},         Family{"coverage", 0},         Family{"constraints", 1}};
+enum : std::size_t {
+  kDynamics,
+  kLimits,
+  kClearance,
+  kZones,
+  kSubjects,
+  kHome,
+  kLoop,
+  kTask,
+  kCoverage
+};
+constexpr std::array kFamilies{Family{"dynamics", 1},         Family{"limits", 1},
+                               Family{"clearance", 1},        Family{"flight zones", 1},
+                               Family{"subject distance", 1}, Family{"home", 1},
+                               Family{"closed loop", 0},      Family{"task", 3},
+                               Family{"coverage", 0},         Family{"constraints", 1}};
 
 // Of a plan that holds together; the document has been read.
 std::vector<VerifierPart> parts_of(const Plan& plan, double steps, double read) {
@@ -102,6 +113,7 @@ Certificate verify(const Plan& plan, const VerifyRequest& request) {
   next(check_clearance);
   next(check_flight_zones);
   next(check_subject_distance);
+  next(check_home);
   check_time(flight, certificate);
   watch.begin();
   const std::optional<FlownPath> flown = check_closed_loop(flight, certificate);

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <string_view>
 
 #include "framework/core/error.h"
 
@@ -91,49 +94,78 @@ const char* to_string(PatternKind kind) {
   return "hemisphere";
 }
 
+namespace {
+
+constexpr PatternKind kKinds[] = {PatternKind::circle, PatternKind::ellipse, PatternKind::meander,
+                                  PatternKind::hemisphere};
+constexpr int kMostViews = 10'000;
+constexpr const char* kViewsKey = ":views=";
+
+// As the thesis has them (4.5.4).
+int usual_views(PatternKind kind) {
+  if (kind == PatternKind::circle) return 120;
+  return kind == PatternKind::meander ? 144 : 160;
+}
+
+bool has_one_size(PatternKind kind) {
+  return kind == PatternKind::circle || kind == PatternKind::hemisphere;
+}
+
+std::optional<PatternKind> kind_named(const std::string& name) {
+  for (const PatternKind kind : kKinds)
+    if (name == to_string(kind)) return kind;
+  return std::nullopt;
+}
+
+// The whole text as a number; nothing where it is none.
+template <class Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
 std::string name_of(const Pattern& pattern) {
   char text[80];
-  const bool one = pattern.kind == PatternKind::circle || pattern.kind == PatternKind::hemisphere;
-  if (one) {
+  if (has_one_size(pattern.kind)) {
     std::snprintf(text, sizeof text, "%s_%g", to_string(pattern.kind), pattern.along_x);
   } else {
     std::snprintf(text, sizeof text, "%s_%gx%g", to_string(pattern.kind), pattern.along_x,
                   pattern.along_y);
   }
-  return text;
+  if (pattern.views == usual_views(pattern.kind)) return text;
+  return text + (kViewsKey + std::to_string(pattern.views));
 }
 
 Pattern pattern_named(const std::string& name, double height) {
   const auto refuse = [&] {
     throw InputError("no pattern '" + name +
                      "'; patterns are circle_RADIUS, hemisphere_RADIUS, ellipse_AxB and "
-                     "meander_AxB, in metres");
+                     "meander_AxB, in metres, each with `:views=N` for another number of views");
   };
-  const std::size_t bar = name.find('_');
-  Pattern pattern{.height = height};
-  bool known = false;
-  for (const auto& [kind, views] : {std::pair{PatternKind::circle, 120},
-                                    {PatternKind::ellipse, 160},
-                                    {PatternKind::meander, 144},
-                                    {PatternKind::hemisphere, 160}}) {
-    if (name.substr(0, bar) != to_string(kind)) continue;
-    pattern.kind = kind;
-    pattern.views = views;
-    known = true;
-  }
-  if (!known || bar == name.npos) refuse();
-  const auto read = [&](const char* from, const char* to) {
-    double number = 0;
-    const auto [end, error] = std::from_chars(from, to, number);
-    if (error != std::errc{} || end != to || !(number > 0) || number > 1e4) refuse();
-    return number;
+  const std::string_view all = name;
+  const std::size_t bar = all.find('_'), colon = std::min(all.find(':'), all.size());
+  const auto kind = kind_named(name.substr(0, bar));
+  if (!kind || bar == all.npos || colon < bar) refuse();
+  Pattern pattern{.kind = *kind, .views = usual_views(*kind), .height = height};
+  const auto size_in = [&](std::string_view text) {
+    const auto size = number_in<double>(text);
+    if (!size || !(*size > 0) || *size > 1e4) refuse();
+    return *size;
   };
-  const char *begin = name.data() + bar + 1, *end = name.data() + name.size();
-  const char* cross = std::find(begin, end, 'x');
-  const bool one = pattern.kind == PatternKind::circle || pattern.kind == PatternKind::hemisphere;
-  if (one == (cross != end)) refuse();
-  pattern.along_x = pattern.along_y = read(begin, cross);
-  if (!one) pattern.along_y = read(cross + 1, end);
+  const std::string_view sizes = all.substr(bar + 1, colon - bar - 1);
+  const std::size_t cross = sizes.find('x');
+  if (has_one_size(*kind) == (cross != sizes.npos)) refuse();
+  pattern.along_x = pattern.along_y = size_in(sizes.substr(0, cross));
+  if (cross != sizes.npos) pattern.along_y = size_in(sizes.substr(cross + 1));
+  if (colon == all.size()) return pattern;
+  if (!all.substr(colon).starts_with(kViewsKey)) refuse();
+  const auto views = number_in<int>(all.substr(colon + std::strlen(kViewsKey)));
+  if (!views || *views < 1 || *views > kMostViews) refuse();
+  pattern.views = *views;
   return pattern;
 }
 

@@ -32,10 +32,11 @@ struct Pattern {
   double height = 30;
 };
 
-// "circle_50", "meander_85x100": as tables name it.
+// "circle_50", "meander_85x100:views=256": as tables name it.
 std::string name_of(const Pattern& pattern);
-// What `name_of` writes, of the sizes and numbers of views of the thesis: circles of 120 views,
-// ellipses and hemispheres of 160, meanders of 144. InputError otherwise, saying what is known.
+// What `name_of` writes. Without `:views=N`, N from 1 to 10,000, the thesis's numbers of views:
+// circles 120, ellipses and hemispheres 160, meanders 144. InputError otherwise, saying what is
+// known.
 Pattern pattern_named(const std::string& name, double height);
 
 // In the order in which they are flown. Circle and ellipse look at the region's middle, so does the

@@ -48,6 +48,8 @@ VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<con
     : map_(std::move(map)), prior_(std::move(prior)), settings_(std::move(settings)) {
   if (!map_) throw Error("VisibleVoxels: no map");
   check_camera(settings_.pinhole, settings_.range);
+  if (!(settings_.usable_range > 0) || !(settings_.usable_incidence > 0))
+    throw InputError("the usable range and angle of an image must be above 0");
   if (settings_.region.isEmpty() || !settings_.region.min().allFinite() ||
       !settings_.region.max().allFinite())
     throw InputError("the region of interest is empty");
@@ -65,8 +67,9 @@ VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<con
       tiled_pixel_rays(fewer ? coarser(settings_.pinhole, settings_.across) : settings_.pinhole);
 }
 
-double VisibleVoxels::leaves_region_after(const Vector3d& origin, const Vector3d& direction) const {
-  double enters = 0, leaves = settings_.range;
+double VisibleVoxels::leaves_region_after(const Vector3d& origin, const Vector3d& direction,
+                                          double range) const {
+  double enters = 0, leaves = range;
   for (int i = 0; i < 3; ++i) {
     const double a = (reach_.min()[i] - origin[i]) / direction[i];
     const double b = (reach_.max()[i] - origin[i]) / direction[i];
@@ -77,7 +80,8 @@ double VisibleVoxels::leaves_region_after(const Vector3d& origin, const Vector3d
 }
 
 std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
-                                               std::span<const Vector3d> directions_C) const {
+                                               std::span<const Vector3d> directions_C,
+                                               double range) const {
   constexpr std::size_t kTile = 64;      // whole ones are quickest, see Map::cast
   constexpr std::size_t kAtOnce = 1024;  // few enough to stay at hand
   const Pose camera = viewpoint.camera();
@@ -90,15 +94,15 @@ std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
     rays.clear();
     for (std::size_t tile = 0; tile < count; tile += kTile) {
       const std::size_t begin = rays.size();
-      double range = 0;  // beyond its own a ray meets nothing that counts
+      double farthest = 0;  // beyond its own a ray meets nothing that counts
       for (const Vector3d& direction_C :
            directions_C.subspan(first + tile, std::min(kTile, count - tile))) {
         const Vector3d direction = r * direction_C;
-        range = std::max(range, leaves_region_after(camera.position, direction));
-        rays.push_back({camera.position, direction, range});
+        farthest = std::max(farthest, leaves_region_after(camera.position, direction, range));
+        rays.push_back({camera.position, direction, farthest});
       }
-      if (range > 0)
-        for (std::size_t k = begin; k < rays.size(); ++k) rays[k].range = range;
+      if (farthest > 0)
+        for (std::size_t k = begin; k < rays.size(); ++k) rays[k].range = farthest;
       else
         rays.resize(begin);
     }
@@ -116,10 +120,13 @@ std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
 
 std::vector<SeenVoxel> VisibleVoxels::seen_from(const Viewpoint& viewpoint) const {
   const double edge = map_->grid().resolution();
+  // A ray meets a voxel at most half its diagonal before its centre.
+  const double range = std::min(settings_.range, settings_.usable_range + edge);
   std::vector<SeenVoxel> seen;
-  for (const VoxelKey& key : keys_from(viewpoint, rays_)) {
+  for (const VoxelKey& key : keys_from(viewpoint, rays_, range)) {
     const Vector3d towards = map_->grid().center(key) - viewpoint.position;
     const double distance = towards.norm();
+    if (distance > settings_.usable_range) continue;
     VoxelSight sight{static_cast<float>(distance), 0, std::nullopt};
     if (distance > 0) {
       sight.pixels = static_cast<float>(settings_.pinhole.focal_x * edge / distance);
@@ -132,16 +139,22 @@ std::vector<SeenVoxel> VisibleVoxels::seen_from(const Viewpoint& viewpoint) cons
               std::atan2(direction.cross(hit.normal).norm(), -direction.dot(hit.normal)));
       }
     }
+    if (sight.incidence && *sight.incidence > settings_.usable_incidence) continue;
     seen.push_back({key, sight});
   }
   return seen;
+}
+
+std::vector<VoxelKey> VisibleVoxels::voxels_from(const Viewpoint& viewpoint) const {
+  return keys_from(viewpoint, rays_, settings_.range);
 }
 
 std::vector<VoxelKey> VisibleVoxels::seen_coarsely_from(const Viewpoint& viewpoint,
                                                         int across) const {
   if (across < 1 || across > settings_.pinhole.width)
     throw InputError("a coarse view must have from 1 to as many pixels across as the camera");
-  return keys_from(viewpoint, tiled_pixel_rays(coarser(settings_.pinhole, across)));
+  return keys_from(viewpoint, tiled_pixel_rays(coarser(settings_.pinhole, across)),
+                   settings_.range);
 }
 
 bool matchable(const std::vector<VoxelKey>& a, const std::vector<VoxelKey>& b, double alpha) {

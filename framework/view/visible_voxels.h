@@ -2,6 +2,7 @@
 // Which voxels a viewpoint sees in a map, and how (thesis 4.4.4).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct SightSettings {
   double normal_tolerance = 0.5;
   // Pixels a row of the smaller image that rays are cast through; 0: every pixel of the camera.
   int across = 0;
+  // m and rad: what an image shows from farther away, or at a known larger angle of incidence, is
+  // of no use to a model, and is not seen. Matching (4.8) looks as far as `range`.
+  double usable_range = std::numeric_limits<double>::infinity();
+  double usable_incidence = 1.5707963267948966;
 };
 
 struct SeenVoxel {
@@ -34,24 +39,28 @@ struct SeenVoxel {
 // and nobody may change them meanwhile. Thread-safe.
 class VisibleVoxels {
  public:
-  // InputError for a camera without pixels or focal length, a range that is not above 0, an empty
-  // region, or a range that reaches out of the largest map from the region.
+  // InputError for a camera without pixels or focal length, ranges or an angle that are not above
+  // 0, an empty region, or a range that reaches out of the largest map from the region.
   VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<const MeshScene> prior,
                 SightSettings settings);
 
   const SightSettings& settings() const { return settings_; }
   const Map& map() const { return *map_; }
 
-  // In the order of keys, each once: occupied and unknown voxels of the region.
+  // In the order of keys, each once: occupied and unknown voxels of the region that are usable.
   std::vector<SeenVoxel> seen_from(const Viewpoint& viewpoint) const;
+  // The keys of all that the rays meet, usable or not.
+  std::vector<VoxelKey> voxels_from(const Viewpoint& viewpoint) const;
   // The keys alone, with a smaller image of the same view: `across` pixels wide.
   std::vector<VoxelKey> seen_coarsely_from(const Viewpoint& viewpoint, int across) const;
 
  private:
   // m; 0 where a ray misses the region. What lies beyond does not count and need not be looked at.
-  double leaves_region_after(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  double leaves_region_after(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                             double range) const;
   std::vector<VoxelKey> keys_from(const Viewpoint& viewpoint,
-                                  std::span<const Eigen::Vector3d> directions_C) const;
+                                  std::span<const Eigen::Vector3d> directions_C,
+                                  double range) const;
 
   std::shared_ptr<const Map> map_;
   std::shared_ptr<const MeshScene> prior_;

@@ -25,8 +25,8 @@ end
 function M.attempt(run, request)
   local stretch = request.stretch
   run:phase(stretch == 1 and "film" or string.format("film %.4g times as long", stretch))
-  if not request.corridor then return tried(run, request) end
-  -- A corridor may leave no room for what the film asks for.
+  if not (request.corridor or request.may_fail) then return tried(run, request) end
+  -- A corridor may leave no room for what the film asks for, nor may times that were found.
   local fine, result = pcall(tried, run, request)
   if fine then return result end
   return requests.outcome { request = request, legs = request.legs, holds = false,

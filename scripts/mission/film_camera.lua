@@ -17,12 +17,30 @@ local function gimbal_yaws(looks, path)
   return list
 end
 
+-- What draws the target to what is looked at: to places at given times. Where times are variables
+-- (`free`): to subjects, wherever they then are, and to points when their keyframe is passed.
+local function add_pulls(p, weight, camera, free)
+  if not free then
+    p:add_cost { type = "target_keyframe", weight = weight, keyframes = camera.pulls }
+    return
+  end
+  for i, span in ipairs(camera.spans) do
+    p:add_cost { type = "subject_target", name = "target on look " .. i, weight = weight,
+                 subject = span.subject.name, except = camera.cuts,
+                 spans = { { start = span.start, finish = span.finish } } }
+  end
+  if #camera.points > 0 then
+    p:add_cost { type = "target_keyframe", weight = weight, keyframes = camera.points }
+  end
+end
+
 -- The camera's part of thesis 3.5.3: a gimbal, a target that follows what is looked at, and the
--- angle between the two. `environment`: what may hide the target, or false.
-function M.add(p, weights, camera, path, environment)
+-- angle between the two. `environment`: what may hide the target, or false. `free`: whether times
+-- are variables.
+function M.add(p, weights, camera, path, environment, free)
   p:add_model { type = "gimbal" }
   p:add_block { name = "target", size = 3, unit = "m" }
-  p:add_cost { type = "target_keyframe", weight = weights.target, keyframes = camera.pulls }
+  add_pulls(p, weights.target, camera, free)
   p:add_cost { type = "target_derivative", weight = weights.target_smoothness,
                except = camera.cuts }
   p:add_cost { type = "gimbal_derivative", weight = weights.gimbal, except = camera.cuts }

@@ -130,6 +130,16 @@ function M.hides(environment)
   return false
 end
 
+-- Whether the flight keeps a distance from anything.
+function M.near_things(options, subjects)
+  if #options.obstacles > 0 or #options.flight_zones > 0 or #options.keep_away > 0
+     or options.ground or options.volume and options.volume.lower then return true end
+  for _, subject in ipairs(subjects) do
+    if subject.distance then return true end
+  end
+  return false
+end
+
 local function moves(environment)
   for _, obstacle in ipairs(environment.obstacles) do
     if obstacle.track and #obstacle.track > 0 then return true end

@@ -25,11 +25,14 @@ local function hidden(outcome) return first_failed(outcome) == "line_of_sight" e
 function M.out_of_sight(outcome)
   return first_failed(outcome) == "framing" or hidden(outcome)
 end
+-- Heights and distances that count from home or the ground: no other vehicle would keep them.
+local HOME = { height_above_home = true, distance_from_home = true, height_above_ground = true,
+               rally_points = true }
 
 -- Which limit a film breaks, where and when: what the gimbal cannot see, or else what the film
 -- would ask for if nothing held it. `legs`: the ways to begin with.
 function M.broken_limit(run, failing, legs)
-  if hidden(failing) then return attempts.complaint(failing) end
+  if hidden(failing) or HOME[first_failed(failing)] then return attempts.complaint(failing) end
   if M.out_of_sight(failing) then
     return subjects.hidden(failing.camera, failing.request.vehicle) or attempts.complaint(failing)
   end

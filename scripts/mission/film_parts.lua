@@ -77,6 +77,7 @@ function M.camera(part, camera)
   if complete(part) or not camera then return camera end
   return { list = camera.list, spans = M.spans(part, camera.spans),
            cuts = M.spans(part, camera.cuts), pulls = M.entries(part, camera.pulls),
+           points = M.entries(part, camera.points),
            guess = guess(part, camera.guess) }
 end
 

@@ -7,6 +7,7 @@ local film_keyframes = require "mission.film_keyframes"
 local live = require "mission.film_live"
 local own = require "mission.own_terms"
 local parts = require "mission.film_parts"
+local film_times = require "mission.film_times"
 local point_mass = require "mission.point_mass"
 local subjects = require "mission.subjects"
 local tracks = require "mission.tracks"
@@ -88,6 +89,10 @@ local function prepared(run, request, part)
 end
 
 local function new_problem(run, request, film, times)
+  if request.free then
+    return run:problem(surroundings.stated(film.environment, {
+      vehicle = request.vehicle, legs = request.free.legs }))
+  end
   return run:problem(surroundings.stated(film.environment, {
     vehicle = request.vehicle, begin = times.begin, duration = times.finish - times.begin,
     step = film.step }))
@@ -96,7 +101,7 @@ end
 -- Costs, constraints and first guess of the part of a film between two times (film_parts.lua).
 local function fill(run, request, film, part)
   local o, vehicle, scope, p = run.options, request.vehicle, request.scope, part.problem
-  local keyframes, environment = film.keyframes, film.environment
+  local keyframes, environment, free = film.keyframes, film.environment, request.free
   local camera = parts.camera(part, film.camera)
   local limited, path, track = scope ~= "unlimited", film.way.path, request.track
   if track then
@@ -110,14 +115,17 @@ local function fill(run, request, film, part)
   if #places > 0 then
     p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = places }
   end
-  point_mass.add(p, vehicle, motion_of(o, limited and { across = "extent" } or nil))
+  point_mass.add(p, vehicle, motion_of(o, limited and
+    { across = "extent", share = free and free.share or nil } or nil))
   if limited then
     surroundings.add(p, environment, camera,
                      film.way.corridor and parts.spans(part, film.way.corridor))
   end
   surroundings.add_cruise(p, request, o.weights.speed, part)
   surroundings.add_speed_limit(p, o, limited)
-  if track and scope ~= "flight" then
+  if track and free then
+    film_times.add_path(p, track, keyframes.times)
+  elseif track and scope ~= "flight" then
     p:add_cost { type = "keyframe", name = "path", weight = track.weight,
                  keyframes = parts.entries(part, track.places) }
   end
@@ -128,19 +136,22 @@ local function fill(run, request, film, part)
     p:add_cost { type = "keyframe", name = "keyframe_yaw", block = "yaw",
                  weight = o.weights.keyframe, keyframes = yaws }
   end
-  if o.hard and #places > 0 then
-    p:add_constraint { type = "hard_keyframe", tolerance = o.hard, keyframes = places }
-    if #yaws > 0 then
+  -- A miss that the certificate would not pass is no price for better times.
+  local tolerance = o.hard or free and film_keyframes.MISS
+  if tolerance and #places > 0 then
+    p:add_constraint { type = "hard_keyframe", tolerance = tolerance, keyframes = places }
+    if o.hard and #yaws > 0 then
       p:add_constraint { type = "hard_keyframe", name = "hard_yaw", block = "yaw",
                          tolerance = HARD_YAW, keyframes = yaws }
     end
   end
   if camera then
-    cameras.add(p, o.weights, camera, path, request.looks_round and environment)
+    cameras.add(p, o.weights, camera, path, request.looks_round and environment, free ~= nil)
   end
   if scope == "film" or scope == "unconstrained" then
     own.add(p, o, request.terms, scope == "film")
   end
+  if free then film_times.add(p, free.second, request.wishes, keyframes.times) end
   local guessed = guess(keyframes, camera, path)
   if not p:rests() then guessed.yaws = point_mass.courses(guessed.positions) end
   p:guess_path(guessed)

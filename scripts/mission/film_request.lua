@@ -19,7 +19,12 @@ local requests = record.type("request", {
   stretch = "factor on all times",
   legs = "known paths between keyframes, from ways.planned",
   corridor = "whether the flight stays within free boxes around its path",
-  track = "places and times that attract the flight: {places, weight}, or nil",
+  track = "places and times that attract the flight: {places, weight}, or nil; legs: the path from "
+    .. "keyframe to keyframe as flat lists, if times are to be variables",
+  wishes = "what keyframes ask of times that are found, from timing.wishes; nil: times are given",
+  free = "times are variables: {legs, as run:problem takes them; share of the inputs; second, the "
+    .. "cost of one}, or nil",
+  may_fail = "whether an error of its statement is an outcome, with a `fault`",
   -- The part of the film in the problem:
   --   "film"           all of it
   --   "flight"         without the camera and the terms of the script
@@ -34,8 +39,8 @@ local outcomes = record.type("outcome", {
   request = "request of the attempt",
   holds = "whether the film is certified, and not only because the least violation is within the "
     .. "tolerance of the verifier",
-  fault = "why the problem could not be stated (only within a corridor), or nil; there is then "
-    .. "neither solution nor verdict",
+  fault = "why the problem could not be stated (in a corridor, or `may_fail`), or nil; there is "
+    .. "then neither solution nor verdict",
   solution = "result of the solver",
   verdict = "result of the verifier: feasible, failures, checks",
   task = "task that the plan is checked against",

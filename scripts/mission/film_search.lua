@@ -9,6 +9,7 @@ local passages = require "mission.passages"
 local film_keyframes = require "mission.film_keyframes"
 local requests = require "mission.film_request"
 local stretching = require "mission.film_stretch"
+local one_problem = require "mission.one_problem"
 local times = require "mission.keyframe_times"
 local timing = require "mission.timing"
 local ways = require "mission.ways"
@@ -194,6 +195,7 @@ function M.fly(run, shot, terms)
   if way == "given" or way == "time_first" then return at_given_times(run, film) end
   local strategy = way == "free" and wished or timing
   local outcome, told = attempts.pursue(run, strategy.first(run, film), strategy.next)
+  if outcome.holds then outcome, told = one_problem.improved(run, outcome, told) end
   local notes = outcome.holds and told.notes or with_constraint(run, outcome, told.notes)
   return finished(run, outcome, { notes = notes, figures = told.figures,
                                   certified = outcome.holds and 1 or nil })

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- A mission of a kind: its name, and its options as declared and given. Whatever flies has an
--- origin.
+-- origin and a home.
 local ORIGIN = {
   name = "origin", type = "table", summary = "place of the world's origin on the earth",
   table = {
@@ -16,6 +16,29 @@ local ORIGIN = {
   },
 }
 
+local PLACE = { name = "position", type = "numbers", size = 3, unit = "m", minimum = -1e6,
+                maximum = 1e6 }
+
+local function place(summary, required)
+  local declared = { summary = summary, required = required }
+  for key, value in pairs(PLACE) do declared[key] = value end
+  return declared
+end
+
+local HOME = {
+  name = "home", type = "table", summary = "take-off place, and the limits that count from it",
+  table = {
+    place("position on the ground: east, north, up"),
+    { name = "max_height", type = "number", unit = "m", above = 0, maximum = 1e5,
+      summary = "largest height of the flight above it; absent: none" },
+    { name = "max_distance", type = "number", unit = "m", above = 0, maximum = 1e6,
+      summary = "largest horizontal distance of the flight from it; absent: none" },
+    { name = "rally_points", type = "tables",
+      summary = "places to which the vehicle may go in place of home after a failure",
+      table = { place("position in the air: east, north, up", true) } },
+  },
+}
+
 return function(kind, declarations, given, plan)
   local name = given.name
   given.name = nil
@@ -24,9 +47,11 @@ return function(kind, declarations, given, plan)
   end
   local declared = table.move(declarations, 1, #declarations, 1, {})
   declared[#declared + 1] = ORIGIN
+  declared[#declared + 1] = HOME
   return { kind = kind, name = name, options = lapwing.options(declared, given),
            plan = function(run)
              run:take_origin("origin")
+             run:take_home("home")
              return plan(run)
            end }
 end

@@ -15,8 +15,10 @@ local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
+local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
+local usable = require "mission.scan_usable"
 local words = require "mission.scan_words"
 local DECLARATIONS = require "mission.scan_options"
 
@@ -86,6 +88,7 @@ local function graph_of(run, known, vehicle, starts, finish)
       pitch_min_deg = gimbal and math.max(-90, math.deg(gimbal.pitch_min)) or -90,
       pitch_max_deg = gimbal and math.min(0, math.deg(gimbal.pitch_max)) or 0 },
     motions = o.motions, camera = o.camera, across = o.effort.pixels, range = space.range(run),
+    usable_range = usable.range(run), usable_incidence_deg = o.usable.incidence_deg,
     flight = o.flight,
     information = o.information, planner = o.planner,
   }
@@ -207,6 +210,16 @@ end
 
 local function mission(given) return mission_of("scan", DECLARATIONS, given, planned) end
 
+-- Likewise of a surveyor's data, which are known in place of a first flight.
+local function mission_with(source)
+  return function(given)
+    return mission_of("scan", DECLARATIONS, given, function(run)
+      site.expect(run, source)
+      return planned(run)
+    end)
+  end
+end
+
 -- A scene of scripts/scene, a mesh file of the user (`--set input=PATH`), or files of a real flight
 -- (`prior`).
 ---@type fun(given: lapwing.scan.of_scene): lapwing.mission
@@ -215,5 +228,11 @@ M.of_scene = mission
 M.of_mesh = mission
 ---@type fun(given: lapwing.scan.of_prior): lapwing.mission
 M.of_prior = mission
+-- A point cloud (`--set input=PATH`).
+---@type fun(given: lapwing.scan.of_cloud): lapwing.mission
+M.of_cloud = mission_with("cloud")
+-- A raster of heights (`--set input=PATH`).
+---@type fun(given: lapwing.scan.of_terrain): lapwing.mission
+M.of_terrain = mission_with("terrain")
 
 return M

@@ -3,6 +3,7 @@
 -- simulator uses the scene itself.
 local exploration = require "mission.scan_exploration"
 local patterns = require "mission.scan_patterns"
+local site = require "mission.scan_site"
 local space = require "mission.scan_space"
 
 local M = {}
@@ -39,6 +40,7 @@ function M.check(run)
     run:fail("input", string.format("a mesh file in place of the scene '%s': give one of them",
                                     o.scene))
   end
+  site.check(run)
   if not o.input and (o.ground or o.unit or o.up ~= "file") then
     run:fail(o.ground and "ground" or o.unit and "unit" or "up",
              "is for the mesh file of input, which is not set (the mesh of a prior "
@@ -140,10 +142,29 @@ local function open_air(run, known, surface, poses, air)
   known:open_air { lower = lower, upper = upper, surface = surface }
 end
 
+-- Where the first flights would take their images.
+local function survey_poses(run)
+  local poses = {}
+  for _, flight in ipairs(space.flights_of(run)) do
+    for _, pose in ipairs(space.poses_of(run, flight)) do poses[#poses + 1] = pose end
+  end
+  return poses
+end
+
+-- The prior of a surveyor's data, and places over it, from which candidates grow.
+local function surveyed(run, air)
+  local known, poses = new_prior(run), survey_poses(run)
+  run:phase("prior mesh")
+  site.add(run, known, space.resolution(run), space.safe_height(run))
+  open_air(run, known, nil, poses, air)
+  return known, poses
+end
+
 -- The prior with its mesh, the poses of the first flights, the simulated surface or nil, and the
 -- exploration or nil, which has at most `seconds`. `air` is a box that is free above the safe
 -- height as well.
 function M.knowledge(run, seconds, vehicle, air)
+  if site.wanted(run) then return surveyed(run, air) end
   local o = run.options
   local files, surface = space.prior_files(run), space.surface_of(run)
   if not surface and not files then
@@ -164,9 +185,7 @@ function M.knowledge(run, seconds, vehicle, air)
     if not files then warnings[run] = check_range(run) end
     sparse[run] = space.sparse(run)
     if sparse[run] then print("note: " .. sparse[run]) end
-    for _, flight in ipairs(space.flights_of(run)) do
-      for _, pose in ipairs(space.poses_of(run, flight)) do poses[#poses + 1] = pose end
-    end
+    poses = survey_poses(run)
     run:phase("first flight")
     open_air(run, known, surface, poses, air)
     M.look(run, known, surface, poses)

@@ -2,6 +2,7 @@
 -- The options of scans. Readings 4.3, 4.6 and 4.11 explain defaults that the thesis does not give.
 local exploration = require "mission.scan_exploration"
 local passes = require "mission.scan_passes"
+local site = require "mission.scan_site"
 
 local function number(name, default, unit, summary, more)
   local entry = { name = name, type = "number", default = default, unit = unit, summary = summary }
@@ -47,18 +48,22 @@ local DECLARATIONS = {
   { name = "scene", type = "text",
     summary = "scene of scripts/scene, in which the first flight takes place" },
   integer("scene_seed", 1, 0, 9007199254740991, "seed of the scene"),
-  { name = "input", type = "text", summary = "mesh file, over which the first flight takes place" },
+  { name = "input", type = "text", summary = "mesh file, over which the first flight takes place; "
+    .. "point cloud of `scan.of_cloud`, or raster of heights of `scan.of_terrain`" },
   { name = "ground", type = "boolean", default = false,
     summary = "add a ground plane under the mesh" },
-  number("unit", nil, "m", "metres per unit of the mesh file; absent: as the file says", POSITIVE),
+  number("unit", nil, "m", "metres per unit of the mesh file; absent: as the file says. Of a cloud or raster "
+         .. "without reference system; absent: 1", POSITIVE),
   { name = "up", type = "choice", default = "file", choices = { "file", "x", "y", "z" },
     summary = "axis of the mesh file that points up; file: as the file says" },
   { name = "prior", type = "table",
     summary = "map and mesh of an earlier flight; they need start and region", table = {
     { name = "map", type = "text", summary = "map file, .ot or .bt" },
     { name = "mesh", type = "text", summary = "mesh file, in the frame of the map" } } },
+  site.DECLARATIONS[1], site.DECLARATIONS[2],
   { name = "region", type = "table", summary = "region of interest; absent: "
-    .. "that of the scene, or the bounding box of the mesh and a distance around it", table = {
+    .. "that of the scene, the bounding box of the mesh and a distance around it, or that of the "
+    .. "surveyor's data", table = {
     place("lower", "lowest corner, world"), place("upper", "highest corner, world") } },
   place("start", "start of the tour; absent: the view of the first flight that is connected to "
         .. "most candidates"),
@@ -91,6 +96,12 @@ local DECLARATIONS = {
     number("sigma", 0, "m", "standard deviation of the depth", { minimum = 0, maximum = 100 }) } },
   number("range", nil, "m", "largest depth; absent: 60 m, up to 200 m if the first flight needs it "
          .. "to see the floor", POSITIVE),
+  { name = "usable", type = "table", summary = "limits within which an image is of use to the model; "
+    .. "`lapwing evaluate scan` judges by the same", table = {
+    number("range", nil, "m", "largest distance of a surface; absent: 30 m for a focal length of "
+           .. "345 px, in proportion to it; for images in passing, any", POSITIVE),
+    number("incidence_deg", 75, "deg", "largest angle between the ray and the normal of a surface",
+           { above = 0, maximum = 90 }) } },
   { name = "effort", type = "table", summary = "effort of computing", table = {
     integer("pixels", 0, 0, 10000, "pixels per row in the first flight and in the evaluation of "
             .. "views; 0: those of the camera. The plan keeps the camera"),

@@ -150,7 +150,8 @@ function M.plan(run, vehicle, known, budget, begin)
   local graph = run:pass_graph {
     prior = known, vehicle = vehicle, information = o.information, region = space.region_of(run),
     allowed = air, passes = list, body = o.body, mesh_room = o.mesh_room, camera = o.camera,
-    across = o.effort.pixels, range = space.range(run) }
+    across = o.effort.pixels, range = space.range(run), usable_range = o.usable.range,
+    usable_incidence_deg = o.usable.incidence_deg }
   local tour, solution = flown(run, vehicle, graph, air, budget, begin)
   local notes = words.notes(run, known, nil, string.format(
     "%d passes %.3g m apart at %.4g m/s, %.4g m high", #list, spacing, passes.speed(run, vehicle),

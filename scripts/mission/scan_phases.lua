@@ -2,6 +2,7 @@
 -- The phases of a scan, for the progress line. Each has a duration in s, measured on one machine.
 -- Only the ratios matter, and the measurements of the run correct them.
 local exploration = require "mission.scan_exploration"
+local site = require "mission.scan_site"
 local space = require "mission.scan_space"
 
 local M = {}
@@ -13,6 +14,7 @@ local TOUR = 4e-6          -- s a pair of candidates
 local VIEW = 8             -- s of flight that a view takes
 local CERTIFICATE = 0.01   -- s for a second of flight, in a map with voxels of 1 m
 local FILES = 2            -- s
+local SURVEYED = 1.5e-4    -- s a point of a surface
 local BEGIN = 1            -- s of anything, however small
 
 local function pixels_of(camera, across)
@@ -31,6 +33,8 @@ function M.expect(run, seconds, in_passing)
   end
   if exploration.wanted(run) then
     add("exploration", EXPLORE * o.exploration.images)
+  elseif site.wanted(run) then
+    add("prior mesh", SURVEYED * site.points(run, space.resolution(run)))
   elseif space.surface_of(run) and not (space.prior_files(run) and #o.flights == 0) then
     local images = 0
     for _, flight in ipairs(space.flights_of(run)) do

@@ -4,6 +4,7 @@
 local exploration = require "mission.scan_exploration"
 local named_scene = require "mission.named_scene"
 local patterns = require "mission.scan_patterns"
+local site = require "mission.scan_site"
 
 local M = {}
 
@@ -11,21 +12,19 @@ local SAFE_ABOVE = 4      -- m of a region, unless said otherwise
 local FLIGHT_ABOVE, FLIGHT_ABOVE_ELSE = { crosshatch = 5 }, 15  -- m of the safe height, likewise
 local VIEW = 4            -- m from a wall, to look along it: beside the body, round a mesh's bounds
 local DOWN_APART = 0.5    -- heights over the floor, between images that look down
-local FEWEST_DOWN, MOST_DOWN = 6, 200
-local MOST_CROSSED = 400  -- images of a crosshatch, unless said otherwise
+local FEWEST_DOWN, MOST_DOWN, MOST_CROSSED = 6, 200, 400  -- images, unless said otherwise
 local RANGE = 60          -- m, where nothing asks for more
 local FARTHEST = 200      -- m; farther than that a user says so
 local LOOKS_DOWN = 0.5    -- sine of the pitch below the horizon; what looks flatter is no measure
 local OVERHEAD = 2        -- m of free air above the highest first flight
 
 local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
-
 -- What the first flight is flown in, or nothing with files of an earlier one.
 function M.surface_of(run)
   if surfaces[run] then return surfaces[run] end
   local o = run.options
   local surface
-  if o.input then
+  if o.input and not site.wanted(run) then
     surface = run:read_surface { file = o.input, unit = o.unit, up = o.up }
     if o.ground then surface:add_ground() end
   elseif o.scene then
@@ -83,6 +82,7 @@ function M.region_of(run)
   local given = run.options.region
   if given.lower and given.upper then return given end
   if given.lower or given.upper then run:fail("region", "expected both lower and upper") end
+  if site.wanted(run) then return site.box(run, M.resolution(run), moved(run)) end
   local surface = M.surface_of(run)  -- there is one, or first.check has refused
   return run.options.input and around(run, surface.region) or surface.region
 end
@@ -152,8 +152,8 @@ function M.poses_of(run, flight)
   return poses, times
 end
 
-local ranges = setmetatable({}, { __mode = "k" })  -- of runs
-local wanted = setmetatable({}, { __mode = "k" })  -- likewise: m, that images of a tour need
+-- Of runs: ranges, and the metres that images of a tour need.
+local ranges, wanted = setmetatable({}, { __mode = "k" }), setmetatable({}, { __mode = "k" })
 function M.want_range(run, metres) wanted[run] = math.min(math.ceil(metres), FARTHEST) end
 
 -- How far depth is measured and rays go: as given, else so far that every first flight sees the

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Notes and warnings of a scan: the prior knowledge, and tours that use little of it.
 local first = require "mission.scan_first"
+local site = require "mission.scan_site"
 
 local M = {}
 
@@ -14,6 +15,8 @@ function M.notes(run, known, explored, views)
                             .. "surface; %s", explored.images, explored.length, explored.flight,
                             100 * explored.observed_surface / explored.surface, explored.reason),
               views }
+  elseif site.wanted(run) then
+    notes = site.notes(run, views)
   else
     local before = string.format("%d depth images %s", known.images,
                                  run.options.rounds > 1 and "so far" or "of the first flight")

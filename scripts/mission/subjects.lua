@@ -35,7 +35,8 @@ end
 --   list      subjects {name, track, height, width, ...}
 --   spans     {subject, start, finish}       when a subject is to be in the image
 --   cuts      {start, finish}
---   pulls     {time, position, weight}       where the target is drawn to
+--   pulls     {time, value, weight}          where the target is drawn to
+--   points    the same, of looks at points alone
 --   guess     {times, yaws, pitches, targets}
 function subjects.plan(run, request, duration, part)
   local stretch = request.stretch
@@ -78,8 +79,10 @@ function subjects.plan(run, request, duration, part)
       end
     end
   end
-  for _, p in ipairs(points) do
-    pulls[#pulls + 1] = { time = p.time, value = p.position, weight = 1 }
+  local at_points = {}
+  for i, p in ipairs(points) do
+    at_points[i] = { time = p.time, value = p.position, weight = 1 }
+    pulls[#pulls + 1] = at_points[i]
   end
   table.sort(pulls, function(a, b) return a.time < b.time end)
   if #pulls == 0 then run:fail("cuts", "no part of the subject is in the image") end
@@ -93,7 +96,8 @@ function subjects.plan(run, request, duration, part)
     yaw, pitch = tracks.angles(tracks.at(keyframes, time), at, yaw)
     guess.times[k], guess.yaws[k], guess.pitches[k], guess.targets[k] = time, yaw, pitch, at
   end
-  return { list = list, spans = spans, cuts = cuts, pulls = pulls, guess = guess }
+  return { list = list, spans = spans, cuts = cuts, pulls = pulls, points = at_points,
+           guess = guess }
 end
 
 -- Where the straight way between keyframes sees a subject so high or low that the gimbal cannot

@@ -3,6 +3,7 @@
 -- path. It is then flown as fast as the limits of the vehicle allow, with the times of keyframes as
 -- wishes, and slower until the vehicle keeps the tolerance.
 local attempts = require "mission.film_attempt"
+local film_times = require "mission.film_times"
 local requests = require "mission.film_request"
 local paths = require "mission.paths"
 local times = require "mission.keyframe_times"
@@ -14,6 +15,7 @@ local ROUNDING = 0.4    -- m, of the corners that stages make of a smooth path
 local PLACES = 0.2      -- s, between the places that draw the flight to the path
 local PULL = 2e4        -- weight of all those places together, per m^2
 local SHORTEST = 0.05   -- s, of a leg
+M.SECOND = 10           -- times weights.time: cost of a second in a problem of film and times
 local SLOWER, SLOWEST = 0.93, 0.25  -- share of what the vehicle can do, when it cannot follow
 
 local function wishes(k) return k.time_weight or k.earliest or k.latest end
@@ -74,6 +76,20 @@ local function places_of(timed, stops, chosen)
   return places
 end
 
+-- The points of the path from keyframe to keyframe, each as a flat list.
+local function legs_of(timed, stops)
+  local legs = {}
+  for i = 1, #stops - 1 do
+    local first, last = stops[i], math.max(stops[i + 1], stops[i] + 1)
+    legs[i] = table.move(timed.points, 3 * first - 2, 3 * last, 1, {})
+  end
+  return legs
+end
+
+local function track_of(places, legs)
+  return { places = places, weight = PULL / #places, legs = legs }
+end
+
 -- The film along the path of `memory` with its share of what the vehicle can do; nil where no times
 -- at that pace grant all wishes, but did at a faster one.
 local function at_share(run, request, memory)
@@ -87,7 +103,7 @@ local function at_share(run, request, memory)
   for i = 1, #stops - 1 do
     legs[i] = math.max(SHORTEST, timed.times[stops[i + 1]] - timed.times[stops[i]])
   end
-  local chosen, refused = run:keyframe_times { wishes = memory.wishes, legs = legs }
+  local chosen, refused = run:keyframe_times { wishes = request.wishes, legs = legs }
   if not chosen then
     if memory.share < 1 then return nil end
     local least = 0
@@ -96,16 +112,9 @@ local function at_share(run, request, memory)
       "cannot be passed at its time: from the keyframe before, the path takes at least %.3g s, "
       .. "from the start %.3g s", legs[refused - 1] or 0, least))
   end
-  local keyframes = {}
-  for i, k in ipairs(request.keyframes) do
-    keyframes[i] = { position = k.position, yaw = k.yaw, look_at = k.look_at,
-                     subject = k.subject, time = chosen[i] }
-  end
   times.check_battery(run, request.vehicle, chosen[#chosen])
-  local places = places_of(timed, stops, chosen)
-  return requests.with(request, { keyframes = keyframes, duration = chosen[#chosen],
-                                  track = { places = places, weight = PULL / #places },
-                                  memory = memory })
+  return film_times.set(request, chosen, { memory = memory, track = track_of(
+    places_of(timed, stops, chosen), legs_of(timed, stops)) })
 end
 
 -- The film at its own pace, which gives the path.
@@ -119,7 +128,19 @@ function M.first(run, film)
   local keyframes = times.with_yaw((times.filled(untimed, nil, film.vehicle)))
   return requests.first { vehicle = film.vehicle, subjects = film.subjects, cuts = film.cuts,
                           terms = film.terms, origin = film.origin, keyframes = keyframes,
-                          duration = keyframes[#keyframes].time, memory = { wishes = asked } }
+                          duration = keyframes[#keyframes].time, wishes = asked, memory = {} }
+end
+
+-- Whether an outcome holds and keeps the path; its largest distance from it goes to `figures`.
+function M.keeps_path(run, outcome, figures)
+  figures.path_error = run:path_distance { points = outcome.solution.path,
+                                           path = outcome.request.memory.path }
+  return outcome.holds and figures.path_error <= run.options.path_tolerance
+end
+
+-- The track of a film along the same path at the times of a solution with free `legs`.
+function M.retimed(request, solution, legs)
+  return track_of(film_times.places(solution, legs, PLACES), request.track.legs)
 end
 
 -- The next request after an outcome; told are {notes, figures}.
@@ -130,23 +151,19 @@ function M.next(run, outcome)
       return nil, { notes = { "the path at its fastest times is not certified: "
                               .. attempts.complaint(outcome) } }
     end
-    local timed = { wishes = memory.wishes, path = outcome.solution.path, share = 1 }
+    local timed = { path = outcome.solution.path, share = 1 }
     local told = { notes = { "cancelled before the path was timed" } }
     if run:cancelled() then return nil, told end
     return at_share(run, requests.with(request, { legs = outcome.legs }), timed), told
   end
-  local figures = { duration = request.duration, share = memory.share,
-                    path_error = run:path_distance { points = outcome.solution.path,
-                                                     path = memory.path } }
-  if outcome.holds and figures.path_error <= run.options.path_tolerance then
-    return nil, { notes = {}, figures = figures }
-  end
+  local figures = { duration = request.duration, share = memory.share }
+  if M.keeps_path(run, outcome, figures) then return nil, { notes = {}, figures = figures } end
   local share = memory.share * SLOWER
   local told = { figures = figures, notes = { string.format(
     "no timing down to %.2g of the limits of the vehicle keeps the path within %.3g m", share,
     run.options.path_tolerance) } }
   if share <= SLOWEST or run:cancelled() then return nil, told end
-  local slower = { wishes = memory.wishes, path = memory.path, share = share }
+  local slower = { path = memory.path, share = share }
   return at_share(run, requests.with(request, { legs = outcome.legs }), slower), told
 end
 

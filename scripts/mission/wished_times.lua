@@ -7,6 +7,7 @@
 local attempts = require "mission.film_attempt"
 local film_keyframes = require "mission.film_keyframes"
 local film_problem = require "mission.film_problem"
+local film_times = require "mission.film_times"
 local point_mass = require "mission.point_mass"
 local requests = require "mission.film_request"
 local surroundings = require "mission.film_environment"
@@ -22,8 +23,6 @@ local END_STEP = 0.15                  -- s, likewise where the flight begins or
 local SHARES = { 0.95, 0.85, 0.7, 0.5 }  -- of the thrust, until the film itself holds
 local STRETCHES = { 1, 1.25, 1.6, 2, 3, 4 }  -- of straight flight, until the film itself holds
 local LONGEST = 10                     -- times the first guess, that a leg may take
-local OPEN = 1e5                       -- s, later than any film
-local EXACT = 1e-4                     -- s
 
 -- Legs at the vehicle's pace, stretched between the keyframes whose times are `fixed`.
 local function paced(own, fixed)
@@ -60,27 +59,6 @@ local function guessed(keyframes, wishes, vehicle)
   return list
 end
 
--- What keyframes ask of the times at the ends of legs, which are guessed in `list`.
-local function add_wishes(p, wishes, list)
-  for i = 2, #wishes do  -- the film begins in the first
-    local wish, name = wishes[i], "time of keyframe " .. i
-    local function held(time, tolerance)
-      p:add_constraint { type = "hard_keyframe", name = name, block = "time",
-                         tolerance = tolerance,
-                         keyframes = { { time = list[i], value = { time } } } }
-    end
-    if wish.time_weight then
-      p:add_cost { type = "keyframe", name = name, block = "time", weight = wish.time_weight,
-                   keyframes = { { time = list[i], value = { wish.time } } } }
-    elseif wish.time then
-      held(wish.time, EXACT)
-    elseif wish.earliest or wish.latest then
-      local first, last = wish.earliest or 0, wish.latest or OPEN
-      held((first + last) / 2, (last - first) / 2)
-    end
-  end
-end
-
 -- Legs of free time, and keyframes as a problem wants them, at the times guessed in `list`.
 local function legs_and_keyframes(keyframes, list)
   local legs, made = {}, { places = {}, yaws = {}, times = {}, positions = {}, headings = {} }
@@ -114,7 +92,6 @@ local function problem_of(run, request, memory)
   p:add_cost { type = "keyframe", weight = o.weights.keyframe, keyframes = keyframes.places }
   point_mass.add(p, vehicle,
                  film_problem.parts.motion(o, { across = "extent", share = memory.share }))
-  p:add_cost { type = "flight_time", weight = o.weights.time }
   p:add_constraint { type = "hard_keyframe", tolerance = o.hard or film_keyframes.MISS,
                      keyframes = keyframes.places }
   if #keyframes.yaws > 0 then
@@ -125,7 +102,7 @@ local function problem_of(run, request, memory)
   p:add_constraint(film_problem.parts.boundary(run, p, 1, #keyframes.yaws == 0))
   surroundings.add(p, environment, nil, nil)
   surroundings.add_speed_limit(p, o, true)
-  add_wishes(p, memory.wishes, memory.guess)
+  film_times.add(p, o.weights.time, request.wishes, memory.guess)
   p:guess_path(film_problem.parts.guess(keyframes, nil, way.path))
   p:finish()
   return p, way.legs
@@ -133,15 +110,8 @@ end
 
 -- The film of a request with its keyframes at these times.
 local function at_times(run, request, list, legs, memory)
-  local keyframes = {}
-  for i, k in ipairs(request.keyframes) do
-    keyframes[i] = { position = k.position, yaw = k.yaw, look_at = k.look_at, subject = k.subject,
-                     time = list[i] }
-  end
-  local duration = list[#list]
-  times.check_battery(run, request.vehicle, duration)
-  return requests.with(request, { keyframes = keyframes, duration = duration, legs = legs,
-                                  memory = memory })
+  times.check_battery(run, request.vehicle, list[#list])
+  return film_times.set(request, list, { legs = legs, memory = memory })
 end
 
 -- The film at the times of straight flight from stop to stop, stretched by the number of `memory`,
@@ -153,10 +123,10 @@ local function straight(run, request, memory, number, why)
     legs[i - 1] = STRETCHES[number] * times.of_leg(request.keyframes[i - 1].position,
                                                    request.keyframes[i].position, request.vehicle)
   end
-  local chosen = run:keyframe_times { wishes = memory.wishes, legs = legs }
+  local chosen = run:keyframe_times { wishes = request.wishes, legs = legs }
   if not chosen and number > 1 then return nil end
   return at_times(run, request, chosen or memory.guess, request.legs, {
-    wishes = memory.wishes, guess = memory.guess, straight = number, why = why })
+    guess = memory.guess, straight = number, why = why })
 end
 
 -- Whether wishes ask for a keyframe no later than some time, which may be too early.
@@ -178,24 +148,19 @@ local function at_share(run, request, memory)
     if memory.number > 1 then return nil end
     local reason = solution.status
     if solution.message ~= "" then reason = reason .. ": " .. solution.message end
-    if solution.status == "infeasible" and hurried(memory.wishes) then
+    if solution.status == "infeasible" and hurried(request.wishes) then
       run:fail("keyframes", "no times meet every wish within the limits of the vehicle: " .. reason)
     end
     return straight(run, request, memory, 1,
                     "the solver found no times of its own (" .. reason .. ")")
   end
-  local list, clock, legs = {}, 0, solution.legs
-  for i in ipairs(request.keyframes) do
-    clock = clock + (legs[i - 1] or 0)
-    local wish = memory.wishes[i]
-    list[i] = i > 1 and not wish.time_weight and wish.time or clock
-  end
+  local list = film_times.of(solution, request.wishes)
   return at_times(run, request, list, ways_of_legs, memory)
 end
 
 -- With the share of the thrust of that number.
 local function remembered(memory, number)
-  return { wishes = memory.wishes, guess = memory.guess, number = number, share = SHARES[number] }
+  return { guess = memory.guess, number = number, share = SHARES[number] }
 end
 
 -- The film at the first times found.
@@ -204,8 +169,8 @@ function M.first(run, film)
   local keyframes = times.with_yaw(film.keyframes)
   local request = requests.first {
     vehicle = film.vehicle, subjects = film.subjects, cuts = film.cuts, terms = film.terms,
-    origin = film.origin, keyframes = keyframes }
-  local memory = { wishes = wishes, guess = guessed(keyframes, wishes, film.vehicle) }
+    origin = film.origin, keyframes = keyframes, wishes = wishes }
+  local memory = { guess = guessed(keyframes, wishes, film.vehicle) }
   return at_share(run, request, remembered(memory, 1))
 end
 

@@ -29,6 +29,15 @@ class Helping : public CommandLine {
   }
 };
 
+TEST_F(Helping, TheKeysOfLiveFlightsAreListed) {
+  const CommandEntry tree = command_tree();
+  for (const CommandEntry* command : every_command(tree)) {
+    const bool keys =
+        command->footer.find("space pauses, r resumes, a or q aborts") != std::string::npos;
+    EXPECT_EQ(keys, command->path == "lapwing fly") << command->path;
+  }
+}
+
 TEST_F(Helping, EveryCommandHasAnExampleDefaultsAndExitStatuses) {
   const CommandEntry tree = command_tree();
   int commands = 0;

@@ -54,7 +54,8 @@ class Snippets : public CommandLine {
   void call_of_a_problem(const std::string& text) {
     std::string models = has(text, "add_model") ? "" : "  p:add_model { type = 'quadrotor' }\n";
     const bool looks = has(text, "camera_angle") || has(text, "framing") ||
-                       has(text, "occlusion") || has(text, "skewness");
+                       has(text, "occlusion") || has(text, "skewness") ||
+                       has(text, "subject_target");
     if (looks) models += "  p:add_model { type = 'gimbal' }\n";
     if (looks && !has(text, "add_block"))
       models += "  p:add_block { name = 'target', size = 3, unit = 'm' }\n";

@@ -60,6 +60,8 @@ TEST(EveryPlugin, IsThere) {
                                    {"cost_term", "camera_angle"},
                                    {"cost_term", "skewness"},
                                    {"cost_term", "framing"},
+                                   {"cost_term", "subject_target"},
+                                   {"cost_term", "path_distance"},
                                    {"cost_term", "occlusion"},
                                    {"constraint", "obstacle"},
                                    {"shape", "sphere"},

@@ -53,11 +53,13 @@ TEST(MapFeatures, PointsAreNamedByThemselvesOrByKindAndNumber) {
   plan.task.gates = {gate, gate};
   plan.task.gates[1].name = "north";
   plan.environment.subjects = {{"boat", {0, 5}, {{1, 2, 3}, {4, 5, 6}}}, {"", {0}, {{7, 8, 9}}}};
+  plan.home = Home{{0, -3, 0}, std::nullopt, std::nullopt, {{0, -3, 20}}};
   std::vector<std::string> names;
   for (const MapPoint& point : map_points(plan)) names.push_back(point.kind + ":" + point.name);
   EXPECT_EQ(names,
             (std::vector<std::string>{"keyframe:keyframe 1", "keyframe:keyframe 2", "gate:gate 1",
-                                      "gate:north", "subject:boat", "subject:subject 2"}));
+                                      "gate:north", "subject:boat", "subject:subject 2",
+                                      "home:home", "rally_point:rally point 1"}));
   const std::vector<MapPoint> points = map_points(plan);
   EXPECT_EQ(points[1].time, 4.0);
   EXPECT_FALSE(points[2].time);
@@ -84,10 +86,7 @@ TEST(MapFeatures, ZonesAreCounterClockwiseAndStandStill) {
   EXPECT_THAT(zones[0].name, HasSubstr("field"));
 }
 
-TEST(MapFeatures, TextsAndNumbersOfFiles) {
-  EXPECT_EQ(xml_text("a<b> & \"c\" 'd'"), "a&lt;b&gt; &amp; &quot;c&quot; &apos;d&apos;");
-  EXPECT_EQ(xml_text(std::string("x\0y\x1b", 4)), "x\xef\xbf\xbdy\xef\xbf\xbd");
-  EXPECT_EQ(xml_text("\xc3\x9c\n"), "\xc3\x9c\n");
+TEST(MapFeatures, NumbersOfFiles) {
   EXPECT_EQ(fixed_number(46.5191, 9), "46.519100000");
   EXPECT_EQ(fixed_number(-0.0004, 2), "0.00");
   EXPECT_EQ(fixed_number(-0.006, 2), "-0.01");
@@ -133,6 +132,20 @@ TEST(Fences, WhatTheFlightPassesAboveIsLeftOutAndSaid) {
   ASSERT_EQ(said.size(), 1u);
   EXPECT_THAT(said[0], HasSubstr("low field"));
   EXPECT_THAT(said[0], HasSubstr("pond"));
+}
+
+TEST(Fences, WhatHomeOrARallyPointWouldBreakIsLeftOutAndSaid) {
+  Plan plan = line();
+  plan.environment.obstacles = {zone_at("lawn", {{-9, -9}, {-4, -9}, {-4, -4}, {-9, -4}}),
+                                zone_at("field", {{0, 6}, {4, 6}, {4, 9}}),
+                                zone_at("aside", {{14, 5}, {19, 5}, {19, 7}})};
+  plan.home = Home{{-5, -5, 0}, std::nullopt, std::nullopt, {{3.9, 6.5, 20}}};
+  std::vector<std::string> said;
+  const std::vector<MissionFence> fences = mission_fences(plan, said);
+  ASSERT_EQ(fences.size(), 1u);
+  EXPECT_THAT(fences[0].name, HasSubstr("aside"));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_THAT(said[0], HasSubstr("home or a rally point would break: zone 'lawn', zone 'field'"));
 }
 
 TEST(Frames, AreEvenAndEndWithTheFlight) {

@@ -43,6 +43,10 @@ TEST(ScanWords, MuchOfItAndAnOpeningThatAVehiclePassesAreWarnedOf) {
       much,
       HasSubstr("This is a large share: the first flight did not see behind it. Fly the first"));
   EXPECT_THAT(much, Not(HasSubstr("The vehicle")));
+  ScanRecord surveyed = record_with({{134, {1, 2, 3}, false, {}}});
+  surveyed.surveyed = true;
+  EXPECT_THAT(areas_in_words(surveyed), HasSubstr("the data do not show what is behind it. Data"));
+  EXPECT_THAT(areas_in_words(surveyed), Not(HasSubstr("first flight")));
   // Far less than a tenth, and a vehicle's width.
   const std::string open = areas_in_words(record_with({{9, {1, 2, 3}, true, {}}}));
   EXPECT_THAT(open, HasSubstr("The vehicle (2 m wide) would pass through the largest opening"));

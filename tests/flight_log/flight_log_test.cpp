@@ -7,6 +7,7 @@
 
 #include "framework/core/error.h"
 #include "framework/flight_log/log_builder.h"
+#include "framework/flight_log/log_time.h"
 
 namespace lapwing {
 namespace {
@@ -54,6 +55,22 @@ TEST(FlightLog, FaultsAreFound) {
   log.series.clear();
   log.photographs = {2, 1};
   EXPECT_THAT(faults_of(log), ElementsAre(HasSubstr("photographs")));
+}
+
+TEST(LogTime, IsACalendarsInUtc) {
+  EXPECT_EQ(utc_text(0), "1970-01-01 00:00:00.00 UTC");
+  EXPECT_EQ(utc_text(1710000000.25), "2024-03-09 16:00:00.25 UTC");
+  EXPECT_EQ(utc_text(1709251199.9996, 3), "2024-03-01 00:00:00.000 UTC") << "rounded over a day";
+  EXPECT_EQ(utc_text(1709251199.4, 0), "2024-02-29 23:59:59 UTC");
+  for (const double none : {-1.0, 1e18, static_cast<double>(NAN), static_cast<double>(INFINITY)})
+    EXPECT_EQ(utc_text(none), "");
+  FlightLog log;
+  EXPECT_EQ(moment_in_words(log, 12.25), "12.25 s of the log");
+  EXPECT_EQ(moment_in_words(log, 1.71e9, 1), "1710000000.0 s of the log");
+  log.utc = 1710000000;
+  EXPECT_EQ(moment_in_words(log, 0.5), "0.50 s of the log (2024-03-09 16:00:00.50 UTC)");
+  log.utc = 0;
+  EXPECT_EQ(moment_in_words(log, 1710000000.25), "2024-03-09 16:00:00.25 UTC");
 }
 
 TEST(FlightLog, ValuesBetweenSamples) {

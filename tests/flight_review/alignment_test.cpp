@@ -135,6 +135,48 @@ TEST(Alignment, AStraightFlightSaysWhatItCannotTell) {
   EXPECT_NEAR(2 * found.clock + found.offset.x(), -0.4, 0.01);
 }
 
+// Another film of the same place: waves of other sizes, rates and phases, from take-off to landing.
+std::vector<RecordedState> other_flight(std::uint64_t seed) {
+  Random random(seed);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * random.uniform();
+  };
+  const double a = between(5, 15), b = between(5, 15), u = between(0.1, 0.3), v = between(0.1, 0.3),
+               p = between(0, 6), q = between(0, 6), duration = between(20, 50);
+  std::vector<RecordedState> states;
+  for (double t = -11; t <= duration + 9; t += 0.1) {
+    const double flown = std::clamp(t, 0.0, duration);
+    const double up = std::clamp(std::min((t + 11) / 6, (duration + 9 - t) / 6), 0.0, 1.0);
+    RecordedState s;
+    s.time = t;
+    s.position = {a * std::sin(u * flown + p), b * std::sin(v * flown + q), 8 * up};
+    states.push_back(s);
+  }
+  return states;
+}
+
+TEST(Alignment, AnotherFlightOfTheSamePlaceIsRefused) {
+  const Plan plan = wave_plan();
+  for (std::uint64_t seed = 1; seed <= 16; ++seed)
+    EXPECT_THAT(refusal_of(plan, series_of(other_flight(seed))),
+                HasSubstr("the log never flew this plan"))
+        << seed;
+}
+
+TEST(Alignment, APartOfTheFlightBesideThePlanIsNoOther) {
+  const Plan plan = wave_plan();
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    auto states = recorded(ideal_flight(plan, 10, 10, 10),
+                           {.clock = 50, .offset = {3, -6, 1}, .noise = 0.4, .seed = seed});
+    const auto cut = states.begin() + static_cast<std::ptrdiff_t>(states.size() * (3 + seed) / 16);
+    if (seed % 2 == 0)
+      states.erase(cut, states.end());
+    else
+      states.erase(states.begin(), cut);
+    EXPECT_EQ(refusal_of(plan, series_of(states)), "") << seed;
+  }
+}
+
 TEST(Alignment, AnotherFlightIsRefused) {
   const Plan plan = wave_plan();
   auto far = ideal_flight(plan, 20);

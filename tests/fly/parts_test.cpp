@@ -7,6 +7,7 @@
 #include "framework/fly/link.h"
 #include "framework/fly/plan_pacer.h"
 #include "framework/mavlink/vocabulary.h"
+#include "framework/trajectory/interpolate.h"
 #include "tests/fly/rehearsal.h"
 
 namespace lapwing {
@@ -57,6 +58,27 @@ TEST(FlightFrames, PlacesOnTheEarthComeBack) {
   Message<kGlobalPosition> told;
   told.set<"lat">(m.get<"lat_int">()).set<"lon">(m.get<"lon_int">()).set<"alt">(105000);
   EXPECT_LT((frame.position_of(told) - setpoint.position).norm(), 0.02);
+}
+
+TEST(FlightFrames, HeightsAboveHomeCountFromThePlansHome) {
+  Plan plan = circle_plan();
+  plan.geodetic_origin = GeodeticOrigin{60, 10, 2, HeightOf::ground, 0};
+  Setpoint setpoint;
+  setpoint.position = {30, -40, 5};
+  using namespace mavlink;
+  const auto height = [&] {
+    const FlightFrame frame(plan, FlightFrameKind::global);
+    const Message<kGlobalTarget> m(frame.packet(setpoint, 0, 1, 1));
+    EXPECT_EQ(m.get<"coordinate_frame">(), kFrameRelativeInt);
+    Message<kGlobalPosition> told;
+    told.set<"lat">(m.get<"lat_int">()).set<"lon">(m.get<"lon_int">());
+    told.set<"relative_alt">(static_cast<std::int32_t>(std::lround(1000 * m.get<"alt">())));
+    EXPECT_LT((frame.position_of(told) - setpoint.position).norm(), 0.02);
+    return m.get<"alt">();
+  };
+  EXPECT_NEAR(height(), 7, 1e-3) << "home is on the ground of the origin";
+  plan.home = Home{{-20, 10, 1.5}, std::nullopt, std::nullopt, {}};
+  EXPECT_NEAR(height(), 3.5, 1e-3);
 }
 
 TEST(VehicleClocks, TakeTheMiddleOfTheQuickestRoundTrip) {
@@ -153,6 +175,45 @@ TEST(PlanPacers, StayOnThePathAndWithinLimits) {
       EXPECT_EQ(pacer.setpoint().velocity.norm(), 0);
     }
   }
+}
+
+// What a pause adds to the acceleration of the plan, p' q, from one setpoint to the next: steps of
+// no more than the jerk allows, at its begin, in its middle and at its end.
+TEST(PlanPacers, TheJerkOfAPauseIsBoundedFromBeginToEnd) {
+  for (const double stated : {0.0, 2.0})
+    for (const bool moving : {false, true}) {
+      const Plan plan = circle_plan(moving);
+      Vehicle vehicle = flying_drone();
+      vehicle.acceleration_across_max = 8;  // limits of acceleration bend nothing here
+      vehicle.acceleration_up_max = vehicle.acceleration_down_max = 8;
+      if (stated > 0) vehicle.jerk_max = stated;
+      const double jerk = stated > 0 ? 0.5 * stated : 4 / 0.4;
+      int stops = 0;
+      for (double brake_at = 0.5; brake_at < 9; brake_at += 0.7) {
+        PlanPacer pacer(plan.trajectory, vehicle);
+        double before = 0;
+        bool stood = false;
+        const double end = plan.trajectory.samples.back().time;
+        for (double time = 0; time < 60 && !pacer.finished(); time += 0.02) {
+          // Pauses that are short enough to end before the vehicle stands are among them.
+          pacer.advance(0.02, time < brake_at || time > brake_at + brake_at);
+          const Setpoint s = pacer.setpoint();
+          const Sample planned = sample_at(plan.trajectory, s.plan_time);
+          const double speed = planned.velocity.norm();
+          if (pacer.finished() || s.plan_time > end - 0.1 || speed < 0.3) continue;
+          const double added =
+              (s.acceleration - planned.acceleration * s.rate * s.rate).dot(planned.velocity) /
+              speed;
+          // The speed itself changes from one setpoint to the next, and with it p' q.
+          EXPECT_LE(std::abs(added - before), 0.02 * jerk * 1.02 + 0.02 * std::abs(added))
+              << time << " " << brake_at;
+          before = added;
+          stood = stood || pacer.stands();
+        }
+        stops += stood;
+      }
+      EXPECT_GT(stops, 3);
+    }
 }
 
 TEST(PlanPacers, WithoutABrakeFlyThePlanAtItsTimes) {
@@ -320,6 +381,23 @@ TEST(LiveFlights, SendSlowerHeadingsOfPlansThatSpin) {
     EXPECT_LE(std::abs(sample.yaw_rate), 0.61 * vehicle.yaw_rate_max);
     EXPECT_LT((sample.position - Eigen::Vector3d(0, 0, 5)).norm(), 1e-9);
   }
+}
+
+TEST(LiveFlights, SayThatALiveSubjectIsNotFollowed) {
+  Plan plan = circle_plan();
+  const auto configure = [&](bool live) {
+    Value subject = Value::map();
+    subject.set("name", "anna");
+    subject.set("live", live);
+    plan.configuration = Value::map();
+    plan.configuration.set("subjects", Value(Value::List{subject}));
+    return live_flight_of(plan, ".").said;
+  };
+  EXPECT_TRUE(configure(false).empty());
+  const auto said = configure(true);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_THAT(said[0], testing::AllOf(HasSubstr("'anna' is live in the mission"),
+                                      HasSubstr("does not follow the subject")));
 }
 
 TEST(LiveFlights, RefusePlansThatCannotBeStreamed) {

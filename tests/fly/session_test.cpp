@@ -80,6 +80,37 @@ TEST(Session, FliesOnTheEarth) {
   }
 }
 
+TEST(Session, FliesFromThePlansHome) {
+  for (const HeightOf reference : {HeightOf::sea, HeightOf::ground}) {
+    Plan plan = circle_plan();
+    plan.geodetic_origin = GeodeticOrigin{-33.5, 151.2, 4, reference, 0};
+    plan.home = Home{{12, -9, 1.5}, 120, std::nullopt, {}};
+    Rehearsal rehearsal(plan, {}, {}, FlightFrameKind::global);
+    rehearsal.run();
+    EXPECT_TRUE(followed_within(rehearsal.session(), 0.25)) << rehearsal.session().reason();
+    expect_safe(rehearsal);
+  }
+}
+
+// Another home than that of the plan: its limits would count from elsewhere.
+TEST(Session, WaitsForTheVehiclesHomeToBeThePlans) {
+  Plan plan = circle_plan();
+  plan.geodetic_origin = GeodeticOrigin{-33.5, 151.2, 40, HeightOf::sea, 0};
+  plan.home = Home{{0, 0, 0}, 120, std::nullopt, {}};
+  Rehearsal rehearsal(plan, {}, {}, FlightFrameKind::global);
+  rehearsal.received = [](mavlink::Packet& packet) {
+    if (packet.message != mavlink::kHomePosition) return true;
+    mavlink::Message<mavlink::kHomePosition> home(packet);
+    home.set<"latitude">(home.get<"latitude">() + 2000);  // 22 m
+    const auto moved = home.packet();
+    packet.payload = moved.payload;
+    return true;
+  };
+  rehearsal.run();
+  EXPECT_EQ(rehearsal.session().end(), FlightEnd::refused);
+  EXPECT_THAT(rehearsal.session().reason(), HasSubstr("home is 22.2 m from the plan's"));
+}
+
 TEST(Session, TurnsTheGimbal) {
   for (const GimbalWay way : {GimbalWay::automatic, GimbalWay::manager, GimbalWay::command}) {
     SessionOptions options;

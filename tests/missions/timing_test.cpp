@@ -149,5 +149,86 @@ TEST_F(FreeFilms, WhatCannotBeGrantedIsNamed) {
   EXPECT_NE(to_json(fixed.result).find("finds the times itself"), std::string::npos);
 }
 
+// Times that are found together with the camera and the terms of the script.
+class FilmsAndTimes : public Filming {
+ protected:
+  Flown flown(const std::string& rest, const std::string& flags = "", int worst = 0) {
+    write_file_atomically(folder_ / "film.lua", R"(return require "mission.film".shot {
+      name = "together", vehicle = "vehicles/solo", timing = "free", )" +
+                                                    rest + "}");
+    return fly((folder_ / "film.lua").string(), flags, "out", worst);
+  }
+  static double figure(const Flown& film, const char* name) {
+    return film.result.at("film").at(name).as_number();
+  }
+  static std::string notes(const Flown& film) { return to_json(film.result); }
+};
+
+constexpr const char* kWalked = R"(  step = 0.2,
+  subject = { height = 1.8, size = 0.2, track = { { time = 0, position = {4, 8, 1} },
+                                                  { time = 60, position = {64, 8, 1} } } },
+  keyframes = { { position = {0, 0, 3} }, { position = {9, 1, 3})";
+
+// While it hovers, the film costs 1 + 0.01 t^2 a second, and w (T - 20)^2 for its end T: the least
+// is where 1 + 0.01 T^2 = 2 w (20 - T). Without the term of the script that is 20 - 1 / (2 w).
+TEST_F(FilmsAndTimes, TheBestTimeIsThatOfTheWholeCost) {
+  const double w = 0.5, best = (-2 * w + std::sqrt(4 * w * w + 0.04 * (40 * w - 1))) / 0.02;
+  const Flown film = flown(R"(weights = { smoothness = 0, effort = 0, time = 1 },
+    costs = { { name = "late", weight = 0.01, residual = function(s) return s.time end } },
+    keyframes = { { position = {0, 0, 3} },
+                  { position = {0, 0, 3}, time = 20, time_weight = 0.5 } })");
+  ASSERT_EQ(film.status, 0) << to_json(film.result);
+  // The sum over stages counts the last one too: half a step of 0.2 s in 16.
+  EXPECT_NEAR(figure(film, "duration"), best, 0.05) << best;
+  const auto cost = [&](double t) { return t + 0.01 * t * t * t / 3 + w * (t - 20) * (t - 20); };
+  EXPECT_NEAR(figure(film, "cost_apart"), cost(19), 0.3);
+  EXPECT_NEAR(figure(film, "cost_together"), cost(best), 0.3);
+}
+
+TEST_F(FilmsAndTimes, AWindowIsUsedFromItsBeginning) {
+  const std::string open = std::string(kWalked) + " }, { position = {20, 2, 3} } }";
+  const Flown free = flown(open);
+  ASSERT_EQ(free.status, 0) << to_json(free.result);
+  EXPECT_LT(figure(free, "cost_together"), 0.99 * figure(free, "cost_apart")) << "the camera waits";
+  const double found = read_plan(free.folder / "plan.json").task.keyframes.at(1).time;
+  // A window that begins after the best time is used from its beginning.
+  const std::string earliest = std::to_string(found + 1);
+  const Flown held =
+      flown(std::string(kWalked) + ", earliest = " + earliest + "}, { position = {20, 2, 3} } }");
+  ASSERT_EQ(held.status, 0) << to_json(held.result);
+  EXPECT_NEAR(read_plan(held.folder / "plan.json").task.keyframes.at(1).time, found + 1, 1e-3);
+  // Its cost is not less, but for the sums over other stages.
+  EXPECT_GE(figure(held, "cost_together"), 0.99 * figure(free, "cost_together"));
+  EXPECT_LE(figure(held, "cost_together"), figure(held, "cost_apart"));
+}
+
+TEST_F(FilmsAndTimes, APathIsKeptAtTimesThatTheCameraLikes) {
+  const Flown film =
+      flown(std::string(kWalked) + " }, { position = {20, 2, 3} } }", "--set timing=path_first");
+  ASSERT_EQ(film.status, 0) << to_json(film.result);
+  EXPECT_LT(figure(film, "cost_together"), 0.9 * figure(film, "cost_apart"));
+  EXPECT_LE(figure(film, "path_error"), 0.25);
+}
+
+TEST_F(FilmsAndTimes, ASolveThatComesToNoEndLeavesTheTimesAsTheyWere) {
+  const std::string film = std::string(kWalked) + " }, { position = {20, 2, 3} } }";
+  const Flown stopped = flown(film, "--set solver.steps=18");
+  ASSERT_EQ(stopped.status, 0) << to_json(stopped.result);
+  EXPECT_NE(notes(stopped).find("the times are those found without the camera: the solver of both "
+                                "together ended with iteration_limit"),
+            std::string::npos)
+      << notes(stopped);
+  const Flown in_parts = flown(film, "--set horizon=5");
+  EXPECT_NE(notes(in_parts).find("the film is solved in parts"), std::string::npos);
+}
+
+TEST_F(FilmsAndTimes, ASolverWithoutFreeTimesSaysWhy) {
+  const Flown refused = flown(std::string(kWalked) + "} }", "--set solver=nlopt", 2);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(notes(refused).find("nlopt does not support free steps: its scaling"),
+            std::string::npos)
+      << notes(refused);
+}
+
 }  // namespace
 }  // namespace lapwing

@@ -480,6 +480,47 @@ TEST_F(Session, ModulesOfTheScriptAreWatched) {
   EXPECT_EQ(checker_.frames.size(), 1u);
 }
 
+TEST_F(Session, DataFilesOfTheMissionAreWatched) {
+  const fs::path data = folder_ / "course.yaml";
+  write_file_atomically(data, "gates: 1");
+  const auto glance = [&] {
+    loop_.after(std::chrono::milliseconds(20), [&] { loop_.stop(); });
+    loop_.run();
+  };
+  const auto a = page("a");
+  const auto answer = [&](const char* grade, const Value::List& reads) {
+    Frame frame;
+    frame.header.set("said", "answer");
+    frame.header.set("serial", solver_.frames.back().header.at("serial"));
+    frame.header.set("grade", grade);
+    frame.header.set("message", "");
+    frame.header.set("reads", Value(reads));
+    frame.parts = {"null", "null", ""};
+    session_->heard(WorkerRole::solver, frame);
+  };
+  answer("certified", {data.string()});
+  glance();
+  EXPECT_TRUE(checker_.frames.empty()) << "it is as it was when the mission read it";
+  const std::size_t solved = solver_.frames.size();
+  write_file_atomically(data, "gates: 22");
+  glance();
+  ASSERT_EQ(checker_.frames.size(), 1u);
+  check_all();
+  EXPECT_EQ(solver_.frames.size(), solved + 1) << "the same options are solved anew";
+  EXPECT_EQ(a->of_type("script_changed").size(), 0u);
+  // A mission that fails before it has read all of them leaves them watched.
+  answer("refused", {});
+  write_file_atomically(data, "gates: 333");
+  glance();
+  EXPECT_EQ(checker_.frames.size(), 1u);
+  check_all();
+  // One that reads it no more does not.
+  answer("certified", {});
+  write_file_atomically(data, "gates: 4444");
+  glance();
+  EXPECT_TRUE(checker_.frames.empty());
+}
+
 TEST_F(Session, WhatTheCommandLineSetsIsTheFirstEdit) {
   const Value laid = without_origins(from_json(R"({"margin": 0.8})", "test"));
   open_unchecked("film", laid);

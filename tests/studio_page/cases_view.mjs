@@ -24,6 +24,29 @@ export const views = [
     assert.equal(await drawn(false), first);
     assert.equal(await drawn(false), first);
   }],
+  ["a keyframe placed 5 km away, and brought back, stays in the view", async ({ page, shot }) => {
+    for (const x of ["5 km", "0"]) {
+      await page.focus('[data-pin="keyframe-1"]');
+      await keys(page, "Enter");
+      const { document } = await next(page, async () => {
+        await keys(page, "Control+a");
+        await page.keyboard.type(x);
+        await keys(page, "Enter");
+      });
+      await page.evaluate(async () => {
+        window.lapwing.redraw();
+        await window.lapwing.drawn();
+      });
+      const pins = await page.$$eval('[data-pin^="keyframe"]', (all) => all.map((p) => !p.hidden));
+      assert.deepEqual(new Set(pins), new Set([true]), `${x}: ${pins}`);
+      const [eye, farthest] = await page.evaluate(() => [window.lapwing.eye, window.lapwing.farthest]);
+      for (const { position } of document.keyframes) {
+        const away = Math.hypot(...position.map((v, i) => v - eye[i]));
+        assert.ok(away < farthest, `${away} m away, drawn to ${farthest} m`);
+      }
+      await shot(x === "0" ? "brought_back" : "far_away");
+    }
+  }],
   ["played, scrubbed and sped up by mouse", async ({ page }) => {
     await page.click("#rate-two");
     await page.click("#play");

@@ -241,6 +241,23 @@ TEST(Plan, OriginKeepsWhatItsHeightIsMeasuredFrom) {
   EXPECT_THAT(error_of(value), HasSubstr("geodetic_origin.height_of: missing"));
 }
 
+TEST(Plan, HomeIsKept) {
+  Plan plan = small_plan();
+  EXPECT_EQ(to_value(plan).find("home"), nullptr);
+  for (const Home& home : {Home{{1, 2, 3}, std::nullopt, std::nullopt, {}},
+                           Home{{1, 2, -3}, 120, 500.5, {{1, 2, 30}, {4, 5, 60}}}}) {
+    plan.home = home;
+    EXPECT_EQ(reread(plan).home, home);
+  }
+  Value value = to_value(plan);
+  value.find("home")->set("max_hight", 3.0);
+  value.find("home")->set("rally_points", Value(Value::List{1.0}));
+  EXPECT_THAT(error_of(value), HasSubstr("home.max_hight: unknown; did you mean 'max_height'?"));
+  EXPECT_THAT(error_of(value), HasSubstr("home.rally_points"));
+  erase(*value.find("home"), "position");
+  EXPECT_THAT(error_of(value), HasSubstr("home.position: missing"));
+}
+
 TEST(Plan, EveryErrorIsListed) {
   Value value = to_value(small_plan());
   value.set("misson", "x");

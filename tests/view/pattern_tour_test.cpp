@@ -14,13 +14,18 @@ namespace {
 const Eigen::AlignedBox3d kRegion{Eigen::Vector3d(-20, -10, 0), Eigen::Vector3d(20, 10, 8)};
 
 TEST(Patterns, AreWhatTheirNamesSay) {
-  for (const char* name : {"circle_50", "hemisphere_75", "ellipse_60x40", "meander_85x100"}) {
+  for (const char* name : {"circle_50", "hemisphere_75", "ellipse_60x40", "meander_85x100",
+                           "circle_25:views=240", "meander_50x50:views=256"}) {
     EXPECT_EQ(name_of(pattern_named(name, 30)), name);
   }
   EXPECT_EQ(pattern_named("circle_50", 30).views, 120);
   EXPECT_EQ(pattern_named("meander_100x115", 30).views, 144);
+  EXPECT_EQ(pattern_named("circle_25:views=240", 30).views, 240);
+  EXPECT_EQ(name_of(pattern_named("circle_25:views=120", 30)), "circle_25") << "as it is anyway";
   for (const char* name : {"circle", "circle_", "circle_0", "circle_5x5", "meander_85", "spiral_5",
-                           "circle_-4", "circle_5m", "meander_x4"}) {
+                           "circle_-4", "circle_5m", "meander_x4", "circle_5:", "circle_5:views=",
+                           "circle_5:views=0", "circle_5:views=2.5", "circle_5:views=20000",
+                           "circle_5:count=3", "circle:views=5", "circle_5:views=5x5"}) {
     EXPECT_THROW(pattern_named(name, 30), InputError) << name;
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "framework/core/error.h"
 #include "framework/core/units.h"
 #include "framework/view/visible_voxels.h"
 #include "tests/view/view_world.h"
@@ -49,6 +50,34 @@ TEST(VisibleVoxels, AngleDistanceAndSizeAreThoseOfTheGeometry) {
     EXPECT_NEAR(seen.sight.pixels, 115 * 0.5 / towards.norm(), 1e-5);
     ASSERT_TRUE(seen.sight.incidence.has_value());
     EXPECT_NEAR(*seen.sight.incidence, std::acos(towards.x() / towards.norm()), 1e-4);
+  }
+}
+
+TEST(VisibleVoxels, OnlyWhatIsOfUseIsSeen) {
+  const auto map = walled_room();
+  const std::vector<SeenVoxel> all =
+      VisibleVoxels(map, wall_face(), sight_settings()).seen_from(kAhead);
+  SightSettings s = sight_settings();
+  s.usable_range = 11;
+  s.usable_incidence = radians(20);
+  const VisibleVoxels visible(map, wall_face(), s);
+  std::vector<VoxelKey> expected, found;
+  for (const SeenVoxel& seen : all)
+    if (seen.sight.distance <= 11 && *seen.sight.incidence <= radians(20))
+      expected.push_back(seen.voxel);
+  for (const SeenVoxel& seen : visible.seen_from(kAhead)) found.push_back(seen.voxel);
+  EXPECT_EQ(found, expected);
+  EXPECT_GT(expected.size(), 20u);
+  EXPECT_LT(expected.size(), all.size());
+  EXPECT_EQ(visible.voxels_from(kAhead).size(), all.size()) << "of use or not";
+  // Where the angle is not known it says nothing.
+  s.usable_range = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(VisibleVoxels(map, nullptr, s).seen_from(kAhead).size(), all.size());
+  for (double SightSettings::*limit :
+       {&SightSettings::usable_range, &SightSettings::usable_incidence}) {
+    SightSettings none = sight_settings();
+    none.*limit = 0;
+    EXPECT_THROW(VisibleVoxels(map, nullptr, none), InputError);
   }
 }
 

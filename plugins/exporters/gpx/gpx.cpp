@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "framework/core/error.h"
+#include "framework/core/markup.h"
 #include "framework/core/number_text.h"
 #include "framework/export/camera_track.h"
 #include "framework/export/earth_frame.h"
@@ -53,10 +54,12 @@ class Gpx final : public Exporter {
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<gpx xmlns=\"http://www.topografix.com/GPX/1/1\" version=\"1.1\" creator=\"Lapwing\">\n"
         "<metadata><name>" +
-        xml_text(stated_name(plan)) + "</name><desc>" +
-        xml_text("Heights in m above " + EarthFrame::in_words(heights_)) + "</desc></metadata>\n";
+        markup_text(stated_name(plan)) + "</name><desc>" +
+        markup_text("Heights in m above " + EarthFrame::in_words(heights_)) +
+        "</desc></metadata>\n";
     for (const MapPoint& point : map_points(plan)) {
-      out += place("wpt", frame.at(point.position)) + "<name>" + xml_text(point.name) + "</name>";
+      out +=
+          place("wpt", frame.at(point.position)) + "<name>" + markup_text(point.name) + "</name>";
       if (point.time) out += "<desc>" + plain_number(*point.time, 6) + " s after the start</desc>";
       out += "<type>" + point.kind + "</type></wpt>\n";
     }

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "framework/core/error.h"
+#include "framework/core/markup.h"
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
 #include "framework/export/camera_track.h"
@@ -66,9 +67,9 @@ class Kml final : public Exporter {
     std::string out =
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n<name>" +
-        xml_text(stated_name(plan)) + "</name>\n<description>" +
-        xml_text("Planned by Lapwing. Heights in m above " +
-                 EarthFrame::in_words(frame.heights())) +
+        markup_text(stated_name(plan)) + "</name>\n<description>" +
+        markup_text("Planned by Lapwing. Heights in m above " +
+                    EarthFrame::in_words(frame.heights())) +
         "</description>\n<Style id=\"path\"><LineStyle><color>ff00a5ff</color><width>3</width>"
         "</LineStyle></Style>\n<Placemark><name>path</name><styleUrl>#path</styleUrl>"
         "<LineString>" +
@@ -113,7 +114,7 @@ class Kml final : public Exporter {
 
   static void add_point(std::string& out, const EarthFrame& frame, const MapPoint& point) {
     const EarthPoint at = frame.at(point.position);
-    out += "<Placemark><name>" + xml_text(point.name) + "</name>";
+    out += "<Placemark><name>" + markup_text(point.name) + "</name>";
     if (point.time)
       out += "<description>" + plain_number(*point.time, 6) + " s after the start</description>";
     if (point.yaw && point.pitch) {
@@ -133,7 +134,7 @@ class Kml final : public Exporter {
   // At its ceiling, or else at its floor, with walls down to the ground where it has no floor.
   static void add_zone(std::string& out, const EarthFrame& frame, const MapZone& zone) {
     const double level = zone.ceiling.value_or(zone.floor.value_or(0));
-    out += "<Placemark><name>" + xml_text(zone.name) + "</name><description>" +
+    out += "<Placemark><name>" + markup_text(zone.name) + "</name><description>" +
            (zone.keep_inside ? "not to be left" : "closed to flight");
     if (zone.floor) out += ", from z = " + plain_number(*zone.floor) + " m";
     if (zone.ceiling) out += ", to z = " + plain_number(*zone.ceiling) + " m";

@@ -6,6 +6,7 @@
 #include "framework/core/json.h"
 #include "framework/export/camera_track.h"
 #include "framework/export/mission_items.h"
+#include "framework/export/take_off_place.h"
 #include "framework/plugin/plugin.h"
 
 namespace lapwing {
@@ -57,7 +58,7 @@ class QgcPlan final : public Exporter {
       "qgc_plan", "1.0.0", "mission and fence for QGroundControl (.plan)",
       "https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html"};
   static ParameterTable parameters() { return mission_parameters(); }
-  explicit QgcPlan(const Parameters& parameters) : options_(mission_options(parameters)) {}
+  explicit QgcPlan(const Parameters& parameters) : options_(mission_file_options(parameters)) {}
 
   std::string file_extension() const override { return ".plan"; }
   bool shows_surroundings() const override { return true; }
@@ -83,7 +84,7 @@ class QgcPlan final : public Exporter {
                                 {"plannedHomePosition", home},
                                 {"items", items}})},
               {"geoFence", fences(mission, frame)},
-              {"rallyPoints", made({{"version", 2}, {"points", Value::list()}})}});
+              {"rallyPoints", made({{"version", 2}, {"points", rally_points(mission)}})}});
     return to_json(document) + "\n";
   }
 
@@ -100,7 +101,7 @@ class QgcPlan final : public Exporter {
     const bool ardupilot = document.at("mission").at("firmwareType").as_integer() == kArduPilot;
     FlownFile flown =
         flight_of(items_in(document), frame, {home.at(0).as_number(), home.at(1).as_number(), 0},
-                  home_z_of(plan, options_), ardupilot, plan);
+                  take_off_z(plan, options_.home_z), ardupilot, plan);
     const PlannedMission mission = mission_of(plan, options_, "qgc_plan");
     flown.start = mission.start;
     flown.finish = mission.finish;
@@ -108,6 +109,13 @@ class QgcPlan final : public Exporter {
   }
 
  private:
+  static Value rally_points(const PlannedMission& mission) {
+    Value points = Value::list();
+    for (const auto& [latitude, longitude, height] : mission.rally_points)
+      points.push_back(Value(Value::List{latitude, longitude, height}));
+    return points;
+  }
+
   static Value fences(const PlannedMission& mission, const EarthFrame& frame) {
     Value circles = Value::list(), polygons = Value::list();
     const auto corner = [&](const Eigen::Vector2d& p) {
@@ -130,7 +138,7 @@ class QgcPlan final : public Exporter {
     return made({{"version", 2}, {"circles", circles}, {"polygons", polygons}});
   }
 
-  MissionOptions options_;
+  MissionFileOptions options_;
 };
 
 }  // namespace

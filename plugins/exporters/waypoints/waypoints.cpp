@@ -8,6 +8,7 @@
 #include "framework/core/error.h"
 #include "framework/export/camera_track.h"
 #include "framework/export/mission_items.h"
+#include "framework/export/take_off_place.h"
 #include "framework/plugin/plugin.h"
 
 namespace lapwing {
@@ -46,7 +47,7 @@ class Waypoints final : public Exporter {
                                     "mission as text, QGC WPL 110 (.waypoints)",
                                     "https://mavlink.io/en/file_formats/"};
   static ParameterTable parameters() { return mission_parameters(); }
-  explicit Waypoints(const Parameters& parameters) : options_(mission_options(parameters)) {}
+  explicit Waypoints(const Parameters& parameters) : options_(mission_file_options(parameters)) {}
 
   std::string file_extension() const override { return ".waypoints"; }
   bool shows_surroundings() const override { return true; }
@@ -72,6 +73,8 @@ class Waypoints final : public Exporter {
     home_above_sea(EarthFrame(plan, std::nullopt, "waypoints"), mission.home, &mission.said);
     if (!mission.fences.empty())
       mission.said.emplace_back("fences are not in this format; qgc_plan has them");
+    if (!mission.rally_points.empty())
+      mission.said.emplace_back("rally points are not in this format; qgc_plan has them");
     return mission.said;
   }
 
@@ -80,8 +83,8 @@ class Waypoints final : public Exporter {
     const auto home = items.at(0).params;
     items.erase(items.begin());
     const EarthFrame frame(plan, std::nullopt, "waypoints");
-    FlownFile flown = flight_of(items, frame, {home[4], home[5], 0}, home_z_of(plan, options_),
-                                options_.ardupilot, plan);
+    FlownFile flown = flight_of(items, frame, {home[4], home[5], 0},
+                                take_off_z(plan, options_.home_z), options_.ardupilot, plan);
     const PlannedMission mission = mission_of(plan, options_, "waypoints");
     flown.start = mission.start;
     flown.finish = mission.finish;
@@ -89,7 +92,7 @@ class Waypoints final : public Exporter {
   }
 
  private:
-  MissionOptions options_;
+  MissionFileOptions options_;
 };
 
 }  // namespace

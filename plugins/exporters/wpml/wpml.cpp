@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "framework/core/error.h"
+#include "framework/core/number_text.h"
 #include "framework/core/units.h"
 #include "framework/export/camera_track.h"
 #include "framework/export/map_features.h"
@@ -77,6 +78,7 @@ class Wpml final : public Exporter {
 
   std::string write(const Plan& plan) const override {
     const PlannedRoute route = route_of(plan, options_, "wpml", kLowest, kHighest);
+    check_climb(plan);
     const EarthFrame frame(plan, std::nullopt, "wpml");
     std::string placemarks;
     for (std::size_t k = 0; k < route.points.size(); ++k)
@@ -123,6 +125,14 @@ class Wpml final : public Exporter {
   }
 
  private:
+  // The drone climbs so high before it goes to its first waypoint, wherever that is.
+  void check_climb(const Plan& plan) const {
+    if (!plan.home || !plan.home->max_height || climb_ <= *plan.home->max_height) return;
+    throw InputError("wpml: take_off_height=" + plain_number(climb_) +
+                     " m: the plan flies at most " + plain_number(*plan.home->max_height) +
+                     " m above home (`home.max_height`); expected no more than that");
+  }
+
   // What the actions of a waypoint do. `pitch` is that which is ordered for the next waypoint.
   static void read_actions(const std::string& text, std::size_t at, std::size_t end,
                            FlownPoint& point, double& pitch, std::vector<RouteImage>& images) {

@@ -88,29 +88,48 @@ class Reading {
   Outcome run() {
     std::size_t at = 0;
     while (at < bytes_.size()) {
-      const bool head =
-          bytes_.size() - at >= kHeadSize && bytes_[at] == kHead1 && bytes_[at + 1] == kHead2;
-      const int number = head ? static_cast<unsigned char>(bytes_[at + 2]) : -1;
-      const std::size_t size = head ? size_of_kind(number) : 0;
+      const int number = number_at(at);
+      const std::size_t size = number < 0 ? 0 : size_of_kind(number);
       if (size == 0) {
-        skip(at);
+        skip(at, bytes_.size());
       } else if (bytes_.size() - at < size) {
         outcome_.damage =
             "it ends within a message " + name_of(number) + " at byte " + std::to_string(at);
         break;
+      } else if (!head_follows(at + size) && skip_to_message(at, at + size)) {
+        continue;  // bytes that were lost from it let it reach into the ones behind it
       } else {
-        message(number, bytes_.substr(at + kHeadSize, size - kHeadSize));
+        if (message(number, bytes_.substr(at + kHeadSize, size - kHeadSize)))
+          outcome_.read += size;
+        else if (unusable_++ == 0)
+          first_unusable_ = name_of(number) + " at byte " + std::to_string(at);
         at += size;
-        outcome_.read += size;
       }
     }
-    if (outcome_.skipped > 0 && outcome_.damage.empty())
-      outcome_.damage = std::to_string(outcome_.skipped) + " bytes are no message, the first at " +
-                        "byte " + std::to_string(first_skipped_);
+    say_damage();
     return outcome_;
   }
 
  private:
+  // Of the head of a message; -1 where there is none.
+  int number_at(std::size_t at) const {
+    const bool head = at < bytes_.size() && bytes_.size() - at >= kHeadSize &&
+                      bytes_[at] == kHead1 && bytes_[at + 1] == kHead2;
+    return head ? static_cast<unsigned char>(bytes_[at + 2]) : -1;
+  }
+
+  // Whether a message may begin there, or the file ends, perhaps within a head.
+  bool head_follows(std::size_t at) const {
+    return bytes_.size() - at < kHeadSize || number_at(at) >= 0;
+  }
+
+  // Whether a message of a known kind begins there, with another one behind it.
+  bool begins(std::size_t at) const {
+    const int number = number_at(at);
+    const std::size_t size = number < 0 ? 0 : size_of_kind(number);
+    return size > 0 && at + size <= bytes_.size() && head_follows(at + size);
+  }
+
   std::size_t size_of_kind(int number) const {
     if (number == kFmt) return kFmtSize;
     const auto kind = kinds_.find(number);
@@ -118,47 +137,86 @@ class Reading {
   }
   std::string name_of(int number) const { return number == kFmt ? "FMT" : kinds_.at(number).name; }
 
-  // To the next head of a message.
-  void skip(std::size_t& at) {
-    if (outcome_.skipped == 0) first_skipped_ = at;
-    const std::size_t next = bytes_.find(kHead1, at + 1);
-    const std::size_t to = next == bytes_.npos ? bytes_.size() : next;
-    outcome_.skipped += to - at;
-    at = to;
+  void note_skipped(std::size_t from, std::size_t to) {
+    if (outcome_.skipped == 0) first_skipped_ = from;
+    outcome_.skipped += to - from;
   }
 
-  void message(int number, std::string_view body) {
+  // To the next message before `end`, if there is one.
+  bool skip_to_message(std::size_t& at, std::size_t end) {
+    for (std::size_t next = bytes_.find(kHead1, at + 1); next < end;
+         next = bytes_.find(kHead1, next + 1)) {
+      if (!begins(next)) continue;
+      note_skipped(at, next);
+      at = next;
+      return true;
+    }
+    return false;
+  }
+
+  void skip(std::size_t& at, std::size_t end) {
+    if (skip_to_message(at, end)) return;
+    note_skipped(at, end);
+    at = end;
+  }
+
+  void say_damage() {
+    std::string& damage = outcome_.damage;
+    if (damage.empty() && outcome_.skipped > 0)
+      damage = std::to_string(outcome_.skipped) + " bytes are no message, the first at byte " +
+               std::to_string(first_skipped_);
+    if (unusable_ == 0) return;
+    damage +=
+        (damage.empty() ? "" : "; ") + std::to_string(unusable_) +
+        (unusable_ == 1 ? " message cannot be used, " : " messages cannot be used, the first ") +
+        first_unusable_;
+  }
+
+  // Whether it can be used.
+  bool message(int number, std::string_view body) {
     if (number == kFmt) return describe(body);
     const Kind& kind = kinds_.at(number);
-    if (kind.name == "FMTU") return scale(kind, body);
-    if (kind.name == "MULT") return define_factor(kind, body);
-    if (kind.name == "UNIT") return;
-    take_(number, kind, body);
+    if (kind.columns.empty()) return false;
+    if (kind.name == "FMTU")
+      scale(kind, body);
+    else if (kind.name == "MULT")
+      define_factor(kind, body);
+    else if (kind.name != "UNIT")
+      take_(number, kind, body);
+    return true;
   }
 
-  void describe(std::string_view body) {
+  // A kind whose description contradicts itself, or has types of a later version, keeps its size:
+  // its messages are passed.
+  bool describe(std::string_view body) {
     const int number = static_cast<unsigned char>(body[0]);
     Kind kind;
     kind.size = static_cast<unsigned char>(body[1]);
     kind.name = text_in(body, 2, 4);
     const std::string types = text_in(body, 6, 16);
     std::string labels = text_in(body, 22, 64);
+    if (number == kFmt) return kind.size == kFmtSize;
+    if (kind.size < kHeadSize) return false;
     std::size_t offset = 0;
+    bool known = true;
     for (const char type : types) {
       const std::size_t end = std::min(labels.find(','), labels.size());
       Column column{labels.substr(0, end), type, offset, own_factor(type).value_or(1), 0};
       labels.erase(0, end + 1 > labels.size() ? labels.size() : end + 1);
       const std::size_t size = size_of(type);
-      if (size == 0) return;  // of a later version: its messages are not read
+      known = known && size > 0;
       offset += size;
       kind.columns.push_back(std::move(column));
     }
-    // A description that contradicts itself describes nothing.
-    if (number != kFmt && offset + kHeadSize == kind.size) {
-      const auto units = fmtu_.find(number);
-      if (units != fmtu_.end()) apply(units->second, kind);
-      kinds_[number] = std::move(kind);
+    if (!known || offset + kHeadSize != kind.size) {
+      if (kinds_.count(number)) return false;
+      kind.columns.clear();
     }
+    const auto units = fmtu_.find(number);
+    if (units != fmtu_.end()) apply(units->second, kind);
+    const bool usable = !kind.columns.empty();
+    kinds_[number] = std::move(kind);
+    return usable;
   }
 
   struct Units {
@@ -204,7 +262,8 @@ class Reading {
   std::string_view bytes_;
   const std::function<void(int, const Kind&, std::string_view)>& take_;
   Outcome outcome_;
-  std::size_t first_skipped_ = 0;
+  std::size_t first_skipped_ = 0, unusable_ = 0;
+  std::string first_unusable_;
   std::map<int, Kind> kinds_;
   std::map<int, Units> fmtu_;
   std::map<char, double> factors_;

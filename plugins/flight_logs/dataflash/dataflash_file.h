@@ -35,7 +35,7 @@ double value_of(const Column& column, std::string_view body);
 std::string text_of(const Column& column, std::string_view body);
 
 struct Outcome {
-  std::size_t read = 0;     // bytes that belong to messages
+  std::size_t read = 0;     // bytes of messages that were understood
   std::string damage;       // what is wrong; empty: nothing
   std::size_t skipped = 0;  // bytes between messages
 };
@@ -44,7 +44,9 @@ struct Outcome {
 bool is_dataflash(std::string_view bytes);
 
 // Calls `take` with the number of a kind (FMT's Type), the kind and the body of each message that
-// is described, FMT, FMTU, UNIT and MULT excepted. InputError for bytes that are no such log.
+// is described, FMT, FMTU, UNIT and MULT excepted. A whole message that cannot be used is passed by
+// its stated length; where a head or a length is wrong, reading goes on at the next message that
+// has another one behind it. InputError for bytes that are no such log.
 Outcome read_messages(
     std::string_view bytes,
     const std::function<void(int number, const Kind& kind, std::string_view body)>& take);

@@ -139,8 +139,9 @@ void add_points(const Track& track, double rate, LogBuilder& builder) {
   const bool any = std::any_of(track.points.begin(), track.points.end(), timed);
   if (!any && rate <= 0)
     throw InputError(
-        "its points have no times: state how many there are in a second, "
-        "--format gpx:rate=10");
+        "none of its points has a time (<time>), so that it is a path and no recorded flight; if "
+        "its points are evenly apart in time, --format gpx:rate=10 says how many there are in a "
+        "second");
   const double start = any ? std::find_if(track.points.begin(), track.points.end(), timed)->utc : 0;
   if (any) builder.log.utc = start;
   builder.log.clock = any ? "the first point" : "the first point, at the stated rate";

@@ -14,7 +14,8 @@ namespace {
 constexpr std::string_view kMagic("\x55\x4c\x6f\x67\x01\x12\x35", 7);
 // A sync record: its size, its type and these eight bytes.
 constexpr std::string_view kSync("\x08\x00\x53\x2f\x73\x13\x20\x25\x0c\xbb\x12", 11);
-constexpr std::size_t kHead = 16;  // bytes before the first record
+constexpr std::size_t kHead = 16;        // bytes before the first record
+constexpr std::size_t kMostPadding = 8;  // bytes behind the last field of data
 
 class Reading {
  public:
@@ -26,33 +27,103 @@ class Reading {
     outcome_.read = std::min(at, bytes_.size());
     while (at < bytes_.size()) {
       const std::size_t end = next_part(at);
-      const auto size = number_in<std::uint16_t>(bytes_, at);
-      if (!size || at + 3 > end) {
+      const Head head = head_at(at);
+      if (head.next > end) {
         if (end < bytes_.size() && jump(at, end)) continue;
-        cut(at, "the head of a record");
+        if (resume(at, bytes_.size())) continue;
+        cut(at, head);
         break;
       }
-      const char type = bytes_[at + 2];
-      if (at + 3 + *size > end) {
-        if (end < bytes_.size() && jump(at, end)) continue;
-        if (resume(at)) continue;
-        cut(at,
-            known(type) ? std::string("a record '") + type + "'" : "a record of an unknown type");
-        break;
-      }
-      if (!take(type, bytes_.substr(at + 3, *size), at)) {
-        if (!resume(at)) break;
-        continue;
-      }
-      at += 3 + *size;
-      outcome_.read += 3 + std::size_t{*size};
+      if (!step(at, end, head)) break;
     }
+    say_unusable();
     return outcome_;
   }
 
  private:
+  struct Head {
+    char type = 0;         // 0: not even a head is there
+    std::size_t next = 0;  // the place behind the record
+  };
+
+  Head head_at(std::size_t at) const {
+    const auto size = number_in<std::uint16_t>(bytes_, at);
+    if (!size || at + 3 > bytes_.size()) return {0, bytes_.size() + 1};
+    return {bytes_[at + 2], at + 3 + *size};
+  }
+
+  // One record that is whole, or what stands in its place. False: nothing behind it can be read.
+  bool step(std::size_t& at, std::size_t end, const Head& head) {
+    const bool followed = head_follows(head.next, end);
+    // Bytes that were lost from a record let it reach into the ones behind it.
+    if (!followed && resume(at, head.next)) return true;
+    const std::string_view body = bytes_.substr(at + 3, head.next - at - 3);
+    if (!take(head.type, body, at)) {
+      if (!lettered(head.type) || !followed) return resume(at, bytes_.size()) || lost(at);
+      note_unusable(at, head);
+    } else {
+      outcome_.read += head.next - at;
+    }
+    at = head.next;
+    return true;
+  }
+
   static bool known(char type) {
     return std::string_view("BFIMPQARDLCSO").find(type) != std::string_view::npos;
+  }
+  // A later version may have further records, whose types are letters.
+  static bool lettered(char type) { return type >= 'A' && type <= 'Z'; }
+
+  // Whether a record may begin there, and another one behind it; the last one of a file that was
+  // cut may be.
+  bool head_follows(std::size_t at, std::size_t end) const {
+    for (int k = 0; k < 2 && at + 3 <= end; ++k) {
+      const Head head = head_at(at);
+      if (!lettered(head.type)) return false;
+      if (head.next > end) return end == bytes_.size();
+      at = head.next;
+    }
+    return true;
+  }
+
+  // Whether a record begins there beyond doubt: a sync, or three in a row that can be told from
+  // other bytes, or two that end the file.
+  bool begins(std::size_t at) const {
+    if (bytes_.compare(at, kSync.size(), kSync) == 0) return true;
+    constexpr int kRow = 3;
+    int found = 0;
+    for (std::size_t place = at; found < kRow; ++found) {
+      if (place == bytes_.size()) return found >= kRow - 1;
+      const Head head = head_at(place);
+      if (head.next > bytes_.size()) return false;
+      if (!certain(head.type, bytes_.substr(place + 3, head.next - place - 3))) return false;
+      place = head.next;
+    }
+    return true;
+  }
+
+  bool certain(char type, std::string_view body) const {
+    switch (type) {
+      case 'D':
+        return fits(body);
+      case 'S':
+        return body == kSync.substr(3);
+      case 'L':
+        return body.size() > 9 && body[0] >= '0' && body[0] <= '7';
+      case 'O':
+        return body.size() == 2;
+      default:
+        return false;
+    }
+  }
+
+  // Of data: a topic that is logged, and its size but for what pads the end.
+  bool fits(std::string_view body) const {
+    const auto id = number_in<std::uint16_t>(body, 0);
+    const auto topic = id ? topics_.find(*id) : topics_.end();
+    if (topic == topics_.end()) return false;
+    const std::size_t size = topic->second.format->size;
+    return body.size() - 2 >= size && body.size() - 2 < size + kMostPadding;
   }
 
   // The end of the part of the file that a place lies in: data that were appended later follow a
@@ -70,19 +141,46 @@ class Reading {
     return true;
   }
 
-  void cut(std::size_t at, const std::string& within) {
-    outcome_.damage = "it ends within " + within + " at byte " + std::to_string(at);
+  void cut(std::size_t at, const Head& head) {
+    outcome_.damage = "it ends within " +
+                      (head.type == 0     ? "the head of a record"
+                       : known(head.type) ? std::string("a record '") + head.type + "'"
+                                          : "a record of an unknown type") +
+                      " at byte " + std::to_string(at);
   }
 
-  // Goes on at the next sync record, if there is one.
-  bool resume(std::size_t& at) {
-    const std::size_t next = bytes_.find(kSync, at + 1);
-    const std::string what = "byte " + std::to_string(at) + " begins no record";
-    if (outcome_.damage.empty()) outcome_.damage = what;
-    if (next == bytes_.npos) return false;
-    outcome_.skipped += next - at;
-    at = next;
-    return true;
+  // Goes on at the next place before `end` where a record begins beyond doubt, if there is one.
+  bool resume(std::size_t& at, std::size_t end) {
+    for (std::size_t next = at + 1; next < end; ++next) {
+      if (!begins(next)) continue;
+      lost(at);
+      outcome_.skipped += next - at;
+      at = next;
+      return true;
+    }
+    return false;
+  }
+
+  // Says where it was that no record begins. False, for the end of the reading.
+  bool lost(std::size_t at) {
+    if (outcome_.damage.empty())
+      outcome_.damage = "byte " + std::to_string(at) + " begins no record";
+    return false;
+  }
+
+  // A whole record that says what cannot be understood: data of a topic that nobody described.
+  void note_unusable(std::size_t at, const Head& head) {
+    if (unusable_++ == 0)
+      first_unusable_ = std::string("'") + head.type + "' at byte " + std::to_string(at);
+  }
+
+  void say_unusable() {
+    if (unusable_ == 0) return;
+    if (!outcome_.damage.empty()) outcome_.damage += "; ";
+    outcome_.damage +=
+        std::to_string(unusable_) +
+        (unusable_ == 1 ? " record cannot be used, " : " records cannot be used, the first ") +
+        first_unusable_;
   }
 
   // Whether the record is sound.
@@ -113,9 +211,8 @@ class Reading {
         return !body.empty();
       case 'S':
         return body == kSync.substr(3);
-      // A later version may have further records, whose types are letters.
       default:
-        return type >= 'A' && type <= 'Z' && !body.empty();
+        return lettered(type) && !body.empty();
     }
   }
 
@@ -204,6 +301,8 @@ class Reading {
   std::vector<std::size_t> appended_;
   std::map<std::uint16_t, Topic> topics_;
   double time_ = 0;  // s, of the last data
+  std::size_t unusable_ = 0;
+  std::string first_unusable_;
 };
 
 }  // namespace

@@ -27,14 +27,16 @@ struct Listener {
 };
 
 struct Outcome {
-  std::size_t read = 0;     // bytes of the head and of records that are whole
+  std::size_t read = 0;     // bytes of the head and of records that were understood
   std::string damage;       // what is wrong with the rest; empty: nothing
   std::size_t skipped = 0;  // bytes in the middle that hold no record
 };
 
 bool is_ulog(std::string_view bytes);
 
-// Reads all that can be read. InputError for bytes that are no ULog, and for a file that needs what
+// Reads all that can be read. A whole record that cannot be used is passed by its stated length;
+// where a length or a head is wrong, reading goes on at the next place where a record begins beyond
+// doubt. InputError for bytes that are no ULog, and for a file that needs what
 // this version does not know (incompatible flags).
 Outcome read_records(std::string_view bytes, Formats& formats, const Listener& listener);
 

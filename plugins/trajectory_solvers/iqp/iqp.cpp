@@ -28,6 +28,7 @@
 #include <cmath>
 
 #include "framework/plugin/plugin.h"
+#include "framework/solve/active_set.h"
 #include "framework/solve/elastic.h"
 #include "framework/solve/interior_point.h"
 #include "framework/solve/local_program.h"
@@ -92,6 +93,7 @@ class Iqp final : public TrajectorySolver {
 // The programs of one problem after the other: their orderings are kept where nothing changed.
 struct IqpMemory final : SolverMemory {
   InteriorPoint programs, elastic;
+  ActiveSet sets;
 };
 
 // One solve: the state that goes from iteration to iteration.
@@ -105,6 +107,7 @@ class Solve {
         feasibility_(feasibility),
         limit_(request.iteration_limit.value_or(iterations)),
         start_(std::chrono::steady_clock::now()),
+        sets_(memory_of(request).sets),
         interior_point_(memory_of(request).programs),
         elastic_point_(memory_of(request).elastic) {}
 
@@ -142,6 +145,8 @@ class Solve {
   }
   bool made_up(double merit) const;
   double worst_violation() const;
+  // Of the last program.
+  double fine_tolerance() const { return std::max(kProgramFinest, kProgramShare * tolerance_); }
   void record(double step);
   std::string explain(const Step& step) const;
   double seconds() const {
@@ -166,6 +171,7 @@ class Solve {
   LocalModel model_;
   QuadraticProgram program_;
   IqpMemory own_;
+  ActiveSet& sets_;
   InteriorPoint &interior_point_, &elastic_point_;
   bool contradictory_ = false;  // the last model's rows and bounds
   double program_tolerance_ = kProgramFinest;
@@ -187,6 +193,8 @@ SolveResult Solve::run() {
   if (!problem_.quadratic()) {
     move_inside_bounds();
     program_tolerance_ = kProgramCoarsest;
+  } else if (request_.memory) {  // one of many edits: as exact as is asked for, and no more
+    program_tolerance_ = fine_tolerance();
   }
   record(0.0);
   report_.status = iterate();
@@ -253,7 +261,7 @@ SolveStatus Solve::iterate() {
     const double promised =
         -(model_.gradient.dot(step.d) +
           0.5 * step.d.dot(model_.hessian.selfadjointView<Eigen::Lower>() * step.d));
-    const double fine = std::max(kProgramFinest, kProgramShare * tolerance_);
+    const double fine = fine_tolerance();
     const bool coarse = program_tolerance_ > fine;
     program_tolerance_ =
         std::clamp(kProgramShare * std::abs(promised) / (1.0 + std::abs(model_.cost)),
@@ -299,6 +307,10 @@ Solve::Step Solve::quadratic_step() {
   std::optional<QuadraticWarmStart> warm;
   if (rows_.size() == problem_.rows() && bounds_.size() == problem_.columns())
     warm = QuadraticWarmStart{VectorXd::Zero(problem_.columns()), rows_, bounds_};
+  if (warm && request_.memory) {  // between edits mostly the same limits hold the flight back
+    std::optional<QuadraticResult> near = sets_.solve(program_, options, *warm);
+    if (near) return {near->status, near->x, near->row_multipliers, near->bound_multipliers};
+  }
   QuadraticResult result = interior_point_.solve(program_, options, warm);
   if (warm && result.status != QuadraticStatus::optimal &&
       result.status != QuadraticStatus::cancelled)

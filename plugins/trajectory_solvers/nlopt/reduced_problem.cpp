@@ -20,7 +20,9 @@ std::string ReducedProblem::unsupported(const TrajectoryProblem& problem) {
       return "nlopt does not support orientations, such as block '" + layout.block(b).name +
              "': use the solver iqp";
   if (problem.horizon().step_free)
-    return "nlopt does not support free steps: give the film a duration, or use the solver iqp";
+    return "nlopt does not support free steps: its scaling needs dynamics that do not depend on "
+           "the "
+           "times; give every keyframe a time, or use the solver iqp or ipopt";
   if (problem.horizon().periodic)
     return "nlopt does not support periodic flights: use the solver iqp";
   return "";

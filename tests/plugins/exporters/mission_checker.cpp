@@ -40,11 +40,26 @@ class PlanChecker {
     check_mission(document.at("mission"));
     check_fence(document.at("geoFence"));
     expect_integer(document.at("rallyPoints"), "version", 2, "rallyPoints.");
-    if (!is(document.at("rallyPoints"), "points", Value::Type::list)) fault("rallyPoints.points");
+    if (!is(document.at("rallyPoints"), "points", Value::Type::list))
+      fault("rallyPoints.points");
+    else
+      check_rally_points(document.at("rallyPoints").at("points").as_list());
   }
 
  private:
   void fault(const std::string& what) { faults.push_back(what); }
+
+  // Degrees north and east, and a height above home: three numbers.
+  void check_rally_points(const Value::List& points) {
+    for (const Value& point : points) {
+      const bool three = point.is_list() && point.as_list().size() == 3 &&
+                         number(&point.as_list()[0]) && number(&point.as_list()[1]) &&
+                         number(&point.as_list()[2]);
+      if (!three || std::abs(point.as_list()[0].as_number()) > 90 ||
+          std::abs(point.as_list()[1].as_number()) > 180)
+        fault("rallyPoints.points is no place");
+    }
+  }
 
   static bool is(const Value& in, const char* key, Value::Type type) {
     const Value* value = in.find(key);

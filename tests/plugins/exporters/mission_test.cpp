@@ -323,6 +323,77 @@ TEST(Missions, RefuseHeightsThatNobodyCanFly) {
   }
 }
 
+// The film with a home beside its begin and 6 m above the ground of the origin.
+Plan film_from_home() {
+  Plan plan = film_plan();
+  plan.home = Home{{30, -20, 4}, 120, 300, {{10, 40, 25}}};
+  return plan;
+}
+
+TEST(Missions, TakeOffAndHeightsAreThoseOfThePlansHome) {
+  const Plan plan = film_from_home();
+  const auto exporter = exporter_named("qgc_plan");
+  const std::string text = exporter->write(plan);
+  EXPECT_THAT(plan_faults(text), IsEmpty());
+  const Value document = from_json(text, "test");
+  const Value& mission = document.at("mission");
+  const Eigen::Vector3d origin(kLatitude, kLongitude, 2);
+  const auto& home = mission.at("plannedHomePosition").as_list();
+  const Eigen::Vector3d there = from_origin(origin, {home[0].as_number(), home[1].as_number(), 6});
+  EXPECT_NEAR(there.x(), 30, 0.02);
+  EXPECT_NEAR(there.y(), -20, 0.02);
+  const auto& items = mission.at("items").as_list();
+  ASSERT_EQ(items[0].at("command").as_integer(), 22);
+  const auto& up = items[0].at("params").as_list();
+  const Eigen::Vector3d above = from_origin(origin, {up[4].as_number(), up[5].as_number(), 12});
+  EXPECT_NEAR(above.x(), 30, 0.02);
+  EXPECT_NEAR(above.y(), -20, 0.02);
+  EXPECT_NEAR(up[6].as_number(), 6, 1e-3);  // to the first waypoint at z = 10 m
+  // Flown from the file, it is where the plan has it.
+  EXPECT_LE(compare_flown(plan, *exporter->flown(plan, text), {}).across, 0.25);
+  const Value raised = from_json(file_of("qgc_plan", plan, with("home_z", 1)), "test");
+  EXPECT_NEAR(raised.at("mission").at("items").as_list()[0].at("Altitude").as_number(), 9, 1e-3);
+}
+
+TEST(Missions, RallyPointsAreInThePlanFile) {
+  const Plan plan = film_from_home();
+  const auto exporter = exporter_named("qgc_plan");
+  const Value document = from_json(exporter->write(plan), "test");
+  const auto& points = document.at("rallyPoints").at("points").as_list();
+  ASSERT_EQ(points.size(), 1u);
+  const auto& point = points[0].as_list();
+  const Eigen::Vector3d there =
+      from_origin({kLatitude, kLongitude, 2}, {point[0].as_number(), point[1].as_number(), 27});
+  EXPECT_NEAR(there.x(), 10, 0.02);
+  EXPECT_NEAR(there.y(), 40, 0.02);
+  EXPECT_NEAR(point[2].as_number(), 21, 1e-3);
+  EXPECT_TRUE(says(exporter_named("waypoints")->losses(plan, ""), "rally points are not in this"));
+}
+
+TEST(Missions, TheWayFromHomeToTheFirstWaypointIsChecked) {
+  Plan plan = film_from_home();
+  plan.environment.margin = 0.5;
+  plan.environment.obstacles = {sphere_at("mast", {25, -10, 10}, 2)};
+  plan.environment = with_shapes(plan.environment);
+  for (const char* format : {"qgc_plan", "waypoints"}) {
+    EXPECT_THAT(refusal_of(*exporter_named(format), plan),
+                testing::AllOf(HasSubstr("take-off: the level way"), HasSubstr("'mast'"),
+                               HasSubstr("take_off=false")));
+    EXPECT_EQ(refusal_of(*exporter_named(format, with("take_off", false)), plan), "");
+  }
+  plan.home.reset();  // from below the first waypoint, nothing is in the way
+  EXPECT_EQ(refusal_of(*exporter_named("qgc_plan"), plan), "");
+}
+
+TEST(Missions, WaypointsBelowTheTakeOffPlaceAreSaid) {
+  Plan plan = film_plan();
+  for (std::size_t i = 100; i <= 200; ++i) plan.trajectory.samples[i].position.z() = 2;
+  const auto exporter =
+      exporter_named("qgc_plan", parameters_of({{"home_z", 5}, {"time_tolerance", 50}}));
+  EXPECT_TRUE(says(exporter->losses(plan, ""), "below the take-off place, the lowest by 3 m"));
+  EXPECT_FALSE(says(exporter_named("qgc_plan")->losses(plan, ""), "below the take-off place"));
+}
+
 // Each rule with a file that breaks it: what is replaced by what, and what is found.
 TEST(MissionChecker, EveryRuleOfPlansHasAFileThatBreaksIt) {
   Plan plan = film_plan();
@@ -399,6 +470,11 @@ TEST(MissionChecker, EveryRuleOfPlansHasAFileThatBreaksIt) {
               ElementsAre("circle"));
   EXPECT_THAT(broken([&](Value& d) { d.find("rallyPoints")->set("version", 1); }),
               ElementsAre("rallyPoints.version"));
+  for (const Value::List& point : {Value::List{46.5, 6.6}, Value::List{146.5, 6.6, 20.0}})
+    EXPECT_THAT(broken([&](Value& d) {
+                  d.find("rallyPoints")->set("points", Value(Value::List{Value(point)}));
+                }),
+                ElementsAre("rallyPoints.points is no place"));
 }
 
 TEST(MissionChecker, EveryRuleOfWaypointsHasAFileThatBreaksIt) {

@@ -316,6 +316,49 @@ TEST(Routes, CurvesFitTheirLines) {
   }
 }
 
+TEST(Routes, HeightsCountFromThePlansHome) {
+  Plan plan = quarter_circle();
+  plan.home = Home{{60, 0, 4}, std::nullopt, std::nullopt, {}};
+  for (const char* format : {"litchi", "wpml"}) {
+    const auto exporter = exporter_named(format);
+    const std::string text = exporter->write(plan);
+    EXPECT_TRUE(says(exporter->losses(plan, text), "at z = 4 m of the plan: from 6 m to 9 m"));
+    EXPECT_LE(compare_flown(plan, *exporter->flown(plan, text), {}).across, 0.5);
+  }
+}
+
+TEST(Routes, RefuseOrSayHeightsBelowTheTakeOffPlace) {
+  using testing::AllOf;
+  for (const char* format : {"litchi", "wpml"}) {
+    const Plan plan = quarter_circle();  // from z = 10 m to 13 m
+    EXPECT_THAT(refusal_of(*exporter_named(format, with("home_z", 11)), plan),
+                AllOf(HasSubstr("the first waypoint (z = 10 m) is 1 m below the take-off place"),
+                      HasSubstr("z = 11 m"), HasSubstr("`home_z`")));
+    EXPECT_EQ(refusal_of(*exporter_named(format, with("home_z", 9.9)), plan), "");
+    // Later ones may lie lower: beside a hill.
+    Plan falling = plan;
+    for (Sample& s : falling.trajectory.samples) {
+      s.position.z() = 20 - s.position.z();
+      s.velocity.z() = -s.velocity.z();
+    }
+    const auto exporter = exporter_named(format, with("home_z", 9));
+    EXPECT_TRUE(says(exporter->losses(falling, exporter->write(falling)),
+                     "waypoints are below the take-off place, the lowest by 2 m (at 30 s"));
+    // The ground of the origin is at z = -2 m.
+    for (Sample& s : falling.trajectory.samples) s.position.z() -= 9.5;
+    EXPECT_THAT(refusal_of(*exporter_named(format), falling),
+                AllOf(HasSubstr(": waypoint "), HasSubstr("above the ground of the origin")));
+  }
+}
+
+TEST(Routes, TheClimbKeepsTheLargestHeight) {
+  Plan plan = quarter_circle();
+  plan.home = Home{{30, 0, -2}, 16, std::nullopt, {}};
+  EXPECT_THAT(refusal_of(*exporter_named("wpml"), plan),
+              testing::AllOf(HasSubstr("take_off_height=20 m"), HasSubstr("at most 16 m")));
+  EXPECT_EQ(refusal_of(*exporter_named("wpml", with("take_off_height", 15)), plan), "");
+}
+
 TEST(Routes, RefuseWhatTheyCannotHold) {
   for (const char* format : {"litchi", "wpml"}) {
     const auto exporter = exporter_named(format);

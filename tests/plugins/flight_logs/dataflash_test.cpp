@@ -46,6 +46,49 @@ TEST(Dataflash, BytesBetweenMessagesAreSkippedAndSaid) {
   EXPECT_EQ(log.find("camera")->size(), states.size());
 }
 
+constexpr unsigned char kCamera = 13;  // the kind MNT of dataflash_of, 19 bytes
+
+// The place of message `number` of a kind, counted from 0.
+std::size_t place_of_message(const std::string& bytes, unsigned char kind, std::size_t number) {
+  const std::string head = dataflash_head(kind);
+  std::size_t at = bytes.find(head);
+  for (; number > 0; --number) at = bytes.find(head, at + 1);
+  return at;
+}
+
+TEST(Dataflash, AWholeMessageThatCannotBeUsedCostsNoOther) {
+  const auto states = short_flight();
+  const std::string whole = dataflash_of(states);
+  const std::size_t first = place_of_message(whole, kCamera, 0);
+  ASSERT_LT(first, whole.size());
+  // Of a later version: a type '?', in a message whose body holds what looks like another one.
+  const std::string kind = dataflash_kind(201, 3 + 2 * 19, "NEW", "Q?", "TimeUS,What");
+  const std::string last = whole.substr(whole.size() - 19);
+  std::string bytes = whole.substr(0, first) + kind;
+  for (int k = 0; k < 3; ++k) bytes += dataflash_head(201) + last + last;
+  bytes += whole.substr(first);
+  const FlightLog log = reader_named("dataflash")->read(bytes);
+  EXPECT_EQ(log.find("camera")->size(), states.size()) << "none is invented, none is lost";
+  EXPECT_EQ(log.damage,
+            "4 messages cannot be used, the first FMT at byte " + std::to_string(first));
+  EXPECT_EQ(log.bytes_read, whole.size());
+}
+
+TEST(Dataflash, AMessageThatLostBytesIsNotInvented) {
+  const auto states = short_flight();
+  const std::string whole = dataflash_of(states);
+  const std::size_t torn = place_of_message(whole, kCamera, 4);
+  for (std::size_t lost = 1; lost < 8; ++lost) {
+    std::string bytes = whole;
+    bytes.erase(torn + 11, lost);
+    const FlightLog log = reader_named("dataflash")->read(bytes);
+    EXPECT_THAT(faults_of(log), IsEmpty()) << lost;
+    EXPECT_EQ(log.find("camera")->size(), states.size() - 1) << lost;
+    EXPECT_THAT(log.damage, HasSubstr("bytes are no message")) << lost;
+    EXPECT_NEAR(row_of(log, "camera", 4)[1], states[5].camera.y(), 1e-6) << lost;
+  }
+}
+
 // GPS as ArduPilot writes it, with the units and multipliers of FMTU.
 TEST(Dataflash, ScalesByTypesAndMultipliers) {
   std::string bytes =

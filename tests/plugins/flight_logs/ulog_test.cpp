@@ -92,6 +92,73 @@ TEST(Ulog, BytesThatAreNoRecordAreSkippedToTheNextSync) {
   EXPECT_EQ(log.bytes_read, bytes.size() - 50);
 }
 
+// Data of a topic that was never subscribed.
+std::string foreign_record() {
+  std::string body;
+  put(body, std::uint16_t{77});
+  put(body, microseconds(100));
+  return ulog_record('D', body + std::string(20, 'x'));
+}
+
+TEST(Ulog, AWholeRecordThatCannotBeUsedCostsNoOther) {
+  const auto states = short_flight();
+  std::string bytes = ulog_head() + ulog_formats();
+  const std::size_t first = bytes.size() + ulog_state(states[0], true).size();
+  for (std::size_t i = 0; i < 20; ++i) {
+    bytes += ulog_state(states[i], true);
+    if (i % 4 == 0) bytes += foreign_record();
+    if (i == 7) bytes += ulog_record('R', std::string(2, '\x55')) + ulog_topic(60, "undefined");
+  }
+  const FlightLog log = reader_named("ulog")->read(bytes);
+  EXPECT_EQ(log.find("position")->size(), 20u);
+  EXPECT_EQ(log.damage, "7 records cannot be used, the first 'D' at byte " + std::to_string(first));
+  EXPECT_EQ(log.bytes_read, bytes.size() - 5 * foreign_record().size() -
+                                ulog_record('R', std::string(2, 'x')).size() -
+                                ulog_topic(60, "undefined").size());
+}
+
+TEST(Ulog, AFileWithoutSyncsGoesOnBehindWhatIsNoRecord) {
+  const auto states = short_flight();
+  std::string bytes = ulog_head() + ulog_formats();
+  for (std::size_t i = 0; i < 20; ++i) {
+    if (i == 10) bytes += std::string(50, '\x01');
+    bytes += ulog_state(states[i], true);
+  }
+  const FlightLog log = reader_named("ulog")->read(bytes);
+  EXPECT_EQ(log.find("position")->size(), 20u);
+  EXPECT_EQ(log.bytes_read, bytes.size() - 50);
+  EXPECT_THAT(log.damage, HasSubstr("begins no record; 50 bytes were skipped"));
+}
+
+// Where bytes of a record were lost, its stated length reaches into the ones behind it.
+TEST(Ulog, ARecordThatLostBytesIsNotInvented) {
+  const auto states = short_flight();
+  const std::string whole = ulog_head() + ulog_formats();
+  std::string before = whole, behind;
+  for (std::size_t i = 0; i < 10; ++i) before += ulog_state(states[i], true);
+  for (std::size_t i = 11; i < 20; ++i) behind += ulog_state(states[i], true);
+  const std::string torn = ulog_state(states[10], true);
+  for (std::size_t lost = 1; lost < 30; ++lost) {
+    // The bytes behind the time of its first record.
+    const std::string bytes = before + torn.substr(0, 14) + torn.substr(14 + lost) + behind;
+    const FlightLog log = reader_named("ulog")->read(bytes);
+    EXPECT_THAT(faults_of(log), IsEmpty()) << lost;
+    EXPECT_NE(log.damage, "") << lost;
+    const LogSeries& positions = *log.find("position");
+    EXPECT_GE(positions.size(), 19u) << lost;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      EXPECT_LT((row_of(log, "position", i) -
+                 std::find_if(states.begin(), states.end(),
+                              [&](const RecordedState& s) {
+                                return std::abs(s.time - positions.times[i]) < 1e-4;
+                              })
+                     ->position)
+                    .norm(),
+                1e-5)
+          << lost;
+  }
+}
+
 TEST(Ulog, RefusesWhatItDoesNotKnow) {
   const auto reader = reader_named("ulog");
   EXPECT_THAT(refusal_of(*reader, "ULog"), HasSubstr("a ULog begins with"));

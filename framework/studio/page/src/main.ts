@@ -182,6 +182,8 @@ studio.on(["document", "world", "standing"], () => {
   if (!framed && session.welcomed) {
     framed = pathOf(studio.plan.columns).length > 1;
     navigation.frame(bounds());
+  } else if (framed && !session.dragging) {
+    navigation.follow(bounds());
   }
   stage.invalidate();
 });
@@ -273,9 +275,10 @@ Object.defineProperty(window, "lapwing", {
       const rect = stage.world.getBoundingClientRect();
       return seen ? { x: rect.left + seen.x, y: rect.top + seen.y } : null;
     },
-    // Where the curve of speed is at a time, on the page; where the eye is, m.
+    // Where the curve of speed is at a time, on the page; where the eye is, and how far it sees, m.
     onCurve: (time: number) => timeline.curvePlace(time),
     get eye() { return stage.worldCamera.position.toArray(); },
+    get farthest() { return stage.worldCamera.far; },
     measure(on: boolean) { stage.measuring = on; },
     get edit() { return session.dragging ? session.edit : null; },
     // Resolves when the next frame is drawn.

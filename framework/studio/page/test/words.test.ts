@@ -109,6 +109,10 @@ test("what fails is shown where it fails, with its mend", () => {
   assert.match(mendOf(check({ name: "acceleration_across", worst: 16, limit: 4 })), /2 times slower/);
   assert.match(mendOf(check({ name: "clearance", worst: 0.2, limit: 0.5, sense: "at_least" })),
                /0\.3 m away/);
+  assert.match(mendOf(check({ name: "height_above_home", worst: 123.5, limit: 120 })), /3\.5 m lower/);
+  assert.match(mendOf(check({ name: "distance_from_home", worst: 310, limit: 300 })), /10 m nearer/);
+  assert.match(mendOf(check({ name: "height_above_ground", worst: -0.5, limit: 0,
+    sense: "at_least" })), /0\.5 m higher/);
   const moment = passagesOf(plan, { passed: false, checks: [check({ name: "clearance", time: 3.8 })] });
   assert.deepEqual(moment.map((p) => [p.start, p.finish]), [[3.3, 4]]);
   for (const fine of [{ passed: true }, { required: false }, { skipped: "none" }]) {

@@ -147,6 +147,12 @@ export function mendOf(check: Check): string {
     case "flight_zone":
       return `Move the path ${show(Math.abs(check.limit - check.worst))} m ` +
         `${check.name === "flight_zone" ? "inwards" : "away"} here.`;
+    case "height_above_home":
+      return `Fly ${show(check.worst - check.limit)} m lower here.`;
+    case "distance_from_home":
+      return `Stay ${show(check.worst - check.limit)} m nearer to home here.`;
+    case "height_above_ground":
+      return `Fly ${show(check.limit - check.worst)} m higher here.`;
     case "keyframe_miss":
       return `Give the legs beside ${/keyframe \d+/.exec(check.detail ?? "")?.[0] ?? "this keyframe"} ` +
         "more seconds, or move it nearer to the path.";

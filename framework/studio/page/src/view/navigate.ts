@@ -15,6 +15,7 @@ const MOUSE = 0.0035;     // rad per pixel
 const STICK = 1.4;        // rad/s by a stick of a gamepad
 const SLACK = 0.15;       // of a stick, that counts as its middle
 const FILLED = 0.85;      // of the view by a film that is shown whole
+const OUTGROWN = 3;       // of the film's extent against what is shown, to show it whole again
 const held = ["w", "a", "s", "d", "q", "e", "arrowleft", "arrowright", "arrowup", "arrowdown"];
 
 export class Navigation {
@@ -27,6 +28,7 @@ export class Navigation {
   // What a gamepad's buttons ask for while the camera is flown.
   onButton: (button: "keyframe" | "leave") => void = () => undefined;
   private pressed = new Set<number>();
+  private whole = 0;      // m, the extent of what was shown whole last
   private before: { position: THREE.Vector3; fov: number } | null = null;
 
   constructor(private readonly studio: Studio, private readonly stage: Stage) {
@@ -67,6 +69,7 @@ export class Navigation {
     const shown = box.isEmpty()
       ? new THREE.Box3(new THREE.Vector3(-10, -10, 0), new THREE.Vector3(10, 10, 5))
       : box.clone().expandByScalar(0.5);
+    this.whole = shown.getSize(new THREE.Vector3()).length();
     const center = shown.getCenter(new THREE.Vector3());
     const camera = this.stage.worldCamera;
     const away = new THREE.Vector3(-0.55, -0.75, 0.6).normalize();
@@ -88,6 +91,18 @@ export class Navigation {
     this.orbit.target.copy(center);
     this.orbit.update();
     this.stage.invalidate();
+  }
+
+  // After an edit: a film that left the view, or became small in it, is shown whole again, and what
+  // is far away stays drawn.
+  follow(box: THREE.Box3): void {
+    if (box.isEmpty()) return;
+    const size = box.getSize(new THREE.Vector3()).length() + 1;
+    const grown = size > OUTGROWN * this.whole || OUTGROWN * size < this.whole;
+    if (grown && this.studio.mode === "orbit") return this.frame(box);
+    const eye = this.stage.worldCamera.position;
+    const farthest = eye.distanceTo(box.getCenter(new THREE.Vector3())) + size;
+    if (farthest > this.stage.worldCamera.far) this.stage.reach(1.5 * farthest);
   }
 
   private switch(): void {

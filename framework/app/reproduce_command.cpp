@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/app/reproduce_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+
+#include "framework/app/child_command.h"
+#include "framework/app/interruption.h"
+#include "framework/app/mission_loading.h"
+#include "framework/app/text_table.h"
+#include "framework/config/shipped.h"
+#include "framework/core/file_set.h"
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+#include "framework/core/visible_text.h"
+#include "framework/explore/view_utility.h"
+#include "framework/study/reproduced_table.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path definitions() {
+  return shipped_folder("configs") / "reproduce";
+}
+
+// What is written between braces in words of a study: {examples}, {out}, {data:FILE},
+// {model:UTILITY}, {study:NAME}.
+class Places {
+ public:
+  Places(const Registry& registry, std::vector<fs::path> data, fs::path studies)
+      : registry_(registry), data_(std::move(data)), studies_(std::move(studies)) {}
+
+  std::string filled(const std::string& word) {
+    std::string out;
+    for (std::size_t at = 0; at < word.size();) {
+      const std::size_t open = word.find('{', at), close = word.find('}', open);
+      if (close == word.npos) return out + word.substr(at);
+      out += word.substr(at, open - at) + place(word.substr(open + 1, close - open - 1));
+      at = close + 1;
+    }
+    return out;
+  }
+
+  const std::vector<std::string>& missing() const { return missing_; }
+
+ private:
+  std::string place(const std::string& text) {
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    const std::string kind = text.substr(0, colon);
+    const std::string name = colon < text.size() ? text.substr(colon + 1) : "";
+    if (kind == "examples") return shipped_folder("examples").string();
+    if (kind == "study") return (studies_ / name).string();
+    if (kind == "model") {
+      const fs::path library = registry_.find(ViewUtility::kKind, name).library;
+      return fs::path(library).replace_extension("model").string();
+    }
+    if (kind == "data") return data_file(name);
+    return "{" + text + "}";  // a table of YAML's, such as --set region={...}
+  }
+
+  std::string data_file(const std::string& name) {
+    for (const fs::path& folder : data_)
+      if (fs::exists(folder / name)) return (folder / name).string();
+    if (std::find(missing_.begin(), missing_.end(), name) == missing_.end())
+      missing_.push_back(name);
+    return name;
+  }
+
+  const Registry& registry_;
+  std::vector<fs::path> data_;
+  fs::path studies_;
+  std::vector<std::string> missing_;
+};
+
+std::vector<std::string> words_in(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (end > begin) words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+// How commands are told where to write, and to continue what is there.
+struct CommandWays {
+  const char* command;
+  const char* out;  // "": nowhere
+  bool resumes;
+  bool quiets;
+};
+constexpr CommandWays kCommands[] = {{"evaluate scan", "--out", true, true},
+                                     {"evaluate explore", "--out", true, true},
+                                     {"train dataset", "--output", true, true},
+                                     {"train score", "", false, false},
+                                     {"run", "--out", false, true},
+                                     {"tour", "", false, false}};
+
+const CommandWays& ways_of(const ReproducedStudy& study) {
+  std::string all;
+  for (const CommandWays& ways : kCommands) {
+    if (study.command == ways.command) return ways;
+    all += (all.empty() ? "" : ", ") + std::string(ways.command);
+  }
+  throw InputError("study '" + study.name + "': '" + study.command +
+                   "' is not a command of studies: " + all);
+}
+
+class Reproducing {
+ public:
+  Reproducing(const ReproduceRequest& asked, const Invocation& invocation)
+      : asked_(asked),
+        invocation_(invocation),
+        registry_(invocation.registry()),
+        made_(read_reproduction(definitions(), asked.table)),
+        base_(invocation.out.empty() ? fs::path("out") / "reproduce" : invocation.out) {
+    prepare_words();
+  }
+
+  ExitStatus run() {
+    const FolderClaim claim(studies());
+    claim_version();
+    for (std::size_t k = 0; k < made_.studies.size(); ++k)
+      if (!fs::exists(answer_of(made_.studies[k].name))) ask(made_.studies[k], words_[k]);
+    std::map<RecordSource, Value::List> records;
+    for (const RecordSource& source : record_sources(made_)) records[source] = records_of(source);
+    write(reproduced_table(made_, records, caption()));
+    return ExitStatus::done;
+  }
+
+ private:
+  std::string folder_name(const std::string& table) const {
+    return table + (asked_.quick ? "_quick" : "");
+  }
+  fs::path studies() const { return base_ / folder_name(made_.owner); }
+
+  void prepare_words() {
+    MissionSettings settings = mission_settings(invocation_, registry_);
+    Places places(registry_, settings.data, studies());
+    for (const ReproducedStudy& study : made_.studies) {
+      ways_of(study);
+      std::vector<std::string>& words = words_.emplace_back();
+      for (const std::string& word : study.words(asked_.quick))
+        words.push_back(places.filled(word));
+    }
+    if (places.missing().empty()) return;
+    std::string names;
+    for (const std::string& name : places.missing()) names += (names.empty() ? "" : ", ") + name;
+    throw InputError(made_.thesis + " needs data that are not there: " + names +
+                     "; name the folder that has them by --data DIR or LAPWING_DATA");
+  }
+
+  // All in a folder is of one version.
+  void claim_version() const {
+    Value stated = Value::map();
+    stated.set("format", 1);
+    stated.set("program", std::string("lapwing ") + program_version());
+    stated.set("table", made_.owner);
+    stated.set("quick", asked_.quick);
+    const Reproduction owner =
+        made_.owner == made_.name ? made_ : read_reproduction(definitions(), made_.owner);
+    stated.set("definition", owner.checksum);
+    const fs::path file = studies() / "reproduction.json";
+    if (!fs::exists(file)) {
+      if (fs::exists(studies()) && !fs::is_empty(studies()))
+        throw InputError("'" + studies().string() +
+                         "' is not empty, and not of a reproduction: choose another folder with "
+                         "--out");
+      write_file_atomically(file, to_json(stated) + "\n");
+      return;
+    }
+    // Another table of the same studies may join without a word.
+    if (!asked_.resume && made_.owner == made_.name)
+      throw InputError("'" + studies().string() +
+                       "' contains a reproduction: continue it with --resume, or choose another "
+                       "folder with --out");
+    const Value there = from_json(read_file(file), file.string());
+    for (const auto& [key, value] : stated.as_map()) {
+      const Value* before = there.find(key);
+      if (before && *before == value) continue;
+      throw InputError("'" + file.string() + "': the reproduction there is of another version (" +
+                       key + " is " + (before ? to_json(*before, -1) : "not said") + " there, " +
+                       to_json(value, -1) +
+                       " here): --resume continues the same one only; choose another folder with "
+                       "--out");
+    }
+  }
+
+  fs::path answer_of(const std::string& study) const { return studies() / (study + ".json"); }
+
+  Value::List records_of(const RecordSource& source) const {
+    const auto& [study, folder] = source;
+    if (!folder.empty()) return records_in(studies() / study / folder);
+    const fs::path answer = answer_of(study);
+    const Value all = from_json(read_file(answer), answer.string());
+    for (const char* key : {"rows", "tours"})
+      if (const Value* rows = all.find(key); rows && rows->is_list()) return rows->as_list();
+    return {all};
+  }
+
+  static Value::List records_in(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& item : fs::directory_iterator(folder))
+      if (item.path().extension() == ".json") files.push_back(item.path());
+    std::sort(files.begin(), files.end());
+    Value::List records;
+    for (const fs::path& file : files) records.push_back(from_json(read_file(file), file.string()));
+    return records;
+  }
+
+  void ask(const ReproducedStudy& study, const std::vector<std::string>& words) const {
+    const CommandWays& ways = ways_of(study);
+    std::vector<std::string> all{"lapwing"};
+    for (const fs::path& path : invocation_.plugin_path)
+      all.insert(all.end(), {"--plugin-path", path.string()});
+    for (const std::string& word : words_in(study.command)) all.push_back(word);
+    all.insert(all.end(), words.begin(), words.end());
+    if (*ways.out) all.insert(all.end(), {ways.out, (studies() / study.name).string()});
+    if (ways.resumes) all.push_back("--resume");
+    if (ways.quiets && invocation_.quiet) all.push_back("--quiet");
+    if (invocation_.threads > 0 && ways.resumes)
+      all.insert(all.end(), {"--threads", std::to_string(invocation_.threads)});
+    const bool has_json = study.command != "train dataset";
+    if (has_json) all.push_back("--json");
+    if (!invocation_.quiet)
+      std::cerr << visible_line(made_.thesis + ", study " + study.name + ": " + study.command)
+                << std::endl;
+    const auto begun = std::chrono::steady_clock::now();
+    const ChildAnswer said = run_child(all, interruption_.token());
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begun;
+    Value object = has_json ? from_json(said.output, "study " + study.name) : Value::map();
+    const Value* error = object.find("error");
+    if (said.status > 1 || error)
+      throw InputError("study '" + study.name + "' of " + made_.thesis + ": " +
+                       (error && error->is_text()
+                            ? error->as_text()
+                            : "`lapwing " + study.command + "` ended with exit status " +
+                                  std::to_string(said.status)));
+    if (object.is_map()) object.set("wall_seconds", taken.count());
+    write_file_atomically(answer_of(study.name), to_json(object) + "\n");
+  }
+
+  // What was run, and what a quick look leaves out.
+  std::string caption() const {
+    std::string text = made_.title + " (" + made_.thesis + ").";
+    for (const ReproducedStudy& study : made_.studies) {
+      if (!asked_.quick || study.quick.as_map().empty()) continue;
+      text += " Quick, " + study.name + ":";
+      for (const auto& [key, value] : study.quick.as_map()) {
+        const Value* whole = study.options.find(key);
+        text += " " + key + " " + to_json(value, -1) +
+                (whole ? " in place of " + to_json(*whole, -1) : "") + ";";
+      }
+      text.back() = '.';
+    }
+    return text;
+  }
+
+  void write(const ReproducedTable& table) const {
+    const fs::path folder = base_ / folder_name(made_.name);
+    const std::string shown = text_of(TextTable{.rows = table_cells(table)}, 100'000);
+    write_files_together(folder, {{{"table.txt", shown + "\n" + table_notes(table)},
+                                   {"table.csv", table_csv(table)},
+                                   {"report.html", render_html(table_report(table))}}});
+    const std::string report = (folder / "report.html").string();
+    if (invocation_.json) {
+      Value object = Value::map();
+      object.set("status", "ok");
+      object.set("quick", asked_.quick);
+      const Value value = to_value(table);
+      for (const auto& [key, entry] : value.as_map()) object.set(key, entry);
+      object.set("report", report);
+      print_json(object);
+    } else if (!invocation_.quiet) {
+      std::cout << text_of(TextTable{.rows = table_cells(table)}, columns_of_stdout()) << "\n"
+                << visible_text(table_notes(table)) << "\nreport: " << visible_line(report)
+                << std::endl;
+    }
+  }
+
+  const ReproduceRequest& asked_;
+  const Invocation& invocation_;
+  const Registry registry_;
+  const Reproduction made_;
+  const fs::path base_;
+  std::vector<std::vector<std::string>> words_;  // of each study
+  const Interruption interruption_;
+};
+
+}  // namespace
+
+ExitStatus list_reproductions(const Invocation& invocation) {
+  const fs::path folder = definitions();
+  Value list = Value::list();
+  TextTable table{.rows = {{"name", "thesis", "title"}}};
+  for (const std::string& name : reproduction_names(folder)) {
+    const Reproduction made = read_reproduction(folder, name);
+    table.rows.push_back({name, made.thesis, made.title});
+    Value entry = Value::map();
+    entry.set("name", name);
+    entry.set("thesis", made.thesis);
+    entry.set("title", made.title);
+    list.push_back(std::move(entry));
+  }
+  if (invocation.json) {
+    Value object = Value::map();
+    object.set("tables", std::move(list));
+    print_json(object);
+  } else {
+    std::cout << text_of(table, columns_of_stdout());
+  }
+  return ExitStatus::done;
+}
+
+ExitStatus reproduce_table(const ReproduceRequest& asked, const Invocation& invocation) {
+  if (asked.table == "list") return list_reproductions(invocation);
+  return Reproducing(asked, invocation).run();
+}
+
+}  // namespace lapwing

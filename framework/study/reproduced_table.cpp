@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/study/reproduced_table.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <set>
+
+#include "framework/core/error.h"
+#include "framework/core/json.h"
+#include "framework/study/csv.h"
+#include "framework/study/stratified_sample.h"
+
+namespace lapwing {
+namespace {
+
+constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
+
+// "with_first/f", "observed/20" within a record, entries of lists from 1; null where it is not
+// there.
+const Value* at_place(const Value& record, const std::string& place) {
+  const Value* value = &record;
+  for (std::size_t begin = 0; value && begin <= place.size();) {
+    const std::size_t end = std::min(place.find('/', begin), place.size());
+    const std::string step = place.substr(begin, end - begin);
+    if (value->is_list()) {
+      const std::size_t number = static_cast<std::size_t>(std::atoi(step.c_str()));
+      const Value::List& list = value->as_list();
+      value = number >= 1 && number <= list.size() ? &list[number - 1] : nullptr;
+    } else {
+      value = value->find(step);
+    }
+    begin = end + 1;
+  }
+  return value;
+}
+
+bool fits(const Value& record, const Value& where) {
+  for (const auto& [place, wanted] : where.as_map()) {
+    const Value* found = at_place(record, place);
+    if (!found) return false;
+    const bool numbers = found->is_number() && wanted.is_number();
+    if (numbers ? found->as_number() != wanted.as_number() : !(*found == wanted)) return false;
+  }
+  return true;
+}
+
+std::string join_places(const std::string& a, const std::string& b) {
+  return a + (a.empty() || b.empty() ? "" : "/") + b;
+}
+
+RecordSource source_of(const Reproduction& made, const ReproducedRow& row,
+                       const ReproducedColumn& column) {
+  const std::string& study = !column.study.empty() ? column.study
+                             : !row.study.empty()  ? row.study
+                                                   : made.studies.front().name;
+  return {study, column.records};
+}
+
+using RecordFigures = std::vector<std::pair<double, const Value*>>;  // and their records
+
+ReproducedCell cell_of(const RecordFigures& figures) {
+  if (figures.empty()) return {kNoFigure, kNoFigure, 0, Value()};
+  StratifiedSample sample;
+  for (const auto& [figure, record] : figures) sample.add(figure);
+  return {sample.mean(), sample.interval(), sample.count(), Value()};
+}
+
+class Assembly {
+ public:
+  Assembly(const Reproduction& made, const std::map<RecordSource, Value::List>& records)
+      : made_(made), records_(records) {}
+
+  // The figure of every record of a cell, and the record.
+  RecordFigures figures(const ReproducedRow& row, const ReproducedColumn& column) const {
+    RecordFigures all;
+    const std::string place = join_places(column.figure, row.figure);
+    for (const Value& record : records_.at(source_of(made_, row, column))) {
+      if (!fits(record, row.where) || !fits(record, column.where)) continue;
+      const Value* figure = at_place(record, place);
+      if (!figure || figure->is_null()) continue;
+      if (!figure->is_number())
+        throw InputError("table " + made_.name + ", row '" + row.name + "', column '" +
+                         column.name + "': '" + place + "' is " + figure->describe_type() +
+                         ", not a number");
+      all.emplace_back(column.scale * figure->as_number(), &record);
+    }
+    return all;
+  }
+
+  ReproducedCell cell(const ReproducedRow& row, std::size_t column) const {
+    const ReproducedColumn& of = made_.columns[column];
+    const auto found = figures(row, of);
+    ReproducedCell cell = cell_of(found);
+    cell.thesis = row.thesis[column];
+    if (found.size() != 1 || of.interval.empty()) return cell;
+    const Value* interval = at_place(*found.front().second, of.interval);
+    if (interval && interval->is_number()) cell.interval = of.scale * interval->as_number();
+    return cell;
+  }
+
+  // How far a row is below another, record by record.
+  ReproducedCell below(const ReproducedRow& row, const ReproducedRow& to,
+                       const ReproducedColumn& column, const std::string& by) const {
+    RecordFigures differences;
+    for (const auto& [figure, record] : figures(row, column))
+      for (const auto& [other, beside] : figures(to, column)) {
+        const Value *a = at_place(*record, by), *b = at_place(*beside, by);
+        if (a && b && *a == *b) differences.emplace_back(other - figure, record);
+      }
+    return cell_of(differences);
+  }
+
+ private:
+  const Reproduction& made_;
+  const std::map<RecordSource, Value::List>& records_;
+};
+
+template <class Entry>
+std::size_t place_of(const std::vector<Entry>& entries, const std::string& name) {
+  for (std::size_t k = 0; k < entries.size(); ++k)
+    if (entries[k].name == name) return k;
+  throw Error("no entry '" + name + "'");
+}
+
+std::string fixed(double number, int digits) {
+  if (!std::isfinite(number)) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, number);
+  return text;
+}
+
+std::string shown(const ReproducedCell& cell, int digits) {
+  std::string text = fixed(cell.mean, digits);
+  if (std::isfinite(cell.interval)) text += " +- " + fixed(cell.interval, digits);
+  return text;
+}
+
+std::string said_text(const Value& thesis, int digits) {
+  if (thesis.is_null()) return "-";
+  return thesis.is_text() ? thesis.as_text() : fixed(thesis.as_number(), digits);
+}
+
+bool any_thesis(const ReproducedTable& table, std::size_t column) {
+  for (const auto& row : table.cells)
+    if (!row[column].thesis.is_null()) return true;
+  return false;
+}
+
+std::string title_of(const ReproducedColumn& column) {
+  return column.name + (column.unit.empty() ? "" : ", " + column.unit);
+}
+
+std::string below_title(const ReproducedTable& table) {
+  return "below " + table.made.paired->to;
+}
+
+int paired_digits(const ReproducedTable& table) {
+  return table.made.columns[place_of(table.made.columns, table.made.paired->column)].digits;
+}
+
+Value finite_value(double number) {
+  return std::isfinite(number) ? Value(number) : Value();
+}
+
+Value to_value(const ReproducedCell& cell) {
+  Value value = Value::map();
+  value.set("ours", finite_value(cell.mean));
+  value.set("interval", finite_value(cell.interval));
+  value.set("count", static_cast<std::int64_t>(cell.count));
+  value.set("thesis", cell.thesis);
+  return value;
+}
+
+std::string rank_sentence(const RankFound& found) {
+  const bool known = std::isfinite(found.above) && std::isfinite(found.below);
+  return "'" + found.rank.above + "' is above '" + found.rank.below + "' in " + found.rank.column +
+         " in the thesis; here " +
+         (known ? std::string(found.holds() ? "too: " : "NOT: ") + fixed(found.above, 3) + " and " +
+                      fixed(found.below, 3)
+                : "one of them has no figure");
+}
+
+Chart chart_of(const ReproducedTable& table) {
+  Chart chart;
+  chart.title = table.made.title;
+  chart.x = {table.made.chart_axis, table.made.chart_unit};
+  chart.y = {"", table.made.columns.front().unit};
+  for (std::size_t r = 0; r < table.cells.size(); ++r) {
+    Series series;
+    series.name = table.made.rows[r].name;
+    for (std::size_t c = 0; c < table.cells[r].size(); ++c) {
+      series.x.push_back(std::stod(table.made.columns[c].name));
+      series.y.push_back(table.cells[r][c].mean);
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+}  // namespace
+
+std::vector<RecordSource> record_sources(const Reproduction& made) {
+  std::set<RecordSource> sources;
+  for (const ReproducedRow& row : made.rows)
+    for (const ReproducedColumn& column : made.columns)
+      sources.insert(source_of(made, row, column));
+  return {sources.begin(), sources.end()};
+}
+
+ReproducedTable reproduced_table(const Reproduction& made,
+                                 const std::map<RecordSource, Value::List>& records,
+                                 std::string caption) {
+  const Assembly assembly(made, records);
+  ReproducedTable table;
+  table.made = made;
+  table.caption = std::move(caption);
+  for (const ReproducedRow& row : made.rows) {
+    auto& cells = table.cells.emplace_back();
+    for (std::size_t c = 0; c < made.columns.size(); ++c) cells.push_back(assembly.cell(row, c));
+    table.below.emplace_back();
+    if (made.paired && row.name != made.paired->to)
+      table.below.back() = assembly.below(row, made.rows[place_of(made.rows, made.paired->to)],
+                                          made.columns[place_of(made.columns, made.paired->column)],
+                                          made.paired->by);
+  }
+  for (const ReproducedRank& rank : made.ranks) {
+    const std::size_t column = place_of(made.columns, rank.column);
+    table.ranks.push_back({rank, table.cells[place_of(made.rows, rank.above)][column].mean,
+                           table.cells[place_of(made.rows, rank.below)][column].mean});
+  }
+  return table;
+}
+
+std::vector<std::vector<std::string>> table_cells(const ReproducedTable& table) {
+  std::vector<std::vector<std::string>> rows(1 + table.cells.size());
+  rows[0].push_back("");
+  for (std::size_t r = 0; r < table.cells.size(); ++r)
+    rows[r + 1].push_back(table.made.rows[r].name);
+  for (std::size_t c = 0; c < table.made.columns.size(); ++c) {
+    const ReproducedColumn& column = table.made.columns[c];
+    const bool beside = any_thesis(table, c);
+    rows[0].push_back(title_of(column));
+    if (beside) rows[0].push_back("thesis");
+    for (std::size_t r = 0; r < table.cells.size(); ++r) {
+      const ReproducedCell& cell = table.cells[r][c];
+      rows[r + 1].push_back(shown(cell, column.digits));
+      if (beside) rows[r + 1].push_back(said_text(cell.thesis, column.digits));
+    }
+  }
+  if (table.made.paired) {
+    rows[0].push_back(below_title(table));
+    for (std::size_t r = 0; r < table.cells.size(); ++r)
+      rows[r + 1].push_back(table.below[r] ? shown(*table.below[r], paired_digits(table)) : "");
+  }
+  return rows;
+}
+
+std::string table_notes(const ReproducedTable& table) {
+  std::string text = table.caption + "\n";
+  for (const RankFound& rank : table.ranks) text += "* " + rank_sentence(rank) + ".\n";
+  if (!table.made.differs.empty()) text += "Why the figures differ from the thesis's:\n";
+  for (const std::string& sentence : table.made.differs) text += "* " + sentence + "\n";
+  return text;
+}
+
+std::string table_csv(const ReproducedTable& table) {
+  std::string out = "row,column,unit,ours,interval,count,thesis\n";
+  const auto line = [&](const std::string& row, const std::string& column, const std::string& unit,
+                        const ReproducedCell& cell) {
+    out += csv_text(row) + "," + csv_text(column) + "," + csv_text(unit) + "," +
+           csv_number(cell.mean) + "," + csv_number(cell.interval) + "," +
+           std::to_string(cell.count) + "," +
+           csv_text(cell.thesis.is_null() ? "" : said_text(cell.thesis, 6)) + "\n";
+  };
+  for (std::size_t r = 0; r < table.cells.size(); ++r) {
+    for (std::size_t c = 0; c < table.cells[r].size(); ++c)
+      line(table.made.rows[r].name, table.made.columns[c].name, table.made.columns[c].unit,
+           table.cells[r][c]);
+    if (table.below[r]) line(table.made.rows[r].name, below_title(table), "", *table.below[r]);
+  }
+  return out;
+}
+
+Value to_value(const ReproducedTable& table) {
+  Value value = Value::map();
+  value.set("table", table.made.name);
+  value.set("title", table.made.title);
+  value.set("thesis", table.made.thesis);
+  value.set("caption", table.caption);
+  Value& rows = value.set("rows", Value::list());
+  for (std::size_t r = 0; r < table.cells.size(); ++r) {
+    Value row = Value::map();
+    row.set("name", table.made.rows[r].name);
+    Value& cells = row.set("cells", Value::map());
+    for (std::size_t c = 0; c < table.cells[r].size(); ++c)
+      cells.set(table.made.columns[c].name, to_value(table.cells[r][c]));
+    if (table.below[r]) row.set("below", to_value(*table.below[r]));
+    rows.push_back(std::move(row));
+  }
+  Value& ranks = value.set("ranks", Value::list());
+  for (const RankFound& found : table.ranks) {
+    Value rank = Value::map();
+    rank.set("above", found.rank.above);
+    rank.set("below", found.rank.below);
+    rank.set("column", found.rank.column);
+    rank.set("holds", found.holds());
+    ranks.push_back(std::move(rank));
+  }
+  return value;
+}
+
+Report table_report(const ReproducedTable& table) {
+  Report report;
+  report.title = table.made.title;
+  report.subtitle = "Thesis: " + table.made.thesis;
+  Table shown_table;
+  shown_table.title = table.made.title;
+  const auto cells = table_cells(table);
+  for (const std::string& title : cells.front()) shown_table.columns.push_back({title, ""});
+  for (std::size_t r = 1; r < cells.size(); ++r) {
+    TableRow row;
+    for (const std::string& cell : cells[r]) row.cells.emplace_back(cell);
+    shown_table.rows.push_back(std::move(row));
+  }
+  Section section{"Table", {shown_table}};
+  if (!table.made.chart_axis.empty()) section.blocks.push_back(chart_of(table));
+  report.sections.push_back(std::move(section));
+  TextBlock notes;
+  notes.text = table_notes(table);
+  notes.preformatted = true;
+  report.sections.push_back({"Notes", {notes}});
+  return report;
+}
+
+}  // namespace lapwing

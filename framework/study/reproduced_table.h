@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A table of the thesis made again: the figures of studies, and the thesis's own beside them.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/export/report.h"
+#include "framework/study/reproduction.h"
+
+namespace lapwing {
+
+struct ReproducedCell {
+  double mean = 0;      // not a number: no record has it
+  double interval = 0;  // half the width of the 95 % interval; not a number below two records
+  std::size_t count = 0;
+  Value thesis;
+};
+
+struct RankFound {
+  ReproducedRank rank;
+  double above = 0, below = 0;  // our means
+  bool holds() const { return above > below; }
+};
+
+struct ReproducedTable {
+  Reproduction made;
+  std::string caption;                               // what was run, one paragraph
+  std::vector<std::vector<ReproducedCell>> cells;    // by row, by column
+  std::vector<std::optional<ReproducedCell>> below;  // by row, of `paired`: how far below that row
+  std::vector<RankFound> ranks;
+};
+
+// Where the records of a cell come from: a study, and the folder of them or "".
+using RecordSource = std::pair<std::string, std::string>;
+std::vector<RecordSource> record_sources(const Reproduction& made);
+
+// `records`: of all sources. A cell is the mean of the figure over the records of its study that
+// have what its row and its column ask for. InputError for a figure that is not a number.
+ReproducedTable reproduced_table(const Reproduction& made,
+                                 const std::map<RecordSource, Value::List>& records,
+                                 std::string caption);
+
+// Rows of cells for a terminal, with titles first.
+std::vector<std::vector<std::string>> table_cells(const ReproducedTable& table);
+// Captions, ranks and what differs, as lines of text.
+std::string table_notes(const ReproducedTable& table);
+std::string table_csv(const ReproducedTable& table);
+Value to_value(const ReproducedTable& table);
+Report table_report(const ReproducedTable& table);
+
+}  // namespace lapwing

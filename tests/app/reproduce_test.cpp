@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// lapwing reproduce, as a user runs it, with tables of the test's own.
+#include "framework/core/json.h"
+#include "tests/app/program_fixture.h"
+
+namespace lapwing {
+namespace {
+
+constexpr const char* kInstance = "5 1\n0 0 0\n2 0 0\n1 1 7\n1 -1 3\n";
+
+constexpr const char* kTable = R"(
+title: Tours of four nodes
+thesis: table 9.1
+studies:
+  nodes:
+    command: tour
+    arguments: ["{data:nodes.txt}"]
+    options: {solver: [greedy, local_search]}
+    quick: {solver: greedy}
+columns: [{name: score, figure: score}]
+rows:
+  - {name: Ours, where: {solver: local_search}, thesis: [9]}
+  - {name: Greedy, where: {solver: greedy}, thesis: [8]}
+ranks: [{above: Ours, below: Greedy, column: score}]
+differs: [Four nodes are no town.]
+)";
+
+class Reproduce : public CommandLine {
+ protected:
+  Reproduce() {
+    home_ = folder_ / "home";
+    fs::create_directories(home_ / "configs");
+    for (const char* name : {"scripts", "examples"})
+      fs::create_symlink(fs::path(LAPWING_SOURCE_DIR) / name, home_ / name);
+    write_table(kTable);
+    fs::create_directories(folder_ / "data");
+    write_file_atomically(folder_ / "data/nodes.txt", kInstance);
+    ::setenv("LAPWING_HOME", home_.c_str(), 1);
+  }
+  ~Reproduce() override { ::unsetenv("LAPWING_HOME"); }
+
+  void write_table(const std::string& text) {
+    write_file_atomically(home_ / "configs/reproduce/9.1.yaml", text);
+  }
+  Finished reproduce(std::vector<std::string> more) {
+    more.insert(more.begin(), "reproduce");
+    return run(more);
+  }
+
+  fs::path home_;
+};
+
+TEST_F(Reproduce, MakesATableBesideTheThesis) {
+  const Finished listed = reproduce({"list"});
+  EXPECT_EQ(listed.status, 0) << listed.err;
+  EXPECT_NE(listed.out.find("Tours of four nodes"), std::string::npos) << listed.out;
+  const Finished made = reproduce({"9.1", "--data", "data", "--json"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Value answer = from_json(made.out, "answer");
+  EXPECT_EQ(answer.at("status").as_text(), "ok");
+  const Value& cell = answer.at("rows").as_list().at(0).at("cells").at("score");
+  EXPECT_EQ(cell.at("ours").as_number(), 10) << "both nodes lie on a way of 4.83 m, of 5 m";
+  EXPECT_EQ(cell.at("thesis").as_number(), 9);
+  const std::string text = read_file(folder_ / "out/reproduce/9.1/table.txt");
+  EXPECT_NE(text.find("Four nodes are no town."), std::string::npos) << text;
+  for (const char* name : {"table.csv", "report.html", "nodes.json", "reproduction.json"})
+    EXPECT_TRUE(fs::exists(folder_ / "out/reproduce/9.1" / name)) << name;
+}
+
+TEST_F(Reproduce, AQuickOneSaysWhatItLeavesOut) {
+  const Finished made = reproduce({"9.1", "--data", "data", "--quick"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("Quick, nodes: solver \"greedy\" in place of [\"greedy\","),
+            std::string::npos)
+      << made.out;
+  EXPECT_NE(made.out.find("one of them has no figure"), std::string::npos) << made.out;
+  EXPECT_TRUE(fs::exists(folder_ / "out/reproduce/9.1_quick/table.txt"));
+}
+
+TEST_F(Reproduce, GoesOnWithWhatIsThereAndOnlyWithTheSame) {
+  ASSERT_EQ(reproduce({"9.1", "--data", "data", "--quiet"}).status, 0);
+  const fs::path folder = folder_ / "out/reproduce/9.1";
+  const std::string before = read_file(folder / "table.csv");
+  const Finished again = reproduce({"9.1", "--data", "data"});
+  EXPECT_EQ(again.status, 2);
+  EXPECT_NE(again.err.find("continue it with --resume"), std::string::npos) << again.err;
+  // What is done is not done again: its answer stands.
+  std::string answer = read_file(folder / "nodes.json");
+  const Finished resumed = reproduce({"9.1", "--data", "data", "--resume"});
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(read_file(folder / "table.csv"), before);
+  EXPECT_EQ(read_file(folder / "nodes.json"), answer);
+  // Another program, or another definition.
+  const std::string stated = read_file(folder / "reproduction.json");
+  std::string older = stated;
+  older.replace(older.find("lapwing "), 8, "lapwing 0.0.");
+  write_file_atomically(folder / "reproduction.json", older);
+  const Finished other = reproduce({"9.1", "--data", "data", "--resume"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("of another version (program is"), std::string::npos) << other.err;
+  write_file_atomically(folder / "reproduction.json", stated);
+  write_table(std::string(kTable) + "\n# changed\n");
+  EXPECT_NE(reproduce({"9.1", "--data", "data", "--resume"}).err.find("(definition is"),
+            std::string::npos);
+}
+
+TEST_F(Reproduce, RefusesWhatIsNotThere) {
+  const Finished unknown = reproduce({"9.2"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("no table or figure '9.2' (did you mean '9.1'?); there are 9.1"),
+            std::string::npos)
+      << unknown.err;
+  const Finished missing = reproduce({"9.1"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_NE(missing.err.find("table 9.1 needs data that are not there: nodes.txt"),
+            std::string::npos)
+      << missing.err;
+  EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing is begun";
+  write_file_atomically(folder_ / "data/nodes.txt", "no instance");
+  const Finished bad = reproduce({"9.1", "--data", "data", "--json"});
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(from_json(bad.out, "answer").at("error").as_text().find("study 'nodes' of table 9.1"),
+            std::string::npos)
+      << bad.out;
+  fs::create_directories(folder_ / "full");
+  fs::create_directories(folder_ / "full/9.1");
+  write_file_atomically(folder_ / "full/9.1/mine.txt", "mine");
+  const Finished full = reproduce({"9.1", "--data", "data", "-o", "full"});
+  EXPECT_EQ(full.status, 2);
+  EXPECT_NE(full.err.find("not of a reproduction"), std::string::npos) << full.err;
+}
+
+}  // namespace
+}  // namespace lapwing

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// PLY files as point clouds.
+#include <cstddef>
+
+#include "tests/fuzz/cloud_points.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  lapwing::read_all_points(data, size, ".ply");
+  return 0;
+}

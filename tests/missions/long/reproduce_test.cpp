@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every table of configs/reproduce, quickly: it is made, its cells are filled, and what must hold
+// of any sound plan holds.
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "framework/core/json.h"
+#include "framework/study/reproduction.h"
+#include "tests/missions/flown_film.h"
+
+namespace lapwing {
+namespace {
+
+const fs::path kTables = LAPWING_SOURCE_DIR "/configs/reproduce";
+
+class Reproduced : public Filming {
+ protected:
+  Value table(const std::string& name) {
+    const fs::path said = folder_ / "said.json";
+    const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing reproduce " + name +
+                             " --quick --json --quiet --resume -o '" + folder_.string() + "' > '" +
+                             said.string() + "'";
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 0) << line << "\n" << read_file(said);
+    return from_json(read_file(said), name);
+  }
+
+  // Ours, by the names of row and column; absent where there is none.
+  static std::map<std::pair<std::string, std::string>, double> cells(const Value& table) {
+    std::map<std::pair<std::string, std::string>, double> all;
+    for (const Value& row : table.at("rows").as_list())
+      for (const auto& [column, cell] : row.at("cells").as_map())
+        if (cell.at("ours").is_number())
+          all[{row.at("name").as_text(), column}] = cell.at("ours").as_number();
+    return all;
+  }
+
+  // Of a quick look at a scan: planned tours see more than circles, and a planner that takes a
+  // step at a time is not far above one that plans.
+  void expect_scan(const std::string& name, const std::string& circle) {
+    const auto found = cells(table(name));
+    const std::string best = "Default of Lapwing (local search)";
+    ASSERT_TRUE(found.contains({best, "F"})) << name;
+    EXPECT_GT(found.at({best, "F"}), found.at({circle, "F"})) << name;
+    EXPECT_GT(found.at({best, "F"}), 0.95 * found.at({"NextBestView / Greedy", "F"})) << name;
+    for (const auto& [place, value] : found) {
+      EXPECT_GE(value, 0) << name << " " << place.first;
+      EXPECT_LE(value, 100) << name << " " << place.first;
+    }
+  }
+
+  void expect_filled(const std::string& name) {
+    const Value made = table(name);
+    const Reproduction stated = read_reproduction(kTables, name);
+    EXPECT_GE(cells(made).size(), stated.rows.size()) << name;
+    EXPECT_NE(made.at("caption").as_text().find("Quick"), std::string::npos) << name;
+  }
+};
+
+TEST_F(Reproduced, CourtyardWithAndWithoutTheFirstFlightAndItsTimes) {
+  expect_scan("4.3", "Small circle (50 m radius)");
+  expect_scan("4.6", "Small circle (50 m radius)");
+  expect_filled("4.9");
+}
+
+TEST_F(Reproduced, StreetWithAndWithoutTheFirstFlight) {
+  expect_scan("4.4", "Small circle (50 m radius)");
+  expect_scan("4.7", "Small circle (50 m radius)");
+}
+
+TEST_F(Reproduced, GrasslandsWithAndWithoutTheFirstFlight) {
+  expect_scan("4.2", "Small circle (35 m radius)");
+  expect_scan("4.5", "Small circle (35 m radius)");
+}
+
+TEST_F(Reproduced, TheKeepAlone) {
+  const auto found = cells(table("4.1"));
+  EXPECT_GT(found.at({"Default of Lapwing (local search)", "F"}), 20);
+  EXPECT_GE(found.at({"Default of Lapwing (local search)", "F"}),
+            found.at({"Default of Lapwing (local search)", "F alone"}) - 1e-9);
+}
+
+TEST_F(Reproduced, MoreViewsOfAPatternShowNoLess) {
+  const auto found = cells(table("4.8"));
+  for (const auto& [few, many] :
+       {std::pair{"Small circle (25 m radius, 120 views)", "Small circle (25 m radius, 240 views)"},
+        {"Small meander (50 m x 50 m, 144 views)", "Small meander (50 m x 50 m, 256 views)"}})
+    EXPECT_GE(found.at({many, "recall"}), found.at({few, "recall"}) - 0.2) << few;
+}
+
+TEST_F(Reproduced, ScoreGrowsWithTheBudget) {
+  const auto found = cells(table("figure_4.12"));
+  for (const char* row :
+       {"Default of Lapwing (local search), small", "Default of Lapwing (local search), large"}) {
+    EXPECT_GT(found.at({row, "300"}), found.at({row, "100"})) << row;
+    EXPECT_GT(found.at({row, "600"}), found.at({row, "300"})) << row;
+  }
+  EXPECT_GE(found.at({"Default of Lapwing (local search), large", "300"}),
+            found.at({"Ours (recursive greedy), large", "300"}));
+}
+
+TEST_F(Reproduced, ExplorationItsTimesAndCurves) {
+  const auto found = cells(table("5.2"));
+  for (const char* world :
+       {"W2 (downtown)", "W1 (district)", "P (courtyard)", "S (towers)", "N (suburb)"}) {
+    EXPECT_NEAR(found.at({"Oracle", world}), 1, 1e-9) << world;
+    for (const char* utility : {"Frontier", "AverageEntropy", "ProximityCount",
+                                "Default of Lapwing (network and rays)"}) {
+      EXPECT_GT(found.at({utility, world}), 0) << utility << " " << world;
+      EXPECT_LT(found.at({utility, world}), 1.2) << utility << " " << world;
+    }
+  }
+  for (const auto& [place, seconds] : cells(table("5.3"))) EXPECT_GT(seconds, 0) << place.first;
+  const auto curves = cells(table("figure_5.10"));
+  EXPECT_GT(curves.at({"suburb 1, oracle", "25"}), curves.at({"suburb 1, oracle", "10"}));
+}
+
+TEST_F(Reproduced, RankCorrelationAndNoise) {
+  const auto rho = cells(table("5.1"));
+  EXPECT_EQ(rho.size(), 10u);
+  for (const auto& [place, value] : rho)
+    if (place.first == "Spearman's rho") {
+      EXPECT_GT(value, 0) << place.second;
+      EXPECT_LE(value, 1) << place.second;
+    }
+  const auto noise = cells(table("5.4"));
+  for (const char* level : {"low", "medium", "high", "very high", "stereo"})
+    EXPECT_GT(noise.at({"suburb", level}), 0.3) << level;
+}
+
+TEST_F(Reproduced, RealMeshes) {
+  if (!std::getenv("LAPWING_DATA")) GTEST_SKIP() << "needs recorded data: LAPWING_DATA";
+  const auto found = cells(table("5.5"));
+  EXPECT_NEAR(found.at({"Oracle", "outdoor"}), 1, 1e-9);
+  EXPECT_GT(found.at({"Ours", "outdoor"}), 0);
+  EXPECT_GT(found.at({"Ours", "indoor"}), 0);
+}
+
+}  // namespace
+}  // namespace lapwing

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/study/reproduction.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/core/json.h"
+#include "framework/study/reproduced_table.h"
+
+namespace lapwing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTable = R"(
+title: Two methods
+thesis: table 9.1
+studies:
+  hut:
+    command: evaluate scan
+    arguments: ["{examples}/hut.lua"]
+    options: {seeds: "1,2", method: [a, b], photos: true, resume: false}
+    quick: {seeds: 1, guard: 5}
+columns:
+  - {name: F, unit: "%", figure: with_first/f, scale: 100}
+  - {name: time, unit: s, figure: seconds, records: times}
+rows:
+  - {name: A, where: {method: a}, thesis: [50, "10-20"]}
+  - {name: B, where: {method: b}, thesis: [null, 3]}
+ranks: [{above: A, below: B, column: F}]
+paired: {to: A, column: F, by: seed}
+differs: [The scene is another one.]
+)";
+
+class Reproductions : public ::testing::Test {
+ protected:
+  Reproductions() {
+    fs::remove_all(folder_);
+    write("9.1", kTable);
+  }
+  ~Reproductions() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) {
+    write_file_atomically(folder_ / (name + ".yaml"), text);
+  }
+  std::string refusal(const std::string& name) const {
+    try {
+      read_reproduction(folder_, name);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  // What is said of the file with a part replaced.
+  std::string refusal(const std::string& part, const std::string& by) {
+    std::string text = kTable;
+    text.replace(text.find(part), part.size(), by);
+    write("9.2", text);
+    return refusal("9.2");
+  }
+
+  fs::path folder_ =
+      fs::temp_directory_path() / ("lapwing_reproduction_" + std::to_string(::getpid()));
+};
+
+TEST_F(Reproductions, StateCommandsAndCells) {
+  const Reproduction made = read_reproduction(folder_, "9.1");
+  EXPECT_EQ(made.owner, "9.1");
+  const std::vector<std::string> words{"{examples}/hut.lua", "--seeds", "1,2",     "--method", "a",
+                                       "--method",           "b",       "--photos"};
+  EXPECT_EQ(made.studies.front().words(false), words);
+  const std::vector<std::string> quick{
+      "{examples}/hut.lua", "--seeds", "1",        "--method", "a",
+      "--method",           "b",       "--photos", "--guard",  "5"};
+  EXPECT_EQ(made.studies.front().words(true), quick);
+}
+
+TEST_F(Reproductions, CellsAreMeansBesideTheThesis) {
+  const Reproduction made = read_reproduction(folder_, "9.1");
+  const Value::List rows = from_json(R"([{"method": "a", "seed": 1, "with_first": {"f": 0.5}},
+                    {"method": "a", "seed": 2, "with_first": {"f": 0.7}},
+                    {"method": "b", "seed": 2, "with_first": {"f": 0.4}},
+                    {"method": "b", "seed": 1, "with_first": {"f": 0.3}}])",
+                                     "rows")
+                               .as_list();
+  const Value::List times =
+      from_json(R"([{"method": "a", "seconds": 7}, {"method": "c", "seconds": 1}])", "times")
+          .as_list();
+  const ReproducedTable table =
+      reproduced_table(made, {{{"hut", ""}, rows}, {{"hut", "times"}, times}}, "caption");
+  EXPECT_NEAR(table.cells[0][0].mean, 60, 1e-9);
+  // Two values: Student's t of one degree of freedom, 12.7062, times the standard error.
+  EXPECT_NEAR(table.cells[0][0].interval, 12.7062 * 10, 1e-3);
+  EXPECT_EQ(table.cells[0][1].mean, 7);
+  EXPECT_TRUE(std::isnan(table.cells[1][1].mean)) << "there is no record of it";
+  ASSERT_TRUE(table.below[1]);
+  EXPECT_FALSE(table.below[0]);
+  EXPECT_NEAR(table.below[1]->mean, 25, 1e-9) << "seed by seed: 20 and 30";
+  EXPECT_NEAR(table.below[1]->interval, 12.7062 * 5, 1e-3);
+  ASSERT_EQ(table.ranks.size(), 1u);
+  EXPECT_TRUE(table.ranks[0].holds());
+  const auto cells = table_cells(table);
+  const std::vector<std::string> titles{"", "F, %", "thesis", "time, s", "thesis", "below A"};
+  EXPECT_EQ(cells[0], titles);
+  EXPECT_EQ(cells[1][2], "50.00");
+  EXPECT_EQ(cells[1][4], "10-20");
+  EXPECT_EQ(cells[2][2], "-");
+  EXPECT_NE(table_notes(table).find("here too: 60.000 and 35.000"), std::string::npos)
+      << table_notes(table);
+  EXPECT_NE(table_csv(table).find("\nA,F,%,60,"), std::string::npos) << table_csv(table);
+  EXPECT_EQ(to_value(table).at("rows").as_list().size(), 2u);
+}
+
+TEST_F(Reproductions, MeansBringTheirOwnIntervals) {
+  write("9.3", R"(
+title: t
+thesis: table 9.3
+studies: {s: {command: evaluate explore}}
+columns: [{name: "20", figure: observed/2, interval: half}]
+rows: [{name: A, where: {world: w}}]
+chart: {axis: images}
+)");
+  const Value::List rows =
+      from_json(R"([{"world": "w", "observed": [4, 6], "half": 0.5}])", "rows").as_list();
+  const ReproducedTable table =
+      reproduced_table(read_reproduction(folder_, "9.3"), {{{"s", ""}, rows}}, "");
+  EXPECT_EQ(table.cells[0][0].mean, 6) << "entries of lists count from 1";
+  EXPECT_EQ(table.cells[0][0].interval, 0.5);
+  EXPECT_EQ(table_cells(table)[0].size(), 2u) << "the thesis has no number";
+}
+
+TEST_F(Reproductions, ShareStudiesOfOneOther) {
+  const std::string alone =
+      "title: t\nthesis: table 9.4\nfrom: \"9.1\"\ncolumns: [{name: F, figure: alone/f}]\n"
+      "rows: [{name: A, where: {method: a}}]\n";
+  write("9.4", alone);
+  const Reproduction made = read_reproduction(folder_, "9.4");
+  EXPECT_EQ(made.owner, "9.1");
+  EXPECT_EQ(made.studies.front().name, "hut");
+  write("9.5", "title: t\nthesis: table 9.5\nfrom: \"9.4\"\ncolumns: []\nrows: []\n");
+  EXPECT_NE(refusal("9.5").find("takes its studies from '9.1'"), std::string::npos);
+}
+
+TEST_F(Reproductions, RefuseWhatIsUnknown) {
+  EXPECT_NE(refusal("9.11").find("did you mean '9.1'?"), std::string::npos) << refusal("9.11");
+  EXPECT_NE(refusal("").find("there are 9.1"), std::string::npos) << refusal("");
+  EXPECT_NE(refusal("../9.1").find("no table or figure"), std::string::npos);
+  EXPECT_NE(refusal("quick:", "quik:").find("did you mean 'quick'?"), std::string::npos);
+  EXPECT_NE(refusal("thesis: [50, \"10-20\"]", "thesis: [50]").find("1 figures for 2 columns"),
+            std::string::npos);
+  EXPECT_NE(refusal("below: B", "below: C").find("no row 'C'"), std::string::npos);
+  EXPECT_NE(refusal("name: B", "name: A").find("two rows 'A'"), std::string::npos);
+  EXPECT_NE(refusal("command: evaluate scan\n", "").find("9.2.yaml"), std::string::npos);
+  EXPECT_NE(refusal("figure: seconds, ", "").find("`figure`"), std::string::npos);
+  EXPECT_NE(refusal("column: F, by", "column: G, by").find("no column 'G'"), std::string::npos);
+}
+
+TEST_F(Reproductions, AFigureThatIsNoNumberIsNamed) {
+  const Reproduction made = read_reproduction(folder_, "9.1");
+  const Value::List rows =
+      from_json(R"([{"method": "a", "with_first": {"f": "much"}}])", "rows").as_list();
+  try {
+    reproduced_table(made, {{{"hut", ""}, rows}, {{"hut", "times"}, {}}}, "");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'with_first/f' is a text"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(ShippedReproductions, AreReadAndSayWhyTheyDiffer) {
+  const fs::path folder = LAPWING_SOURCE_DIR "/configs/reproduce";
+  const std::vector<std::string> names = reproduction_names(folder);
+  EXPECT_GE(names.size(), 16u);
+  EXPECT_EQ(names.front(), "4.1");
+  for (const std::string& name : names) {
+    const Reproduction made = read_reproduction(folder, name);
+    EXPECT_FALSE(made.differs.empty()) << name;
+    EXPECT_FALSE(made.rows.empty()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace lapwing
