@@ -221,7 +221,7 @@ ItemList items_of(std::vector<SweepRun>& runs, const fs::path& out,
   for (const SweepRun& run : runs)
     list.items.push_back({(fs::path(run.name) / kRunFile).string(), 0, {}});
   list.is_made = [&](std::size_t item) { return has_run(runs[item], mark); };
-  list.make = [&](std::size_t item, const void*) {
+  list.make = [&, words](std::size_t item, const void*) {
     do_run(runs[item], words(runs[item]), mark, cancellation);
   };
   list.done = [&, made = std::size_t{0}](std::size_t) mutable {

@@ -192,8 +192,9 @@ class LongItems : public MpiItems {
   }
   void all_are_whole(const std::string& out, const std::map<std::string, std::string>& whole) {
     for (const auto& [name, text] : bytes(out))
-      if (name.starts_with("episodes/") && name.find(".tmp-") == name.npos)
+      if (name.starts_with("episodes/") && name.find(".tmp-") == name.npos) {
         EXPECT_EQ(text, whole.at(name)) << name;
+      }
   }
 };
 
