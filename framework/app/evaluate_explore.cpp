@@ -341,17 +341,19 @@ ExitStatus evaluate(const ExploreEvaluation& request, const Invocation& invocati
     require_same_starts(request, evaluation.stated, evaluation.worlds, evaluation.utilities);
   std::optional<FolderClaim> claim;
   Value settings;
+  bool stated = false;  // by this process, in the folder
   const auto open = [&] {
-    settings = settings_for(request, evaluation.stated);
     claim.emplace(request.folder, claim_for(request.items));
-    if (!request.items.gather && !request.items.schedule)
-      write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
+    settings = settings_for(request, evaluation.stated);
+    if (request.items.gather || request.items.schedule) return;
+    write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
+    stated = true;
   };
   Trials trials(request, evaluation, registry, invocation);
   try {
     if (!run.make(trials.list(), evaluation.stated, open)) return print_answer(run, invocation);
   } catch (...) {
-    if (run.leads() && claim && !request.items.continues()) forget_settings(request.folder);
+    if (stated && !request.items.continues()) forget_settings(request.folder);
     throw;
   }
   std::vector<std::string> worlds;
