@@ -59,6 +59,13 @@ std::vector<std::string> own_words() {
   return words;
 }
 
+void require_consistent(const ItemOptions& options) {
+  if (options.shard && options.gather)
+    throw InputError("--shard and --gather: a shard makes items, and --gather makes none");
+  if (options.schedule && (options.shard || options.gather))
+    throw InputError("--schedule makes no items: give it without --shard and --gather");
+}
+
 // Starts the program again with the environment that limits the libraries, which read it when they
 // are loaded. Returns where that has been done.
 void become_portable() {
@@ -114,12 +121,15 @@ void add_items(CLI::App& command, ItemOptions& options, const std::string& resum
 ExitStatus run_items(const ItemOptions& options, const Invocation& invocation,
                      const Registry& registry,
                      const std::function<ExitStatus(ItemRun&, const CancellationToken&)>& body) {
-  if (options.shard && options.gather)
-    throw InputError("--shard and --gather: a shard makes items, and --gather makes none");
-  if (options.schedule && (options.shard || options.gather))
-    throw InputError("--schedule makes no items: give it without --shard and --gather");
-  if (options.portable) become_portable();
-  const std::unique_ptr<Executor> executor = executor_for(options, registry);
+  std::unique_ptr<Executor> executor;
+  try {
+    require_consistent(options);
+    if (options.portable) become_portable();
+    executor = executor_for(options, registry);
+  } catch (const InputError&) {
+    if (launched_rank() > 0) return ExitStatus::done;  // process 0 says it
+    throw;
+  }
   const Interruption interruption;
   const auto say = [&](const std::string& line) {
     if (!invocation.quiet) std::cerr << "lapwing: " << visible_text(line) << std::endl;
