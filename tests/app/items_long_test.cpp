@@ -281,14 +281,13 @@ TEST_F(LongItems, ProcessesAreAsFastAsThreads) {
     return best;
   };
   const std::string program = std::string(LAPWING_BUILD_DIR) + "/bin/executor_pace ";
-  const auto threads = pace(program + "threads 200 20 2");
-  const auto processes = pace(mpirun(2) + program + "mpi 200 20 1");
-  EXPECT_GE(threads.first / processes.first, 0.95)
-      << threads.first << " s against " << processes.first << " s";
-  EXPECT_LE(threads.second, 2);
-  EXPECT_LE(processes.second, 2);
+  const double threads = pace(program + "threads 40 100 2").first;
+  const double processes = pace(mpirun(2) + program + "mpi 40 100 1").first;
+  EXPECT_GE(threads / processes, 0.95) << threads << " s against " << processes << " s";
+  EXPECT_LE(pace(program + "threads 1000 2 2").second, 2);
+  EXPECT_LE(pace(mpirun(2) + program + "mpi 1000 2 1").second, 2);
   if (std::thread::hardware_concurrency() >= 4) {
-    EXPECT_LE(pace(mpirun(4) + program + "mpi 400 20 1").second, 2);
+    EXPECT_LE(pace(mpirun(4) + program + "mpi 2000 2 1").second, 2);
   }
 }
 
