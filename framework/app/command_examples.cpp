@@ -38,7 +38,8 @@ const std::vector<CommandExamples>& command_examples() {
       {"lapwing sweep",
        {"lapwing sweep shot.lua --vary weights.smoothness=0.1,1,10 --vary step=0.1,0.2 --jobs 4",
         "lapwing sweep shot.lua --vary \"start_velocity=[0, 0, 0],[1, 0, 0]\" -o out/starts",
-        "lapwing sweep shot.lua --vary weights.smoothness=0.1,1,10 --resume"},
+        "lapwing sweep shot.lua --vary weights.smoothness=0.1,1,10 --resume",
+        "mpirun -n 4 lapwing sweep shot.lua --vary weights.smoothness=0.1,1,10"},
        "the worst of the runs: 0 all certified; 1 one is infeasible or not certified; 2 bad input; "
        "3 internal error; 130 interrupted: --resume continues"},
       {"lapwing studio",
