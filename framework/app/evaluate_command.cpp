@@ -78,7 +78,12 @@ ScanCase case_of(const fs::path& script, std::uint64_t seed, const Invocation& g
     for (const Viewpoint& view : work.prior->views) scan.first_flight.push_back(view.camera());
     scan.first_seconds = seconds_of_first_flight(scan.first_flight);
     scan.camera = work.visible->settings().pinhole;
-    scan.region = work.visible->settings().region;
+    const InterestRegion& region = work.visible->settings().region;
+    if (!region.is_box())
+      throw InputError(script.string() +
+                       ": evaluate scan compares methods in a box: state region = {lower, upper} "
+                       "in place of regions");
+    scan.region = region.bounds();
     scan.pattern_height = height_of_patterns(scan);
     const SightSettings& sight = work.visible->settings();
     scan.usable_range = std::min(sight.range, sight.usable_range);

@@ -9,6 +9,8 @@
 
 #include "framework/core/png.h"
 #include "framework/export/map_pictures.h"
+#include "framework/export/region_drawing.h"
+#include "framework/export/surroundings.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/geometry/mesh_builder.h"
 #include "framework/picture/mesh_picture.h"
@@ -69,7 +71,14 @@ Section known_section(const ScanRecord& record, const Eigen::AlignedBox3d& regio
   return section;
 }
 
-Section candidates_section(const ScanRecord& record) {
+// What the flight was asked to see, and what it keeps.
+void add_site(const Plan& plan, Drawing& drawing) {
+  add_region(plan.task.scan->region, drawing);
+  add_surroundings(plan, {}, drawing);
+  if (const auto& pilot = plan.environment.pilot) drawing.points.push_back({"pilot", pilot->eye});
+}
+
+Section candidates_section(const Plan& plan, const ScanRecord& record) {
   Polyline motions{"motions", {}, {}, {}}, first{"first flight", {}, {}, {}};
   const std::size_t every = record.motions.size() / kMostMotions + 1;
   for (std::size_t k = 0; k < record.motions.size(); k += every) {
@@ -82,6 +91,7 @@ Section candidates_section(const ScanRecord& record) {
   Drawing drawing;
   drawing.lines.push_back(std::move(motions));
   if (first.points.size() > 1) drawing.lines.push_back(std::move(first));
+  add_site(plan, drawing);
   std::string title = std::to_string(record.candidates.size()) + " candidates and " +
                       (every > 1 ? "one in " + std::to_string(every) + " of the " : "the ") +
                       std::to_string(record.motions.size()) + " motions between them";
@@ -128,7 +138,7 @@ MeshScene colored_voxels(const ScanRecord& record, const std::vector<VoxelShare>
     const Vector3d middle = grid.center(voxels[k].voxel);
     builder.box(middle - half, middle + half);
   }
-  add_camera(record.shown, scan.camera, 0.12 * scan.region.diagonal().norm(), builder);
+  add_camera(record.shown, scan.camera, 0.12 * scan.region.bounds().diagonal().norm(), builder);
   TriangleMesh mesh = builder.take();
   append(record.prior->mesh(), mesh);
   mesh.colors.resize(mesh.triangles.size(), kPlainSurface);
@@ -139,7 +149,7 @@ Section view_section(const ScanRecord& record, const ScanTask& scan) {
   const double yaw = record.shown.yaw + 0.7;
   return {
       "One view",
-      {overview_image(colored_voxels(record, record.told, scan), scan.region, yaw,
+      {overview_image(colored_voxels(record, record.told, scan), scan.region.bounds(), yaw,
                       "The view of the tour with the most information (red), and the voxels "
                       "that its rays meet: from none (violet) to a third of the full information "
                       "about a voxel (yellow); grey is the prior mesh")}};
@@ -282,8 +292,10 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   words.text = areas_in_words(record);
   if (record.truth) words.text += "\n\n" + truth_in_words(record);
   return {"Coverage",
-          {std::move(words), std::move(facts), overview_image(scene, scan.region, 1.05, caption),
-           overview_image(scene, scan.region, 1.05 + 3.14159, "The same from the other side")}};
+          {std::move(words), std::move(facts),
+           overview_image(scene, scan.region.bounds(), 1.05, caption),
+           overview_image(scene, scan.region.bounds(), 1.05 + 3.14159,
+                          "The same from the other side")}};
 }
 
 Section tour_section(const Plan& plan, const ScanRecord& record) {
@@ -298,7 +310,7 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
     path.values.push_back(s.time);
   }
   drawing.lines.push_back(std::move(path));
-  const double length = 0.02 * scan.region.diagonal().norm();
+  const double length = 0.02 * scan.region.bounds().diagonal().norm();
   for (const ViewKind kind : {ViewKind::planned, ViewKind::matching}) {
     Polyline views{kind == ViewKind::planned ? "planned views" : "matching views", {}, {}, {}};
     for (const PlannedView& view : scan.views) {
@@ -310,6 +322,7 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
     }
     if (!views.points.empty()) drawing.lines.push_back(std::move(views));
   }
+  add_site(plan, drawing);
   const auto planned = std::count_if(scan.views.begin(), scan.views.end(), [](const auto& view) {
     return view.kind == ViewKind::planned;
   });
@@ -394,7 +407,7 @@ Value areas_as_value(const ScanRecord& record) {
 
 std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record) {
   const ScanTask& scan = *plan.task.scan;
-  return {known_section(record, scan.region), candidates_section(record),
+  return {known_section(record, scan.region.bounds()), candidates_section(plan, record),
           view_section(record, scan), tour_section(plan, record), coverage_section(record, scan)};
 }
 

@@ -334,6 +334,10 @@ int scan_plan_of_run(lua_State* state) {
     };
     keep("prior", "mesh", "prior.ply", ply_bytes(prior.mesh->mesh()));
     keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *prior.mapping.map));
+    for (const Obstacle& zone : work.rules->zones.obstacles)
+      plan.environment.obstacles.push_back(zone);
+    plan.environment.pilot = work.rules->pilot;
+    plan.environment.accuracy = work.rules->accuracy;
     plan.geodetic_origin = run.origin;
     plan.home = run.home;
     plan.configuration = run.configuration;

@@ -15,11 +15,13 @@ local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
+local polygons = require "mission.scan_polygons"
 local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
 local usable = require "mission.scan_usable"
 local words = require "mission.scan_words"
+local zones = require "mission.scan_zones"
 local DECLARATIONS = require "mission.scan_options"
 
 local M = {}
@@ -76,11 +78,13 @@ local function graph_of(run, known, vehicle, starts, finish)
   local region = space.region_of(run)
   local gimbal = vehicle.gimbal
   local c = o.candidates
+  local room = space.room(run, starts)
   return run:scan_graph {
-    prior = known, vehicle = vehicle, region = region,
-    allowed = space.room(run, starts),
-    starts = first.few(starts, finish, c.most), needed = finish,
-    fixed = o.start ~= nil or o.exploration.images > 0, body = o.body, mesh_room = o.mesh_room,
+    prior = known, vehicle = vehicle, region = region, rules = zones.rules(run), allowed = room,
+    starts = first.few(starts, finish, c.most),
+    needed = (o.start or o.finish or o.exploration.images > 0) and finish or 0,
+    fixed = o.start ~= nil or o.exploration.images > 0, body = zones.body(run),
+    mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
       step_growth = c.step_growth,
@@ -152,10 +156,11 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     notes[#notes + 1] = little
     local apart = words.cut_off(graph)
     notes[#notes + 1] = apart
+    zones.add_notes(run, graph, notes)
     local legs = flown(run, vehicle, tour, notes, begin)
     begin("flight")
     local plan = run:scan_plan {
-      tour = tour, legs = legs, margin = o.margin, budget = asked,
+      tour = tour, legs = legs, margin = zones.margin(run), budget = asked,
       closed_loop_required = o.closed_loop == "required",
       notes = notes, explored = explored,
       figures = words.figures(graph, tour, asked, evaluations, explored),
@@ -208,12 +213,14 @@ local function planned(run)
   return plan
 end
 
-local function mission(given) return mission_of("scan", DECLARATIONS, given, planned) end
+local function mission(given)
+  return mission_of("scan", DECLARATIONS, polygons.written_out(given), planned)
+end
 
 -- Likewise of a surveyor's data, which are known in place of a first flight.
 local function mission_with(source)
   return function(given)
-    return mission_of("scan", DECLARATIONS, given, function(run)
+    return mission_of("scan", DECLARATIONS, polygons.written_out(given), function(run)
       site.expect(run, source)
       return planned(run)
     end)

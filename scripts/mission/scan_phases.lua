@@ -34,7 +34,7 @@ function M.expect(run, seconds, in_passing)
   if exploration.wanted(run) then
     add("exploration", EXPLORE * o.exploration.images)
   elseif site.wanted(run) then
-    add("prior mesh", SURVEYED * site.points(run, space.resolution(run)))
+    add("prior mesh", SURVEYED * site.points(run))
   elseif space.surface_of(run) and not (space.prior_files(run) and #o.flights == 0) then
     local images = 0
     for _, flight in ipairs(space.flights_of(run)) do

@@ -4,6 +4,8 @@
 local exploration = require "mission.scan_exploration"
 local named_scene = require "mission.named_scene"
 local patterns = require "mission.scan_patterns"
+local regions = require "mission.scan_regions"
+local resolution = require "mission.scan_resolution"
 local site = require "mission.scan_site"
 
 local M = {}
@@ -34,34 +36,7 @@ function M.surface_of(run)
   return surface
 end
 
-function M.prior_files(run)
-  local files = run.options.prior
-  if not files.map and not files.mesh then return nil end
-  if not (files.map and files.mesh) then
-    run:fail("prior", "expected both a map and a mesh of an earlier flight")
-  end
-  return files
-end
-
-local resolutions = setmetatable({}, { __mode = "k" })  -- of runs
-
--- The edge of the map's voxels: files of an earlier flight have theirs, whatever a quick look asks.
-function M.resolution(run)
-  if resolutions[run] then return resolutions[run] end
-  local o, files = run.options, M.prior_files(run)
-  local edge = o.resolution or exploration.wanted(run) and exploration.RESOLUTION
-               or o.effort.resolution
-  if files then
-    edge = run:map_resolution(files.map)
-    if o.resolution and math.abs(o.resolution - edge) > 1e-9 * edge then
-      run:fail("resolution", string.format(
-        "%.6g m, and the prior's map '%s' has voxels of %.6g m: leave resolution out",
-        o.resolution, files.map, edge))
-    end
-  end
-  resolutions[run] = edge
-  return edge
-end
+M.prior_files, M.resolution = resolution.prior_files, resolution.of
 
 -- How far the map and the reconstruction may move a surface up or down.
 local function moved(run) return M.resolution(run) + run.options.surface.cell end
@@ -77,12 +52,12 @@ local function around(run, bounds)
   return { lower = lower, upper = upper }
 end
 
--- The box of interest: as given, or the scene's own, or round the mesh.
+-- The box of interest: as given, round the regions, the scene's own, or round the mesh.
 function M.region_of(run)
-  local given = run.options.region
+  local given = regions.of(run) or run.options.region
   if given.lower and given.upper then return given end
   if given.lower or given.upper then run:fail("region", "expected both lower and upper") end
-  if site.wanted(run) then return site.box(run, M.resolution(run), moved(run)) end
+  if site.wanted(run) then return site.box(run, moved(run)) end
   local surface = M.surface_of(run)  -- there is one, or first.check has refused
   return run.options.input and around(run, surface.region) or surface.region
 end
@@ -90,7 +65,7 @@ end
 -- What the lowest flight is measured from: the region's lower corner as given, or a mesh's lowest.
 local function lowest(run)
   local o, region = run.options, M.region_of(run)
-  if o.input and not o.region.lower then return region.lower[3] + moved(run) end
+  if o.input and not o.region.lower and #o.regions == 0 then return region.lower[3] + moved(run) end
   return region.lower[3]
 end
 
