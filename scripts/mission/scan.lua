@@ -13,6 +13,7 @@
 local mission_of = require "mission.mission_of"
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
+local images = require "mission.scan_images"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
 local site = require "mission.scan_site"
@@ -208,31 +209,40 @@ local function planned(run)
   return plan
 end
 
-local function mission(given) return mission_of("scan", DECLARATIONS, given, planned) end
-
--- Likewise of a surveyor's data, which are known in place of a first flight.
-local function mission_with(source)
+-- A function that makes scans: `source(run)` says first what takes the place of a simulated first
+-- flight.
+local function made(source, declarations)
   return function(given)
-    return mission_of("scan", DECLARATIONS, given, function(run)
-      site.expect(run, source)
+    return mission_of("scan", declarations or DECLARATIONS, given, function(run)
+      if source then source(run) end
       return planned(run)
     end)
   end
 end
 
+local function surveyed(kind) return made(function(run) site.expect(run, kind) end) end
+
+-- Images of a real first flight, which `reader(run)` reads; `own`: the option of their kind.
+local function photographed(own, reader)
+  return made(function(run) images.expect(run, reader) end, images.declarations(DECLARATIONS, own))
+end
+
 -- A scene of scripts/scene, a mesh file of the user (`--set input=PATH`), or files of a real flight
 -- (`prior`).
 ---@type fun(given: lapwing.scan.of_scene): lapwing.mission
-M.of_scene = mission
+M.of_scene = made()
 ---@type fun(given: lapwing.scan.of_mesh): lapwing.mission
-M.of_mesh = mission
+M.of_mesh = made()
 ---@type fun(given: lapwing.scan.of_prior): lapwing.mission
-M.of_prior = mission
+M.of_prior = made()
 -- A point cloud (`--set input=PATH`).
 ---@type fun(given: lapwing.scan.of_cloud): lapwing.mission
-M.of_cloud = mission_with("cloud")
+M.of_cloud = surveyed("cloud")
 -- A raster of heights (`--set input=PATH`).
 ---@type fun(given: lapwing.scan.of_terrain): lapwing.mission
-M.of_terrain = mission_with("terrain")
+M.of_terrain = surveyed("terrain")
+-- Depth images with poses (`--set folder=PATH`).
+---@type fun(given: lapwing.scan.of_images): lapwing.mission
+M.of_images = photographed(images.DEPTH, images.depth_images)
 
 return M

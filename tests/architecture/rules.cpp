@@ -20,10 +20,11 @@ using Names = std::set<std::string>;
 // What a room may include besides itself and core.
 const std::map<std::string, Names>& rooms() {
   static const Names kAllButApp{
-      "geometry",    "trajectory", "vehicle",       "map",     "path",   "problem",
-      "solve",       "view",       "explore",       "verify",  "export", "config",
-      "conformance", "plugin",     "mission",       "surface", "shape",  "picture",
-      "symbolic",    "flight_log", "flight_review", "mavlink", "fly",    "survey"};
+      "geometry",      "trajectory", "vehicle",     "map",      "path",
+      "problem",       "solve",      "view",        "explore",  "verify",
+      "export",        "config",     "conformance", "plugin",   "mission",
+      "surface",       "shape",      "picture",     "symbolic", "flight_log",
+      "flight_review", "mavlink",    "fly",         "survey",   "photogrammetry"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -38,6 +39,7 @@ const std::map<std::string, Names>& rooms() {
       {"surface", {"geometry"}},
       {"picture", {"geometry"}},
       {"survey", {"geometry"}},
+      {"photogrammetry", {"geometry", "surface"}},
       {"shape", {"geometry", "map"}},
       {"trajectory", {"geometry", "shape"}},
       {"vehicle", {"geometry", "trajectory"}},
