@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Images of a real first flight: what scan missions ask of `run` and of their prior.
+#include <algorithm>
 #include <cmath>
 
 #include <lua.hpp>
@@ -81,6 +82,26 @@ Similarity turned_upright(const DepthSource& source, const Parameters& given, in
   return turn;
 }
 
+void look_over(FlightImages& images, int stride, const MissionRun& run) {
+  try {
+    images.overview =
+        overview_of(*images.source, stride, run.settings.threads, run.settings.cancellation);
+  } catch (const InputError& error) {
+    throw InputError("'" + images.name + "': " + error.what());
+  }
+}
+
+// run:read_colmap{folder =, ...}
+int read_colmap(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, colmap_table(), "read_colmap");
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  auto images = std::make_shared<FlightImages>(read_colmap_images(given, run));
+  look_over(*images, images->dense ? kOverviewStride : 1, run);
+  new_object(state, kFlightImagesType, FlightImagesObject{std::move(images)});
+  return 1;
+}
+
 // run:read_depth_images{folder =, ...}
 int read_depth_images(lua_State* state) {
   MissionRun& run = run_of(state);
@@ -94,12 +115,7 @@ int read_depth_images(lua_State* state) {
   images->to_world =
       turned_upright(*read, given, threads, run.settings.cancellation, images->notes);
   images->source = placed(read, images->to_world);
-  try {
-    images->overview =
-        overview_of(*images->source, kOverviewStride, threads, run.settings.cancellation);
-  } catch (const InputError& error) {
-    throw InputError("'" + images->name + "': " + error.what());
-  }
+  look_over(*images, kOverviewStride, run);
   if (images->overview.empty > 0)
     images->notes.push_back(std::to_string(images->overview.empty) + " of " +
                             std::to_string(images->overview.images) +
@@ -175,6 +191,15 @@ void cut(DepthImage& image, double range) {
     if (std::isfinite(depth) && static_cast<double>(depth) > range) depth = 0;
 }
 
+// m, between the lines of sight to the points of an image, at a depth: were they spread evenly.
+double gap_of_points(const DepthImage& image, double depth) {
+  const auto points = static_cast<double>(
+      std::count_if(image.depth.begin(), image.depth.end(), [](float d) { return d > 0; }));
+  const Pinhole& p = image.pinhole;
+  const double area = p.width / p.focal_x * p.height / p.focal_y * depth * depth;
+  return std::sqrt(2 * area / std::max(points, 1.0));
+}
+
 // prior:take_images{images =, range =}: depth images of a real flight.
 int take_images(lua_State* state) {
   MissionRun& run = run_of(state);
@@ -188,6 +213,7 @@ int take_images(lua_State* state) {
   const Sandbox::ClockPause pause(Sandbox::of(state));
   prior.mapping.map->set_threads(run.settings.threads);
   const std::size_t count = images.source->size();
+  double gap = 0;  // m, between the lines of sight to points
   for (std::size_t i = 0; i < count; ++i) {
     if (run.settings.cancellation && run.settings.cancellation->cancelled()) throw Cancelled();
     if (run.settings.progress)
@@ -199,8 +225,12 @@ int take_images(lua_State* state) {
     prior.mapping.map->integrate(image);
     prior.fusion->add(image);
     prior.views.push_back(view_of(image.camera));
-    prior.rays.images.push_back({image.camera, image.image.pinhole, range});
+    if (images.dense)
+      prior.rays.images.push_back({image.camera, image.image.pinhole, range});
+    else
+      gap += gap_of_points(image.image, images.overview.median_depth) / static_cast<double>(count);
   }
+  if (!images.dense) prior.rays.elsewhere = gap;
   prior.earlier.insert(prior.earlier.end(), images.points.begin(), images.points.end());
   prior.mapping.source = std::to_string(count) + " depth images of '" + images.name + "'";
   return 0;
@@ -246,7 +276,9 @@ void open_photo_library(lua_State* state) {
 std::span<const Binding> photo_methods_of_run() {
   static const Binding methods[] = {
       {"read_depth_images", &guarded<read_depth_images>, "(images: @): lapwing.flight_images",
-       "depth images of a real flight with their poses, from a folder", &depth_images_table}};
+       "depth images of a real flight with their poses, from a folder", &depth_images_table},
+      {"read_colmap", &guarded<read_colmap>, "(model: @): lapwing.flight_images",
+       "a COLMAP model in metres, with its depth maps or its points", &colmap_table}};
   return methods;
 }
 

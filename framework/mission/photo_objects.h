@@ -20,7 +20,12 @@ struct FlightImages {
   Similarity to_world;                        // from the frame of the files
   ImageOverview overview;                     // in the world's frame
   std::vector<std::string> notes;             // sentences for the user
+  bool dense = true;  // most pixels of the depth images measure; false: they are of points
 };
+
+// The parameters of run:read_colmap, and what it reads; the overview is left to the caller.
+ParameterTable colmap_table();
+FlightImages read_colmap_images(const Parameters& given, const MissionRun& run);
 
 struct FlightImagesObject {
   std::shared_ptr<const FlightImages> images;

@@ -209,8 +209,7 @@ local function planned(run)
   return plan
 end
 
--- A function that makes scans: `source(run)` says first what takes the place of a simulated first
--- flight.
+-- A function that makes scans. `source(run)` states first what replaces a simulated first flight.
 local function made(source, declarations)
   return function(given)
     return mission_of("scan", declarations or DECLARATIONS, given, function(run)
@@ -221,7 +220,6 @@ local function made(source, declarations)
 end
 
 local function surveyed(kind) return made(function(run) site.expect(run, kind) end) end
-
 -- Images of a real first flight, which `reader(run)` reads; `own`: the option of their kind.
 local function photographed(own, reader)
   return made(function(run) images.expect(run, reader) end, images.declarations(DECLARATIONS, own))
@@ -244,5 +242,8 @@ M.of_terrain = surveyed("terrain")
 -- Depth images with poses (`--set folder=PATH`).
 ---@type fun(given: lapwing.scan.of_images): lapwing.mission
 M.of_images = photographed(images.DEPTH, images.depth_images)
+-- A COLMAP model (`--set folder=PATH`).
+---@type fun(given: lapwing.scan.of_colmap): lapwing.mission
+M.of_colmap = photographed(images.COLMAP, images.colmap)
 
 return M

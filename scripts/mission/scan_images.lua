@@ -13,7 +13,8 @@ local FITS = 3                -- bodies side by side that the shorter side of wh
 -- Of a folder of depth images.
 M.FOLDER = { name = "folder", type = "text",
              summary = "folder of the images, in place of a first flight" }
-M.DEPTH = { name = "images", type = "table", summary = "layout of a folder of depth images", table = {
+M.DEPTH = { name = "images", type = "table", summary = "layout of a folder of depth images",
+            table = {
   { name = "depth", type = "text", default = "*.depth.png",
     summary = "names of the depth images, 16-bit PNG; 0 and 65535 are no measurement" },
   { name = "pose", type = "text", default = "*.pose.txt",
@@ -29,6 +30,25 @@ M.DEPTH = { name = "images", type = "table", summary = "layout of a folder of de
   { name = "up", type = "numbers", size = 3,
     summary = "direction in the world of the poses that points up; absent: z if cameras and level "
     .. "surfaces agree with it within 10 degrees, else their direction" } } }
+
+-- Of a COLMAP model.
+M.COLMAP = { name = "colmap", type = "table", summary = "scale and place of a COLMAP model: one of "
+             .. "photos, distances and scale", table = {
+  { name = "photos", type = "text",
+    summary = "folder of the photographs, with GPS positions in their EXIF data" },
+  { name = "gps_accuracy", type = "number", unit = "m", default = 5, above = 0, maximum = 1000,
+    summary = "accuracy of these positions; photographs three times farther off are left out" },
+  { name = "distances", type = "tables", summary = "measured distances", table = {
+    { name = "from_image", type = "text", summary = "name of the image at one end" },
+    { name = "to_image", type = "text", summary = "name of the image at the other end" },
+    { name = "from", type = "numbers", size = 3, summary = "one end in the model's coordinates" },
+    { name = "to", type = "numbers", size = 3, summary = "the other end in these" },
+    { name = "metres", type = "number", unit = "m", required = true, above = 0,
+      summary = "distance of the ends" } } },
+  { name = "scale", type = "number", unit = "m", above = 0,
+    summary = "metres per unit of the model" },
+  { name = "up", type = "numbers", size = 3,
+    summary = "direction in the model that points up; absent: estimated, or by GPS" } } }
 
 local sources = setmetatable({}, { __mode = "k" })  -- of runs: how their images are read
 local read = setmetatable({}, { __mode = "k" })     -- of runs
@@ -50,6 +70,14 @@ function M.depth_images(run)
   return run:read_depth_images { folder = run.options.folder, depth = o.depth, pose = o.pose,
                                  intrinsics = o.intrinsics, camera = o.camera, unit = o.unit,
                                  poses_to_camera = o.poses_to_camera, up = o.up }
+end
+
+-- The images of a COLMAP model.
+function M.colmap(run)
+  local o = run.options.colmap
+  return run:read_colmap { folder = run.options.folder, photos = o.photos,
+                           gps_accuracy = o.gps_accuracy, distances = o.distances,
+                           scale = o.scale, up = o.up, spacing = run.options.surface.spacing }
 end
 
 function M.of(run)
@@ -164,10 +192,10 @@ end
 -- For the notes of the plan.
 function M.notes(run, views)
   local images = M.of(run)
-  local notes = { string.format("%d images of '%s' in place of a first flight, median depth %.3g m, "
-                                .. "voxels of %.3g m; %s", images.images, images.name,
-                                images.median_depth, run.options.resolution or M.resolution(run),
-                                views) }
+  local notes = { string.format(
+    "%d images of '%s' in place of a first flight, median depth %.3g m, voxels of %.3g m; %s",
+    images.images, images.name, images.median_depth, run.options.resolution or M.resolution(run),
+    views) }
   return table.move(images.notes, 1, #images.notes, 2, notes)
 end
 

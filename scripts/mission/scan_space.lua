@@ -49,8 +49,8 @@ end
 function M.resolution(run)
   if resolutions[run] then return resolutions[run] end
   local o, files = run.options, M.prior_files(run)
-  local edge = o.resolution or images.resolution(run) or exploration.wanted(run) and exploration.RESOLUTION
-               or o.effort.resolution
+  local edge = o.resolution or images.resolution(run)
+               or exploration.wanted(run) and exploration.RESOLUTION or o.effort.resolution
   if files then
     edge = run:map_resolution(files.map)
     if o.resolution and math.abs(o.resolution - edge) > 1e-9 * edge then

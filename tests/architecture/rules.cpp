@@ -132,6 +132,7 @@ constexpr Containment kContained[] = {
     {"gdal", "framework/survey/", true},
     {"cpl_", "framework/survey/", true},
     {"ogr_", "framework/survey/", true},
+    {"libexif/", "framework/photogrammetry/", true},
 };
 // Of these, one source file of the framework alone.
 constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/", "png.h",     "octomap/",

@@ -55,7 +55,8 @@ return require("mission.scan").of_images {
   tour = { budget = 40, iterations = 20 }, effort = { pixels = 60 },
   camera = { width = 80, height = 60, focal = 46 },
   surface = { spacing = 0.3, cell = 0.4, trim = 0.8 },
-  candidates = { most = 50, step = 1, distance_apart = 0.5 }, motions = { alpha = 0.3, coarse = 40 },
+  candidates = { most = 50, step = 1, distance_apart = 0.5 },
+  motions = { alpha = 0.3, coarse = 40 },
 }
 )");
   }
@@ -69,18 +70,19 @@ TEST_F(ScanningImages, AreThePriorOfATour) {
   EXPECT_THAT(plan(), HasSubstr("images.up = {"));
   // The world of the plan has z up: the hall's floor and ceiling are its lowest and highest.
   const Eigen::AlignedBox3d& region = read.task.scan->region;
-  EXPECT_NEAR(region.sizes().z(), 4, 0.4);
+  EXPECT_GE(region.sizes().z(), 3.9);  // whole voxels outwards, and the noise
+  EXPECT_LE(region.sizes().z(), 4.5);
   EXPECT_NEAR(region.sizes().x(), 12, 0.6);
   for (const PlannedView& view : read.task.scan->views) EXPECT_TRUE(region.contains(view.position));
-  const Value& surface = answer().at("tour").at("surface");
-  EXPECT_GT(surface.at("seen").as_number(), 20);
+  const Value result = answer();
+  EXPECT_GT(result.at("tour").at("surface").at("seen").as_number(), 20);
 }
 
 TEST_F(ScanningImages, BadFoldersAreRefused) {
   EXPECT_THAT(refused("--set folder=absent"), HasSubstr("absent"));
   EXPECT_THAT(refused("--set scene=church"), HasSubstr("the images of the folder are the first"));
   EXPECT_THAT(refused("--set body=[3,3,1]"), HasSubstr("--config scan/room"));
-  EXPECT_THAT(refused("--set body=[1.9,1.9,1.9]"), HasSubstr("places before the cameras"));
+  EXPECT_THAT(refused("--set body=[1.6,1.6,1.9]"), HasSubstr("places before the cameras"));
   EXPECT_THAT(refused("--set images.depth=x.png"), HasSubstr("one *"));
   EXPECT_THAT(refused("--set images.up=[0,0,0]"), HasSubstr("no direction"));
   write_file_atomically(folder_ / "images/03.depth.png",
