@@ -218,7 +218,7 @@ local function made(source, declarations)
     end)
   end
 end
-
+local mission = made()
 local function surveyed(kind) return made(function(run) site.expect(run, kind) end) end
 -- Images of a real first flight, which `reader(run)` reads; `own`: the option of their kind.
 local function photographed(own, reader)
@@ -228,11 +228,11 @@ end
 -- A scene of scripts/scene, a mesh file of the user (`--set input=PATH`), or files of a real flight
 -- (`prior`).
 ---@type fun(given: lapwing.scan.of_scene): lapwing.mission
-M.of_scene = made()
+M.of_scene = mission
 ---@type fun(given: lapwing.scan.of_mesh): lapwing.mission
-M.of_mesh = made()
+M.of_mesh = mission
 ---@type fun(given: lapwing.scan.of_prior): lapwing.mission
-M.of_prior = made()
+M.of_prior = mission
 -- A point cloud (`--set input=PATH`).
 ---@type fun(given: lapwing.scan.of_cloud): lapwing.mission
 M.of_cloud = surveyed("cloud")

@@ -17,8 +17,6 @@ local RANGE = 60          -- m, where nothing asks for more
 local FARTHEST = 200      -- m; farther than that a user says so
 local LOOKS_DOWN = 0.5    -- sine of the pitch below the horizon; what looks flatter is no measure
 local OVERHEAD = 2        -- m of free air above the highest first flight
-
--- Of runs.
 local surfaces, resolutions = setmetatable({}, { __mode = "k" }), setmetatable({}, { __mode = "k" })
 
 -- What the first flight is flown in, or nothing with files of an earlier one.

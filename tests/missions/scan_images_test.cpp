@@ -53,7 +53,7 @@ return require("mission.scan").of_images {
   name = "hall", folder = "images", resolution = 0.2,
   body = {0.3, 0.3, 0.2}, mesh_room = 0.1, margin = 0.1, floor = 0.5, reach = 0,
   tour = { budget = 40, iterations = 20 }, effort = { pixels = 60 },
-  camera = { width = 80, height = 60, focal = 46 },
+  camera = { width = 80, height = 60, focal = 46 }, usable = { range = 30 },
   surface = { spacing = 0.3, cell = 0.4, trim = 0.8 },
   candidates = { most = 50, step = 1, distance_apart = 0.5 },
   motions = { alpha = 0.3, coarse = 40 },
