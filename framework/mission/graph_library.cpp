@@ -158,7 +158,8 @@ ParameterTable graph_table() {
       .number("usable_incidence_deg", 90, "deg",
               "known angle of incidence beyond which an image shows nothing of use",
               {.minimum = 0, .maximum = 90, .minimum_excluded = true})
-      .table("flight", flight_table(), "speeds along a tour");
+      .table("flight", flight_table(), "speeds along a tour")
+      .boolean("each", false, "every view scores 1, whatever it shows");
   return table;
 }
 
@@ -283,6 +284,9 @@ int scan_graph_of_run(lua_State* state) {
   work->body = settings.candidates.half;
   work->graph = make_scan_graph(*space, *coarser, *work->information, starts, settings,
                                 run.settings.cancellation, run.settings.progress);
+  if (given.boolean("each"))
+    work->graph.score = std::make_shared<const ViewScore>(
+        additive_score(std::vector<double>(work->graph.candidates.viewpoints.size(), 1)));
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
   const ScanGraph& graph = work->graph;
   work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);

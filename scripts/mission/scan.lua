@@ -5,11 +5,9 @@
 --   local scan = require "mission.scan"
 --   return scan.of_scene { name = "church", scene = "church", tour = { budget = 300 } }
 --
--- A first flight at a safe height gives depth images, and these give a map and a mesh. The planner
--- knows nothing else (reading 4.9). Candidate views in free space are evaluated in the map. Paths
--- are planned between views whose images match. A tour solver selects a tour within the budget,
--- which is flown from view to view. A vehicle that cannot stand still takes images in passing
--- (scan_passing.lua).
+-- A first flight gives depth images, and these give a map and a mesh, which are all that is known
+-- (reading 4.9). Candidate views are evaluated in the map. Paths are planned between views whose
+-- images match. A tour solver selects a tour within the budget, flown from view to view.
 local mission_of = require "mission.mission_of"
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
@@ -20,6 +18,7 @@ local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
 local usable = require "mission.scan_usable"
+local views = require "mission.scan_views"
 local words = require "mission.scan_words"
 local DECLARATIONS = require "mission.scan_options"
 
@@ -44,7 +43,6 @@ local function budget_of(run)
   return tour.budget_metres and tour.budget_metres / METRES_A_SECOND or tour.budget or BUDGET
 end
 
--- What options say together, before anything is flown.
 local function check(run)
   local o = run.options
   local tour = o.tour
@@ -62,9 +60,8 @@ local function check(run)
                                          .. "local_search can", tour.solver))
   end
   if o.rounds > 1 and not (o.scene or o.input) then
-    run:fail("rounds", "rounds after the first need a simulation: "
-                       .. "name a scene or an input, or plan each round from the files of the "
-                       .. "round before")
+    run:fail("rounds", "rounds after the first need a simulation: name a scene or an input, or "
+                       .. "plan each round from the files of the round before")
   end
   for axis = 1, 3 do
     if not (o.body[axis] > 0) then run:fail("body", "half edges must be above 0 m") end
@@ -77,10 +74,11 @@ local function graph_of(run, known, vehicle, starts, finish)
   local region = space.region_of(run)
   local gimbal = vehicle.gimbal
   local c = o.candidates
-  return run:scan_graph {
+  local most = views.wanted(run) and math.huge or c.most
+  return run:scan_graph(views.settle(run, {
     prior = known, vehicle = vehicle, region = region,
     allowed = space.room(run, starts),
-    starts = first.few(starts, finish, c.most), needed = finish,
+    starts = first.few(starts, finish, most), needed = finish,
     fixed = o.start ~= nil or o.exploration.images > 0, body = o.body, mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
@@ -92,7 +90,7 @@ local function graph_of(run, known, vehicle, starts, finish)
     usable_range = usable.range(run), usable_incidence_deg = o.usable.incidence_deg,
     flight = o.flight,
     information = o.information, planner = o.planner,
-  }
+  }))
 end
 
 -- What the mission was asked for, and what could have been had.
@@ -127,7 +125,7 @@ local function solved(run, graph, finish, budget)
   return tour, spent + tour.evaluations
 end
 
--- Solutions of the legs with `flight.smooth`, else nil for pure pursuit. Adds a note.
+-- Solutions of legs with `flight.smooth`, else nil for pure pursuit. Adds a note.
 local function flown(run, vehicle, tour, notes, begin)
   if not run.options.flight.smooth then return nil end
   begin("smooth legs")
@@ -158,7 +156,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     local plan = run:scan_plan {
       tour = tour, legs = legs, margin = o.margin, budget = asked,
       closed_loop_required = o.closed_loop == "required",
-      notes = notes, explored = explored,
+      notes = notes, explored = explored, pixel_error = o.pixel_error,
       figures = words.figures(graph, tour, asked, evaluations, explored),
     }
     -- Corners and rests may take a little more than the legs one by one.
@@ -178,12 +176,14 @@ local function planned(run)
   local vehicle = run:vehicle(o.vehicle)
   local in_passing = smooth.check(run, vehicle)
   passing.check(run, vehicle, in_passing)
+  views.check(run, in_passing)
   exploration.check(run)
   local seconds = exploration.seconds(run, vehicle, budget_of(run))
   phases.expect(run, budget_of(run), in_passing)
   local known, poses, surface, explored =
     first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
   local starts, finish
+  poses = views.poses(run, known, poses)
   if not in_passing then starts, finish = first.starts(run, poses) end
   local plan
   for round = 1, o.rounds do

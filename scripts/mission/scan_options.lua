@@ -3,6 +3,7 @@
 local exploration = require "mission.scan_exploration"
 local passes = require "mission.scan_passes"
 local site = require "mission.scan_site"
+local views = require "mission.scan_views"
 
 local function number(name, default, unit, summary, more)
   local entry = { name = name, type = "number", default = default, unit = unit, summary = summary }
@@ -102,6 +103,9 @@ local DECLARATIONS = {
            .. "345 px, in proportion to it; for images in passing, any", POSITIVE),
     number("incidence_deg", 75, "deg", "largest angle between the ray and the normal of a surface",
            { above = 0, maximum = 90 }) } },
+  number("pixel_error", 0.5, "px", "standard deviation of a point's place in an image, for the "
+         .. "predicted accuracy", { above = 0, maximum = 100 }),
+  views.DECLARATION,
   { name = "effort", type = "table", summary = "effort of computing", table = {
     integer("pixels", 0, 0, 10000, "pixels per row in the first flight and in the evaluation of "
             .. "views; 0: those of the camera. The plan keeps the camera"),

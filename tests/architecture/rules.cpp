@@ -52,7 +52,8 @@ const std::map<std::string, Names>& rooms() {
       {"explore", {"geometry", "map", "view", "path"}},
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
       {"export",
-       {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
+       {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map",  // limits
+        "photogrammetry"}},
       {"flight_log", {"geometry", "mavlink"}},
       {"flight_review", {"geometry", "trajectory", "vehicle", "verify", "export", "flight_log"}},
       {"mavlink", {}},
