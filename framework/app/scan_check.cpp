@@ -42,7 +42,7 @@ struct CheckedScan {
   double height_offset = 0;
   PhotoMatch match;
   std::vector<std::size_t> missing;           // places of views
-  double planned_area = -1, taken_area = -1;  // m^2 in two images and more; below 0: no mesh
+  double planned_area = -1, taken_area = -1;  // m^2 that images locate; below 0: no mesh
 };
 
 bool holds_model(const fs::path& folder) {
@@ -138,16 +138,16 @@ Pose pose_of(const PlannedView& view) {
   return camera_pose(view.position, view.yaw, view.pitch);
 }
 
-// m^2 of the mesh in the region that at least two images show.
-double area_in_two_images(const std::shared_ptr<const MeshScene>& surface, const ScanTask& scan,
-                          std::vector<Pose> cameras) {
+// m^2 of the mesh in the region that the images locate: two at least, from different places.
+double area_located(const std::shared_ptr<const MeshScene>& surface, const ScanTask& scan,
+                    std::vector<Pose> cameras) {
   const ImageSet images(surface, std::move(cameras),
                         {scan.camera, scan.range, radians(kIncidence), 0.5});
   const TriangleMesh& mesh = surface->mesh();
   double area = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Vector3d middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
-    if (scan.region.contains(middle) && images.count(t, 2) == 2) area += mesh.area(t);
+    if (scan.region.contains(middle) && images.locates(t)) area += mesh.area(t);
   }
   return area;
 }
@@ -164,8 +164,8 @@ void compare_surface(const fs::path& plan, CheckedScan& checked) {
     if (checked.taken.poses.empty() && checked.match.photo_of_view[v] >= 0)
       taken.push_back(planned.back());
   }
-  checked.planned_area = area_in_two_images(surface, *checked.scan, std::move(planned));
-  checked.taken_area = area_in_two_images(surface, *checked.scan, std::move(taken));
+  checked.planned_area = area_located(surface, *checked.scan, std::move(planned));
+  checked.taken_area = area_located(surface, *checked.scan, std::move(taken));
 }
 
 CheckedScan checked_scan(const Plan& plan, const ScanCheckRequest& asked) {
@@ -234,7 +234,7 @@ Value json_of_check(const CheckedScan& checked, const ScanCheckRequest& asked) {
   object.set("farthest", checked.match.farthest);
   object.set("height_offset", checked.height_offset);
   if (checked.planned_area >= 0) {
-    Value& area = object.set("area_in_two_images", Value::map());
+    Value& area = object.set("area", Value::map());
     area.set("planned", checked.planned_area);
     area.set("taken", checked.taken_area);
   }
@@ -267,9 +267,10 @@ void print_scan_check(const Plan& plan, const CheckedScan& checked, const ScanCh
     std::cout << (others.size() > kMostNamed ? ", ...\n" : "\n");
   }
   if (checked.planned_area >= 0) {
-    std::snprintf(text, sizeof text,
-                  "  known surface in at least two images: %.4g m^2, planned %.4g m^2\n",
-                  checked.taken_area, checked.planned_area);
+    std::snprintf(
+        text, sizeof text,
+        "  known surface in images from at least two places: %.4g m^2, planned %.4g m^2\n",
+        checked.taken_area, checked.planned_area);
     std::cout << text;
   }
   for (const std::string& note : checked.taken.notes)

@@ -24,8 +24,8 @@ constexpr double kBest = 0.02, kWorst = 0.98;  // shares of the area, ends of th
 
 const char* reason_in_words(HoleReason reason) {
   return reason == HoleReason::no_view
-             ? "no view: fewer than two candidate views show it"
-             : "not chosen: candidate views show it, the tour takes fewer than two of them";
+             ? "no view: no two candidate views from different places show it"
+             : "not chosen: such candidate views show it, the tour takes too few of them";
 }
 
 double counted_area(const ScanPrediction& p) {
@@ -77,7 +77,7 @@ Table table_of_images(const ScanPrediction& p) {
 }
 
 Table table_of_figures(const ScanPrediction& p) {
-  Table table{"Where at least two images show it",
+  Table table{"Where images from at least two places show it",
               {{"", ""}, {"median", ""}, {"90 % of the area at most", ""}, {"unit", ""}},
               {}};
   const auto add = [&](const char* name, float TrianglePrediction::*value, double factor,
@@ -95,7 +95,7 @@ Table table_of_figures(const ScanPrediction& p) {
 
 Table table_of_holes(const ScanPrediction& p) {
   const std::size_t listed = listed_holes(p);
-  Table table{"Holes: surface that fewer than two images show",
+  Table table{"Holes: surface without images from two places (rays at least 1 degree apart)",
               {{"area", "m^2"}, {"at", "m"}, {"why", ""}},
               {}};
   for (std::size_t k = 0; k < listed; ++k)
@@ -131,7 +131,7 @@ std::vector<Rgb> triangle_colors(const ScanPrediction& p, const ColorRange& rang
     if (!p.counted[t]) continue;
     const TrianglePrediction& told = p.triangles[t];
     colors[t] = told.images == 0 ? kNeverSeen : kNotSeen;
-    if (told.images >= 2)
+    if (told.located())
       colors[t] = color_of_share(1 - std::log(told.accuracy / range.best) /
                                          std::log(range.worst / range.best));
   }
@@ -159,18 +159,18 @@ double area_shown(const ScanPrediction& prediction, int images) {
   return area;
 }
 
-double area_within(const ScanPrediction& prediction, double accuracy) {
+double area_located(const ScanPrediction& prediction) {
   double area = 0;
   for (std::size_t t = 0; t < prediction.triangles.size(); ++t)
-    if (prediction.counted[t] && prediction.triangles[t].accuracy <= accuracy)
+    if (prediction.counted[t] && prediction.triangles[t].located())
       area += prediction.surface->mesh().area(t);
   return area;
 }
 
 std::string prediction_in_words(const ScanPrediction& p) {
-  const double all = counted_area(p), shown = area_shown(p, 2);
-  std::string text = "At least two images will show " + number_text(shown, 4) + " m^2 (" +
-                     share_in_percent(shown, all) + " %) of " + number_text(all, 4) +
+  const double all = counted_area(p), shown = area_located(p);
+  std::string text = "Images from at least two places will show " + number_text(shown, 4) +
+                     " m^2 (" + share_in_percent(shown, all) + " %) of " + number_text(all, 4) +
                      " m^2 of known surface";
   if (shown > 0) {
     text += "; there, the median is " +
@@ -184,8 +184,8 @@ std::string prediction_in_words(const ScanPrediction& p) {
   const double not_chosen = area_of_holes(p, HoleReason::not_chosen);
   if (no_view + not_chosen > 0)
     text += ". Not reconstructed: " + number_text(not_chosen, 4) +
-            " m^2 that the tour had no time for, and " + number_text(no_view, 4) +
-            " m^2 that fewer than two candidate views show";
+            " m^2 that the tour takes too few images of, and " + number_text(no_view, 4) +
+            " m^2 that no two candidate views from different places show";
   return text;
 }
 
@@ -195,6 +195,7 @@ Value prediction_as_value(const ScanPrediction& p) {
   value.set("one_image", area_shown(p, 1));
   value.set("two_images", area_shown(p, 2));
   value.set("three_images", area_shown(p, 3));
+  value.set("located", area_located(p));
   value.set("pixel_error", p.pixel_error);
   const auto figures = [&](const char* name, float TrianglePrediction::*member, double factor) {
     Value& entry = value.set(name, Value::map());
@@ -228,7 +229,7 @@ Section prediction_section(const ScanPrediction& p) {
   words.text = prediction_in_words(p);
   section.blocks.push_back(std::move(words));
   section.blocks.push_back(table_of_images(p));
-  if (area_shown(p, 2) > 0) section.blocks.push_back(table_of_figures(p));
+  if (area_located(p) > 0) section.blocks.push_back(table_of_figures(p));
   if (!p.holes.empty()) section.blocks.push_back(table_of_holes(p));
   const ColorRange range = colors_of(p);
   TriangleMesh mesh = p.surface->mesh();
@@ -238,12 +239,13 @@ Section prediction_section(const ScanPrediction& p) {
     for (int corner = 0; p.counted[t] && corner < 3; ++corner) box.extend(mesh.corner(t, corner));
   if (box.isEmpty()) return section;
   const MeshScene scene(std::move(mesh));
-  section.blocks.push_back(picture_of(
-      scene, box, 1.05,
-      "Predicted accuracy, from " + number_text(1000 * range.best, 2) + " mm (yellow) to " +
-          number_text(1000 * range.worst, 2) +
-          " mm (violet), on a logarithmic scale. Red: one image. Dark: no image. Light grey: "
-          "outside the region"));
+  section.blocks.push_back(picture_of(scene, box, 1.05,
+                                      "Predicted accuracy, from " +
+                                          number_text(1000 * range.best, 2) + " mm (yellow) to " +
+                                          number_text(1000 * range.worst, 2) +
+                                          " mm (violet), on a logarithmic scale. Red: images of "
+                                          "one place alone. Dark: no image. Light grey: "
+                                          "outside the region"));
   section.blocks.push_back(picture_of(scene, box, 1.05 + 3.14159, "The same from the other side"));
   return section;
 }

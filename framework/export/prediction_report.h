@@ -12,10 +12,11 @@ namespace lapwing {
 
 // m^2 of the counted surface that at least `images` images show.
 double area_shown(const ScanPrediction& prediction, int images);
-// m^2 of it whose predicted accuracy is `accuracy` metres or better.
-double area_within(const ScanPrediction& prediction, double accuracy);
+// m^2 of it that the images locate, from two places at least.
+double area_located(const ScanPrediction& prediction);
 
-// "At least two images will show 812 m^2 (93 %) of the known surface; there, the median is ...".
+// "Images from at least two places will show 812 m^2 (93 %) of the known surface; there, the median
+// is ...".
 std::string prediction_in_words(const ScanPrediction& prediction);
 // For --json: m^2, m, degrees.
 Value prediction_as_value(const ScanPrediction& prediction);

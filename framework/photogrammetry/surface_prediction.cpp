@@ -150,11 +150,17 @@ bool ImageSet::shows(std::size_t camera, std::size_t triangle) const {
   return !surface_->blocked({c.position, way / distance, distance - beside});
 }
 
-int ImageSet::count(std::size_t triangle, int most) const {
-  int found = 0;
-  for (std::size_t k = 0; k < cameras_.size() && found < most; ++k)
-    if (shows(k, triangle)) ++found;
-  return found;
+bool ImageSet::locates(std::size_t triangle) const {
+  const Vector3d middle = middle_of(surface_->mesh(), triangle);
+  std::vector<Vector3d> rays;
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    if (!shows(k, triangle)) continue;
+    const Vector3d way = middle - cameras_[k].position;
+    for (const Vector3d& other : rays)
+      if (static_cast<float>(angle_between(way, other)) >= kLeastParallax) return true;
+    rays.push_back(way);
+  }
+  return false;
 }
 
 TrianglePrediction ImageSet::predict(std::size_t triangle) const {
@@ -199,7 +205,7 @@ double quantile_by_area(const TriangleMesh& mesh, std::span<const TrianglePredic
   std::vector<std::pair<float, double>> values;
   double total = 0;
   for (std::size_t t = 0; t < predictions.size(); ++t) {
-    if (predictions[t].images < 2) continue;
+    if (!predictions[t].located()) continue;
     values.emplace_back(predictions[t].*value, mesh.area(t));
     total += values.back().second;
   }
@@ -219,9 +225,9 @@ std::vector<SurfaceHole> holes_of(const MeshScene& surface, std::span<const char
   const TriangleMesh& mesh = surface.mesh();
   std::vector<char> missing(counted.size(), 0), visible(counted.size(), 0);
   for (std::size_t t = 0; t < counted.size(); ++t)
-    missing[t] = counted[t] && predictions[t].images < 2;
+    missing[t] = counted[t] && !predictions[t].located();
   for_counted(missing, threads, cancellation,
-              [&](std::size_t t) { visible[t] = candidates.count(t, 2) == 2; });
+              [&](std::size_t t) { visible[t] = candidates.locates(t); });
   // Vertices come twice: once for each reason.
   Joined joined(2 * mesh.vertices.size());
   const auto vertex = [&](std::size_t t, std::size_t corner) {

@@ -23,6 +23,9 @@ struct ImagingSettings {
   double pixel_error = 0.5;
 };
 
+// rad: rays that differ by less, as of several images of one place, do not locate a point.
+inline constexpr float kLeastParallax = 0.0174533f;
+
 // Of the middle of a triangle.
 struct TrianglePrediction {
   int images = 0;        // that show it
@@ -31,6 +34,9 @@ struct TrianglePrediction {
   float parallax = 0;    // rad, the largest angle between two rays; 0 below two images
   float accuracy = 0;    // m, standard deviation in the worst direction; infinite where two images
                          // are missing or all rays are parallel
+
+  // Whether the images locate it: two at least, with rays that differ enough.
+  bool located() const { return images >= 2 && parallax >= kLeastParallax; }
 };
 
 // A set of images of one surface. Immutable; thread-safe.
@@ -44,8 +50,8 @@ class ImageSet {
   // Whether an image shows the middle of a triangle: inside the image, within range and angle, and
   // nothing of the surface before it. Either side of a triangle shows.
   bool shows(std::size_t camera, std::size_t triangle) const;
-  // How many of the images show it, at most `most`.
-  int count(std::size_t triangle, int most) const;
+  // Whether they locate it, as TrianglePrediction::located says.
+  bool locates(std::size_t triangle) const;
   TrianglePrediction predict(std::size_t triangle) const;
 
  private:
@@ -64,16 +70,16 @@ std::vector<TrianglePrediction> predict_surface(const ImageSet& images,
                                                 std::span<const char> counted, int threads,
                                                 const CancellationToken* cancellation = nullptr);
 
-// Per unit of area, over triangles that at least two images show: the value that `share` of the
-// area does not exceed. Infinite values are the largest; NaN where there is no such area.
+// Per unit of area, over triangles that the images locate: the value that `share` of the
+// area does not exceed; NaN where there is no such area.
 double quantile_by_area(const TriangleMesh& mesh, std::span<const TrianglePrediction> predictions,
                         float TrianglePrediction::*value, double share);
 
-// Why a surface is not reconstructed: no two candidate views show it; or they do, and the images
-// that were chosen do not.
+// Why a surface is not reconstructed: no candidate views locate it; or they do, and the images that
+// were chosen do not.
 enum class HoleReason { no_view, not_chosen };
 
-// Triangles that share vertices and a reason, each shown by fewer than two images.
+// Triangles that share vertices and a reason, none of which the images locate.
 struct SurfaceHole {
   HoleReason reason = HoleReason::no_view;
   double area = 0;                                  // m^2

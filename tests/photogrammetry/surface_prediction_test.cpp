@@ -141,6 +141,13 @@ TEST(SurfacePrediction, OneImageOrParallelRaysLeaveThePlaceOpen) {
   EXPECT_EQ(same.images, 2);
   EXPECT_TRUE(std::isinf(same.accuracy));
   EXPECT_EQ(same.parallax, 0);
+  EXPECT_FALSE(same.located());
+  EXPECT_FALSE(images_of(mesh, {looking_down(1), looking_down(1)}).locates(0));
+  // 1 degree is 0.175 m at 10 m.
+  EXPECT_FALSE(images_of(mesh, {looking_down(0), looking_down(0.16)}).locates(0));
+  const ImageSet apart = images_of(mesh, {looking_down(0.1), looking_down(0), looking_down(-0.09)});
+  EXPECT_TRUE(apart.locates(0));
+  EXPECT_TRUE(apart.predict(0).located());
 }
 
 TEST(SurfacePrediction, WhatLimitsAnImage) {
