@@ -41,7 +41,8 @@ struct CheckedScan {
   TakenFlight taken;
   double height_offset = 0;
   PhotoMatch match;
-  std::vector<std::size_t> missing;           // places of views
+  std::vector<std::size_t> missing;  // places of views
+  std::vector<std::size_t> unsure;   // likewise, with a photograph that may be of a missing one
   double planned_area = -1, taken_area = -1;  // m^2 that images locate; below 0: no mesh
 };
 
@@ -134,6 +135,23 @@ TakenFlight taken_by_model(const Plan& plan, const ScanCheckRequest& asked) {
   return taken;
 }
 
+// Views whose photograph could as well be that of a missing view: by positions alone nobody knows
+// which of them was taken.
+std::vector<std::size_t> unsure_views(const std::vector<WantedView>& views,
+                                      const CheckedScan& checked, double within) {
+  std::vector<std::size_t> unsure;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (checked.match.photo_of_view[v] < 0) continue;
+    const TakenPhoto& photo =
+        checked.taken.photos[static_cast<std::size_t>(checked.match.photo_of_view[v])];
+    const bool other = std::any_of(
+        checked.missing.begin(), checked.missing.end(),
+        [&](std::size_t m) { return (views[m].position - photo.position).norm() <= within; });
+    if (!photo.ahead && other) unsure.push_back(v);
+  }
+  return unsure;
+}
+
 Pose pose_of(const PlannedView& view) {
   return camera_pose(view.position, view.yaw, view.pitch);
 }
@@ -186,6 +204,7 @@ CheckedScan checked_scan(const Plan& plan, const ScanCheckRequest& asked) {
   checked.match = match_photos(views, photos, {asked.within, radians(asked.angle_deg)});
   for (std::size_t v = 0; v < views.size(); ++v)
     if (checked.match.photo_of_view[v] < 0) checked.missing.push_back(v);
+  checked.unsure = unsure_views(views, checked, asked.within);
   if (std::abs(checked.height_offset) > kNoticedOffset && !asked.height_offset) {
     char text[200];
     std::snprintf(text, sizeof text,
@@ -230,6 +249,8 @@ Value json_of_check(const CheckedScan& checked, const ScanCheckRequest& asked) {
   Value& unmatched = object.set("of_no_view", Value::list());
   for (const int p : checked.match.unmatched)
     unmatched.push_back(checked.taken.photos[static_cast<std::size_t>(p)].name);
+  Value& unsure = object.set("uncertain", Value::list());
+  for (const std::size_t v : checked.unsure) unsure.push_back(static_cast<std::int64_t>(v + 1));
   object.set("distance", checked.match.distance);
   object.set("farthest", checked.match.farthest);
   object.set("height_offset", checked.height_offset);
@@ -257,6 +278,9 @@ void print_scan_check(const Plan& plan, const CheckedScan& checked, const ScanCh
     std::cout << text;
   }
   if (missing > 0) std::cout << "  missing: " << ranges_in_words(checked.missing) << "\n";
+  if (!checked.unsure.empty())
+    std::cout << "  uncertain: " << ranges_in_words(checked.unsure)
+              << ": their photographs may as well be of missing views nearby\n";
   const std::vector<int>& others = checked.match.unmatched;
   if (!others.empty()) {
     std::cout << "  of no view: " << others.size() << " of " << checked.taken.photos.size()
@@ -281,6 +305,14 @@ void print_scan_check(const Plan& plan, const CheckedScan& checked, const ScanCh
             << visible_line(beside.string()) << "\n";
 }
 
+// The missing views, and those that are uncertain.
+std::vector<std::size_t> wanted_again(const CheckedScan& checked) {
+  std::vector<std::size_t> views = checked.missing;
+  views.insert(views.end(), checked.unsure.begin(), checked.unsure.end());
+  std::sort(views.begin(), views.end());
+  return views;
+}
+
 }  // namespace
 
 ExitStatus check_scan(const ScanCheckRequest& asked, const Invocation& invocation) {
@@ -292,7 +324,7 @@ ExitStatus check_scan(const ScanCheckRequest& asked, const Invocation& invocatio
     throw InputError("'" + asked.plan.string() + "' has no flight");
   const CheckedScan checked = checked_scan(plan, asked);
   if (!asked.rest.empty() && !checked.missing.empty())
-    write_file_atomically(asked.rest, rest_mission(plan, checked.missing));
+    write_file_atomically(asked.rest, rest_mission(plan, wanted_again(checked)));
   if (invocation.json)
     print_json(json_of_check(checked, asked));
   else

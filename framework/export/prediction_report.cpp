@@ -184,8 +184,8 @@ std::string prediction_in_words(const ScanPrediction& p) {
   const double not_chosen = area_of_holes(p, HoleReason::not_chosen);
   if (no_view + not_chosen > 0)
     text += ". Not reconstructed: " + number_text(not_chosen, 4) +
-            " m^2 that the tour takes too few images of, and " + number_text(no_view, 4) +
-            " m^2 that no two candidate views from different places show";
+            " m^2 for want of images in this tour, and " + number_text(no_view, 4) +
+            " m^2 for want of candidate views from two places";
   return text;
 }
 

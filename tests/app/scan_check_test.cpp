@@ -147,6 +147,26 @@ TEST_F(ScanCheck, ModelsTellDirections) {
   EXPECT_NEAR(answer.at("height_offset").as_number(), -31.5, 0.3);
 }
 
+TEST_F(ScanCheck, ViewsOfOnePlaceAreUncertainByPositions) {
+  if (!reads_exif()) GTEST_SKIP() << "libexif-dev is not installed";
+  plan_.task.scan->views[2].position = plan_.task.scan->views[1].position + Vector3d(0, 1, 0);
+  write_plan(plan_, folder_ / "plan.json");
+  take_photos({2, 6}, 0);
+  const Value answer = checked({"photos", "-o", "rest.lua"}, 1);
+  const std::vector<int> gone = missing(answer);
+  ASSERT_EQ(gone.size(), 2u);
+  EXPECT_TRUE(gone[0] == 2 || gone[0] == 3);
+  EXPECT_EQ(gone[1], 7);
+  ASSERT_EQ(answer.at("uncertain").as_list().size(), 1u);
+  EXPECT_EQ(answer.at("uncertain").as_list()[0].as_integer(), 5 - gone[0]);
+  const std::string rest = read_file(folder_ / "rest.lua");
+  for (const char* view : {"-- view 2\n", "-- view 3\n", "-- view 7\n"})
+    EXPECT_THAT(rest, HasSubstr(view));
+  // Models tell them apart.
+  write_model({}, {1, 6}, {});
+  EXPECT_TRUE(checked({"model", "--placed"}, 1).at("uncertain").as_list().empty());
+}
+
 TEST_F(ScanCheck, BadInputIsRefused) {
   write_model({}, {}, {});
   refused({"scan", "check", "model", "--plan", "plan.json"}, {"no scale and place", "--photos"});
