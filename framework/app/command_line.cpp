@@ -18,6 +18,7 @@
 #include "framework/app/studio_command.h"
 #include "framework/app/sweep_command.h"
 #include "framework/app/terminal.h"
+#include "framework/app/scan_check.h"
 #include "framework/app/tour_command.h"
 #include "framework/app/train_command.h"
 #include "framework/app/version.h"
@@ -262,6 +263,7 @@ struct Requests {
   StudioRequest studio;
   PlanDifference difference;
   ScanEvaluation scanning;
+  ScanCheckRequest checking_scan;
   ReproduceRequest reproducing;
   ExploreEvaluation exploring;
   HelpRequest help;
@@ -292,6 +294,7 @@ void declare_commands(CLI::App& app, Requests& asked) {
   add_scene_commands(app, invocation, asked.plan, asked.stated, asked.target, command);
   add_race_command(app, invocation, asked.plan, asked.pilots, asked.rules, asked.target, command);
   add_tour_command(app, invocation, asked.tour, command);
+  add_scan_commands(app, invocation, asked.checking_scan, command);
   add_plugin_commands(app, invocation, asked.name, asked.described, asked.checking, command);
   add_description_commands(app, invocation, asked.described, command);
   add_new_commands(app, invocation, asked.wanted, command);

@@ -28,10 +28,10 @@ constexpr const char* kRunFiles[] = {"run.log",     "map.ot",         "long_expo
 constexpr std::string_view kMissionLine = "info: mission ";
 constexpr std::string_view kSeed = ", seed ";
 
-// obstacle_12.ply, obstacle_1.ot, prior.ply
+// obstacle_12.ply, obstacle_1.ot, prior.ply, prediction.ply
 bool names_obstacle(const std::string& name) {
   constexpr std::string_view kStem = "obstacle_";
-  if (name == "prior.ply") return true;
+  if (name == "prior.ply" || name == "prediction.ply") return true;
   if (!name.starts_with(kStem)) return false;
   const std::size_t end = name.find_first_not_of("0123456789", kStem.size());
   return end != std::string::npos && end > kStem.size() &&

@@ -9,7 +9,9 @@
 
 #include "framework/core/png.h"
 #include "framework/export/map_pictures.h"
+#include "framework/export/prediction_report.h"
 #include "framework/export/region_drawing.h"
+#include "framework/export/scan_colors.h"
 #include "framework/export/surroundings.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/geometry/mesh_builder.h"
@@ -22,24 +24,10 @@ using Eigen::Vector3d;
 
 constexpr Pinhole kOverview{720, 450, 720, 720, 359.5, 224.5};
 constexpr int kMostMapPixels = 700, kMostMotions = 2500, kMostCubes = 60'000;
-constexpr Rgb kPlainSurface = {176, 174, 168}, kCameraLines = {214, 60, 40};
-constexpr Rgb kNotSeen = {196, 70, 60}, kNeverSeen = {70, 70, 74}, kOpening = {226, 62, 205};
+constexpr Rgb kCameraLines = {214, 60, 40}, kOpening = {226, 62, 205};
 constexpr double kMuchUnknown = 0.1;   // of what is known
 constexpr double kMuchOutside = 0.03;  // likewise
 const Vector3d kGap = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-
-// From dark violet over green to yellow (viridis, a few stops of it).
-Rgb color_of_share(double share) {
-  constexpr double kStops[5][3] = {
-      {68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
-  const double at = std::clamp(share, 0.0, 1.0) * 4;
-  const int k = std::min(3, static_cast<int>(at));
-  Rgb color;
-  for (std::size_t c = 0; c < 3; ++c)
-    color[c] =
-        static_cast<std::uint8_t>(kStops[k][c] + (at - k) * (kStops[k + 1][c] - kStops[k][c]));
-  return color;
-}
 
 Image overview_image(const MeshScene& scene, const Eigen::AlignedBox3d& box, double yaw,
                      const std::string& caption) {
@@ -407,8 +395,11 @@ Value areas_as_value(const ScanRecord& record) {
 
 std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record) {
   const ScanTask& scan = *plan.task.scan;
-  return {known_section(record, scan.region.bounds()), candidates_section(plan, record),
-          view_section(record, scan), tour_section(plan, record), coverage_section(record, scan)};
+  std::vector<Section> sections{known_section(record, scan.region.bounds()), candidates_section(plan, record),
+                                view_section(record, scan), tour_section(plan, record),
+                                coverage_section(record, scan)};
+  if (record.prediction) sections.push_back(prediction_section(*record.prediction));
+  return sections;
 }
 
 }  // namespace lapwing

@@ -159,7 +159,8 @@ ParameterTable graph_table() {
       .number("usable_incidence_deg", 90, "deg",
               "known angle of incidence beyond which an image shows nothing of use",
               {.minimum = 0, .maximum = 90, .minimum_excluded = true})
-      .table("flight", flight_table(), "speeds along a tour");
+      .table("flight", flight_table(), "speeds along a tour")
+      .boolean("each", false, "every view scores 1, whatever it shows");
   return table;
 }
 
@@ -314,6 +315,9 @@ int scan_graph_of_run(lua_State* state) {
   work->allowed = settings.candidates.allowed;
   work->body = settings.candidates.half;
   make_graph(*work, *space, *coarser, starts, settings, run);
+  if (given.boolean("each"))
+    work->graph.score = std::make_shared<const ViewScore>(
+        additive_score(std::vector<double>(work->graph.candidates.viewpoints.size(), 1)));
   if (!work->rules->empty())
     work->hidden = hidden_parts(*work, *space_of(*work->prior, mesh_room), *coarser, starts,
                                 settings, run.settings.cancellation);

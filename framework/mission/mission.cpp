@@ -11,6 +11,7 @@
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
 #include "framework/mission/options.h"
+#include "framework/mission/photo_objects.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scene_script.h"
 #include "framework/mission/script_lines.h"
@@ -73,6 +74,7 @@ void open_script_libraries(lua_State* state, MissionRun& run) {
   open_run_library(state);
   open_map_library(state);
   open_site_library(state);
+  open_photo_library(state);
   open_scan_library(state);
   open_explore_library(state);
   open_scene_library(state);

@@ -9,6 +9,7 @@
 #include "framework/map/map_file.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
+#include "framework/mission/photo_objects.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/site_objects.h"
 #include "framework/picture/mesh_picture.h"
@@ -430,7 +431,8 @@ void open_prior_type(lua_State* state) {
        &earlier_table},
       {"reconstruct", &guarded<reconstruct>, "(settings: @)",
        "reconstructs its mesh from all images", &reconstruct_table}};
-  define_type<PriorObject>(state, kPriorType, {methods, site_methods_of_prior()},
+  define_type<PriorObject>(state, kPriorType,
+                           {methods, photo_methods_of_prior(), site_methods_of_prior()},
                            &guarded<prior_field>);
   note_fields(state, kPriorType, kPriorFields);
 }

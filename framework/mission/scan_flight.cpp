@@ -8,6 +8,7 @@
 
 #include "framework/core/parallel.h"
 #include "framework/core/units.h"
+#include "framework/export/prediction_report.h"
 #include "framework/export/small_camera.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/map/map_file.h"
@@ -258,6 +259,7 @@ ParameterTable scan_plan_table() {
       .required_number("budget", "s", "flight time", above(0))
       .number("seen_share", ScanTask{}.seen_share, "",
               "fraction of the voxels that must be seen again", {0, 1, true})
+      .number("pixel_error", 0.5, "px", "standard deviation of a point in an image", above(0))
       .boolean("closed_loop_required", true, "false: tracking under control is reported only");
   return table;
 }
@@ -342,10 +344,13 @@ int scan_plan_of_run(lua_State* state) {
     plan.home = run.home;
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
-    const auto record = record_of_scan(*told, run.settings.threads);
+    const auto record = record_of_scan(*told, given.number("pixel_error"), run.settings.threads);
     if (!made.block.is_map()) made.block = Value::map();
     made.block.set("surface", areas_as_value(*record));
     made.notes.push_back(areas_in_words(*record));
+    made.block.set("prediction", prediction_as_value(*record->prediction));
+    made.notes.push_back(prediction_in_words(*record->prediction));
+    run.obstacles.keep("prediction.ply", prediction_ply(*record->prediction));
     if (record->truth) made.told.push_back(truth_in_words(*record));
     made.late_sections = [record](const Plan& of) { return scan_sections(of, *record); };
     const std::string small = warning_of_small_camera(plan.task.scan->camera);

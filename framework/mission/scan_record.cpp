@@ -72,7 +72,8 @@ int most_telling(const ScanGraph& graph, const std::vector<int>& walk) {
 
 }  // namespace
 
-std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int threads) {
+std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, double pixel_error,
+                                                 int threads) {
   const ScanWork& work = *tour.work;
   const ScanGraph& graph = work.graph;
   auto record = std::make_shared<ScanRecord>();
@@ -101,6 +102,9 @@ std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int thr
       unknown_openings(*record->map, record->prior.get(),
                        {sight.region, work.prior->rays, record->body_width, threads});
   record->truth = true_areas(work, views, threads);
+  std::vector<char> counted;
+  for (const float share : record->shares) counted.push_back(share > kOutsideRegion);
+  record->prediction = prediction_of_scan(work, views, std::move(counted), pixel_error, threads);
   ScoreState state(*graph.score);
   double clock = 0;
   for (std::size_t i = 0; i < tour.walk.size(); ++i) {

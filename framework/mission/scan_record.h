@@ -7,6 +7,11 @@
 
 namespace lapwing {
 
-std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, int threads);
+// `pixel_error`: standard deviation of a point in an image, pixels.
+std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, double pixel_error,
+                                                 int threads);
+// Of the prior's triangles that are `counted`, with images at the graph's `views`.
+ScanPrediction prediction_of_scan(const ScanWork& work, const std::vector<int>& views,
+                                  std::vector<char> counted, double pixel_error, int threads);
 
 }  // namespace lapwing

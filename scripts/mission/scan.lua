@@ -5,67 +5,35 @@
 --   local scan = require "mission.scan"
 --   return scan.of_scene { name = "church", scene = "church", tour = { budget = 300 } }
 --
--- A first flight at a safe height gives depth images, and these give a map and a mesh. The planner
--- knows nothing else (reading 4.9). Candidate views in free space are evaluated in the map. Paths
--- are planned between views whose images match. A tour solver selects a tour within the budget,
--- which is flown from view to view. A vehicle that cannot stand still takes images in passing
--- (scan_passing.lua).
+-- A first flight gives depth images, and these give a map and a mesh, which are all that is known
+-- (reading 4.9). Candidate views are evaluated in the map. Paths are planned between views whose
+-- images match. A tour solver selects a tour within the budget, flown from view to view.
 local mission_of = require "mission.mission_of"
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
+local images = require "mission.scan_images"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
 local polygons = require "mission.scan_polygons"
 local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
+local tours = require "mission.scan_tours"
 local usable = require "mission.scan_usable"
+local views = require "mission.scan_views"
 local words = require "mission.scan_words"
 local zones = require "mission.scan_zones"
 local DECLARATIONS = require "mission.scan_options"
 
 local M = {}
-local OWN_OF_TOUR = { solver = true, budget = true, budget_metres = true, images = true,
-                      begin = true, guard = true }
-local BUDGET = 300         -- s, where none is given
-local METRES_A_SECOND = 3  -- of a budget in metres (reading 4.6)
-local BEGIN = "cost_benefit"
 local TIGHTER = 4          -- times that a tour which flies too long is planned on less
 
-local function solver_of(tour)
-  local chosen = { type = tour.solver }
-  for key, value in pairs(tour) do
-    if not OWN_OF_TOUR[key] then chosen[key] = value end
-  end
-  return chosen
-end
-
-local function budget_of(run)
-  local tour = run.options.tour
-  return tour.budget_metres and tour.budget_metres / METRES_A_SECOND or tour.budget or BUDGET
-end
-
--- What options say together, before anything is flown.
 local function check(run)
   local o = run.options
-  local tour = o.tour
-  if tour.budget and tour.budget_metres then
-    run:fail("tour.budget_metres", string.format(
-      "budget is %.6g s and budget_metres %.6g m, which is %.6g s: give one of them",
-      tour.budget, tour.budget_metres, tour.budget_metres / METRES_A_SECOND))
-  end
-  if tour.images == 1 then
-    run:fail("tour.images", "a tour has at least two images; 0: any number")
-  end
-  if tour.begin ~= "none" then run:expect_plugin("tour.begin", "tour_solver") end
-  if tour.begin and tour.begin ~= "none" and tour.solver ~= "local_search" then
-    run:fail("tour.begin", string.format("'%s' cannot begin with the tour of another solver, only "
-                                         .. "local_search can", tour.solver))
-  end
+  tours.check(run)
   if o.rounds > 1 and not (o.scene or o.input) then
-    run:fail("rounds", "rounds after the first need a simulation: "
-                       .. "name a scene or an input, or plan each round from the files of the "
-                       .. "round before")
+    run:fail("rounds", "rounds after the first need a simulation: name a scene or an input, or "
+                       .. "plan each round from the files of the round before")
   end
   for axis = 1, 3 do
     if not (o.body[axis] > 0) then run:fail("body", "half edges must be above 0 m") end
@@ -79,9 +47,10 @@ local function graph_of(run, known, vehicle, starts, finish)
   local gimbal = vehicle.gimbal
   local c = o.candidates
   local room = space.room(run, starts)
-  return run:scan_graph {
+  local most = views.wanted(run) and math.huge or c.most
+  return run:scan_graph(views.settle(run, {
     prior = known, vehicle = vehicle, region = region, rules = zones.rules(run), allowed = room,
-    starts = first.few(starts, finish, c.most),
+    starts = first.few(starts, finish, most),
     needed = (o.start or o.finish or o.exploration.images > 0) and finish or 0,
     fixed = o.start ~= nil or o.exploration.images > 0, body = zones.body(run),
     mesh_room = o.mesh_room,
@@ -95,7 +64,7 @@ local function graph_of(run, known, vehicle, starts, finish)
     usable_range = usable.range(run), usable_incidence_deg = o.usable.incidence_deg,
     flight = o.flight,
     information = o.information, planner = o.planner,
-  }
+  }))
 end
 
 -- What the mission was asked for, and what could have been had.
@@ -113,14 +82,14 @@ end
 local function solved(run, graph, finish, budget)
   local o = run.options.tour
   local initial, spent = nil, 0
-  local begin = o.begin or BEGIN
-  if begin ~= "none" and o.solver == "local_search" then
-    local begun = run:solve_tour { graph = graph, solver = begin, budget = budget,
+  local beginner = tours.beginner(run)
+  if beginner then
+    local begun = run:solve_tour { graph = graph, solver = beginner, budget = budget,
                                    finish = finish, images = o.images, guard = o.guard }
     if begun.images > 1 then initial = begun end
     spent = begun.evaluations
   end
-  local tour = run:solve_tour { graph = graph, solver = solver_of(o), budget = budget,
+  local tour = run:solve_tour { graph = graph, solver = tours.solver(run), budget = budget,
                                 finish = finish, images = o.images, guard = o.guard,
                                 initial = initial }
   if tour.images < 2 then
@@ -130,21 +99,10 @@ local function solved(run, graph, finish, budget)
   return tour, spent + tour.evaluations
 end
 
--- Solutions of the legs with `flight.smooth`, else nil for pure pursuit. Adds a note.
-local function flown(run, vehicle, tour, notes, begin)
-  if not run.options.flight.smooth then return nil end
-  begin("smooth legs")
-  local legs, stray = smooth.legs(run, vehicle, tour)
-  notes[#notes + 1] = legs
-    and string.format("smooth legs by %s, at most %.2g m from their paths", legs[1].solver, stray)
-    or "cancelled before all legs were smooth: flown by pure pursuit"
-  return legs
-end
-
 -- `begin(phase)` reports the phase that begins.
 local function plan_of(run, graph, vehicle, finish, known, explored, begin)
   local o = run.options
-  local asked = budget_of(run)
+  local asked = tours.budget(run)
   -- Smooth legs take what was counted; the rest in the first view comes on top.
   local budget = asked - (o.flight.smooth and o.flight.pause or 0)
   for round = 1, TIGHTER do
@@ -157,12 +115,12 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     local apart = words.cut_off(graph)
     notes[#notes + 1] = apart
     zones.add_notes(run, graph, notes)
-    local legs = flown(run, vehicle, tour, notes, begin)
+    local legs = tours.legs(run, vehicle, tour, notes, begin)
     begin("flight")
     local plan = run:scan_plan {
       tour = tour, legs = legs, margin = zones.margin(run), budget = asked,
       closed_loop_required = o.closed_loop == "required",
-      notes = notes, explored = explored,
+      notes = notes, explored = explored, pixel_error = o.pixel_error,
       figures = words.figures(graph, tour, asked, evaluations, explored),
     }
     -- Corners and rests may take a little more than the legs one by one.
@@ -182,18 +140,20 @@ local function planned(run)
   local vehicle = run:vehicle(o.vehicle)
   local in_passing = smooth.check(run, vehicle)
   passing.check(run, vehicle, in_passing)
+  views.check(run, in_passing)
   exploration.check(run)
-  local seconds = exploration.seconds(run, vehicle, budget_of(run))
-  phases.expect(run, budget_of(run), in_passing)
+  local seconds = exploration.seconds(run, vehicle, tours.budget(run))
+  phases.expect(run, tours.budget(run), in_passing)
   local known, poses, surface, explored =
     first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
   local starts, finish
+  poses = views.poses(run, known, poses)
   if not in_passing then starts, finish = first.starts(run, poses) end
   local plan
   for round = 1, o.rounds do
     local function begin(phase) run:phase(phases.named(run, phase, round)) end
     if in_passing then
-      plan = passing.plan(run, vehicle, known, budget_of(run), begin)
+      plan = passing.plan(run, vehicle, known, tours.budget(run), begin)
     else
       begin("views")
       local graph = graph_of(run, known, vehicle, starts, finish)
@@ -213,18 +173,20 @@ local function planned(run)
   return plan
 end
 
-local function mission(given)
-  return mission_of("scan", DECLARATIONS, polygons.written_out(given), planned)
-end
-
--- Likewise of a surveyor's data, which are known in place of a first flight.
-local function mission_with(source)
+-- A function that makes scans. `source(run)` states first what replaces a simulated first flight.
+local function made(source, declarations)
   return function(given)
-    return mission_of("scan", DECLARATIONS, polygons.written_out(given), function(run)
-      site.expect(run, source)
+    return mission_of("scan", declarations or DECLARATIONS, polygons.written_out(given), function(run)
+      if source then source(run) end
       return planned(run)
     end)
   end
+end
+local mission = made()
+local function surveyed(kind) return made(function(run) site.expect(run, kind) end) end
+-- Images of a real first flight, which `reader(run)` reads; `own`: the option of their kind.
+local function photographed(own, reader)
+  return made(function(run) images.expect(run, reader) end, images.declarations(DECLARATIONS, own))
 end
 
 -- A scene of scripts/scene, a mesh file of the user (`--set input=PATH`), or files of a real flight
@@ -237,9 +199,15 @@ M.of_mesh = mission
 M.of_prior = mission
 -- A point cloud (`--set input=PATH`).
 ---@type fun(given: lapwing.scan.of_cloud): lapwing.mission
-M.of_cloud = mission_with("cloud")
+M.of_cloud = surveyed("cloud")
 -- A raster of heights (`--set input=PATH`).
 ---@type fun(given: lapwing.scan.of_terrain): lapwing.mission
-M.of_terrain = mission_with("terrain")
+M.of_terrain = surveyed("terrain")
+-- Depth images with poses (`--set folder=PATH`).
+---@type fun(given: lapwing.scan.of_images): lapwing.mission
+M.of_images = photographed(images.DEPTH, images.depth_images)
+-- A COLMAP model (`--set folder=PATH`).
+---@type fun(given: lapwing.scan.of_colmap): lapwing.mission
+M.of_colmap = photographed(images.COLMAP, images.colmap)
 
 return M

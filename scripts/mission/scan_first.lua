@@ -2,6 +2,7 @@
 -- The first flight of a scan and its results (thesis 4.3): a map, a mesh, free places. Only the
 -- simulator uses the scene itself.
 local exploration = require "mission.scan_exploration"
+local images = require "mission.scan_images"
 local patterns = require "mission.scan_patterns"
 local site = require "mission.scan_site"
 local space = require "mission.scan_space"
@@ -42,6 +43,7 @@ function M.check(run)
                                     o.scene))
   end
   site.check(run)
+  images.check(run)
   if not o.input and (o.ground or o.unit or o.up ~= "file") then
     run:fail(o.ground and "ground" or o.unit and "unit" or "up",
              "is for the mesh file of input, which is not set (the mesh of a prior "
@@ -169,6 +171,13 @@ end
 function M.knowledge(run, seconds, vehicle, air)
   if site.wanted(run) then return surveyed(run, air) end
   local o = run.options
+  if images.wanted(run) then
+    local known, allowed = new_prior(run), space.room(run, {})
+    local function open(prior) open_air(run, prior, nil, {}, air) end
+    zones.check_home(run, allowed, math.min(space.safe_height(run), allowed.upper[3]))
+    local places = images.knowledge(run, known, space.range(run), allowed, o.safe_height and open)
+    return known, zones.allowed(run, places)
+  end
   local files, surface = space.prior_files(run), space.surface_of(run)
   if not surface and not files then
     lapwing.fail("no scene: name a scene, a mesh with --set input=PATH (.obj, .ply, .dae, "

@@ -4,6 +4,7 @@ local exploration = require "mission.scan_exploration"
 local passes = require "mission.scan_passes"
 local regions = require "mission.scan_regions"
 local site = require "mission.scan_site"
+local views = require "mission.scan_views"
 local zones = require "mission.scan_zones"
 
 local function number(name, default, unit, summary, more)
@@ -104,6 +105,9 @@ local DECLARATIONS = {
            .. "345 px, in proportion to it; for images in passing, any", POSITIVE),
     number("incidence_deg", 75, "deg", "largest angle between the ray and the normal of a surface",
            { above = 0, maximum = 90 }) } },
+  number("pixel_error", 0.5, "px", "standard deviation of a point's place in an image, for the "
+         .. "predicted accuracy", { above = 0, maximum = 100 }),
+  views.DECLARATION,
   { name = "effort", type = "table", summary = "effort of computing", table = {
     integer("pixels", 0, 0, 10000, "pixels per row in the first flight and in the evaluation of "
             .. "views; 0: those of the camera. The plan keeps the camera"),

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- The edge of a scan's voxels: as stated, or that of the map of an earlier flight.
 local exploration = require "mission.scan_exploration"
+local images = require "mission.scan_images"
 
 local M = {}
 
@@ -20,8 +21,8 @@ local resolutions = setmetatable({}, { __mode = "k" })  -- of runs
 function M.of(run)
   if resolutions[run] then return resolutions[run] end
   local o, files = run.options, M.prior_files(run)
-  local edge = o.resolution or exploration.wanted(run) and exploration.RESOLUTION
-               or o.effort.resolution
+  local edge = o.resolution or images.resolution(run)
+               or exploration.wanted(run) and exploration.RESOLUTION or o.effort.resolution
   if files then
     edge = run:map_resolution(files.map)
     if o.resolution and math.abs(o.resolution - edge) > 1e-9 * edge then

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Notes and warnings of a scan: the prior knowledge, and tours that use little of it.
 local first = require "mission.scan_first"
+local images = require "mission.scan_images"
 local site = require "mission.scan_site"
 
 local M = {}
@@ -17,6 +18,8 @@ function M.notes(run, known, explored, views)
               views }
   elseif site.wanted(run) then
     notes = site.notes(run, views)
+  elseif images.wanted(run) then
+    notes = images.notes(run, views)
   else
     local before = string.format("%d depth images %s", known.images,
                                  run.options.rounds > 1 and "so far" or "of the first flight")

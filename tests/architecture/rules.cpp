@@ -23,7 +23,7 @@ const std::map<std::string, Names>& rooms() {
       "geometry", "trajectory", "vehicle", "map",     "path",     "problem",     "solve",
       "view",     "explore",    "verify",  "export",  "config",   "conformance", "plugin",
       "mission",  "surface",    "shape",   "picture", "symbolic", "flight_log",  "flight_review",
-      "mavlink",  "fly",        "survey",  "items"};
+      "mavlink",  "fly",        "survey",  "items",      "photogrammetry"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -38,6 +38,7 @@ const std::map<std::string, Names>& rooms() {
       {"surface", {"geometry"}},
       {"picture", {"geometry"}},
       {"survey", {"geometry"}},
+      {"photogrammetry", {"geometry", "surface"}},
       {"shape", {"geometry", "map"}},
       {"trajectory", {"geometry", "shape"}},
       {"vehicle", {"geometry", "trajectory"}},
@@ -50,7 +51,8 @@ const std::map<std::string, Names>& rooms() {
       {"explore", {"geometry", "map", "view", "path"}},
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
       {"export",
-       {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
+       {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map",  // limits
+        "photogrammetry"}},
       {"flight_log", {"geometry", "mavlink"}},
       {"flight_review", {"geometry", "trajectory", "vehicle", "verify", "export", "flight_log"}},
       {"mavlink", {}},
@@ -133,6 +135,7 @@ constexpr Containment kContained[] = {
     {"cpl_", "framework/survey/", true},
     {"ogr_", "framework/survey/", true},
     {"mpi.h", "plugins/executors/mpi/", true},
+    {"libexif/", "framework/photogrammetry/", true},
 };
 // Of these, one source file of the framework alone.
 constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/", "png.h",     "octomap/",
