@@ -395,9 +395,9 @@ Value areas_as_value(const ScanRecord& record) {
 
 std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record) {
   const ScanTask& scan = *plan.task.scan;
-  std::vector<Section> sections{known_section(record, scan.region.bounds()), candidates_section(plan, record),
-                                view_section(record, scan), tour_section(plan, record),
-                                coverage_section(record, scan)};
+  std::vector<Section> sections{known_section(record, scan.region.bounds()),
+                                candidates_section(plan, record), view_section(record, scan),
+                                tour_section(plan, record), coverage_section(record, scan)};
   if (record.prediction) sections.push_back(prediction_section(*record.prediction));
   return sections;
 }
