@@ -125,8 +125,8 @@ TEST(CloudSurface, WhatShowsNoSurfaceIsRefused) {
 }
 
 // The mesh lies within half a cell, 0.25 m, of the slope and within a cell of the roof, for which
-// missions allow. The level of the reconstruction is the median of all samples, of which nine of ten
-// are on the slope: it puts the roof 0.3 m above its points.
+// missions allow. The level of the reconstruction is the median of all samples, of which nine of
+// ten are on the slope: it puts the roof 0.3 m above its points.
 TEST(CloudSurface, AMeshOfIt) {
   std::vector<Vector3d> house = house_on_slope(0.25);
   std::erase_if(house, [](const Vector3d& p) { return p.cwiseAbs().maxCoeff() > 10; });
