@@ -36,6 +36,11 @@ const std::string kFilm =
     "return require('mission.film').shot {\n"
     "  keyframes = { { position = {0, 0, 2} }, { position = {3, 4, 4} } },\n";
 
+constexpr const char* kTower = R"({ "type": "FeatureCollection", "features": [
+  { "type": "Feature", "properties": { "name": "tower", "from": 0, "to": 30 },
+    "geometry": { "type": "Polygon", "coordinates":
+      [[[4.36, 52], [4.3601, 52], [4.3601, 52.0001], [4.36, 52.0001], [4.36, 52]]] } }] })";
+
 class Snippets : public CommandLine {
  protected:
   static bool has(const std::string& text, const std::string& piece) {
@@ -78,9 +83,13 @@ class Snippets : public CommandLine {
       return expect({"scene", "view", "snippet.lua", "-o", "page.html"}, 0, "");
     }
     if (text.rfind("regions", 0) == 0) {  // of a scan
+      write("site.geojson", kTower);
       write("snippet.lua",
-            "return require('mission.scan').of_scene { scene = 'church',\n" + text + "}");
-      return expect({"config", "snippet.lua"}, 0, "");
+            "return require('mission.scan').of_scene { scene = 'church', heights = 'world', "
+            "origin = { latitude_deg = 52, longitude_deg = 4.36, height = 0, height_of = 'ground' "
+            "},\n" +
+                text + "}");
+      return expect({"config", "snippet.lua", "--data", folder_.string()}, 0, "");
     }
     const bool fields = !has(text, "return ") || text.rfind("costs", 0) == 0;
     write("snippet.lua", fields ? kFilm + text + "}" : text);
