@@ -85,7 +85,7 @@ class Snippets : public CommandLine {
     if (text.rfind("regions", 0) == 0) {  // of a scan
       write("site.geojson", kTower);
       write("snippet.lua",
-            "return require('mission.scan').of_scene { scene = 'church', safe_height = 40, heights "
+            "return require('mission.scan').of_scene { scene = 'church', safe_height = 60, heights "
             "= 'world', "
             "origin = { latitude_deg = 52, longitude_deg = 4.36, height = 0, height_of = 'ground' "
             "},\n" +
