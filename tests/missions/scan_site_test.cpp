@@ -100,8 +100,11 @@ TEST_F(SiteScan, ACloudIsScannedAndCertified) {
 
 TEST_F(SiteScan, ScannersMakeTheAirUnderACanopyFree) {
   std::vector<Eigen::Vector3d> points = house();
-  for (double x = -3.9; x < 4; x += 0.3)  // what a scanner south of the house sees under it
+  // What a scanner south of the house sees under the canopy: the ground and the wall.
+  for (double x = -3.9; x < 4; x += 0.3) {
     for (double y = -5; y < -3; y += 0.3) points.emplace_back(x, y, slope_height(x));
+    for (double z = slope_height(x) + 0.15; z < 3; z += 0.3) points.emplace_back(x, -3, z);
+  }
   write_file_atomically(folder_ / "house.xyz", lines_of(points));
   ASSERT_EQ(run_on("house.xyz", "cloud",
                    "--set 'cloud.scanners=[{position: [0, -9, 1.5]}]' --set cloud.free=both"),
