@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "framework/verify/fleet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "framework/verify/checks.h"
+#include "framework/verify/drone_distance.h"
+#include "framework/verify/seen_voxels.h"
+
+namespace lapwing {
+namespace {
+
+constexpr double kSameHome = 0.05;            // m
+constexpr double kTimeRounding = 1e-6;        // s
+constexpr double kSeparationRounding = 1e-3;  // m
+constexpr std::size_t kProblemsListed = 5;
+constexpr std::size_t kMostTours = 1000;
+
+constexpr CheckKind kFleetCheckKinds[] = {{"fleet_document", CheckGroup::safety, true, ""},
+                                          {"tours", CheckGroup::safety, true, ""},
+                                          {"sequence", CheckGroup::safety, true, "s"},
+                                          {"homes", CheckGroup::safety, true, "m"},
+                                          {"reserve", CheckGroup::safety, true, "s"},
+                                          {"separation", CheckGroup::safety, true, "m"},
+                                          {"fleet_coverage", CheckGroup::task, true, ""},
+                                          {"coverage_asked", CheckGroup::task, true, ""}};
+
+Check fleet_check(std::string_view name) {
+  Check check;
+  for (const CheckKind& kind : kFleetCheckKinds) {
+    if (name != kind.name) continue;
+    check.name = kind.name;
+    check.group = kind.group;
+    check.required = kind.required;
+    check.unit = kind.unit;
+  }
+  return check;
+}
+
+void skip_check(std::string_view name, std::string reason, Certificate& certificate) {
+  Check check = fleet_check(name);
+  check.skipped = std::move(reason);
+  certificate.checks.push_back(std::move(check));
+}
+
+// The map in which the views of a plan see, as the plan names it; empty where there is none.
+std::string map_digest(const Plan& plan) {
+  const Obstacle* map =
+      plan.task.scan ? find_obstacle(plan.environment, "map", plan.task.scan->map) : nullptr;
+  const Value* stated = map ? map->parameters.find("sha256") : nullptr;
+  return stated && stated->is_text() ? stated->as_text() : "";
+}
+
+bool same_region(const ScanTask& a, const ScanTask& b) {
+  return a.region.isApprox(b.region, 0) && a.range == b.range && a.camera.width == b.camera.width &&
+         a.camera.height == b.camera.height && a.camera.focal_x == b.camera.focal_x &&
+         a.camera.focal_y == b.camera.focal_y && a.camera.principal_x == b.camera.principal_x &&
+         a.camera.principal_y == b.camera.principal_y;
+}
+
+class FleetReader {
+ public:
+  FleetReader(const Fleet& fleet, std::span<const FleetMember> members)
+      : fleet_(fleet), members_(members) {}
+
+  Check read() {
+    numbers();
+    if (fleet_.tours.empty()) add("there is no tour");
+    if (fleet_.tours.size() > kMostTours) add("there are more than 1000 tours");
+    if (members_.size() != fleet_.tours.size()) add("plans are missing");
+    if (problems_.empty())
+      for (std::size_t t = 0; t < fleet_.tours.size(); ++t) tour(t);
+    Check check =
+        judged(fleet_check("fleet_document"), static_cast<double>(problems_.size()), 0, 0, 0);
+    for (std::size_t i = 0; i < std::min(problems_.size(), kProblemsListed); ++i)
+      check.detail += (i ? "; " : "") + problems_[i];
+    if (problems_.size() > kProblemsListed)
+      check.detail += "; and " + std::to_string(problems_.size() - kProblemsListed) + " more";
+    return check;
+  }
+
+ private:
+  void add(std::string problem) { problems_.push_back(std::move(problem)); }
+
+  void numbers() {
+    const auto least = [&](const char* name, double number) {
+      if (!(number >= 0) || !sound(number))
+        add(std::string(name) + " must be at least 0 and at most 1e7");
+    };
+    least("separation", fleet_.separation);
+    least("swap", fleet_.swap);
+    least("reserve", fleet_.reserve);
+    if (fleet_.seen < 1) add("the number of seen voxels must be at least 1");
+    if (!(fleet_.seen_share > 0 && fleet_.seen_share <= 1))
+      add("seen_share must be above 0 and at most 1");
+    if (!(fleet_.coverage >= 0 && fleet_.coverage <= 1)) add("coverage must be between 0 and 1");
+    if (fleet_.coverage_asked && !(*fleet_.coverage_asked > 0 && *fleet_.coverage_asked <= 1))
+      add("coverage_asked must be above 0 and at most 1");
+  }
+
+  void tour(std::size_t t) {
+    const FleetTour& tour = fleet_.tours[t];
+    const FleetMember& member = members_[t];
+    const std::string name = name_of_tour(tour);
+    if (!sound(tour.start) || tour.start < 0) add(name + " must start at 0 s or later");
+    if (!names_.insert(name).second) add(name + " is listed twice");
+    if (!files_.insert(tour.file).second) add("'" + tour.file + "' is flown twice");
+    if (member.sha256 != tour.sha256)
+      add("'" + tour.file + "' is not the file that the fleet names: its SHA-256 differs");
+    const Check* document = member.certificate->find("document");
+    if (!document || !document->pass) return add("the document of " + name + " does not hold");
+    const Plan& first = *members_.front().plan;
+    if (!member.plan->task.scan || !first.task.scan) return add(name + " is no scan");
+    if (!same_region(*member.plan->task.scan, *first.task.scan) ||
+        map_digest(*member.plan) != map_digest(first))
+      add(name + " has another region, camera or map than the first tour");
+  }
+
+  const Fleet& fleet_;
+  std::span<const FleetMember> members_;
+  std::set<std::string> names_, files_;
+  std::vector<std::string> problems_;
+};
+
+// The plans as they are flown.
+struct FlownFleet {
+  const Fleet& fleet;
+  std::span<const FleetMember> members;
+  std::vector<Vehicle> vehicles;
+  std::vector<TimedPath> paths;
+
+  double end(std::size_t t) const {
+    return fleet.tours[t].start + members[t].plan->trajectory.duration();
+  }
+  std::string names(std::size_t a, std::size_t b) const {
+    return name_of_tour(fleet.tours[a]) + " and " + name_of_tour(fleet.tours[b]);
+  }
+};
+
+void check_tours(const FlownFleet& flown, Certificate& certificate) {
+  int failed = 0;
+  std::string which;
+  for (std::size_t t = 0; t < flown.members.size(); ++t) {
+    if (flown.members[t].certificate->feasible()) continue;
+    ++failed;
+    const auto failures = flown.members[t].certificate->failures();
+    which += (which.empty() ? "" : "; ") + name_of_tour(flown.fleet.tours[t]) +
+             (failures.empty() ? "" : ": " + to_line(failures.front()));
+  }
+  Check check = judged(fleet_check("tours"), failed, 0, 0, 0);
+  check.detail = which;
+  certificate.checks.push_back(check);
+}
+
+// Pairs of tours of one drone, one after the other by their batteries.
+std::vector<std::pair<std::size_t, std::size_t>> successions(const Fleet& fleet) {
+  std::map<std::string, std::map<int, std::size_t>> by_drone;
+  for (std::size_t t = 0; t < fleet.tours.size(); ++t)
+    by_drone[fleet.tours[t].drone][fleet.tours[t].battery] = t;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (const auto& [drone, tours] : by_drone)
+    for (auto tour = tours.begin(); std::next(tour) != tours.end(); ++tour)
+      pairs.emplace_back(tour->second, std::next(tour)->second);
+  return pairs;
+}
+
+void check_sequence(const FlownFleet& flown, Certificate& certificate) {
+  const auto pairs = successions(flown.fleet);
+  if (pairs.empty()) return skip_check("sequence", "every drone flies one tour", certificate);
+  double least = std::numeric_limits<double>::infinity(), at = 0;
+  std::string which;
+  for (const auto& [a, b] : pairs) {
+    const double between = flown.fleet.tours[b].start - flown.end(a);
+    if (between >= least) continue;
+    least = between;
+    at = flown.end(a);
+    which = flown.names(a, b);
+  }
+  Check check = judged(fleet_check("sequence"), least, flown.fleet.swap, kTimeRounding, at, true);
+  check.detail = which;
+  certificate.checks.push_back(check);
+}
+
+void check_homes(const FlownFleet& flown, Certificate& certificate) {
+  double farthest = 0, at = 0;
+  std::string which;
+  const auto see = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, double time,
+                       std::string names) {
+    if ((a - b).norm() < farthest || (!which.empty() && (a - b).norm() == farthest)) return;
+    farthest = (a - b).norm();
+    at = time;
+    which = std::move(names);
+  };
+  for (std::size_t t = 0; t < flown.paths.size(); ++t)
+    see(flown.paths[t].places.front(), flown.paths[t].places.back(), flown.end(t),
+        name_of_tour(flown.fleet.tours[t]));
+  for (const auto& [a, b] : successions(flown.fleet))
+    see(flown.paths[a].places.back(), flown.paths[b].places.front(), flown.fleet.tours[b].start,
+        flown.names(a, b));
+  Check check = judged(fleet_check("homes"), farthest, 0, 2 * kSameHome, at);
+  check.detail = which;
+  certificate.checks.push_back(check);
+}
+
+void check_reserve(const FlownFleet& flown, Certificate& certificate) {
+  double least = std::numeric_limits<double>::infinity(), at = 0;
+  std::string which;
+  for (std::size_t t = 0; t < flown.members.size(); ++t) {
+    const double left =
+        flown.vehicles[t].flight_time - flown.members[t].plan->trajectory.duration();
+    if (left >= least) continue;
+    least = left;
+    at = flown.end(t);
+    which = name_of_tour(flown.fleet.tours[t]);
+  }
+  Check check = judged(fleet_check("reserve"), least, flown.fleet.reserve,
+                       tolerance_of(flown.vehicles.front().flight_time), at, true);
+  check.detail = which;
+  certificate.checks.push_back(check);
+}
+
+void check_separation(const FlownFleet& flown, const VerifyRequest& request,
+                      Certificate& certificate) {
+  Approach nearest{std::numeric_limits<double>::infinity(), 0};
+  std::string which;
+  for (std::size_t a = 0; a < flown.paths.size(); ++a)
+    for (std::size_t b = a + 1; b < flown.paths.size(); ++b) {
+      if (flown.paths[a].drone == flown.paths[b].drone) continue;
+      if (request.cancellation && request.cancellation->cancelled()) throw Cancelled();
+      const Approach found = nearest_approach(flown.paths[a], flown.paths[b]);
+      if (!(found.distance < nearest.distance)) continue;
+      nearest = found;
+      which = flown.names(a, b);
+    }
+  if (which.empty())
+    return skip_check("separation", "no two drones fly at the same time", certificate);
+  Check check = judged(fleet_check("separation"), nearest.distance, flown.fleet.separation,
+                       kSeparationRounding, nearest.time, true);
+  check.detail = which;
+  certificate.checks.push_back(check);
+}
+
+void check_fleet_coverage(const FlownFleet& flown, const BlockedVoxels& voxels,
+                          const VerifyRequest& request, Certificate& certificate) {
+  std::vector<PlannedView> views;
+  for (const FleetMember& member : flown.members)
+    views.insert(views.end(), member.plan->task.scan->views.begin(),
+                 member.plan->task.scan->views.end());
+  const std::int64_t count =
+      count_seen(voxels, *flown.members.front().plan->task.scan, views, [&](double) {
+        if (request.cancellation && request.cancellation->cancelled()) throw Cancelled();
+      });
+  const Fleet& fleet = flown.fleet;
+  Check check = judged(fleet_check("fleet_coverage"),
+                       static_cast<double>(count) / static_cast<double>(fleet.seen),
+                       fleet.seen_share, 0, 0, true);
+  check.detail = std::to_string(count) + " of the " + std::to_string(fleet.seen) +
+                 " voxels that the fleet states as seen by the views of all tours";
+  certificate.checks.push_back(check);
+  if (!fleet.coverage_asked)
+    return skip_check("coverage_asked", "no coverage was asked for", certificate);
+  certificate.checks.push_back(
+      judged(fleet_check("coverage_asked"), fleet.coverage, *fleet.coverage_asked, 0, 0, true));
+  certificate.checks.back().detail = "as the document states it: the plans hold no other views";
+}
+
+}  // namespace
+
+Certificate verify_fleet(const Fleet& fleet, std::span<const FleetMember> members,
+                         const VerifyRequest& request) {
+  Certificate certificate;
+  certificate.checks.push_back(FleetReader(fleet, members).read());
+  if (!certificate.checks.front().pass) {
+    for (const CheckKind& kind : kFleetCheckKinds)
+      if (kind.name != std::string_view("fleet_document"))
+        skip_check(kind.name, "the check 'fleet_document' failed", certificate);
+    return certificate;
+  }
+  FlownFleet flown{fleet, members, {}, {}};
+  for (std::size_t t = 0; t < members.size(); ++t) {
+    flown.vehicles.push_back(vehicle_from_value(members[t].plan->vehicle));
+    Motion motion(members[t].plan->trajectory, flown.vehicles.back());
+    flown.paths.push_back(
+        timed_path(motion, fleet.tours[t].drone, fleet.tours[t].start, fleet.swap / 2));
+  }
+  check_tours(flown, certificate);
+  check_sequence(flown, certificate);
+  check_homes(flown, certificate);
+  check_reserve(flown, certificate);
+  check_separation(flown, request, certificate);
+  // The map, read as the first plan's own certificate read it.
+  Watch watch(request.cancellation, nullptr);
+  const Plan& first = *members.front().plan;
+  const Document document = check_document(first, request, watch);
+  const auto& obstacles = first.environment.obstacles;
+  for (std::size_t i = 0; i < obstacles.size() && document.check.pass; ++i)
+    if (obstacles[i].type == "map" && obstacles[i].name == first.task.scan->map) {
+      check_fleet_coverage(flown, *document.shapes[i]->voxels(), request, certificate);
+      return certificate;
+    }
+  certificate.checks.push_back(judged(fleet_check("fleet_coverage"),
+                                      std::numeric_limits<double>::quiet_NaN(), fleet.seen_share, 0,
+                                      0, true));
+  certificate.checks.back().detail = "the map of the first tour cannot be read";
+  skip_check("coverage_asked", "the map of the first tour cannot be read", certificate);
+  return certificate;
+}
+
+}  // namespace lapwing
