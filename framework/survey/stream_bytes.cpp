@@ -46,7 +46,7 @@ void StreamBytes::fail_short(const char* what, std::uint64_t missing) const {
 
 bool StreamBytes::have(std::size_t count) {
   if (end_ - begin_ >= count) return true;
-  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  if (begin_ < end_) std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
   const std::uint64_t wanted =

@@ -7,6 +7,7 @@
 #include "framework/fly/link.h"
 #include "framework/fly/plan_pacer.h"
 #include "framework/mavlink/vocabulary.h"
+#include "framework/trajectory/interpolate.h"
 #include "tests/fly/rehearsal.h"
 
 namespace lapwing {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMiddle = kCenterKey;
 
-VoxelKey key_at(int x, int y, int z) {
+VoxelKey column_key(int x, int y, int z) {
   return {static_cast<std::uint16_t>(kMiddle + x), static_cast<std::uint16_t>(kMiddle + y),
           static_cast<std::uint16_t>(kMiddle + z)};
 }
@@ -39,11 +39,11 @@ TEST(SkyColumns, CubesAreTheVoxelsOfEachColumn) {
   Random random(3);
   std::vector<VoxelKey> occupied;
   for (int i = 0; i < 500; ++i)
-    occupied.push_back(key_at(static_cast<int>(random.uniform(-9, 20)),
-                              static_cast<int>(random.uniform(-14, 11)),
-                              static_cast<int>(random.uniform(-6, 6))));
+    occupied.push_back(column_key(static_cast<int>(random.uniform(-9, 20)),
+                                  static_cast<int>(random.uniform(-14, 11)),
+                                  static_cast<int>(random.uniform(-6, 6))));
   for (int x = 8; x < 16; ++x)  // a level part, for large cubes
-    for (int y = -8; y < 0; ++y) occupied.push_back(key_at(x, y, 7));
+    for (int y = -8; y < 0; ++y) occupied.push_back(column_key(x, y, 7));
   const SkyColumns columns = SkyColumns::over(occupied);
   const int floor = kMiddle - 3, ceiling = kMiddle + 17;
   const auto free = voxels_of(columns.free_above(ceiling));
@@ -88,8 +88,8 @@ TEST(FreeFromScanners, LinesEndAtTheFirstWall) {
   std::vector<VoxelKey> measured, occupied;
   for (int y = -3; y <= 3; ++y)
     for (int z = -3; z <= 3; ++z) {
-      if (y != 0 || z != 0) occupied.push_back(key_at(5, y, z));
-      measured.push_back(key_at(9, y, z));
+      if (y != 0 || z != 0) occupied.push_back(column_key(5, y, z));
+      measured.push_back(column_key(9, y, z));
     }
   occupied.insert(occupied.end(), measured.begin(), measured.end());
   std::sort(occupied.begin(), occupied.end());
@@ -97,8 +97,8 @@ TEST(FreeFromScanners, LinesEndAtTheFirstWall) {
   const auto list = free_from_scanners(measured, occupied, scanners, grid, 100);
   const std::set<VoxelKey> free(list.begin(), list.end());
   EXPECT_TRUE(std::is_sorted(list.begin(), list.end()));
-  for (int x = 0; x < 9; ++x) EXPECT_TRUE(free.count(key_at(x, 0, 0))) << x;
-  EXPECT_FALSE(free.count(key_at(9, 0, 0))) << "the point itself";
+  for (int x = 0; x < 9; ++x) EXPECT_TRUE(free.count(column_key(x, 0, 0))) << x;
+  EXPECT_FALSE(free.count(column_key(9, 0, 0))) << "the point itself";
   for (const VoxelKey& key : free) {
     EXPECT_FALSE(std::binary_search(occupied.begin(), occupied.end(), key));
     EXPECT_TRUE(key.x < kMiddle + 5 || (key.y == kMiddle && key.z == kMiddle)) << "behind the wall";

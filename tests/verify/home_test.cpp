@@ -129,7 +129,7 @@ TEST(HomeChecks, RallyPointsKeepWhatTheFlightKeeps) {
       flight_zone_at("park", {{-50, -50}, {50, -50}, {50, 50}, {-50, 50}}));
   broken({-8, 49.8, 12}, "flight zone 'park'");
   plan.geodetic_origin = GeodeticOrigin{46.5, 6.6, 3, HeightOf::ground};
-  broken({-8, 0, -3.5}, "the ground");
+  broken({-40, 0, -3.5}, "the ground");
 }
 
 TEST(HomeChecks, ARallyPointWithNothingToKeepIsNotJudged) {

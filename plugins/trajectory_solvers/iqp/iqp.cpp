@@ -28,6 +28,7 @@
 #include <cmath>
 
 #include "framework/plugin/plugin.h"
+#include "framework/solve/active_set.h"
 #include "framework/solve/elastic.h"
 #include "framework/solve/interior_point.h"
 #include "framework/solve/local_program.h"
@@ -92,6 +93,7 @@ class Iqp final : public TrajectorySolver {
 // The programs of one problem after the other: their orderings are kept where nothing changed.
 struct IqpMemory final : SolverMemory {
   InteriorPoint programs, elastic;
+  ActiveSet sets;
 };
 
 // One solve: the state that goes from iteration to iteration.
@@ -105,6 +107,7 @@ class Solve {
         feasibility_(feasibility),
         limit_(request.iteration_limit.value_or(iterations)),
         start_(std::chrono::steady_clock::now()),
+        sets_(memory_of(request).sets),
         interior_point_(memory_of(request).programs),
         elastic_point_(memory_of(request).elastic) {}
 
@@ -168,6 +171,7 @@ class Solve {
   LocalModel model_;
   QuadraticProgram program_;
   IqpMemory own_;
+  ActiveSet& sets_;
   InteriorPoint &interior_point_, &elastic_point_;
   bool contradictory_ = false;  // the last model's rows and bounds
   double program_tolerance_ = kProgramFinest;
@@ -303,6 +307,10 @@ Solve::Step Solve::quadratic_step() {
   std::optional<QuadraticWarmStart> warm;
   if (rows_.size() == problem_.rows() && bounds_.size() == problem_.columns())
     warm = QuadraticWarmStart{VectorXd::Zero(problem_.columns()), rows_, bounds_};
+  if (warm && request_.memory) {  // between edits mostly the same limits hold the flight back
+    std::optional<QuadraticResult> near = sets_.solve(program_, options, *warm);
+    if (near) return {near->status, near->x, near->row_multipliers, near->bound_multipliers};
+  }
   QuadraticResult result = interior_point_.solve(program_, options, warm);
   if (warm && result.status != QuadraticStatus::optimal &&
       result.status != QuadraticStatus::cancelled)

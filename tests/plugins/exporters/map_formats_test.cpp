@@ -119,12 +119,12 @@ TEST(MapFormats, HoldPlacesAndZonesByTheirNames) {
   const std::string kml = exporter_named("kml")->write(plan);
   EXPECT_THAT(kml,
               HasSubstr("<name>A &amp; B &lt;&quot;Übersicht&quot;&gt; (not certified)</name>"));
-  EXPECT_THAT(kml, HasSubstr("Tom &amp; &lt;&quot;Jerry\xef\xbf\xbd&apos;&gt;"));
+  EXPECT_THAT(kml, HasSubstr("Tom &amp; &lt;&quot;Jerry\xef\xbf\xbd&#39;&gt;"));
   EXPECT_THAT(kml, HasSubstr("a &lt; b"));
   EXPECT_THAT(kml, HasSubstr("<extrude>1</extrude>"));
   EXPECT_THAT(kml, HasSubstr("1.5 s after the start"));
   const std::string gpx = exporter_named("gpx", with("heights", "ground"))->write(plan);
-  EXPECT_THAT(gpx, HasSubstr("Tom &amp; &lt;&quot;Jerry\xef\xbf\xbd&apos;&gt;"));
+  EXPECT_THAT(gpx, HasSubstr("Tom &amp; &lt;&quot;Jerry\xef\xbf\xbd&#39;&gt;"));
   const Value json =
       from_json(exporter_named("geojson", with("heights", "ground"))->write(plan), "test");
   const auto& features = json.at("features").as_list();

@@ -335,7 +335,8 @@ TEST(Missions, TakeOffAndHeightsAreThoseOfThePlansHome) {
   const auto exporter = exporter_named("qgc_plan");
   const std::string text = exporter->write(plan);
   EXPECT_THAT(plan_faults(text), IsEmpty());
-  const Value& mission = from_json(text, "test").at("mission");
+  const Value document = from_json(text, "test");
+  const Value& mission = document.at("mission");
   const Eigen::Vector3d origin(kLatitude, kLongitude, 2);
   const auto& home = mission.at("plannedHomePosition").as_list();
   const Eigen::Vector3d there = from_origin(origin, {home[0].as_number(), home[1].as_number(), 6});
