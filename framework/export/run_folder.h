@@ -31,6 +31,10 @@ struct RunFiles {
   std::optional<std::string> long_exposure = {};  // long_exposure.png
   // Meshes and maps that the plan names: obstacle_1.ply, obstacle_2.ot, ..., map.ot, prior.ply.
   std::vector<std::pair<std::string, std::string>> obstacles = {};
+  std::optional<std::string> fleet = {};  // fleet.json
+  // In place of plan and trajectory, of each tour of a fleet: plan_1.json, report_1.html,
+  // trajectory_1.csv, plan_2.json, ...
+  std::vector<std::pair<std::string, std::string>> tours = {};
 };
 
 // Whether runs give files of theirs this name: plan.json, obstacle_1.ply, ...

@@ -144,7 +144,11 @@ ParameterTable graph_table() {
       .boolean("fixed", true,
                "tours begin at the first of the starts; false: at the first of those "
                "that are connected to most views")
-      .integer("needed", 1, "number of starts, the first ones, that must be free", between(1, 2))
+      .integer("needed", 1, "number of starts, the first ones, that must be free",
+               between(1, 1000))
+      .boolean("loops", false,
+               "tours begin and end at any of the needed starts; false: at the first one, and "
+               "end at the second one, if it is needed")
       .numbers("body", {1, 1, 0.5}, "m", "half edges of the vehicle's box")
       .number("mesh_room", 1, "m", "additional distance from the prior mesh", at_least(0))
       .table("candidates", candidates_table(), "candidate views")
@@ -196,7 +200,8 @@ ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run)
 
 // The first `needed` must be free; of the others those count that are.
 std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::size_t needed,
-                                   const FreeSpace& space, const CandidateSettings& settings) {
+                                   bool loops, const FreeSpace& space,
+                                   const CandidateSettings& settings) {
   std::vector<Viewpoint> starts;
   for (const Parameters& entry : given) {
     const Viewpoint view = viewpoint_of(entry);
@@ -209,7 +214,7 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
         text, sizeof text,
         "no free %s: at (%.4g, %.4g, %.4g) the map does not show free space "
         "for a box of %.3g x %.3g x %.3g m%s",
-        starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
+        starts.empty() || loops ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
         2 * settings.half.y(), 2 * settings.half.z(),
         settings.allowed.contains(p) ? "" : ", and it lies outside the space of the tour");
     throw InputError(entry.origin(), text);
@@ -276,8 +281,8 @@ int scan_graph_of_run(lua_State* state) {
   const auto coarser = make_sight(*work, run, given, information);
   const auto space = space_of(*work->prior, given.number("mesh_room"));
   const std::vector<Viewpoint> starts =
-      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")), *space,
-                  settings.candidates);
+      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
+                  given.boolean("loops"), *space, settings.candidates);
   begin_planning(run);
   work->allowed = settings.candidates.allowed;
   work->body = settings.candidates.half;

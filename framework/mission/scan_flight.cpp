@@ -211,16 +211,6 @@ SolveStatus status_of(TourStatus status) {
   return SolveStatus::numerical_error;
 }
 
-SolveReport report_of(const TourReport& tour) {
-  SolveReport report;
-  report.status = status_of(tour.status);
-  report.message = tour.message;
-  report.iterations = static_cast<int>(tour.iterations);
-  report.cost = std::numeric_limits<double>::quiet_NaN();
-  report.seconds = tour.wall_seconds;
-  return report;
-}
-
 std::vector<std::string> texts_of(const Value& list) {
   std::vector<std::string> texts;
   if (list.is_list())
@@ -352,6 +342,16 @@ int scan_plan_of_run(lua_State* state) {
 }
 
 }  // namespace
+
+SolveReport report_of(const TourReport& tour) {
+  SolveReport report;
+  report.status = status_of(tour.status);
+  report.message = tour.message;
+  report.iterations = static_cast<int>(tour.iterations);
+  report.cost = std::numeric_limits<double>::quiet_NaN();
+  report.seconds = tour.wall_seconds;
+  return report;
+}
 
 std::span<const Binding> scan_plan_methods_of_run() {
   static const Binding methods[] = {{"scan_plan", &guarded<scan_plan_of_run>,

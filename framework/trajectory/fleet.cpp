@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/trajectory/fleet.h"
 
+#include <set>
+
 #include "framework/core/error.h"
 #include "framework/core/fields.h"
 #include "framework/core/json.h"
@@ -11,6 +13,12 @@ namespace {
 
 constexpr int kMostBatteries = 1'000'000;
 constexpr const char* kFleetKey = "fleet_format";
+
+// Whether a text names a file in the folder of the document, and nothing elsewhere.
+bool is_plain_name(const std::string& file) {
+  return !file.empty() && file != "." && file != ".." &&
+         file.find_first_of(std::string_view("/\\\0", 3)) == file.npos;
+}
 
 FleetTour tour_from(Fields& fields) {
   FleetTour tour;
@@ -29,6 +37,16 @@ std::string name_of_tour(const FleetTour& tour) {
   return "drone " + tour.drone + ", battery " + std::to_string(tour.battery);
 }
 
+int swaps_of(const Fleet& fleet) {
+  std::set<std::string> drones;
+  for (const FleetTour& tour : fleet.tours) drones.insert(tour.drone);
+  return static_cast<int>(fleet.tours.size() - drones.size());
+}
+
+std::string fleet_plan_name(std::size_t tour) {
+  return "plan_" + std::to_string(tour + 1) + ".json";
+}
+
 Value to_value(const Fleet& fleet) {
   Value value = Value::map();
   value.set(kFleetKey, std::int64_t{Fleet::kFormat});
@@ -39,8 +57,6 @@ Value to_value(const Fleet& fleet) {
   value.set("reserve", fleet.reserve);
   value.set("seen", fleet.seen);
   value.set("seen_share", fleet.seen_share);
-  value.set("coverage", fleet.coverage);
-  if (fleet.coverage_asked) value.set("coverage_asked", *fleet.coverage_asked);
   Value& tours = value.set("tours", Value::list());
   for (const FleetTour& tour : fleet.tours) {
     Value row = Value::map();
@@ -51,6 +67,7 @@ Value to_value(const Fleet& fleet) {
     row.set("sha256", tour.sha256);
     tours.push_back(std::move(row));
   }
+  if (!fleet.solver.is_null()) value.set("solver", fleet.solver);
   if (!fleet.certificate.is_null()) value.set("certificate", fleet.certificate);
   return value;
 }
@@ -70,9 +87,14 @@ Fleet fleet_from_value(const Value& value) {
   fleet.reserve = fields.number("reserve");
   fleet.seen = fields.integer("seen");
   fleet.seen_share = fields.number("seen_share");
-  fleet.coverage = fields.number("coverage");
-  fleet.coverage_asked = fields.optional_number("coverage_asked");
-  for (Fields& tour : fields.tables("tours")) fleet.tours.push_back(tour_from(tour));
+  for (Fields& tour : fields.tables("tours")) {
+    fleet.tours.push_back(tour_from(tour));
+    const std::string& file = fleet.tours.back().file;
+    if (!file.empty() && !is_plain_name(file))
+      errors.add(value.origin(), "tours.file",
+                 "expected the name of a file beside the fleet document, got '" + file + "'");
+  }
+  fleet.solver = fields.opaque("solver");
   fleet.certificate = fields.opaque("certificate");
   fields.opaque("digest");
   fields.finish();

@@ -7,8 +7,7 @@
 // the same bytes.
 #pragma once
 
-#include <filesystem>
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -34,14 +33,18 @@ struct Fleet {
   double reserve = 0;     // s of flight, least that is left of a battery after its tour
   std::int64_t seen = 0;  // voxels of the region that the views of all tours together see
   double seen_share = 1;  // of them that must be seen again when the views are cast anew
-  double coverage = 0;    // share of the information of all views that the tours have together
-  std::optional<double> coverage_asked;  // such a share that was asked for
-  std::vector<FleetTour> tours;          // in the order of their starts
-  Value certificate;                     // as verify writes it
+  std::vector<FleetTour> tours;  // in the order of their starts
+  Value solver;       // what the solver of the tours said of all of them together; opaque
+  Value certificate;  // as verify writes it
 };
 
 // "drone 1, battery 2"
 std::string name_of_tour(const FleetTour& tour);
+
+// How often a battery is changed: once before every tour of a drone but its first.
+int swaps_of(const Fleet& fleet);
+// "plan_2.json": the file of the tour at this place among the tours, from 0.
+std::string fleet_plan_name(std::size_t tour);
 
 // The document, its digest left out.
 Value to_value(const Fleet& fleet);

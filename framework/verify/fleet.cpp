@@ -25,8 +25,7 @@ constexpr CheckKind kFleetCheckKinds[] = {{"fleet_document", CheckGroup::safety,
                                           {"homes", CheckGroup::safety, true, "m"},
                                           {"reserve", CheckGroup::safety, true, "s"},
                                           {"separation", CheckGroup::safety, true, "m"},
-                                          {"fleet_coverage", CheckGroup::task, true, ""},
-                                          {"coverage_asked", CheckGroup::task, true, ""}};
+                                          {"fleet_coverage", CheckGroup::task, true, ""}};
 
 Check fleet_check(std::string_view name) {
   Check check;
@@ -63,16 +62,19 @@ bool same_region(const ScanTask& a, const ScanTask& b) {
 
 class FleetReader {
  public:
-  FleetReader(const Fleet& fleet, std::span<const FleetMember> members)
-      : fleet_(fleet), members_(members) {}
+  FleetReader(const Fleet& fleet, std::span<const FleetMember> members,
+              const DigestFindings* digest)
+      : fleet_(fleet), members_(members), digest_(digest) {}
 
   Check read() {
+    if (digest_) changes();
     numbers();
     if (fleet_.tours.empty()) add("there is no tour");
     if (fleet_.tours.size() > kMostTours) add("there are more than 1000 tours");
     if (members_.size() != fleet_.tours.size()) add("plans are missing");
     if (problems_.empty())
       for (std::size_t t = 0; t < fleet_.tours.size(); ++t) tour(t);
+    if (problems_.empty()) seen();
     Check check =
         judged(fleet_check("fleet_document"), static_cast<double>(problems_.size()), 0, 0, 0);
     for (std::size_t i = 0; i < std::min(problems_.size(), kProblemsListed); ++i)
@@ -85,6 +87,27 @@ class FleetReader {
  private:
   void add(std::string problem) { problems_.push_back(std::move(problem)); }
 
+  void changes() {
+    if (!digest_->stated) return add("the document states no digest: changes cannot be detected");
+    std::string changed;
+    for (const std::string& section : digest_->changed)
+      changed += (changed.empty() ? "" : ", ") + section;
+    if (!changed.empty()) add("the document was changed after writing: " + changed);
+  }
+
+  // All tours together see at least what one of them sees, and at most what they see one by one.
+  void seen() {
+    std::int64_t most = 0;
+    double sum = 0;
+    for (const FleetMember& member : members_) {
+      most = std::max(most, member.plan->task.scan->seen);
+      sum += static_cast<double>(member.plan->task.scan->seen);
+    }
+    if (fleet_.seen < most || static_cast<double>(fleet_.seen) > sum)
+      add("the number of seen voxels, " + std::to_string(fleet_.seen) +
+          ", contradicts those of the plans");
+  }
+
   void numbers() {
     const auto least = [&](const char* name, double number) {
       if (!(number >= 0) || !sound(number))
@@ -96,9 +119,6 @@ class FleetReader {
     if (fleet_.seen < 1) add("the number of seen voxels must be at least 1");
     if (!(fleet_.seen_share > 0 && fleet_.seen_share <= 1))
       add("seen_share must be above 0 and at most 1");
-    if (!(fleet_.coverage >= 0 && fleet_.coverage <= 1)) add("coverage must be between 0 and 1");
-    if (fleet_.coverage_asked && !(*fleet_.coverage_asked > 0 && *fleet_.coverage_asked <= 1))
-      add("coverage_asked must be above 0 and at most 1");
   }
 
   void tour(std::size_t t) {
@@ -121,6 +141,7 @@ class FleetReader {
 
   const Fleet& fleet_;
   std::span<const FleetMember> members_;
+  const DigestFindings* digest_;
   std::set<std::string> names_, files_;
   std::vector<std::string> problems_;
 };
@@ -243,36 +264,58 @@ void check_separation(const FlownFleet& flown, const VerifyRequest& request,
   certificate.checks.push_back(check);
 }
 
-void check_fleet_coverage(const FlownFleet& flown, const BlockedVoxels& voxels,
-                          const VerifyRequest& request, Certificate& certificate) {
+// The map in which all views see, held as far as the rays of any of them go. Throws what reading it
+// throws; null where the first plan names none.
+std::unique_ptr<JudgedShape> map_of_fleet(const FlownFleet& flown,
+                                          const std::vector<PlannedView>& views,
+                                          const VerifyRequest& request) {
+  const Plan& first = *flown.members.front().plan;
+  const Obstacle* map = find_obstacle(first.environment, "map", first.task.scan->map);
+  const Value* file = map ? map->parameters.find("file") : nullptr;
+  if (!file || !file->is_text()) return nullptr;
+  Eigen::AlignedBox3d box = first.task.scan->region;
+  for (const PlannedView& view : views) box.extend(view.position);
+  const auto found = request.elsewhere.find(file->as_text());
+  return judged_shape(
+      *map, found == request.elsewhere.end() ? request.folder / file->as_text() : found->second,
+      box);
+}
+
+void check_fleet_coverage(const FlownFleet& flown, const VerifyRequest& request,
+                          Certificate& certificate) {
+  const Fleet& fleet = flown.fleet;
+  Check check = fleet_check("fleet_coverage");
   std::vector<PlannedView> views;
   for (const FleetMember& member : flown.members)
     views.insert(views.end(), member.plan->task.scan->views.begin(),
                  member.plan->task.scan->views.end());
-  const std::int64_t count =
-      count_seen(voxels, *flown.members.front().plan->task.scan, views, [&](double) {
-        if (request.cancellation && request.cancellation->cancelled()) throw Cancelled();
-      });
-  const Fleet& fleet = flown.fleet;
-  Check check = judged(fleet_check("fleet_coverage"),
-                       static_cast<double>(count) / static_cast<double>(fleet.seen),
-                       fleet.seen_share, 0, 0, true);
-  check.detail = std::to_string(count) + " of the " + std::to_string(fleet.seen) +
-                 " voxels that the fleet states as seen by the views of all tours";
+  double share = std::numeric_limits<double>::quiet_NaN();
+  std::string detail = "the map of the first tour cannot be read";
+  try {
+    const auto map = map_of_fleet(flown, views, request);
+    if (map && map->voxels()) {
+      const std::int64_t count = count_seen(
+          *map->voxels(), *flown.members.front().plan->task.scan, views, [&](double) {
+            if (request.cancellation && request.cancellation->cancelled()) throw Cancelled();
+          });
+      share = static_cast<double>(count) / static_cast<double>(fleet.seen);
+      detail = std::to_string(count) + " of the " + std::to_string(fleet.seen) +
+               " voxels that the fleet states as seen by the views of all tours";
+    }
+  } catch (const InputError& error) {
+    detail += std::string(": ") + error.what();
+  }
+  check = judged(check, share, fleet.seen_share, 0, 0, true);
+  check.detail = detail;
   certificate.checks.push_back(check);
-  if (!fleet.coverage_asked)
-    return skip_check("coverage_asked", "no coverage was asked for", certificate);
-  certificate.checks.push_back(
-      judged(fleet_check("coverage_asked"), fleet.coverage, *fleet.coverage_asked, 0, 0, true));
-  certificate.checks.back().detail = "as the document states it: the plans hold no other views";
 }
 
 }  // namespace
 
 Certificate verify_fleet(const Fleet& fleet, std::span<const FleetMember> members,
-                         const VerifyRequest& request) {
+                         const DigestFindings* digest, const VerifyRequest& request) {
   Certificate certificate;
-  certificate.checks.push_back(FleetReader(fleet, members).read());
+  certificate.checks.push_back(FleetReader(fleet, members, digest).read());
   if (!certificate.checks.front().pass) {
     for (const CheckKind& kind : kFleetCheckKinds)
       if (kind.name != std::string_view("fleet_document"))
@@ -291,21 +334,7 @@ Certificate verify_fleet(const Fleet& fleet, std::span<const FleetMember> member
   check_homes(flown, certificate);
   check_reserve(flown, certificate);
   check_separation(flown, request, certificate);
-  // The map, read as the first plan's own certificate read it.
-  Watch watch(request.cancellation, nullptr);
-  const Plan& first = *members.front().plan;
-  const Document document = check_document(first, request, watch);
-  const auto& obstacles = first.environment.obstacles;
-  for (std::size_t i = 0; i < obstacles.size() && document.check.pass; ++i)
-    if (obstacles[i].type == "map" && obstacles[i].name == first.task.scan->map) {
-      check_fleet_coverage(flown, *document.shapes[i]->voxels(), request, certificate);
-      return certificate;
-    }
-  certificate.checks.push_back(judged(fleet_check("fleet_coverage"),
-                                      std::numeric_limits<double>::quiet_NaN(), fleet.seen_share, 0,
-                                      0, true));
-  certificate.checks.back().detail = "the map of the first tour cannot be read";
-  skip_check("coverage_asked", "the map of the first tour cannot be read", certificate);
+  check_fleet_coverage(flown, request, certificate);
   return certificate;
 }
 

@@ -13,53 +13,24 @@
 local mission_of = require "mission.mission_of"
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
+local fleet = require "mission.scan_fleet"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
 local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
+local tours = require "mission.scan_tours"
 local usable = require "mission.scan_usable"
 local words = require "mission.scan_words"
 local DECLARATIONS = require "mission.scan_options"
 
 local M = {}
-local OWN_OF_TOUR = { solver = true, budget = true, budget_metres = true, images = true,
-                      begin = true, guard = true }
-local BUDGET = 300         -- s, where none is given
-local METRES_A_SECOND = 3  -- of a budget in metres (reading 4.6)
-local BEGIN = "cost_benefit"
 local TIGHTER = 4          -- times that a tour which flies too long is planned on less
-
-local function solver_of(tour)
-  local chosen = { type = tour.solver }
-  for key, value in pairs(tour) do
-    if not OWN_OF_TOUR[key] then chosen[key] = value end
-  end
-  return chosen
-end
-
-local function budget_of(run)
-  local tour = run.options.tour
-  return tour.budget_metres and tour.budget_metres / METRES_A_SECOND or tour.budget or BUDGET
-end
 
 -- What options say together, before anything is flown.
 local function check(run)
   local o = run.options
-  local tour = o.tour
-  if tour.budget and tour.budget_metres then
-    run:fail("tour.budget_metres", string.format(
-      "budget is %.6g s and budget_metres %.6g m, which is %.6g s: give one of them",
-      tour.budget, tour.budget_metres, tour.budget_metres / METRES_A_SECOND))
-  end
-  if tour.images == 1 then
-    run:fail("tour.images", "a tour has at least two images; 0: any number")
-  end
-  if tour.begin ~= "none" then run:expect_plugin("tour.begin", "tour_solver") end
-  if tour.begin and tour.begin ~= "none" and tour.solver ~= "local_search" then
-    run:fail("tour.begin", string.format("'%s' cannot begin with the tour of another solver, only "
-                                         .. "local_search can", tour.solver))
-  end
+  tours.check(run)
   if o.rounds > 1 and not (o.scene or o.input) then
     run:fail("rounds", "rounds after the first need a simulation: "
                        .. "name a scene or an input, or plan each round from the files of the "
@@ -79,7 +50,7 @@ local function graph_of(run, known, vehicle, starts, finish)
   return run:scan_graph {
     prior = known, vehicle = vehicle, region = region,
     allowed = space.room(run, starts),
-    starts = first.few(starts, finish, c.most), needed = finish,
+    starts = first.few(starts, finish, c.most), needed = finish, loops = fleet.wanted(run),
     fixed = o.start ~= nil or o.exploration.images > 0, body = o.body, mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
@@ -109,14 +80,14 @@ end
 local function solved(run, graph, finish, budget)
   local o = run.options.tour
   local initial, spent = nil, 0
-  local begin = o.begin or BEGIN
-  if begin ~= "none" and o.solver == "local_search" then
-    local begun = run:solve_tour { graph = graph, solver = begin, budget = budget,
+  local beginner = tours.beginner(run)
+  if beginner then
+    local begun = run:solve_tour { graph = graph, solver = beginner, budget = budget,
                                    finish = finish, images = o.images, guard = o.guard }
     if begun.images > 1 then initial = begun end
     spent = begun.evaluations
   end
-  local tour = run:solve_tour { graph = graph, solver = solver_of(o), budget = budget,
+  local tour = run:solve_tour { graph = graph, solver = tours.solver(run), budget = budget,
                                 finish = finish, images = o.images, guard = o.guard,
                                 initial = initial }
   if tour.images < 2 then
@@ -126,21 +97,10 @@ local function solved(run, graph, finish, budget)
   return tour, spent + tour.evaluations
 end
 
--- Solutions of the legs with `flight.smooth`, else nil for pure pursuit. Adds a note.
-local function flown(run, vehicle, tour, notes, begin)
-  if not run.options.flight.smooth then return nil end
-  begin("smooth legs")
-  local legs, stray = smooth.legs(run, vehicle, tour)
-  notes[#notes + 1] = legs
-    and string.format("smooth legs by %s, at most %.2g m from their paths", legs[1].solver, stray)
-    or "cancelled before all legs were smooth: flown by pure pursuit"
-  return legs
-end
-
 -- `begin(phase)` reports the phase that begins.
 local function plan_of(run, graph, vehicle, finish, known, explored, begin)
   local o = run.options
-  local asked = budget_of(run)
+  local asked = tours.budget(run)
   -- Smooth legs take what was counted; the rest in the first view comes on top.
   local budget = asked - (o.flight.smooth and o.flight.pause or 0)
   for round = 1, TIGHTER do
@@ -152,7 +112,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     notes[#notes + 1] = little
     local apart = words.cut_off(graph)
     notes[#notes + 1] = apart
-    local legs = flown(run, vehicle, tour, notes, begin)
+    local legs = tours.legs(run, vehicle, tour, notes, begin)
     begin("flight")
     local plan = run:scan_plan {
       tour = tour, legs = legs, margin = o.margin, budget = asked,
@@ -178,22 +138,27 @@ local function planned(run)
   local in_passing = smooth.check(run, vehicle)
   passing.check(run, vehicle, in_passing)
   exploration.check(run)
-  local seconds = exploration.seconds(run, vehicle, budget_of(run))
-  phases.expect(run, budget_of(run), in_passing)
+  fleet.check(run, vehicle, in_passing)
+  local seconds = exploration.seconds(run, vehicle, tours.budget(run))
+  phases.expect(run, tours.budget(run) * o.batteries, in_passing)
   local known, poses, surface, explored =
     first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
   local starts, finish
-  if not in_passing then starts, finish = first.starts(run, poses) end
+  if not in_passing then starts, finish = fleet.starts(run, poses) end
   local plan
   for round = 1, o.rounds do
     local function begin(phase) run:phase(phases.named(run, phase, round)) end
     if in_passing then
-      plan = passing.plan(run, vehicle, known, budget_of(run), begin)
+      plan = passing.plan(run, vehicle, known, tours.budget(run), begin)
     else
       begin("views")
       local graph = graph_of(run, known, vehicle, starts, finish)
       local last = o.finish and finish or graph.home  -- a loop, unless said otherwise
-      plan = plan_of(run, graph, vehicle, last, known, explored, begin)
+      if fleet.wanted(run) then
+        plan = fleet.plan(run, graph, vehicle, known, explored, begin)
+      else
+        plan = plan_of(run, graph, vehicle, last, known, explored, begin)
+      end
     end
     if round < o.rounds and not run:cancelled() then
       -- The tour is flown, and what it sees is known from then on; candidates grow from where it

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- The options of scans. Readings 4.3, 4.6 and 4.11 explain defaults that the thesis does not give.
 local exploration = require "mission.scan_exploration"
+local fleet = require "mission.scan_fleet"
 local passes = require "mission.scan_passes"
 local site = require "mission.scan_site"
 
@@ -170,5 +171,7 @@ local DECLARATIONS = {
       { name = "begin", type = "text", summary =
         "solver whose tour local_search improves, or none; absent: cost_benefit" } } },
 }
+
+for _, declared in ipairs(fleet.DECLARATIONS) do DECLARATIONS[#DECLARATIONS + 1] = declared end
 
 return DECLARATIONS
