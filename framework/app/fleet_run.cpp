@@ -41,8 +41,9 @@ JudgedRun judge_run(const FleetOutcome& outcome, const Invocation& invocation) {
   std::vector<FleetMember> members;
   for (std::size_t t = 0; t < fleet.tours.size(); ++t) {
     MissionResult& tour = fleet.tours[t];
-    JudgedPlan one = judge(tour.plan, tour.obstacle_folder, nullptr,
-                           {.progress = &outcome.progress, .controllers = controllers_of(invocation)});
+    JudgedPlan one =
+        judge(tour.plan, tour.obstacle_folder, nullptr,
+              {.progress = &outcome.progress, .controllers = controllers_of(invocation)});
     judged.certificates.push_back(std::move(one.certificate));
     judged.statuses.push_back(status_of(tour, judged.certificates.back(), cancelled));
     complete_plan(tour, judged.certificates.back(), judged.statuses.back());
@@ -52,8 +53,8 @@ JudgedRun judge_run(const FleetOutcome& outcome, const Invocation& invocation) {
   for (std::size_t t = 0; t < fleet.tours.size(); ++t)
     members.push_back(
         {&fleet.tours[t].plan, &judged.certificates[t], fleet.document.tours[t].sha256});
-  judged.certificate = verify_fleet(fleet.document, members, nullptr,
-                                    {.folder = outcome.result.obstacle_folder});
+  judged.certificate =
+      verify_fleet(fleet.document, members, nullptr, {.folder = outcome.result.obstacle_folder});
   fleet.document.certificate = judged.certificate.to_value();
   judged.status = status_of(outcome.result, judged.certificate, cancelled);
   if (judged.status == "cancelled") fleet.document.solver.set("cancelled", true);
@@ -67,10 +68,10 @@ std::string fleet_page(const FleetOutcome& outcome, const JudgedRun& judged) {
     report.status = "cancelled";
     report.status_mark = Mark::fail;
   }
-  std::string text;
-  for (const std::string& note : all_notes(outcome.result)) text += note + "\n\n";
-  if (!text.empty())
-    report.sections.insert(report.sections.begin(), Section{"Findings", {TextBlock{text}}});
+  TextBlock findings;
+  for (const std::string& note : all_notes(outcome.result)) findings.text += note + "\n\n";
+  if (!findings.text.empty())
+    report.sections.insert(report.sections.begin(), Section{"Findings", {findings}});
   return render_html(report);
 }
 
@@ -93,7 +94,8 @@ void write_files(const FleetOutcome& outcome, const JudgedRun& judged, const Reg
   files.report = fleet_page(outcome, judged);
   logging::info("status " + judged.status);
   for (const std::string& note : all_notes(outcome.result)) logging::info(note);
-  for (const Check& check : judged.certificate.failures()) logging::info("fails: " + to_line(check));
+  for (const Check& check : judged.certificate.failures())
+    logging::info("fails: " + to_line(check));
   files.log = capture.text();
   add_obstacles(outcome.result, files);
   outcome.target.write(files);
@@ -146,14 +148,14 @@ void print_summary(const FleetOutcome& outcome, const JudgedRun& judged) {
   const MissionResult& result = outcome.result;
   const FleetResult& fleet = *result.fleet;
   const bool ok = judged.status == "ok";
-  const std::string verdict = ok                               ? "certified"
+  const std::string verdict = ok                                 ? "certified"
                               : judged.status == "not_certified" ? "not certified"
                                                                  : judged.status;
   std::cout << visible_line(result.plan.mission) << ": "
             << tinted(ok ? Tone::good : Tone::bad, verdict) << "\n";
   std::cout << "  " << fleet_in_words(fleet.document, end_of_fleet(fleet.document, plans_of(fleet)))
-            << ", solved by " << result.solver << " (" << to_string(result.report.status)
-            << ") in " << plain_number(result.solve_seconds, 3) << " s\n";
+            << ", solved by " << result.solver << " (" << to_string(result.report.status) << ") in "
+            << plain_number(result.solve_seconds, 3) << " s\n";
   for (std::size_t t = 0; t < fleet.tours.size(); ++t)
     std::cout << "  "
               << visible_line(tour_in_words(fleet.document.tours[t], fleet.tours[t].plan,

@@ -89,9 +89,9 @@ ExitStatus print_fleet(const fs::path& file, const JudgedFleet& judged,
     print_json(json_of(file, judged));
     return feasible ? ExitStatus::done : ExitStatus::not_certified;
   }
-  std::printf("%s: %s\n", visible_line(judged.fleet.mission).c_str(),
-              tinted(feasible ? Tone::good : Tone::bad, feasible ? "certified" : "not certified")
-                  .c_str());
+  std::printf(
+      "%s: %s\n", visible_line(judged.fleet.mission).c_str(),
+      tinted(feasible ? Tone::good : Tone::bad, feasible ? "certified" : "not certified").c_str());
   print_failures(judged.certificate);
   const double end = end_of_fleet(judged.fleet, plans_of(judged));
   std::printf("  %s\n", fleet_in_words(judged.fleet, end).c_str());

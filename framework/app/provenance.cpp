@@ -323,8 +323,9 @@ void refuse_other_kinds(const fs::path& file) {
   if (fs::is_directory(file, code)) {
     const fs::path plan = file / "plan.json";
     if (fs::exists(file / "fleet.json", code))
-      refuse_file(file, "the folder of a fleet", "expected the plan of one tour, such as plan_1.json "
-                                                 "in it");
+      refuse_file(file, "the folder of a fleet",
+                  "expected the plan of one tour, such as plan_1.json "
+                  "in it");
     refuse_file(file, "a folder",
                 fs::exists(plan, code) ? "its plan is '" + plan.string() + "'"
                                        : "expected a plan, such as plan.json in the folder of a "

@@ -46,9 +46,8 @@ Table tour_table(const Fleet& fleet, std::span<const Plan* const> plans) {
     const FleetTour& tour = fleet.tours[t];
     const auto& scan = plans[t]->task.scan;
     table.rows.push_back({{tour.drone, double(tour.battery), tour.start,
-                           plans[t]->trajectory.duration(),
-                           double(scan ? scan->views.size() : 0), tour.file,
-                           "report_" + std::to_string(t + 1) + ".html"},
+                           plans[t]->trajectory.duration(), double(scan ? scan->views.size() : 0),
+                           tour.file, "report_" + std::to_string(t + 1) + ".html"},
                           fleet_verdict_of(plans[t]->certificate).mark});
   }
   return table;
@@ -92,8 +91,7 @@ double least_distance(const Fleet& fleet, std::span<const Plan* const> plans, do
     const Trajectory& flight = plans[t]->trajectory;
     const double own = time - fleet.tours[t].start;
     if (own < 0 || own > flight.duration()) continue;
-    const Eigen::Vector3d at =
-        sample_at(flight, flight.samples.front().time + own).position;
+    const Eigen::Vector3d at = sample_at(flight, flight.samples.front().time + own).position;
     for (const auto& [drone, position] : flying)
       if (*drone != fleet.tours[t].drone) least = std::min(least, (position - at).norm());
     flying.emplace_back(&fleet.tours[t].drone, at);

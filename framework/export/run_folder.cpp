@@ -65,10 +65,9 @@ std::vector<std::string> run_files_in(const fs::path& folder) {
 FileSet set_of(const fs::path& folder, const RunFiles& files) {
   FileSet set{files.obstacles, run_files_in(folder), names_run_file};
   set.files.insert(set.files.end(), files.tours.begin(), files.tours.end());
-  const std::optional<std::string>* contents[] = {&files.log,           &files.map,
-                                                  &files.long_exposure, &files.report,
-                                                  &files.trajectory,    &files.fleet,
-                                                  &files.plan};
+  const std::optional<std::string>* contents[] = {
+      &files.log,        &files.map,   &files.long_exposure, &files.report,
+      &files.trajectory, &files.fleet, &files.plan};
   for (std::size_t i = 0; i < std::size(kRunFiles); ++i) {
     const bool listed =
         std::any_of(files.obstacles.begin(), files.obstacles.end(),

@@ -88,8 +88,8 @@ void schedule(const std::vector<const PlanObject*>& plans, const std::vector<std
   for (std::size_t i = 0; i < plans.size(); ++i)
     tours.push_back({drones[i], &plans[i]->plan.trajectory});
   for (const ScheduledTour& flown : fleet_schedule(tours, {fleet.separation, fleet.swap})) {
-    fleet.tours.push_back({drones[flown.tour], flown.battery, flown.start,
-                           fleet_plan_name(fleet.tours.size()), ""});
+    fleet.tours.push_back(
+        {drones[flown.tour], flown.battery, flown.start, fleet_plan_name(fleet.tours.size()), ""});
     made.plans.push_back(*plans[flown.tour]);
   }
 }
@@ -168,13 +168,13 @@ void open_fleet_library(lua_State* state) {
 }
 
 std::span<const Binding> fleet_methods_of_run() {
-  static const Binding own[] = {{"fleet", &guarded<fleet_of_run>,
-                                 "(made: @): lapwing.fleet",
-                                 "plans that several batteries or drones fly as one",
-                                 &fleet_table, kFleetObjects}};
+  static const Binding own[] = {{"fleet", &guarded<fleet_of_run>, "(made: @): lapwing.fleet",
+                                 "plans that several batteries or drones fly as one", &fleet_table,
+                                 kFleetObjects}};
   static const std::vector<Binding> all = [] {
     std::vector<Binding> list;
-    for (const std::span<const Binding> part : {team_methods_of_run(), std::span<const Binding>(own)})
+    for (const std::span<const Binding> part :
+         {team_methods_of_run(), std::span<const Binding>(own)})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -144,8 +144,7 @@ ParameterTable graph_table() {
       .boolean("fixed", true,
                "tours begin at the first of the starts; false: at the first of those "
                "that are connected to most views")
-      .integer("needed", 1, "number of starts, the first ones, that must be free",
-               between(1, 1000))
+      .integer("needed", 1, "number of starts, the first ones, that must be free", between(1, 1000))
       .boolean("loops", false,
                "tours begin and end at any of the needed starts; false: at the first one, and "
                "end at the second one, if it is needed")

@@ -278,8 +278,7 @@ MissionResult result_of(Sandbox& sandbox, const FleetObject& made, const Mission
   MissionResult result;
   result.fleet = std::make_shared<FleetResult>();
   result.fleet->document = made.document;
-  for (const PlanObject& plan : made.plans)
-    result.fleet->tours.push_back(result_of(sandbox, plan));
+  for (const PlanObject& plan : made.plans) result.fleet->tours.push_back(result_of(sandbox, plan));
   result.plan.mission = run.name;
   result.plan.kind = run.kind;
   result.plan.configuration = run.configuration;
@@ -317,7 +316,8 @@ MissionResult Mission::plan() {
     if (!planned) {
       throw InputError(
           impl.sandbox.script_position(state),
-          std::string("plan: expected the function to return run:plan{...}, a map or a fleet, got ") +
+          std::string(
+              "plan: expected the function to return run:plan{...}, a map or a fleet, got ") +
               luaL_typename(state, -1));
     }
     result = result_of(impl.sandbox, *planned);

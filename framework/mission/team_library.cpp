@@ -76,8 +76,8 @@ TeamProblem team_problem(const ScanWork& work, const Parameters& given) {
   for (const Parameters& tour : given.tables("tours")) {
     const std::int64_t home = tour.integer("home");
     if (home > count)
-      throw InputError(tour.origin("home"), "solve_team: there are candidates from 1 to " +
-                                                std::to_string(count));
+      throw InputError(tour.origin("home"),
+                       "solve_team: there are candidates from 1 to " + std::to_string(count));
     definition.start = definition.end = static_cast<int>(home - 1);
     const auto same = std::find_if(tours.begin(), tours.end(), [&](const TeamTour& other) {
       return other.problem.start() == definition.start;
@@ -113,8 +113,7 @@ TourReport report_of_tour(const TeamReport& team, const TourProblem& problem,
 TeamRequest team_request(lua_State* state, const MissionRun& run, const Parameters& given) {
   TeamRequest request;
   request.limits.seed = run.settings.seed;
-  if (given.integer("iterations") > 0)
-    request.limits.iteration_limit = given.integer("iterations");
+  if (given.integer("iterations") > 0) request.limits.iteration_limit = given.integer("iterations");
   if (given.integer("evaluations") > 0)
     request.limits.evaluation_limit = given.integer("evaluations");
   if (given.has("guard")) request.limits.wall_clock_guard = given.number("guard");
@@ -133,8 +132,9 @@ int solve_team_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Parameters given = table_argument(state, 2, team_table(), "solve_team", kTeamObjects);
   if (run.settings.observe_tour)
-    throw InputError("solve_team: a study of scans compares tours of one battery; "
-                     "expected a mission with one");
+    throw InputError(
+        "solve_team: a study of scans compares tours of one battery; "
+        "expected a mission with one");
   lua_getfield(state, 2, "graph");
   const std::shared_ptr<const ScanWork> work =
       object_argument<GraphObject>(state, -1, kGraphType).work;
@@ -179,10 +179,9 @@ void open_team_type(lua_State* state) {
 }
 
 std::span<const Binding> team_methods_of_run() {
-  static const Binding methods[] = {{"solve_team", &guarded<solve_team_of_run>,
-                                     "(settings: @): lapwing.team",
-                                     "tours of views within a budget each, that share one score",
-                                     &team_table, kTeamObjects}};
+  static const Binding methods[] = {
+      {"solve_team", &guarded<solve_team_of_run>, "(settings: @): lapwing.team",
+       "tours of views within a budget each, that share one score", &team_table, kTeamObjects}};
   return methods;
 }
 

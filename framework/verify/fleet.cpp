@@ -13,19 +13,17 @@
 namespace lapwing {
 namespace {
 
-constexpr double kSameHome = 0.05;            // m
+constexpr double kSameHome = 0.1;             // m, between places that are one
 constexpr double kTimeRounding = 1e-6;        // s
 constexpr double kSeparationRounding = 1e-3;  // m
 constexpr std::size_t kProblemsListed = 5;
 constexpr std::size_t kMostTours = 1000;
 
-constexpr CheckKind kFleetCheckKinds[] = {{"fleet_document", CheckGroup::safety, true, ""},
-                                          {"tours", CheckGroup::safety, true, ""},
-                                          {"sequence", CheckGroup::safety, true, "s"},
-                                          {"homes", CheckGroup::safety, true, "m"},
-                                          {"reserve", CheckGroup::safety, true, "s"},
-                                          {"separation", CheckGroup::safety, true, "m"},
-                                          {"fleet_coverage", CheckGroup::task, true, ""}};
+constexpr CheckKind kFleetCheckKinds[] = {
+    {"fleet_document", CheckGroup::safety, true, ""}, {"tours", CheckGroup::safety, true, ""},
+    {"sequence", CheckGroup::safety, true, "s"},      {"homes", CheckGroup::safety, true, "m"},
+    {"reserve", CheckGroup::safety, true, "s"},       {"separation", CheckGroup::safety, true, "m"},
+    {"fleet_coverage", CheckGroup::task, true, ""}};
 
 Check fleet_check(std::string_view name) {
   Check check;
@@ -221,7 +219,7 @@ void check_homes(const FlownFleet& flown, Certificate& certificate) {
   for (const auto& [a, b] : successions(flown.fleet))
     see(flown.paths[a].places.back(), flown.paths[b].places.front(), flown.fleet.tours[b].start,
         flown.names(a, b));
-  Check check = judged(fleet_check("homes"), farthest, 0, 2 * kSameHome, at);
+  Check check = judged(fleet_check("homes"), farthest, kSameHome, 0, at);
   check.detail = which;
   certificate.checks.push_back(check);
 }
@@ -294,8 +292,8 @@ void check_fleet_coverage(const FlownFleet& flown, const VerifyRequest& request,
   try {
     const auto map = map_of_fleet(flown, views, request);
     if (map && map->voxels()) {
-      const std::int64_t count = count_seen(
-          *map->voxels(), *flown.members.front().plan->task.scan, views, [&](double) {
+      const std::int64_t count =
+          count_seen(*map->voxels(), *flown.members.front().plan->task.scan, views, [&](double) {
             if (request.cancellation && request.cancellation->cancelled()) throw Cancelled();
           });
       share = static_cast<double>(count) / static_cast<double>(fleet.seen);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Judges the plans of a fleet together: what the certificate of one plan cannot say.
 //
-// fleet_document  contradictions of the fleet document; what was changed in it after writing; a file
+// fleet_document  contradictions of the fleet document; what was changed in it after writing; a
+// file
 //                 that is not the plan named
 // tours           tours whose own certificate fails
 // sequence        s, least time between two tours of one drone: at least the swap

@@ -16,7 +16,7 @@ local function number(name, default, unit, summary)
 end
 
 M.DECLARATIONS = {
-  { name = "batteries", type = "integer", default = 1, minimum = 1, maximum = 1000,
+  { name = "batteries", type = "integer", default = 1, minimum = 1, maximum = 100,
     summary = "largest number of tours, each with one battery" },
   { name = "drones", type = "integer", default = 1, minimum = 1, maximum = 100,
     summary = "number of drones that share the batteries" },
