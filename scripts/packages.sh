@@ -12,8 +12,11 @@ lapwing_test_packages=(libgtest-dev libgmock-dev chromium binutils groff-base zs
 lapwing_bench_packages=(libbenchmark-dev)
 lapwing_fuzz_packages=(clang libclang-rt-14-dev)
 lapwing_learn_packages=(libtorch-dev)
-# For coordinates and rasters of surveyors; Lapwing is built with what of these is installed.
-lapwing_sites_packages=(libproj-dev libgdal-dev)
+# For coordinates, rasters and positions of photographs of surveyors; Lapwing is built with what of
+# these is installed.
+lapwing_sites_packages=(libproj-dev libgdal-dev libexif-dev)
+# For many processes and machines; the executor mpi is built where these are installed.
+lapwing_cluster_packages=(libopenmpi-dev openmpi-bin)
 lapwing_fresh_packages=(debootstrap)
 lapwing_judge_packages=(nodejs npm gdal-bin gpsbabel unzip)
 lapwing_studio_packages=(nodejs npm)  # for scripts/studio.sh, beside those for building

@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian packages that building, testing, benchmarking and so on need.
-#   scripts/setup.sh [--yes] [--for build|test|bench|fuzz|learn|fresh|judge|studio|check|package|sites]...
+#   scripts/setup.sh [--yes] [--for build|test|bench|fuzz|learn|fresh|judge|studio|check|package|sites|cluster]...
 # Prints the packages to install. Asks first on a terminal, unless --yes. Default: build and test.
 # `fuzz` is for scripts/fuzz.sh, `learn` for the preset `learn`, `fresh` for tests/fresh_machine,
 # `judge` for scripts/judge.sh, `studio` for scripts/studio.sh, `check` for scripts/format.sh and scripts/tidy.sh, `package` for scripts/package.sh.
-# `sites` is for coordinates and rasters of surveyors: build again after it.
+# `sites` is for coordinates and rasters of surveyors, `cluster` for many processes by mpirun: build
+# again after them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
 
-readonly kinds="build, test, bench, fuzz, learn, fresh, judge, studio, check, package or sites"
+readonly kinds="build, test, bench, fuzz, learn, fresh, judge, studio, check, package, sites or cluster"
 yes=false
 wanted=()
 while [ $# -gt 0 ]; do
@@ -40,6 +41,7 @@ for what in "${wanted[@]}"; do
     studio) packages+=("${lapwing_studio_packages[@]}") ;;
     check) packages+=("${lapwing_check_packages[@]}") ;;
     sites) packages+=("${lapwing_sites_packages[@]}") ;;
+    cluster) packages+=("${lapwing_cluster_packages[@]}") ;;
     package) packages+=("${lapwing_package_packages[@]}") ;;
     *) echo "setup.sh: unknown kind '$what'; --for needs $kinds" >&2; exit 2 ;;
   esac

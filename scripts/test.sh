@@ -32,7 +32,7 @@ while true; do
   esac
   shift
 done
-scripts/setup.sh --yes --for build --for test --for sites
+scripts/setup.sh --yes --for build --for test --for sites --for cluster
 if [ -z "${LAPWING_DATA:-}" ] && [ -d ../shared/data ]; then
   LAPWING_DATA=$(cd ../shared/data && pwd)
   export LAPWING_DATA

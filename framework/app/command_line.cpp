@@ -8,6 +8,7 @@
 #include "framework/app/flight_log_commands.h"
 #include "framework/app/fly_command.h"
 #include "framework/app/help_commands.h"
+#include "framework/app/item_command.h"
 #include "framework/app/new_files.h"
 #include "framework/app/plugin_check.h"
 #include "framework/app/plugin_guard.h"
@@ -17,6 +18,7 @@
 #include "framework/app/studio_command.h"
 #include "framework/app/sweep_command.h"
 #include "framework/app/terminal.h"
+#include "framework/app/scan_check.h"
 #include "framework/app/tour_command.h"
 #include "framework/app/train_command.h"
 #include "framework/app/version.h"
@@ -71,11 +73,11 @@ void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& com
   add_configuration(*sweep, invocation);
   add_repeated(*sweep, "--vary", "KEY=VALUE,VALUE,...", asked.varied,
                "values of one option; repeatable: all combinations are run; default: none");
-  add_count(*sweep, "--jobs", 1, 64, "runs at once; default: 2",
+  add_count(*sweep, "--jobs", 1, 64, "runs at once in one process; default: 2, with mpi 1",
             [&](std::uint64_t jobs) { asked.jobs = static_cast<int>(jobs); });
   add_text(*sweep, "-o,--out", "DIR", "folder of the results; default: out/sweep",
            [&](const std::string& path) { invocation.out = path; });
-  sweep->add_flag("--resume", asked.resume, "continue an interrupted sweep: run what is missing");
+  add_items(*sweep, asked.items, "continue an interrupted sweep: run what is missing");
   sweep->add_flag("--quiet", invocation.quiet, "no progress, no table");
   add_json(*sweep, invocation);
   sweep->callback([&] { command = [&] { return sweep_missions(asked, invocation); }; });
@@ -264,6 +266,7 @@ struct Requests {
   StudioRequest studio;
   PlanDifference difference;
   ScanEvaluation scanning;
+  ScanCheckRequest checking_scan;
   ReproduceRequest reproducing;
   ExploreEvaluation exploring;
   HelpRequest help;
@@ -294,6 +297,7 @@ void declare_commands(CLI::App& app, Requests& asked) {
   add_scene_commands(app, invocation, asked.plan, asked.stated, asked.target, command);
   add_race_command(app, invocation, asked.plan, asked.pilots, asked.rules, asked.target, command);
   add_tour_command(app, invocation, asked.tour, command);
+  add_scan_commands(app, invocation, asked.checking_scan, command);
   add_plugin_commands(app, invocation, asked.name, asked.described, asked.checking, command);
   add_description_commands(app, invocation, asked.described, command);
   add_new_commands(app, invocation, asked.wanted, command);
@@ -336,6 +340,7 @@ int run_command_line(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool success = dynamic_cast<const CLI::Success*>(&error) != nullptr;  // --help, --version
+    if (launched_rank() > 0) return static_cast<int>(ExitStatus::done);         // process 0 says it
     if (success && !help_of_unknown(app)) return app.exit(error);
     std::cerr << tinted_error(Tone::bad, "lapwing:") << " " << visible_text(usage_error(app, error))
               << "\n";

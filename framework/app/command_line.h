@@ -10,6 +10,7 @@
 
 #include "framework/core/value.h"
 #include "framework/geometry/depth_camera.h"
+#include "framework/items/item_run.h"
 #include "framework/plugin/registry.h"
 #include "framework/vehicle/controller.h"
 #include "framework/vehicle/race_score.h"
@@ -94,7 +95,7 @@ struct ScanEvaluation {
   std::optional<double> range, incidence;  // m and rad, of the judge; none: those of planning
   double guard = 300;                      // s of wall clock for one solver
   bool photos = false;                     // render photographs and ask COLMAP to register them
-  bool resume = false;
+  ItemOptions items;                       // an item is a row
 };
 ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocation);
 

@@ -25,6 +25,7 @@ struct ExploreEvaluation;
 struct NewFiles;
 struct PluginCheck;
 struct ReproduceRequest;
+struct ScanCheckRequest;
 struct TourRun;
 struct TrainRequest;
 
@@ -69,6 +70,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
 void add_tour_command(CLI::App& app, Invocation& invocation, TourRun& asked, Command& command);
 void add_reproduce_command(CLI::App& app, Invocation& invocation, ReproduceRequest& asked,
                            Command& command);
+void add_scan_commands(CLI::App& app, Invocation& invocation, ScanCheckRequest& asked,
+                       Command& command);
 void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluation& asked,
                        Command& command);
 void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,

@@ -105,6 +105,7 @@ const std::map<std::string, List>& lists() {
       {"exporter", [](const Invocation& given) { return plugins_of(given, "exporter"); }},
       {"controller", [](const Invocation& given) { return plugins_of(given, "controller"); }},
       {"flight_log", [](const Invocation& given) { return plugins_of(given, "flight_log"); }},
+      {"executor", [](const Invocation& given) { return plugins_of(given, "executor"); }},
       {"tour_solver", [](const Invocation& given) { return plugins_of(given, "tour_solver"); }},
       {"plugin_kind", [](const Invocation&) { return templates_in("plugins"); }},
       {"mission_kind", [](const Invocation&) { return templates_in("missions"); }},
@@ -143,6 +144,7 @@ const std::vector<NamedValue>& named_values() {
       {"", "--utility", "utility", false},
       {"", "--explorer", "utility", false},
       {"", "--world", "world", true},
+      {"", "--executor", "executor", false},
       {"", "--method", "tour_solver", false}};
   return all;
 }

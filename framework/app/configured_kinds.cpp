@@ -108,13 +108,14 @@ void compare_budget(const Plan& plan, std::optional<double> asked, Configuration
 }
 
 void compare_region(const Value& asked, const ScanTask& scan, ConfigurationComparison& found) {
+  if (!stated_tables(asked, "regions").empty()) return;  // compare_flight_rules has them
   const Value* region = asked.find("region");
   const auto lower = region ? stated_numbers(*region, "lower") : std::nullopt;
   const auto upper = region ? stated_numbers(*region, "upper") : std::nullopt;
   if (!lower || !upper)
     return found.not_compared.push_back("the region of interest: none is stated");
-  if (!same_vector(*lower, Eigen::Vector3d(scan.region.min())) ||
-      !same_vector(*upper, Eigen::Vector3d(scan.region.max())))
+  if (!same_vector(*lower, Eigen::Vector3d(scan.region.bounds().min())) ||
+      !same_vector(*upper, Eigen::Vector3d(scan.region.bounds().max())))
     found.faults.push_back(
         "the region of interest is another in the plan than in its "
         "configuration");
@@ -164,8 +165,12 @@ void compare_scan(const Plan& plan, ConfigurationComparison& found) {
   const ScanTask usual;
   compare_region(asked, scan, found);
   compare_camera(asked, scan.camera, found);
-  compare_number("the margin", plan.environment.margin, stated_number(asked, "margin"), " m",
-                 Than::below, found);
+  compare_flight_rules(plan, found);
+  const auto margin = stated_number(asked, "margin");
+  compare_number("the margin", plan.environment.margin,
+                 margin ? std::optional(*margin + stated_number(asked, "gps_accuracy").value_or(0))
+                        : std::nullopt,
+                 " m", Than::below, found);
   compare_number("the range", scan.range, stated_number(asked, "range"), " m", Than::other, found);
   const Value* tour = asked.find("tour");
   if (tour && tour->is_map()) {

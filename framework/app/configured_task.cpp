@@ -33,20 +33,6 @@ double recorded(const Obstacle& obstacle, const char* key, double absent) {
   return found && found->is_number() ? found->as_number() : absent;
 }
 
-bool same_zone(const Value& stated, const Obstacle& zone) {
-  constexpr double kOpen = std::numeric_limits<double>::infinity();
-  if (zone.type != "prism") return false;
-  const auto corners = stated_numbers(stated, "corners");
-  const auto recorded_corners = recorded_numbers(zone.parameters, "corners");
-  if (!corners || corners->size() != recorded_corners.size()) return false;
-  for (std::size_t i = 0; i < corners->size(); ++i)
-    if (!same_number((*corners)[i], recorded_corners[i])) return false;
-  return same_number(stated_number(stated, "floor").value_or(-kOpen),
-                     recorded(zone, "floor", -kOpen)) &&
-         same_number(stated_number(stated, "ceiling").value_or(kOpen),
-                     recorded(zone, "ceiling", kOpen));
-}
-
 template <class List, class Is>
 bool any(const List& list, const Is& is) {
   return std::any_of(list.begin(), list.end(), is);
@@ -190,6 +176,20 @@ void compare_origin(const Plan& plan, ConfigurationComparison& found) {
 }
 
 }  // namespace
+
+bool same_zone(const Value& stated, const Obstacle& zone) {
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  if (zone.type != "prism") return false;
+  const auto corners = stated_numbers(stated, "corners");
+  const auto recorded_corners = recorded_numbers(zone.parameters, "corners");
+  if (!corners || corners->size() != recorded_corners.size()) return false;
+  for (std::size_t i = 0; i < corners->size(); ++i)
+    if (!same_number((*corners)[i], recorded_corners[i])) return false;
+  return same_number(stated_number(stated, "floor").value_or(-kOpen),
+                     recorded(zone, "floor", -kOpen)) &&
+         same_number(stated_number(stated, "ceiling").value_or(kOpen),
+                     recorded(zone, "ceiling", kOpen));
+}
 
 std::string otherwise(const std::string& what, const std::string& here, const std::string& asked) {
   return what + " is " + here + " in the plan and " + asked + " in its configuration";

@@ -16,9 +16,10 @@ struct ConfigurationComparison {
 
 // Compares a plan with its configuration: origin and home of every kind; obstacles, zones, margin,
 // keyframes with their times, yaws and tolerances, subjects, framing, cuts, bystanders, constraints
-// and budget of films; gates of races; region, camera, margin, budget and tolerances of scans;
-// tolerance and view of light paintings. A plan may ask for more. What the configuration leaves to
-// a file or to the script, and missions of other kinds, are said to be not compared.
+// and budget of films; gates of races; region, zones, pilot, camera, margin, budget and
+// tolerances of scans; tolerance and view of light paintings. A plan may ask for more. What the
+// configuration leaves to a file or to the script, and missions of other kinds, are said to be not
+// compared.
 ConfigurationComparison compare_with_configuration(const Plan& plan);
 
 // ---- parts, by the kind of mission --------------------------------------------------------------
@@ -27,7 +28,12 @@ void compare_film(const Plan& plan, ConfigurationComparison& found);
 void compare_race(const Plan& plan, ConfigurationComparison& found);
 void compare_scan(const Plan& plan, ConfigurationComparison& found);
 void compare_light_painting(const Plan& plan, ConfigurationComparison& found);
+// Of scans: zones, regions as polygons, the pilot, the accuracy of the position.
+void compare_flight_rules(const Plan& plan, ConfigurationComparison& found);
 void compare_surroundings(const Plan& plan, ConfigurationComparison& found);
+
+// Whether a zone has the corners, the floor and the ceiling that are stated.
+bool same_zone(const Value& stated, const Obstacle& zone);
 
 // "the margin is 0.1 m in the plan and 0.5 m in its configuration"
 std::string otherwise(const std::string& what, const std::string& here, const std::string& asked);

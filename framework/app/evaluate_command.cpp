@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "framework/app/command_line.h"
-#include "framework/app/interruption.h"
+#include "framework/app/item_command.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/version.h"
@@ -12,7 +12,6 @@
 #include "framework/core/checksum.h"
 #include "framework/core/file_set.h"
 #include "framework/core/files.h"
-#include "framework/core/parallel.h"
 #include "framework/core/visible_text.h"
 #include "framework/mission/data_files.h"
 #include "framework/mission/scan_objects.h"
@@ -79,7 +78,12 @@ ScanCase case_of(const fs::path& script, std::uint64_t seed, const Invocation& g
     for (const Viewpoint& view : work.prior->views) scan.first_flight.push_back(view.camera());
     scan.first_seconds = seconds_of_first_flight(scan.first_flight);
     scan.camera = work.visible->settings().pinhole;
-    scan.region = work.visible->settings().region;
+    const InterestRegion& region = work.visible->settings().region;
+    if (!region.is_box())
+      throw InputError(script.string() +
+                       ": evaluate scan compares methods in a box: state region = {lower, upper} "
+                       "in place of regions");
+    scan.region = region.bounds();
     scan.pattern_height = height_of_patterns(scan);
     const SightSettings& sight = work.visible->settings();
     scan.usable_range = std::min(sight.range, sight.usable_range);
@@ -151,11 +155,9 @@ Value statement_of(const std::vector<fs::path>& scripts, const Invocation& invoc
   return value;
 }
 
-}  // namespace
-
-ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocation) {
-  const Interruption interruption;
-  const Registry registry = invocation.registry();
+// What is to be measured. `cancellation` ends the preparation of a case.
+ScanStudy study_of(const ScanEvaluation& asked, const Invocation& invocation,
+                   const Registry& registry, const CancellationToken& cancellation) {
   ScanStudy study;
   std::vector<std::string> methods = asked.methods;
   if (methods.empty()) methods.assign(std::begin(kMethods), std::end(kMethods));
@@ -177,20 +179,17 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
   study.guard = asked.guard;
   study.photos = asked.photos;
   if (asked.photos) require_colmap();
+  study.program = std::string("lapwing ") + program_version();
   study.statement = statement_of(asked.missions, invocation, registry);
-  study.threads = invocation.threads > 0 ? invocation.threads : available_threads();
-  study.prepare = [&](std::size_t mission, std::size_t seed) {
-    return case_of(asked.missions[mission], study.seeds[seed], invocation, registry,
-                   interruption.token());
+  study.prepare = [&asked, &invocation, &registry, &cancellation](std::size_t mission,
+                                                                  std::size_t seed) {
+    return case_of(asked.missions[mission], asked.seeds[seed], invocation, registry, cancellation);
   };
-  const auto say = [&](const std::string& line) {
-    if (!invocation.quiet) std::cerr << visible_text(line) << std::endl;
-  };
-  const fs::path folder =
-      invocation.out.empty() ? fs::path("out") / "evaluate_scan" : invocation.out;
-  const FolderClaim claim(folder);
-  const std::vector<ScanRow> rows =
-      run_study(study, folder, asked.resume, registry, &interruption.token(), say);
+  return study;
+}
+
+void write_results(const std::vector<ScanRow>& rows, const fs::path& folder, bool photos,
+                   const Invocation& invocation) {
   const std::vector<ScanSummary> summaries = summarise(rows);
   const std::string tables = tables_text(summaries);
   FileSet results{{{"rows.csv", rows_csv(rows)},
@@ -198,7 +197,7 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
                    {"tables.txt", tables},
                    {"times.txt", times_text(folder / "times")},
                    {"report.html", render_html(study_report(summaries, rows))}}};
-  if (asked.photos) results.files.emplace_back("photos.txt", photos_text(folder / "photos"));
+  if (photos) results.files.emplace_back("photos.txt", photos_text(folder / "photos"));
   write_files_together(folder, results);
   if (invocation.json) {
     Value object = Value::map();
@@ -211,7 +210,28 @@ ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocati
     std::cout << visible_text(tables)
               << "\nreport: " << visible_line((folder / "report.html").string()) << std::endl;
   }
-  return ExitStatus::done;
+}
+
+}  // namespace
+
+ExitStatus evaluate_scan(const ScanEvaluation& asked, const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  return run_items(
+      asked.items, invocation, registry, [&](ItemRun& run, const CancellationToken& cancellation) {
+        const ScanStudy study = study_of(asked, invocation, registry, cancellation);
+        const fs::path folder =
+            invocation.out.empty() ? fs::path("out") / "evaluate_scan" : invocation.out;
+        std::optional<FolderClaim> claim;
+        const auto rows = run_study(
+            study, folder, run, registry, &cancellation,
+            [&] { claim.emplace(folder, claim_for(asked.items)); },
+            [&](const std::string& line) {
+              if (!invocation.quiet) std::cerr << visible_text(line) << std::endl;
+            });
+        if (!rows) return print_answer(run, invocation);
+        write_results(*rows, folder, asked.photos, invocation);
+        return ExitStatus::done;
+      });
 }
 
 }  // namespace lapwing

@@ -5,13 +5,13 @@
 #include <iostream>
 
 #include "framework/app/exploration_settings.h"
-#include "framework/app/interruption.h"
 #include "framework/config/overrides.h"
 #include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
-#include "framework/core/parallel.h"
+#include "framework/core/portable.h"
 #include "framework/core/visible_text.h"
+#include "framework/items/statement.h"
 #include "framework/mission/explore_library.h"
 #include "framework/study/exploration_figures.h"
 #include "framework/study/study_settings.h"
@@ -21,10 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// False where it was cancelled: nothing is written then.
-bool run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
+// Throws Cancelled where it was cancelled: nothing is written then.
+void run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
                const ExplorationSetup& setup, const Registry& registry, const Value& parameters,
-               std::uint64_t seed, const fs::path& folder) {
+               std::uint64_t seed, const Value& mark, const fs::path& folder) {
   Random random = Random(seed).split(static_cast<std::uint64_t>(trial.episode));
   EpisodeSettings settings = setup.episode;
   settings.show_truth = needs_truth(registry, trial.utility);
@@ -43,7 +43,7 @@ bool run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   } catch (const StartError& error) {
     throw setup.with_options(error, world.name);
   }
-  if (result.end == EpisodeEnd::cancelled) return false;
+  if (result.end == EpisodeEnd::cancelled) throw Cancelled();
   std::vector<double> curve;
   double seconds = 0;
   for (const EpisodeStep& step : result.steps) {
@@ -63,6 +63,7 @@ bool run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
   object.set("surface", result.surface);
   object.set("length", result.length());
   object.set("observed", Value(Value::List(curve.begin(), curve.end())));
+  object.set(kMadeByEntry, mark);
   Value time = Value::map();
   time.set("world", world.name);
   time.set("utility", trial.utility);
@@ -70,7 +71,6 @@ bool run_trial(const Trial& trial, const World& world, const GroundTruth& truth,
            seconds / static_cast<double>(std::max<std::size_t>(1, curve.size())));
   write_file_atomically(folder / "seconds" / (trial.name() + ".json"), to_json(time) + "\n");
   write_file_atomically(folder / "episodes" / (trial.name() + ".json"), to_json(object) + "\n");
-  return true;
 }
 
 bool of_an_evaluation(const Value& there) {
@@ -90,7 +90,7 @@ Value settings_for(const ExploreEvaluation& request, Value stated) {
     if (!of_an_evaluation(there))
       throw InputError("'" + settings.string() +
                        "' is not of an evaluation of explorations: choose another folder with -o");
-    if (!request.resume)
+    if (!request.items.continues())
       throw InputError("'" + request.folder.string() +
                        "' contains an evaluation: continue it with " +
                        "--resume, or choose another folder with -o");
@@ -106,6 +106,9 @@ Value settings_for(const ExploreEvaluation& request, Value stated) {
           if (!stated.at("world_moves").find(world)) stated.find("world_moves")->set(world, moves);
         }
     }
+  } else if (request.items.gather || request.items.schedule) {
+    throw InputError(request.items.name() + ": there is no evaluation in '" +
+                     request.folder.string() + "'");
   } else if (!fs::exists(settings) ||
              !of_an_evaluation(from_json(read_file(settings), settings.string()))) {
     for (const char* name :
@@ -155,11 +158,20 @@ void require_same_starts(const ExploreEvaluation& request, const Value& stated,
       }
 }
 
-}  // namespace
+// What an evaluation is made of, the same in every process.
+struct Evaluation {
+  std::vector<std::string> utilities;
+  std::vector<WorldName> worlds;
+  ExplorationSetup setup;
+  Value parameters = Value::map();  // of utilities
+  Value moves, mapping;
+  WorldRecords records;
+  Value stated = Value::map();  // the settings
+  Value mark;                   // of episodes
+};
 
-ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& invocation) {
-  const Registry registry = invocation.registry();
-  const Interruption interruption;
+// All that are shipped, or those that are asked for. InputError for an unknown one, or one twice.
+std::vector<std::string> utilities_of(const ExploreEvaluation& request, const Registry& registry) {
   std::vector<std::string> utilities = request.utilities;
   if (utilities.empty())
     for (const PluginEntry& entry : registry.entries())
@@ -170,100 +182,197 @@ ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& 
                   utilities[k]) != utilities.begin() + static_cast<std::ptrdiff_t>(k))
       throw InputError("--utility " + utilities[k] + ": is named twice");
   }
-  const std::vector<WorldName> names = distinct_worlds(request.worlds, "evaluate explore");
-  for (const WorldName& name : names) require_world(name, request.up);
-  ExplorationSetup setup;
-  setup.episode.steps = request.steps;
-  setup.episode.lookahead = request.lookahead;
-  const Value mapping = setup.set_mapping(request.mapping);
-  const Value moves = setup.set_moves(request.moves);
-  setup.episode.cancellation = &interruption.token();
+  return utilities;
+}
+
+void set_depth(const ExploreEvaluation& request, ExplorationSetup& setup) {
   if (request.sigma > 0 || request.dropped > 0)
     setup.episode.sensor.noise = DepthNoise{request.dropped, request.sigma};
   if (request.stereo > 0) {
     setup.episode.sensor.stereo.emplace();
     setup.episode.sensor.stereo->baseline = request.stereo;
   }
-  Value parameters = Value::map();
-  for (const std::string& text : invocation.overrides) apply_override(parameters, text);
-  for (const auto& [name, given] : parameters.as_map()) {
-    if (std::find(utilities.begin(), utilities.end(), name) == utilities.end())
-      throw InputError("--set " + name + ": this utility is not among those evaluated");
-    registry.create<ViewUtility>(name, given, name);
-  }
-  // What another run of other settings left would be taken for this one's.
+}
+
+// What another run of other settings left would be taken for this one's.
+Value settings_stated(const ExploreEvaluation& request, const Evaluation& of,
+                      const Invocation& invocation) {
   Value stated = Value::map();
   stated.set("program", std::string("lapwing ") + program_version());
+  stated.set(kMachineEntry, machine_of_numbers());
   stated.set("steps", request.steps);
   stated.set("seed", static_cast<std::int64_t>(invocation.seed));
   stated.set("sigma", request.sigma);
   stated.set("dropped", request.dropped);
   stated.set("stereo", request.stereo);
   stated.set("lookahead", request.lookahead);
-  stated.set("parameters", parameters);
-  stated.set("moves", moves);
-  stated.set("mapping", mapping);
+  stated.set("parameters", of.parameters);
+  stated.set("moves", of.moves);
+  stated.set("mapping", of.mapping);
   stated.set("up", request.up);
-  const WorldRecords records =
-      records_of(names, utilities, parameters, setup, registry, invocation);
-  if (!records.moves.as_map().empty()) stated.set("world_moves", records.moves);
-  stated.set("files", records.files);
-  if (!request.against.empty()) require_same_starts(request, stated, names, utilities);
-  const Value settings = settings_for(request, std::move(stated));
+  return stated;
+}
 
-  const FolderClaim claim(request.folder);
-  std::vector<std::pair<const WorldName*, Trial>> trials;
-  WorldsInUse in_use(setup, request.up, registry, invocation);
-  for (const WorldName& name : names)
-    for (std::int64_t episode = 1; episode <= request.episodes; ++episode)
-      for (const std::string& utility : utilities) {
-        const Trial trial{name.text(), utility, episode};
-        if (fs::exists(request.folder / "episodes" / (trial.name() + ".json"))) continue;
-        trials.emplace_back(&name, trial);
-        in_use.expect(name);
-      }
-  const auto write_settings = [&] {
-    write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
-  };
-  std::once_flag stated_once;
-  parallel_for(trials.size(), invocation.threads, [&](std::size_t k) {
-    if (interruption.token().cancelled()) return;
-    const auto& [name, trial] = trials[k];
-    const auto used = in_use.begin(*name);
-    std::call_once(stated_once, write_settings);  // not for a world that cannot be loaded
-    if (!run_trial(trial, used->world, used->truth, setup_of(setup, records, name->text()),
-                   registry, parameters, invocation.seed, request.folder))
-      return;
-    const auto [ended, expected] = in_use.end(*name);
-    if (!invocation.quiet)
-      std::cerr << visible_line(trial.world) + ": " + std::to_string(ended) + " of " +
-                       std::to_string(expected) + " episodes\n";
-  });
-  if (interruption.token().cancelled()) throw Cancelled();
-  std::call_once(stated_once, write_settings);  // nothing was missing, but worlds may have joined
-  std::vector<std::string> worlds;
-  for (const WorldName& name : names) worlds.push_back(name.text());
-  const ExplorationTables tables =
-      write_exploration_figures({request.folder, request.against, settings, worlds, utilities,
-                                 request.episodes, request.steps});
-  const std::string report = (request.folder / "report.html").string();
+Evaluation evaluation_of(const ExploreEvaluation& request, const Invocation& invocation,
+                         const Registry& registry) {
+  Evaluation made;
+  made.utilities = utilities_of(request, registry);
+  made.worlds = distinct_worlds(request.worlds, "evaluate explore");
+  for (const WorldName& name : made.worlds) require_world(name, request.up);
+  made.setup.episode.steps = request.steps;
+  made.setup.episode.lookahead = request.lookahead;
+  made.mapping = made.setup.set_mapping(request.mapping);
+  made.moves = made.setup.set_moves(request.moves);
+  set_depth(request, made.setup);
+  for (const std::string& text : invocation.overrides) apply_override(made.parameters, text);
+  for (const auto& [name, given] : made.parameters.as_map()) {
+    if (std::find(made.utilities.begin(), made.utilities.end(), name) == made.utilities.end())
+      throw InputError("--set " + name + ": this utility is not among those evaluated");
+    registry.create<ViewUtility>(name, given, name);
+  }
+  made.stated = settings_stated(request, made, invocation);
+  // Worlds and utilities may join, so that they are not part of an episode's mark.
+  made.mark = made_by(made.stated.at("program").as_text(), made.stated);
+  made.records =
+      records_of(made.worlds, made.utilities, made.parameters, made.setup, registry, invocation);
+  if (!made.records.moves.as_map().empty()) made.stated.set("world_moves", made.records.moves);
+  made.stated.set("files", made.records.files);
+  return made;
+}
+
+// The items: every utility's episodes in every world; those of one world are a group.
+class Trials {
+ public:
+  Trials(const ExploreEvaluation& request, const Evaluation& evaluation, const Registry& registry,
+         const Invocation& invocation)
+      : request_(request),
+        evaluation_(evaluation),
+        registry_(registry),
+        invocation_(invocation),
+        missing_(evaluation.worlds.size(), 0),
+        made_(evaluation.worlds.size(), 0) {
+    for (const WorldName& world : evaluation.worlds)
+      for (std::int64_t episode = 1; episode <= request.episodes; ++episode)
+        for (const std::string& utility : evaluation.utilities)
+          trials_.push_back({world.text(), utility, episode});
+  }
+
+  ItemList list() {
+    ItemList list;
+    list.folder = request_.folder;
+    list.groups = evaluation_.worlds.size();
+    const std::size_t each = trials_.size() / list.groups;
+    for (std::size_t k = 0; k < trials_.size(); ++k)
+      list.items.push_back({file_of(k).string(),
+                            k / each,
+                            {trials_[k].utility + " in " + trials_[k].world, trials_[k].utility}});
+    list.is_made = [this, each](std::size_t item) {
+      const bool there = has_item(request_.folder / file_of(item), evaluation_.mark);
+      if (!there) ++missing_[item / each];
+      return there;
+    };
+    list.prepare = [this](std::size_t world) {
+      return load_for_episodes(evaluation_.worlds[world], request_.up, evaluation_.setup, registry_,
+                               invocation_);
+    };
+    list.make = [this](std::size_t item, const void* prepared) {
+      const auto& used = *static_cast<const WorldInUse*>(prepared);
+      run_trial(trials_[item], used.world, used.truth,
+                setup_of(evaluation_.setup, evaluation_.records, trials_[item].world), registry_,
+                evaluation_.parameters, invocation_.seed, evaluation_.mark, request_.folder);
+    };
+    list.done = [this, each](std::size_t item) {
+      const std::size_t world = item / each;
+      ++made_[world];
+      if (!invocation_.quiet)
+        std::cerr << visible_line(trials_[item].world) + ": " + std::to_string(made_[world]) +
+                         " of " + std::to_string(missing_[world]) + " episodes\n";
+    };
+    return list;
+  }
+
+ private:
+  fs::path file_of(std::size_t k) const {
+    return fs::path("episodes") / (trials_[k].name() + ".json");
+  }
+
+  const ExploreEvaluation& request_;
+  const Evaluation& evaluation_;
+  const Registry& registry_;
+  const Invocation& invocation_;
+  std::vector<Trial> trials_;
+  std::vector<int> missing_, made_;  // by world
+};
+
+// A folder in which nothing was made is left without settings.
+void forget_settings(const fs::path& folder) {
+  std::error_code code;
+  if (fs::exists(folder / "episodes", code) && !fs::is_empty(folder / "episodes", code)) return;
+  fs::remove(folder / "settings.json", code);
+  fs::remove_all(folder / "times", code);
+}
+
+void print_figures(const Evaluation& evaluation, const ExplorationTables& tables,
+                   const std::string& report, const Invocation& invocation) {
+  const Value& moves = evaluation.records.moves;
   if (invocation.json) {
     Value object = Value::map();
     object.set("status", "ok");
     object.set("report", report);
-    object.set("moves", moves);
-    if (!records.moves.as_map().empty()) object.set("world_moves", records.moves);
+    object.set("moves", evaluation.moves);
+    if (!moves.as_map().empty()) object.set("world_moves", moves);
     object.set("rows", tables.rows);
     print_json(object);
   } else if (!invocation.quiet) {
     std::cout << visible_text(tables.text);
-    for (const auto& [world, own] : records.moves.as_map())
+    for (const auto& [world, own] : moves.as_map())
       std::cout << "\n"
                 << visible_line(world) << " was explored with the moves that its scene recommends: "
                 << visible_line(settings_text(own)) << " (--moves KEY=VALUE sets others)";
     std::cout << "\nreport: " << visible_line(report) << std::endl;
   }
+}
+
+ExitStatus evaluate(const ExploreEvaluation& request, const Invocation& invocation,
+                    const Registry& registry, ItemRun& run, const CancellationToken& cancellation) {
+  Evaluation evaluation = evaluation_of(request, invocation, registry);
+  evaluation.setup.episode.cancellation = &cancellation;
+  if (!request.against.empty())
+    require_same_starts(request, evaluation.stated, evaluation.worlds, evaluation.utilities);
+  std::optional<FolderClaim> claim;
+  Value settings;
+  bool stated = false;  // by this process, in the folder
+  const auto open = [&] {
+    claim.emplace(request.folder, claim_for(request.items));
+    settings = settings_for(request, evaluation.stated);
+    if (request.items.gather || request.items.schedule) return;
+    write_file_atomically(request.folder / "settings.json", to_json(settings) + "\n");
+    stated = true;
+  };
+  Trials trials(request, evaluation, registry, invocation);
+  try {
+    if (!run.make(trials.list(), evaluation.stated, open)) return print_answer(run, invocation);
+  } catch (...) {
+    if (stated && !request.items.continues()) forget_settings(request.folder);
+    throw;
+  }
+  std::vector<std::string> worlds;
+  for (const WorldName& name : evaluation.worlds) worlds.push_back(name.text());
+  const ExplorationTables tables =
+      write_exploration_figures({request.folder, request.against, settings, worlds,
+                                 evaluation.utilities, request.episodes, request.steps});
+  print_figures(evaluation, tables, (request.folder / "report.html").string(), invocation);
   return ExitStatus::done;
+}
+
+}  // namespace
+
+ExitStatus evaluate_explore(const ExploreEvaluation& request, const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  return run_items(request.items, invocation, registry,
+                   [&](ItemRun& run, const CancellationToken& cancellation) {
+                     return evaluate(request, invocation, registry, run, cancellation);
+                   });
 }
 
 }  // namespace lapwing

@@ -2,7 +2,7 @@
 // lapwing evaluate explore
 #pragma once
 
-#include "framework/app/command_line.h"
+#include "framework/app/item_command.h"
 
 namespace lapwing {
 
@@ -18,7 +18,7 @@ struct ExploreEvaluation {
   double stereo = 0;              // m between a pair of cameras; 0: a depth camera
   std::filesystem::path folder = "out/evaluate_explore";
   std::filesystem::path against;  // another evaluation's folder, from the same starts; or empty
-  bool resume = false;            // keep the episodes that are there
+  ItemOptions items;              // an item is an episode
 };
 
 // The invocation's overrides are parameters of utilities, as "learned.blank=true".

@@ -261,26 +261,13 @@ ObservedSurface::NewMap ExplorationSetup::new_map(const Registry& registry) cons
   return [&registry, type = backend, given = map] { return registry.create<Map>(type, given); };
 }
 
-void WorldsInUse::expect(const WorldName& name) {
-  ++entries_[name.text()].expected;
-}
-
-std::shared_ptr<const WorldsInUse::InUse> WorldsInUse::begin(const WorldName& name) {
-  const std::lock_guard lock(mutex_);
-  Entry& entry = entries_.at(name.text());
-  if (!entry.held) {
-    World world = load_world(name, up_, registry_, invocation_);
-    GroundTruth truth = setup_.truth_of(world);
-    entry.held = std::make_shared<const InUse>(InUse{std::move(world), std::move(truth)});
-  }
-  return entry.held;
-}
-
-std::pair<int, int> WorldsInUse::end(const WorldName& name) {
-  const std::lock_guard lock(mutex_);
-  Entry& entry = entries_.at(name.text());
-  if (++entry.ended == entry.expected) entry.held.reset();
-  return {entry.ended, entry.expected};
+std::shared_ptr<const WorldInUse> load_for_episodes(const WorldName& name, const std::string& up,
+                                                    const ExplorationSetup& setup,
+                                                    const Registry& registry,
+                                                    const Invocation& invocation) {
+  World world = load_world(name, up, registry, invocation);
+  GroundTruth truth = setup.truth_of(world);
+  return std::make_shared<const WorldInUse>(WorldInUse{std::move(world), std::move(truth)});
 }
 
 }  // namespace lapwing

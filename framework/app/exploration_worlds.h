@@ -2,8 +2,7 @@
 // The worlds that explorations are trained on and judged in: made by a script, or a mesh file.
 #pragma once
 
-#include <map>
-#include <mutex>
+#include <memory>
 
 #include "framework/app/command_line.h"
 #include "framework/explore/episode.h"
@@ -72,35 +71,14 @@ struct ExplorationSetup {
   ObservedSurface::NewMap new_map(const Registry& registry) const;
 };
 
-// Worlds for episodes that several threads fly: each is loaded when its first episode begins, and
-// let go when its last one has ended.
-class WorldsInUse {
- public:
-  WorldsInUse(const ExplorationSetup& setup, std::string up, const Registry& registry,
-              const Invocation& invocation)
-      : setup_(setup), up_(std::move(up)), registry_(registry), invocation_(invocation) {}
-  void expect(const WorldName& name);  // one episode more
-
-  struct InUse {
-    World world;
-    GroundTruth truth;
-  };
-  // Thread-safe; the world stays while the pointer lives, or while episodes are expected.
-  std::shared_ptr<const InUse> begin(const WorldName& name);
-  // How many of its expected episodes have ended, and how many there are.
-  std::pair<int, int> end(const WorldName& name);
-
- private:
-  struct Entry {
-    int expected = 0, ended = 0;
-    std::shared_ptr<const InUse> held;
-  };
-  const ExplorationSetup& setup_;
-  std::string up_;
-  const Registry& registry_;
-  const Invocation& invocation_;
-  std::mutex mutex_;  // also of loading: scripts are run one at a time
-  std::map<std::string, Entry> entries_;
+// What the episodes in one world share.
+struct WorldInUse {
+  World world;
+  GroundTruth truth;
 };
+std::shared_ptr<const WorldInUse> load_for_episodes(const WorldName& name, const std::string& up,
+                                                    const ExplorationSetup& setup,
+                                                    const Registry& registry,
+                                                    const Invocation& invocation);
 
 }  // namespace lapwing

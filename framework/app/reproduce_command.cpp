@@ -7,6 +7,7 @@
 
 #include "framework/app/child_command.h"
 #include "framework/app/interruption.h"
+#include "framework/app/item_command.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/text_table.h"
 #include "framework/config/shipped.h"
@@ -316,6 +317,13 @@ ExitStatus list_reproductions(const Invocation& invocation) {
 }
 
 ExitStatus reproduce_table(const ReproduceRequest& asked, const Invocation& invocation) {
+  if (launched_processes() > 1) {
+    if (launched_rank() > 0) return ExitStatus::done;  // process 0 says it
+    throw InputError(
+        "reproduce: mpirun started " + std::to_string(launched_processes()) +
+        " processes, but each study of a table is a command in a process of its own; start it "
+        "without mpirun, and use --threads");
+  }
   if (asked.table == "list") return list_reproductions(invocation);
   return Reproducing(asked, invocation).run();
 }

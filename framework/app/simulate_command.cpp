@@ -6,17 +6,21 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/interruption.h"
+#include "framework/app/kept_runs.h"
 #include "framework/app/output_target.h"
 #include "framework/app/provenance.h"
 #include "framework/app/simulation_request.h"
 #include "framework/app/terminal.h"
+#include "framework/core/checksum.h"
 #include "framework/core/files.h"
+#include "framework/core/json.h"
 #include "framework/core/number_text.h"
 #include "framework/core/parallel.h"
 #include "framework/core/units.h"
 #include "framework/core/visible_text.h"
 #include "framework/export/light_painting.h"
 #include "framework/export/simulation_report.h"
+#include "framework/items/statement.h"
 #include "framework/mission/environment_source.h"
 #include "framework/vehicle/closed_loop.h"
 #include "framework/vehicle/path_flight.h"
@@ -174,22 +178,72 @@ RunVerdict verdict_of(const Plan& plan, const FlownPath& path, double tolerance,
   return verdict;
 }
 
-SimulatedRuns judged_runs(const Plan& plan, const ControlledPlan& controlled,
-                          const ControllerChoice& choice, const FlightConditions& spread,
-                          const SimulationRequest& asked, const std::filesystem::path& folder,
-                          const Invocation& invocation, const CancellationToken* token) {
-  SimulatedRuns runs{choice.name, spread, asked.tolerance.value_or(tolerances::kTracking), {}, {}};
-  runs.runs = fly_runs(controlled, spread, asked.runs, invocation.threads, token);
-  runs.verdicts.resize(runs.runs.size());
-  parallel_for(runs.runs.size(), invocation.threads, [&](std::size_t i) {
-    if (token->cancelled()) throw Cancelled();
-    runs.verdicts[i] = verdict_of(plan, runs.runs[i].path, runs.tolerance, folder);
-  });
-  // Some have obstacles near or subjects in view and others ended before: absent means kept.
+// A plan that is to be flown, and how.
+struct PlannedFlight {
+  const std::filesystem::path& file;
+  const Plan& plan;
+  const ControlledPlan& controlled;
+  const ControllerChoice& choice;
+  const FlightConditions& conditions;
+  double tolerance;  // m
+};
+
+// Some have obstacles near or subjects in view and others ended before: absent means kept.
+void agree_on_distances(SimulatedRuns& runs) {
   const bool any = std::any_of(runs.verdicts.begin(), runs.verdicts.end(),
                                [](const RunVerdict& v) { return v.distance.has_value(); });
   for (RunVerdict& v : runs.verdicts)
     if (any && !v.distance) v.distance = false;
+}
+
+SimulatedRuns judged_runs(const PlannedFlight& flight, int count, const Invocation& invocation,
+                          const CancellationToken& token) {
+  SimulatedRuns runs{flight.choice.name, flight.conditions, flight.tolerance, {}, {}};
+  runs.runs = fly_runs(flight.controlled, flight.conditions, count, invocation.threads, &token);
+  runs.verdicts.resize(runs.runs.size());
+  const std::filesystem::path folder = flight.file.parent_path();
+  parallel_for(runs.runs.size(), invocation.threads, [&](std::size_t i) {
+    if (token.cancelled()) throw Cancelled();
+    runs.verdicts[i] = verdict_of(flight.plan, runs.runs[i].path, runs.tolerance, folder);
+  });
+  agree_on_distances(runs);
+  return runs;
+}
+
+// "mpc {...}" with a checksum of the library that has it.
+std::string text_of(const ControllerChoice& choice, const Registry& registry) {
+  return to_json(to_value(choice), -1) + " " +
+         sha256(read_file(registry.find(Controller::kKind, choice.name).library));
+}
+
+// The same runs as items; nothing where their results are not for this process.
+std::optional<SimulatedRuns> kept_runs(const PlannedFlight& flight, const SimulationRequest& asked,
+                                       const Registry& registry, ItemRun& items,
+                                       const CancellationToken& token) {
+  const std::filesystem::path folder = flight.file.parent_path();
+  const Value statement = statement_of(RunInputs{flight.file, text_of(flight.choice, registry),
+                                                 to_value(flight.conditions), flight.tolerance});
+  const ItemList list = run_items_of(
+      asked.kept, flight.conditions.seed, static_cast<std::size_t>(asked.runs),
+      made_by(statement.at("program").as_text(), statement), [&](std::uint64_t seed) {
+        KeptRun run;
+        run.path = flight.controlled.fly(drawn_conditions(flight.conditions, seed), &token);
+        run.verdict = verdict_of(flight.plan, run.path, flight.tolerance, folder);
+        return run;
+      });
+  std::optional<FolderClaim> claim;
+  const bool whole = items.make(list, statement, [&] {
+    claim.emplace(asked.kept, claim_for(asked.items));
+    open_statement(asked.kept / "simulation.json", statement, asked.items, "simulation");
+  });
+  if (!whole) return std::nullopt;
+  SimulatedRuns runs{flight.choice.name, flight.conditions, flight.tolerance, {}, {}};
+  std::uint64_t seed = flight.conditions.seed;
+  for (KeptRun& run : read_runs(list)) {
+    runs.runs.push_back({drawn_conditions(flight.conditions, seed++), std::move(run.path)});
+    runs.verdicts.push_back(run.verdict);
+  }
+  agree_on_distances(runs);
   return runs;
 }
 
@@ -225,19 +279,18 @@ void require_a_sound_plan(const Plan& plan, const std::filesystem::path& folder)
   if (!document->pass) throw InputError({}, "the plan is inconsistent: " + document->detail);
 }
 
-}  // namespace
-
-ExitStatus simulate_plan(const std::filesystem::path& file, const SimulationRequest& asked,
-                         const std::filesystem::path& target, const Invocation& invocation) {
+// `items`: of runs that are kept; null for others.
+ExitStatus simulate(const std::filesystem::path& file, const SimulationRequest& asked,
+                    const std::filesystem::path& target, const Invocation& invocation,
+                    const CancellationToken& token, ItemRun* items) {
   if (!target.empty()) require_output(target, {file});
-  const Interruption interruption;
   Plan plan = read_plan_file(file);
   const std::filesystem::path folder = file.parent_path();
   require_a_sound_plan(plan, folder);
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
   if (!plan.trajectory.motion.moves) {
     plan.trajectory = flight_along(plan.trajectory, vehicle);
-    if (!invocation.json)
+    if (!invocation.json && (!items || items->leads()))
       std::printf(
           "the plan is a path without forces: flown with a stop in every place, in %.4g s\n",
           plan.trajectory.duration());
@@ -253,8 +306,13 @@ ExitStatus simulate_plan(const std::filesystem::path& file, const SimulationRequ
   object.set("plan", file.string());
   object.set("mission", plan.mission);
   if (asked.runs > 0) {
-    const SimulatedRuns runs = judged_runs(plan, controlled, choice, conditions, asked, folder,
-                                           invocation, &interruption.token());
+    const PlannedFlight flight{file,   plan,       controlled,
+                               choice, conditions, asked.tolerance.value_or(tolerances::kTracking)};
+    const std::optional<SimulatedRuns> made =
+        items ? kept_runs(flight, asked, invocation.registry(), *items, token)
+              : judged_runs(flight, asked.runs, invocation, token);
+    if (!made) return print_answer(*items, invocation);
+    const SimulatedRuns& runs = *made;
     if (!target.empty())
       write_file_atomically(target, render_html(runs_report(plan, vehicle, runs, folder)));
     object.set("simulations", to_value(runs));
@@ -265,7 +323,7 @@ ExitStatus simulate_plan(const std::filesystem::path& file, const SimulationRequ
     return runs.good_share() == 1 ? ExitStatus::done : ExitStatus::not_certified;
   }
   const double tolerance = asked.tolerance.value_or(tolerances::kTracking);
-  Simulation flown{choice.name, conditions, controlled.fly(conditions, &interruption.token()), {}};
+  Simulation flown{choice.name, conditions, controlled.fly(conditions, &token), {}};
   const FlownPath& path = flown.path;
   const Certificate certificate = certificate_of(plan, path, folder);
   flown.distances = made_checks(certificate, {"clearance", "subject_distance"});
@@ -293,6 +351,27 @@ ExitStatus simulate_plan(const std::filesystem::path& file, const SimulationRequ
       std::printf("  %-22s  %s\n", check.name.c_str(), visible_line(result_of(check)).c_str());
   }
   return !kept(path, tolerance) ? ExitStatus::not_certified : ExitStatus::done;
+}
+
+}  // namespace
+
+ExitStatus simulate_plan(const std::filesystem::path& file, const SimulationRequest& asked,
+                         const std::filesystem::path& target, const Invocation& invocation) {
+  const ItemOptions& options = asked.items;
+  const bool of_items = options.continues() || options.portable || !options.executor.empty() ||
+                        launched_processes() > 1 || !asked.kept.empty();
+  if (!of_items) {
+    const Interruption interruption;
+    return simulate(file, asked, target, invocation, interruption.token(), nullptr);
+  }
+  return run_items(options, invocation, invocation.registry(),
+                   [&](ItemRun& items, const CancellationToken& token) {
+                     if (asked.runs == 0 || asked.kept.empty())
+                       throw InputError(
+                           "simulate: several processes, --executor, --portable and what "
+                           "continues runs need --runs N and --keep-runs DIR");
+                     return simulate(file, asked, target, invocation, token, &items);
+                   });
 }
 
 }  // namespace lapwing

@@ -94,6 +94,11 @@ void add_simulate_command(CLI::App& app, Invocation& invocation, std::filesystem
             "fly it N times with seeds SEED, SEED+1, ...; errors of mass and inertia are random, "
             "between minus and plus the stated ones; default: once, as stated",
             [&](std::uint64_t runs) { asked.runs = static_cast<int>(runs); });
+  add_text(*simulate, "--keep-runs", "DIR",
+           "keep the runs as files in this folder, so that they can be continued, split into "
+           "shards and made by several processes; default: they are not kept",
+           [&](const std::string& path) { asked.kept = path; });
+  add_items(*simulate, asked.items, "keep the runs that are in --keep-runs");
   add_text(*simulate, "--tolerance", "M",
            "distance from the plan that counts as followed; default: 0.25",
            [&](const std::string& text) {

@@ -10,6 +10,7 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/command_options.h"
+#include "framework/app/item_command.h"
 #include "framework/vehicle/closed_loop.h"
 
 namespace lapwing {
@@ -20,6 +21,8 @@ struct SimulationRequest {
   std::vector<std::pair<double Disturbances::*, double>> stated;
   std::string controller;           // NAME[:KEY=VALUE,...]; "": the plan's
   int runs = 0;                     // 0: one flight, under the conditions as they are
+  std::filesystem::path kept;       // a folder of files of the runs; empty: they are not kept
+  ItemOptions items;                // an item is a run that is kept
   std::optional<double> tolerance;  // m, of the distance from the plan; absent: a certificate's
 };
 

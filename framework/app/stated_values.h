@@ -12,9 +12,10 @@
 
 namespace lapwing {
 
-// Equal to twelve digits.
+// Equal to twelve digits; infinite ones exactly.
 inline bool same_number(double a, double b) {
-  return a == b || std::abs(a - b) <= 1e-12 * std::max({1.0, std::abs(a), std::abs(b)});
+  if (!std::isfinite(a) || !std::isfinite(b)) return a == b;
+  return std::abs(a - b) <= 1e-12 * std::max({1.0, std::abs(a), std::abs(b)});
 }
 
 inline std::optional<double> stated_number(const Value& table, const char* key) {

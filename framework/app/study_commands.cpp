@@ -90,7 +90,7 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
            [&](const std::string& text) { asked.guard = read_number("--guard", text); });
   scan->add_flag("--photos", asked.photos,
                  "render photographs along each tour and register them with COLMAP");
-  scan->add_flag("--resume", asked.resume, "continue an interrupted study");
+  add_items(*scan, asked.items, "continue an interrupted study");
   add_repeated(
       *scan, "--config", "FILE", invocation.configs,
       "a configuration file or its name in configs/, of all missions; repeatable; default: none");
@@ -178,7 +178,6 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
                  "set one parameter of the network or its training; repeatable; default: none");
     add_seed(made, invocation.seed, "seed of all random numbers; default: 1");
     made.add_flag("--quiet", invocation.quiet, "no lines of progress");
-    made.add_flag("--resume", request.resume, "continue an interrupted run");
   };
   const auto add_samples = [&](CLI::App& made) {
     add_text(made, "samples", "DIR|FILE...", "files of samples, and folders of them",
@@ -190,6 +189,7 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   };
   CLI::App* dataset = add("dataset", "samples from episodes of the oracle");
   add_making(*dataset, "a folder");
+  add_items(*dataset, request.items, "continue an interrupted run");
   add_repeated(*dataset, "--world", "NAME[:FIRST-LAST]", request.worlds, kWorldHelp);
   add_text(*dataset, "--explorer", "NAME", "the utility that explores; default: the oracle",
            [&](const std::string& given) { request.explorer = given; });
@@ -207,6 +207,7 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
             [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
   CLI::App* fit = add("fit", "train a model");
   add_making(*fit, "the model's file");
+  fit->add_flag("--resume", request.resume, "continue an interrupted run");
   add_samples(*fit);
   add_repeated(*fit, "--validation", "DIR|FILE", request.validation,
                "samples of other worlds or episodes; repeatable, at least one; no default");
@@ -256,7 +257,7 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
            [&](const std::string& path) { request.folder = path; });
   add_threads(*made, invocation, "threads to use; default: one per core");
   add_seed(*made, invocation.seed, "seed of the starts; default: 1");
-  made->add_flag("--resume", request.resume, "keep existing episodes");
+  add_items(*made, request.items, "keep existing episodes");
   add_json(*made, invocation);
   made->add_flag("--quiet", invocation.quiet, "no progress, no tables");
   made->callback([&] { command = [&] { return evaluate_explore(request, invocation); }; });

@@ -7,7 +7,6 @@
 #include <regex>
 #include <set>
 
-#include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/sweep_inputs.h"
@@ -19,7 +18,9 @@
 #include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/core/portable.h"
 #include "framework/core/visible_text.h"
+#include "framework/items/statement.h"
 
 namespace lapwing {
 
@@ -73,10 +74,11 @@ Value plugin_checksums(const Registry& registry) {
 
 // All that the runs are made of but the files that they read as they go: those are in
 // app/sweep_inputs.h.
-Value statement_of(const Sweep& asked, const Invocation& invocation) {
+Value statement_of(const Sweep& asked, const Invocation& invocation, const Registry& registry) {
   Value value = Value::map();
   value.set("sweep", 1);
   value.set("version", program_version());
+  value.set(kMachineEntry, machine_of_numbers());
   value.set("script", asked.script.string());
   fs::path folder = asked.script.parent_path();
   if (folder.empty()) folder = ".";
@@ -93,27 +95,13 @@ Value statement_of(const Sweep& asked, const Invocation& invocation) {
   value.set("vary", list_of(asked.varied));
   value.set("data", list_of(invocation.data));
   value.set("plugin_path", list_of(invocation.plugin_path));
-  value.set("plugins_sha256", plugin_checksums(invocation.registry()));
+  value.set("plugins_sha256", plugin_checksums(registry));
   value.set("seed", static_cast<std::int64_t>(invocation.seed));
   return value;
 }
 
-void require_same(const fs::path& file, const Value& now) {
-  std::error_code code;
-  if (!fs::exists(file, code))
-    throw InputError("--resume: there is no sweep in '" + file.parent_path().string() + "'");
-  const Value before = from_json(read_file(file), file.string());
-  std::string differing;
-  for (const auto& [name, value] : now.as_map()) {
-    const Value* other = before.find(name);
-    if (!other || !(*other == value)) differing += (differing.empty() ? "" : ", ") + name;
-  }
-  if (!differing.empty())
-    throw InputError("--resume: the sweep in '" + file.parent_path().string() +
-                     "' has other inputs: " + differing + " (see " + file.string() +
-                     "); leave --resume out to start again");
-}
-
+constexpr const char* kStatement = "sweep.json";
+constexpr const char* kRunFile = "exit.txt";  // says that a run came to its end
 constexpr const char* kTable = "table.csv";
 constexpr const char* kReport = "report.html";
 
@@ -157,8 +145,8 @@ std::string blaming_vary(std::string message, const std::vector<VariedKey>& keys
 // What no run could do is refused before anything is written: InputError where neither the first
 // nor the last can be loaded. One whose values alone are bad is a row of the table.
 void require_one_that_loads(const Sweep& asked, const Invocation& invocation,
-                            const std::vector<VariedKey>& keys, const std::vector<SweepRun>& runs) {
-  const Registry registry = invocation.registry();
+                            const std::vector<VariedKey>& keys, const std::vector<SweepRun>& runs,
+                            const Registry& registry) {
   std::string first_error;
   for (const SweepRun* run : {&runs.front(), &runs.back()}) {
     Invocation one = invocation;
@@ -175,32 +163,11 @@ void require_one_that_loads(const Sweep& asked, const Invocation& invocation,
   throw InputError(blaming_vary(first_error, keys));
 }
 
-// A run that a defect ended or that was interrupted is done again, and so is one of which it is not
-// known what it read: it failed before there was a plan. InputError where a kept run read what has
-// changed since; nothing is removed then.
-void keep_finished(std::vector<SweepRun>& runs) {
-  std::vector<SweepRun*> again;
-  for (SweepRun& run : runs) {
-    read_results(run);
-    const bool ended = run.exit && *run.exit < static_cast<int>(ExitStatus::defect);
-    if (!ended || !has_inputs(run.folder)) {
-      again.push_back(&run);
-    } else if (const std::string changed = changed_input(run.folder); !changed.empty()) {
-      throw InputError("--resume: '" + changed + "', which " + run.name +
-                       " read, has changed since; leave --resume out to start again");
-    }
-  }
-  for (SweepRun* run : again) {
-    fs::remove_all(run->folder);  // whatever of it is there, it begins anew
-    *run = SweepRun{run->name, run->values, run->folder, {}, {}, {}, {}, {}};
-  }
-}
-
 // A folder that a new sweep may use: InputError where it holds files of a sweep's names that no
 // sweep wrote, or, unless it was named by --out, the sweep of another script.
 void require_sweep_folder(const Sweep& asked, const Invocation& invocation, const fs::path& out,
                           const std::vector<SweepRun>& runs) {
-  const fs::path file = out / "sweep.json";
+  const fs::path file = out / kStatement;
   std::error_code code;
   if (fs::exists(file, code)) {
     const Value before = from_json(read_file(file), file.string());
@@ -221,17 +188,22 @@ void require_sweep_folder(const Sweep& asked, const Invocation& invocation, cons
 
 // Of a folder that this process has claimed.
 void begin(const Sweep& asked, const Invocation& invocation, const fs::path& out,
-           std::vector<SweepRun>& runs) {
-  const fs::path file = out / "sweep.json";
-  const Value statement = statement_of(asked, invocation);
-  if (asked.resume) {
-    require_same(file, statement);
-    keep_finished(runs);
+           const Value& statement, const std::vector<SweepRun>& runs) {
+  const fs::path file = out / kStatement;
+  std::error_code code;
+  const bool there = fs::exists(file, code);
+  if (asked.items.continues() && (there || !asked.items.shard)) {
+    if (!there)
+      throw InputError(asked.items.name() + ": there is no sweep in '" + out.string() + "'");
+    open_statement(file, statement, asked.items, "sweep");
     return;
   }
   require_sweep_folder(asked, invocation, out, runs);
-  std::error_code code;
-  if (fs::exists(file, code)) {
+  if (asked.items.shard) {
+    open_statement(file, statement, asked.items, "sweep");
+    return;
+  }
+  if (there) {
     if (!invocation.quiet)
       std::cerr << "lapwing: replaces the sweep in '" << visible_line(out.string()) << "'\n";
     fs::remove(file);
@@ -240,27 +212,29 @@ void begin(const Sweep& asked, const Invocation& invocation, const fs::path& out
   write_file_atomically(file, to_json(statement) + "\n");
 }
 
-}  // namespace
+// The items: a run each.
+ItemList items_of(std::vector<SweepRun>& runs, const fs::path& out,
+                  const std::function<std::vector<std::string>(const SweepRun&)>& words,
+                  const Value& mark, const CancellationToken& cancellation, Progress& progress) {
+  ItemList list;
+  list.folder = out;
+  for (const SweepRun& run : runs)
+    list.items.push_back({(fs::path(run.name) / kRunFile).string(), 0, {}});
+  list.is_made = [&](std::size_t item) { return has_run(runs[item], mark); };
+  list.make = [&, words](std::size_t item, const void*) {
+    do_run(runs[item], words(runs[item]), mark, cancellation);
+  };
+  list.done = [&, made = std::size_t{0}](std::size_t) mutable {
+    ++made;
+    progress.report(static_cast<double>(made) / static_cast<double>(runs.size()),
+                    std::to_string(made) + " of " + std::to_string(runs.size()) + " runs done");
+  };
+  return list;
+}
 
-ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
-  if (asked.varied.empty()) throw InputError("sweep: expected --vary KEY=VALUE,VALUE,...");
-  if (!fs::exists(asked.script))
-    throw InputError("there is no script '" + asked.script.string() + "'");
-  std::vector<VariedKey> keys;
-  for (const std::string& text : asked.varied) keys.push_back(read_varied(text));
-  const fs::path out = invocation.out.empty() ? fs::path("out") / "sweep" : invocation.out;
-  std::vector<SweepRun> runs = combinations(keys, out);
-  require_one_that_loads(asked, invocation, keys, runs);
-  const Interruption interruption;
-  require_writable(out / "sweep.json");
-  const FolderClaim claim(out);  // two sweeps in one folder would remove each other's runs
-  begin(asked, invocation, out, runs);
-  ProgressLine progress("sweep", std::cerr, progress_style_of_stderr(invocation.quiet),
-                        columns_of_stderr(), &steady_seconds);
-  do_runs(
-      runs, asked.jobs, [&](const SweepRun& run) { return words_of(run, keys, asked, invocation); },
-      interruption.token(), progress);
-  progress.clear();
+void print_results(const Sweep& asked, const Invocation& invocation,
+                   const std::vector<VariedKey>& keys, const std::vector<SweepRun>& runs,
+                   const fs::path& out) {
   write_files_together(out, {{{kTable, sweep_csv(keys, runs)},
                               {kReport, sweep_page(asked.script.string(), keys, runs)}}});
   if (invocation.json)
@@ -269,19 +243,77 @@ ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
     std::cout << sweep_text(keys, runs, columns_of_stdout())
               << "\ntable: " << visible_line((out / kTable).string())
               << "\nreport: " << visible_line((out / kReport).string()) << std::endl;
-  if (interruption.token().cancelled())
+}
+
+ExitStatus status_of(const std::vector<SweepRun>& runs, bool interrupted) {
+  if (interrupted) {
     std::cerr << "lapwing: interrupted; the same command with --resume runs what is missing\n";
+    return ExitStatus::interrupted;
+  }
   int worst = 0;
   for (const SweepRun& run : runs) {
     if (!run.exit) {
-      if (!interruption.token().cancelled())
-        std::cerr << "lapwing: " << run.name << " was ended by a signal; --resume runs it again\n";
-      return interruption.token().cancelled() ? ExitStatus::interrupted : ExitStatus::defect;
+      std::cerr << "lapwing: " << run.name << " was ended by a signal; --resume runs it again\n";
+      return ExitStatus::defect;
     }
     worst = std::max(worst, *run.exit);
   }
-  return interruption.token().cancelled() ? ExitStatus::interrupted
-                                          : static_cast<ExitStatus>(worst);
+  return static_cast<ExitStatus>(worst);
+}
+
+ExitStatus sweep(const Sweep& asked, const Invocation& invocation, const Registry& registry,
+                 ItemRun& run, const CancellationToken& cancellation) {
+  if (asked.varied.empty()) throw InputError("sweep: expected --vary KEY=VALUE,VALUE,...");
+  if (!fs::exists(asked.script))
+    throw InputError("there is no script '" + asked.script.string() + "'");
+  std::vector<VariedKey> keys;
+  for (const std::string& text : asked.varied) keys.push_back(read_varied(text));
+  const fs::path out = invocation.out.empty() ? fs::path("out") / "sweep" : invocation.out;
+  std::vector<SweepRun> runs = combinations(keys, out);
+  require_one_that_loads(asked, invocation, keys, runs, registry);
+  require_writable(out / kStatement);
+  const Value statement = statement_of(asked, invocation, registry);
+  const Value mark = made_by(std::string("lapwing ") + program_version(), statement);
+  ProgressLine progress("sweep", std::cerr,
+                        progress_style_of_stderr(invocation.quiet || !run.leads()),
+                        columns_of_stderr(), &steady_seconds);
+  std::optional<FolderClaim> claim;  // two sweeps in one folder would remove each other's runs
+  bool interrupted = false;
+  try {
+    const ItemList list = items_of(
+        runs, out, [&](const SweepRun& one) { return words_of(one, keys, asked, invocation); },
+        mark, cancellation, progress);
+    const bool whole = run.make(list, statement, [&] {
+      claim.emplace(out, claim_for(asked.items));
+      begin(asked, invocation, out, statement, runs);
+    });
+    progress.clear();
+    if (!whole) return print_answer(run, invocation);
+  } catch (const Cancelled&) {
+    progress.clear();
+    if (asked.items.shard || !claim) throw;
+    interrupted = true;
+  }
+  for (SweepRun& one : runs) {  // some were done by other processes
+    one = SweepRun{one.name, one.values, one.folder, {}, {}, {}, {}, {}};
+    read_results(one);
+  }
+  print_results(asked, invocation, keys, runs, out);
+  return status_of(runs, interrupted);
+}
+
+}  // namespace
+
+ExitStatus sweep_missions(const Sweep& asked, const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  Invocation with_jobs = invocation;
+  with_jobs.threads = asked.jobs;
+  ItemOptions options = asked.items;
+  options.usual_threads = 2;
+  return run_items(options, with_jobs, registry,
+                   [&](ItemRun& run, const CancellationToken& cancellation) {
+                     return sweep(asked, invocation, registry, run, cancellation);
+                   });
 }
 
 }  // namespace lapwing

@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "framework/app/command_line.h"
+#include "framework/app/item_command.h"
 
 namespace lapwing {
 
 struct Sweep {
   std::filesystem::path script;
   std::vector<std::string> varied;  // "key=value,value,..."; all combinations are run
-  int jobs = 2;                     // runs at once
-  bool resume = false;              // go on with what is missing
+  int jobs = 0;                     // runs at once in one process; 0: 2, one with mpi
+  ItemOptions items;                // an item is a run
 };
 
 // Each run is `lapwing run` in a process of its own, into a folder of its own below --out. Exit

@@ -12,7 +12,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <map>
 #include <thread>
 
 #include "framework/app/command_line.h"
@@ -20,6 +19,7 @@
 #include "framework/app/sweep_inputs.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/items/statement.h"
 
 namespace lapwing {
 
@@ -36,14 +36,32 @@ constexpr const char* kAnswer = "answer.json";
 constexpr const char* kErrors = "errors.txt";
 constexpr const char* kExit = "exit.txt";
 
-using Running = std::map<pid_t, SweepRun*>;
+constexpr const char* kMark = "made_by.json";
+
+// Of this process, without what mpirun tells it: a run is a program of its own.
+std::vector<std::string> environment_of_run() {
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable; ++variable) {
+    const std::string_view text = *variable;
+    const auto begins = [&](const char* start) { return text.starts_with(start); };
+    if (!begins("OMPI_") && !begins("PMIX_") && !begins("PMI_")) variables.emplace_back(text);
+  }
+  return variables;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
 
 pid_t start_run(const SweepRun& run, std::vector<std::string> words) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  std::vector<char*> arguments = pointers_to(words);
+  std::vector<std::string> variables = environment_of_run();
+  std::vector<char*> environment = pointers_to(variables);
+  fs::remove_all(run.folder);  // whatever of it is there, it begins anew
   fs::create_directories(run.folder);
-  for (const char* name : {kExit, kAnswer, kErrors}) fs::remove(run.folder / name);
   const std::string answer = run.folder / kAnswer, errors = run.folder / kErrors;
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
@@ -57,39 +75,22 @@ pid_t start_run(const SweepRun& run, std::vector<std::string> words) {
   const int log = ::open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (to < 0 || log < 0 || ::dup2(to, STDOUT_FILENO) < 0 || ::dup2(log, STDERR_FILENO) < 0)
     ::_exit(static_cast<int>(ExitStatus::defect));
-  ::execv("/proc/self/exe", arguments.data());
+  ::execve("/proc/self/exe", arguments.data(), environment.data());
   ::_exit(static_cast<int>(ExitStatus::defect));
 }
 
-// A run that a signal ended has no result: it is done again.
-void finish_run(SweepRun& run, int status) {
-  if (!WIFEXITED(status)) return;
-  keep_inputs(run.folder);
-  write_file_atomically(run.folder / kExit, std::to_string(WEXITSTATUS(status)) + "\n");
-  read_results(run);
+// Whether the process has ended, with its status.
+bool has_ended(pid_t process, int& status) {
+  return ::waitpid(process, &status, WNOHANG) == process;
 }
 
-// Takes every process that has ended out of `running`.
-void collect(Running& running) {
-  for (auto one = running.begin(); one != running.end();) {
-    int status = 0;
-    const pid_t ended = ::waitpid(one->first, &status, WNOHANG);
-    if (ended == 0 || (ended < 0 && errno == EINTR)) {
-      ++one;
-      continue;
-    }
-    if (ended > 0) finish_run(*one->second, status);
-    one = running.erase(one);
-  }
-}
-
-// Asks them to end with the best so far, then tells them to, then ends them.
-void end_all(Running& running) {
+// Asks it to end with the best so far, then tells it to, then ends it.
+void end_run(pid_t process, int& status) {
   for (const int signal : {SIGTERM, SIGTERM, SIGKILL}) {
-    for (const auto& [process, run] : running) ::kill(process, signal);
+    ::kill(process, signal);
     const double asked = steady_seconds();
-    while (!running.empty() && (signal == SIGKILL || steady_seconds() - asked < kPatience)) {
-      collect(running);
+    while (signal == SIGKILL || steady_seconds() - asked < kPatience) {
+      if (has_ended(process, status)) return;
       std::this_thread::sleep_for(kGlance);
     }
   }
@@ -176,26 +177,31 @@ std::vector<std::string> SweepRun::reasons() const {
   return said_once(reasons);
 }
 
-void do_runs(std::vector<SweepRun>& runs, int jobs,
-             const std::function<std::vector<std::string>(const SweepRun&)>& arguments,
-             const CancellationToken& token, Progress& progress) {
-  Running running;
-  std::size_t next = 0;
-  while (!token.cancelled()) {
-    while (next < runs.size() && running.size() < static_cast<std::size_t>(std::max(jobs, 1))) {
-      SweepRun& run = runs[next++];
-      if (!run.exit) running[start_run(run, arguments(run))] = &run;
-    }
-    if (running.empty()) return;
-    const auto done = std::count_if(runs.begin(), runs.end(),
-                                    [](const SweepRun& run) { return run.exit.has_value(); });
-    progress.report(static_cast<double>(done) / static_cast<double>(runs.size()),
-                    std::to_string(done) + " of " + std::to_string(runs.size()) + " runs done, " +
-                        std::to_string(running.size()) + " running");
-    std::this_thread::sleep_for(kGlance);
-    collect(running);
+bool has_run(SweepRun& run, const Value& mark) {
+  read_results(run);
+  const bool ended = run.exit && *run.exit < static_cast<int>(ExitStatus::defect);
+  if (!ended || !has_inputs(run.folder)) return false;
+  if (const std::string changed = changed_input(run.folder); !changed.empty())
+    throw InputError("--resume: '" + changed + "', which " + run.name +
+                     " read, has changed since; leave --resume out to start again");
+  return has_item(run.folder / kMark, mark);
+}
+
+void do_run(const SweepRun& run, const std::vector<std::string>& words, const Value& mark,
+            const CancellationToken& token) {
+  const pid_t process = start_run(run, words);
+  int status = 0;
+  while (!token.cancelled() && !has_ended(process, status)) std::this_thread::sleep_for(kGlance);
+  const bool cancelled = token.cancelled();
+  if (cancelled) end_run(process, status);
+  if (WIFEXITED(status)) {
+    keep_inputs(run.folder);
+    Value made = Value::map();
+    made.set(kMadeByEntry, mark);
+    write_file_atomically(run.folder / kMark, to_json(made) + "\n");
+    write_file_atomically(run.folder / kExit, std::to_string(WEXITSTATUS(status)) + "\n");
   }
-  end_all(running);
+  if (cancelled) throw Cancelled();
 }
 
 }  // namespace lapwing

@@ -2,10 +2,7 @@
 // The runs of a sweep: which there are, the processes that do them, and what they left behind.
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,12 +45,17 @@ std::vector<SweepRun> combinations(const std::vector<VariedKey>& keys,
 // Fills in what a run left in its folder; `exit` stays none where it did not come to its end.
 void read_results(SweepRun& run);
 
-// Does every run whose `exit` is none, `jobs` at once, each by `lapwing run` with `arguments(run)`
-// in a process of its own, which ends when this one does. Once the token is cancelled no more are
-// begun and those that run are ended. Runs that ended have their results read. Error where there
-// can be no process.
-void do_runs(std::vector<SweepRun>& runs, int jobs,
-             const std::function<std::vector<std::string>(const SweepRun&)>& arguments,
-             const CancellationToken& token, Progress& progress);
+// Whether a run came to its end, by a plan or a refusal, and it is known what it read; `run` then
+// has its results. A run that a defect ended or that was interrupted is done again, and so is one
+// of which it is not known what it read. InputError where what it read has changed since, or it was
+// made by another version or on another machine (`mark`, items/statement.h).
+bool has_run(SweepRun& run, const Value& mark);
+
+// Does one run by `lapwing run` with these words, in a process of its own, which ends when this
+// thread does. What an earlier run left in the folder is removed first. Once the token is cancelled
+// the run is asked to end, then ended, and Cancelled is thrown. A run that a signal ended has no
+// result. Error where there can be no process.
+void do_run(const SweepRun& run, const std::vector<std::string>& words, const Value& mark,
+            const CancellationToken& token);
 
 }  // namespace lapwing

@@ -10,9 +10,10 @@
 #include "framework/app/train_command.h"
 #include "framework/config/overrides.h"
 #include "framework/core/files.h"
-#include "framework/core/parallel.h"
+#include "framework/core/portable.h"
 #include "framework/core/visible_text.h"
 #include "framework/explore/trainable.h"
+#include "framework/items/statement.h"
 #include "framework/mission/explore_library.h"
 #include "framework/study/study_settings.h"
 
@@ -73,104 +74,165 @@ SampleSet sampled_episode(const World& world, const GroundTruth& truth,
   return samples;
 }
 
-// The episodes of a world that are to be flown; what is there is neither written over nor, where
-// it was made otherwise, taken for these.
-std::vector<std::int64_t> missing_episodes(const TrainRequest& request, const std::string& world,
-                                           const Value& made_by) {
-  std::vector<std::int64_t> missing;
-  for (std::int64_t episode = 1; episode <= request.episodes; ++episode) {
-    const fs::path file = request.target / file_name(world, episode);
-    if (!fs::exists(file)) {
-      missing.push_back(episode);
-    } else if (!request.resume) {
-      throw InputError("'" + file.string() +
-                       "' exists: --resume keeps it and makes the missing ones; another " +
-                       "folder keeps both");
-    } else {
-      const SampleSet there = read_samples(file);
-      const std::string difference = there.world != world ? "its world is " + there.world
-                                     : there.episode != episode
-                                         ? "it is episode " + std::to_string(there.episode)
-                                         : settings_difference(there.made_by, made_by);
-      if (!difference.empty())
-        throw InputError("'" + file.string() + "' was made with other settings: " + difference +
-                         "; another folder keeps both");
-    }
-  }
-  return missing;
+// Whether an episode's file is there. What is there is neither written over nor, where it was made
+// otherwise, taken for this episode.
+bool has_samples(const TrainRequest& request, const std::string& world, std::int64_t episode,
+                 const Value& made_by) {
+  const fs::path file = request.target / file_name(world, episode);
+  if (!fs::exists(file)) return false;
+  if (!request.items.continues())
+    throw InputError("'" + file.string() +
+                     "' exists: --resume keeps it and makes the missing ones; another " +
+                     "folder keeps both");
+  const SampleSet there = read_samples(file);
+  const std::string difference = there.world != world ? "its world is " + there.world
+                                 : there.episode != episode
+                                     ? "it is episode " + std::to_string(there.episode)
+                                     : settings_difference(there.made_by, made_by);
+  if (!difference.empty())
+    throw InputError("'" + file.string() + "' was made with other settings: " + difference +
+                     "; another folder keeps both");
+  return true;
 }
 
-}  // namespace
+// What samples are made of, the same in every process.
+struct Dataset {
+  GridShape shape;
+  std::vector<WorldName> worlds;
+  Value explorer = Value::map();         // its parameters
+  std::vector<Value> made_by;            // by world: what its files state
+  std::vector<ExplorationSetup> setups;  // by world
+};
 
-ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocation) {
-  const Registry registry = invocation.registry();
-  const Interruption interruption;
+Dataset dataset_of(const TrainRequest& request, const Invocation& invocation,
+                   const Registry& registry, const CancellationToken& cancellation) {
+  Dataset dataset;
   const Trainable& trainable = trainable_of(registry, request.utility);
-  const GridShape shape =
+  dataset.shape =
       trainable.sample_shape(training_parameters(trainable.sample_parameters(), invocation));
-  const std::vector<WorldName> names = distinct_worlds(request.worlds, "train dataset");
-  for (const WorldName& name : names) require_world(name, request.up);
-  if (fs::exists(request.target) && !fs::is_directory(request.target))
-    throw InputError("'" + request.target.string() + "' is a file: samples go into a folder");
-  require_writable(request.target / "any.samples");
+  dataset.worlds = distinct_worlds(request.worlds, "train dataset");
+  for (const WorldName& name : dataset.worlds) require_world(name, request.up);
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   const Value mapping = setup.set_mapping(request.mapping);
   const Value moves = setup.set_moves(request.moves);
   setup.episode.show_truth = needs_truth(registry, request.explorer);
-  setup.episode.cancellation = &interruption.token();
-  Value explorer = Value::map();
+  setup.episode.cancellation = &cancellation;
   for (const std::string& text : request.explorer_overrides)
-    apply_override(explorer, text, "--explorer-set");
-  registry.create<ViewUtility>(request.explorer, explorer, request.explorer);  // may refuse it
+    apply_override(dataset.explorer, text, "--explorer-set");
+  registry.create<ViewUtility>(request.explorer, dataset.explorer, request.explorer);  // may refuse
   Value parameters = Value::map();
-  parameters.set(request.explorer, explorer);
-  std::vector<Value> made_by;
-  std::vector<ExplorationSetup> setups;
-  std::vector<std::vector<std::int64_t>> missing;
-  for (const WorldName& name : names) {
+  parameters.set(request.explorer, dataset.explorer);
+  for (const WorldName& name : dataset.worlds) {
     const WorldRecords records =
         records_of({name}, {request.explorer}, parameters, setup, registry, invocation);
-    setups.push_back(setup_of(setup, records, name.text()));
+    dataset.setups.push_back(setup_of(setup, records, name.text()));
     const Value* own = records.moves.find(name.text());
     Value made = Value::map();
     made.set("program", std::string("lapwing ") + program_version());
+    made.set(kMachineEntry, machine_of_numbers());
     made.set("explorer", request.explorer);
-    made.set("parameters", explorer);
+    made.set("parameters", dataset.explorer);
     made.set("seed", static_cast<std::int64_t>(invocation.seed));
     made.set("steps", request.steps);
     made.set("moves", own ? *own : moves);
     made.set("mapping", mapping);
     made.set("up", request.up);
-    made.set("grid", to_value(shape));
+    made.set("grid", to_value(dataset.shape));
     made.set("files", records.files);
-    missing.push_back(missing_episodes(request, name.text(), made));
-    made_by.push_back(std::move(made));
+    dataset.made_by.push_back(std::move(made));
   }
-  std::vector<std::pair<std::size_t, std::int64_t>> tasks;  // world, episode
-  WorldsInUse in_use(setup, request.up, registry, invocation);
-  for (std::size_t w = 0; w < names.size(); ++w)
-    for (const std::int64_t episode : missing[w]) {
-      tasks.emplace_back(w, episode);
-      in_use.expect(names[w]);
-    }
-  parallel_for(tasks.size(), invocation.threads, [&](std::size_t k) {
-    if (interruption.token().cancelled()) return;
-    const auto [w, episode] = tasks[k];
-    const auto used = in_use.begin(names[w]);
-    const SampleSet set =
-        sampled_episode(used->world, used->truth, setups[w], registry, request.explorer, explorer,
-                        made_by[w], shape, episode, invocation.seed);
-    if (interruption.token().cancelled()) return;
-    write_samples(set, request.target / file_name(names[w].text(), episode));
-    const auto [ended, expected] = in_use.end(names[w]);
-    if (!invocation.quiet)
-      std::cerr << visible_line(names[w].text()) + ": " + std::to_string(ended) + " of " +
-                       std::to_string(expected) + " episodes, this one of " +
-                       std::to_string(set.size()) + " samples\n";
-  });
-  if (interruption.token().cancelled()) throw Cancelled();
-  return ExitStatus::done;
+  return dataset;
+}
+
+// The items: the episodes in every world; those of one world are a group.
+class SampledEpisodes {
+ public:
+  SampledEpisodes(const TrainRequest& request, const Dataset& dataset, const Registry& registry,
+                  const Invocation& invocation, const CancellationToken& cancellation)
+      : request_(request),
+        dataset_(dataset),
+        registry_(registry),
+        invocation_(invocation),
+        cancellation_(cancellation),
+        missing_(dataset.worlds.size(), 0),
+        made_(dataset.worlds.size(), 0) {}
+
+  ItemList list() {
+    ItemList list;
+    list.folder = request_.target;
+    list.groups = dataset_.worlds.size();
+    for (std::size_t world = 0; world < list.groups; ++world)
+      for (std::int64_t episode = 1; episode <= request_.episodes; ++episode)
+        list.items.push_back(
+            {file_name(name_of(world), episode), world, {"episode in " + name_of(world)}});
+    list.is_made = [this](std::size_t item) {
+      const std::size_t world = world_of(item);
+      const bool there =
+          has_samples(request_, name_of(world), episode_of(item), dataset_.made_by[world]);
+      if (!there) ++missing_[world];
+      return there;
+    };
+    list.prepare = [this](std::size_t world) {
+      return load_for_episodes(dataset_.worlds[world], request_.up, dataset_.setups[world],
+                               registry_, invocation_);
+    };
+    list.make = [this](std::size_t item, const void* prepared) {
+      const auto& used = *static_cast<const WorldInUse*>(prepared);
+      const std::size_t world = world_of(item);
+      const SampleSet set =
+          sampled_episode(used.world, used.truth, dataset_.setups[world], registry_,
+                          request_.explorer, dataset_.explorer, dataset_.made_by[world],
+                          dataset_.shape, episode_of(item), invocation_.seed);
+      if (cancellation_.cancelled()) throw Cancelled();
+      write_samples(set, request_.target / file_name(name_of(world), episode_of(item)));
+    };
+    list.done = [this](std::size_t item) {
+      const std::size_t world = world_of(item);
+      ++made_[world];
+      if (!invocation_.quiet)
+        std::cerr << visible_line(name_of(world)) + ": " + std::to_string(made_[world]) + " of " +
+                         std::to_string(missing_[world]) + " episodes\n";
+    };
+    return list;
+  }
+
+ private:
+  std::string name_of(std::size_t world) const { return dataset_.worlds[world].text(); }
+  std::size_t world_of(std::size_t item) const {
+    return item / static_cast<std::size_t>(request_.episodes);
+  }
+  std::int64_t episode_of(std::size_t item) const {
+    return 1 + static_cast<std::int64_t>(item % static_cast<std::size_t>(request_.episodes));
+  }
+
+  const TrainRequest& request_;
+  const Dataset& dataset_;
+  const Registry& registry_;
+  const Invocation& invocation_;
+  const CancellationToken& cancellation_;
+  std::vector<int> missing_, made_;  // by world
+};
+
+}  // namespace
+
+ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocation) {
+  const Registry registry = invocation.registry();
+  return run_items(
+      request.items, invocation, registry,
+      [&](ItemRun& run, const CancellationToken& cancellation) {
+        if (fs::exists(request.target) && !fs::is_directory(request.target))
+          throw InputError("'" + request.target.string() + "' is a file: samples go into a folder");
+        require_writable(request.target / "any.samples");
+        const Dataset dataset = dataset_of(request, invocation, registry, cancellation);
+        SampledEpisodes episodes(request, dataset, registry, invocation, cancellation);
+        std::optional<FolderClaim> claim;
+        Value statement = Value(Value::List(dataset.made_by.begin(), dataset.made_by.end()));
+        const bool whole = run.make(episodes.list(), statement, [&] {
+          claim.emplace(request.target, claim_for(request.items));
+        });
+        return whole ? ExitStatus::done : print_answer(run, invocation);
+      });
 }
 
 ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation) {

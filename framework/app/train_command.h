@@ -2,7 +2,7 @@
 // lapwing train dataset|fit|score
 #pragma once
 
-#include "framework/app/command_line.h"
+#include "framework/app/item_command.h"
 
 namespace lapwing {
 
@@ -20,7 +20,8 @@ struct TrainRequest {
   std::vector<std::filesystem::path> validation;  // fit: likewise, of other worlds or episodes
   std::filesystem::path target;                   // dataset: a folder; fit: a model
   std::filesystem::path model;                    // score
-  bool resume = false;
+  bool resume = false;                            // fit
+  ItemOptions items;                              // dataset: an item is an episode
 };
 
 // Episodes of the oracle, each a file of samples; with `resume` those that are there are kept.

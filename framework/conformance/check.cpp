@@ -8,6 +8,7 @@
 #include "framework/conformance/function_checks.h"
 #include "framework/export/exporter.h"
 #include "framework/flight_log/flight_log_reader.h"
+#include "framework/items/executor.h"
 #include "framework/shape/shape.h"
 
 namespace lapwing {
@@ -112,6 +113,9 @@ std::vector<std::vector<std::string>> check_groups(const std::string& kind) {
   if (kind == Exporter::kKind) return {{"creation"}, {"extension"}, {"repeatable", "contents"}};
   if (kind == FlightLogReader::kKind)
     return {{"creation"}, {"example", "repeatable"}, {"refusals"}, {"cut short"}, {"damage"}};
+  if (kind == Executor::kKind)
+    return {{"creation"}, {"exchange"},     {"items", "order"}, {"threads"},
+            {"failure"},  {"cancellation"}, {"dispatch"}};
   return {};
 }
 
@@ -167,6 +171,8 @@ std::vector<CheckResult> check_plugin(const Registry& registry, const PluginEntr
     return check_registered<Exporter>(registry, entry, options, check_exporter);
   if (entry.kind == FlightLogReader::kKind)
     return check_registered<FlightLogReader>(registry, entry, options, check_flight_log);
+  if (entry.kind == Executor::kKind)
+    return check_registered<Executor>(registry, entry, options, check_executor);
   return {{"kind", Outcome::skipped, "no checks for plugins of kind " + entry.kind}};
 }
 

@@ -28,6 +28,7 @@
 
 namespace lapwing {
 
+class Executor;         // items/executor.h
 class Exporter;         // export/exporter.h
 class FlightLogReader;  // flight_log/flight_log_reader.h
 class Shape;            // shape/shape.h
@@ -103,6 +104,8 @@ std::vector<CheckResult> check_exporter(const Specimen<Exporter>& subject,
                                         const CheckOptions& options = {});
 std::vector<CheckResult> check_flight_log(const Specimen<FlightLogReader>& subject,
                                           const CheckOptions& options = {});
+std::vector<CheckResult> check_executor(const Specimen<Executor>& subject,
+                                        const CheckOptions& options = {});
 
 template <class Kind>
 Specimen<Kind> subject_of(const Registry& registry, const PluginEntry& entry) {

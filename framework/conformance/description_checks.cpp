@@ -9,6 +9,7 @@
 #include "framework/core/json.h"
 #include "framework/export/exporter.h"
 #include "framework/flight_log/flight_log_reader.h"
+#include "framework/items/executor.h"
 #include "framework/plugin/sidecar.h"
 #include "framework/problem/invariance.h"
 #include "framework/shape/shape.h"
@@ -33,6 +34,7 @@ void create_and_drop(const Registry& registry, const PluginEntry& entry, const V
   made(static_cast<const ViewUtility*>(nullptr));
   made(static_cast<const Exporter*>(nullptr));
   made(static_cast<const FlightLogReader*>(nullptr));
+  made(static_cast<const Executor*>(nullptr));
   made(static_cast<const Shape*>(nullptr));
   made(static_cast<const Controller*>(nullptr));
 }

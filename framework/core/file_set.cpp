@@ -228,8 +228,8 @@ namespace {
 }
 
 // False where another process has it. A file system without locks refuses nobody.
-bool lock_or_none(int descriptor) {
-  return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+bool lock_or_none(int descriptor, int kind = LOCK_EX) {
+  return ::flock(descriptor, kind | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
 // ".NAME.lock" beside the folder, whatever way leads to it; empty for a folder without a name.
@@ -260,7 +260,7 @@ bool is_still_there(const fs::path& file, int descriptor) {
 
 }  // namespace
 
-FolderClaim::FolderClaim(const fs::path& folder) {
+FolderClaim::FolderClaim(const fs::path& folder, ClaimKind kind) {
   std::error_code code;
   fs::path at = folder;
   for (; !at.empty() && !fs::exists(fs::symlink_status(at, code)); at = at.parent_path())
@@ -269,8 +269,9 @@ FolderClaim::FolderClaim(const fs::path& folder) {
   descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) cannot_exchange(folder, std::strerror(errno));
   try {
-    if (!lock_or_none(descriptor_)) refuse_claimed(folder);
-    lock_beside(folder);
+    const bool shared = kind == ClaimKind::shared;
+    if (!lock_or_none(descriptor_, shared ? LOCK_SH : LOCK_EX)) refuse_claimed(folder);
+    if (!shared) lock_beside(folder);
   } catch (...) {
     release();
     throw;

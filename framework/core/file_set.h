@@ -46,10 +46,14 @@ std::string finish_exchange_to_read(const std::filesystem::path& folder, const N
 // one on the file ".NAME.lock" beside it, which stays where it is when the folder is renamed or
 // exchanged. The file is gone afterwards; one that a killed process left holds nothing. It is left
 // out where the parent cannot be written. Where the file system has no locks, nobody is refused.
+//
+// Several processes may share a folder if all of them ask for that. While they do, no process can
+// claim it alone. They have the lock on the folder only.
+enum class ClaimKind { alone, shared };
 class FolderClaim {
  public:
   // InputError when another process has it, or when the folder cannot be made.
-  explicit FolderClaim(const std::filesystem::path& folder);
+  explicit FolderClaim(const std::filesystem::path& folder, ClaimKind kind = ClaimKind::alone);
   ~FolderClaim();
   FolderClaim(const FolderClaim&) = delete;
   FolderClaim& operator=(const FolderClaim&) = delete;

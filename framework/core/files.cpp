@@ -69,6 +69,15 @@ class TemporaryFile {
     created_ = false;
     return true;
   }
+  // False with errno EEXIST where there is such a file. A file system without hard links has a gap
+  // between the look and the move.
+  bool move_to_new(const fs::path& target) {
+    if (::link(path_.c_str(), target.c_str()) == 0) return true;
+    if (errno != EPERM && errno != EOPNOTSUPP && errno != ENOSYS) return false;
+    if (::access(target.c_str(), F_OK) != 0) return move_to(target);
+    errno = EEXIST;
+    return false;
+  }
 
  private:
   fs::path path_;
@@ -178,11 +187,31 @@ void require_writable(const fs::path& path) {
   require_access(path, folder, W_OK | X_OK);
 }
 
-void write_file_atomically(const fs::path& path, std::string_view contents) {
-  const fs::path target = target_of(path), folder = folder_of(target);
+namespace {
+
+void make_parent(const fs::path& path, const fs::path& folder) {
   std::error_code code;
   fs::create_directories(folder, code);
   if (code) cannot_write(path, "cannot create folder '" + folder.string() + "': " + code.message());
+}
+
+}  // namespace
+
+bool create_file_atomically(const fs::path& path, std::string_view contents) {
+  const fs::path target = target_of(path), folder = folder_of(target);
+  make_parent(path, folder);
+  clear_dead_temporaries(folder);
+  TemporaryFile temporary(folder / temporary_name(target.filename().string()));
+  if (!temporary.opened() || !temporary.write(contents)) cannot_write(path, reason(errno));
+  const bool made = temporary.move_to_new(target);
+  if (!made && errno != EEXIST) cannot_write(path, reason(errno));
+  flush_folder(folder);
+  return made;
+}
+
+void write_file_atomically(const fs::path& path, std::string_view contents) {
+  const fs::path target = target_of(path), folder = folder_of(target);
+  make_parent(path, folder);
   const std::optional<mode_t> mode = mode_there(path, target);
 
   clear_dead_temporaries(folder);

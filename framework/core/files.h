@@ -14,6 +14,10 @@ namespace lapwing {
 // Creates missing parent folders; follows a link; refuses what is no regular file.
 void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
+// The same for a file that must not be there yet: false, and nothing is written, where it is. Of
+// several processes that call it at once, one writes.
+bool create_file_atomically(const std::filesystem::path& path, std::string_view contents);
+
 // Whether `write_file_atomically` could write there, as far as that is known without writing:
 // InputError where the path is a folder or none can be made. To be asked before long work.
 void require_writable(const std::filesystem::path& path);

@@ -38,9 +38,10 @@ bool is_numbered(const std::string& name, std::string_view stem,
          std::find(endings.begin(), endings.end(), name.substr(end)) != endings.end();
 }
 
-// obstacle_12.ply, obstacle_1.ot, prior.ply
+// obstacle_12.ply, obstacle_1.ot, prior.ply, prediction.ply
 bool names_obstacle(const std::string& name) {
-  return name == "prior.ply" || is_numbered(name, "obstacle_", {".ply", ".ot"});
+  return name == "prior.ply" || name == "prediction.ply" ||
+         is_numbered(name, "obstacle_", {".ply", ".ot"});
 }
 
 // plan_1.json, report_12.html, trajectory_3.csv

@@ -5,10 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 
 #include "framework/core/png.h"
 #include "framework/export/map_pictures.h"
+#include "framework/export/prediction_report.h"
+#include "framework/export/region_drawing.h"
+#include "framework/export/scan_colors.h"
+#include "framework/export/surroundings.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/geometry/mesh_builder.h"
 #include "framework/picture/mesh_picture.h"
@@ -20,24 +25,10 @@ using Eigen::Vector3d;
 
 constexpr Pinhole kOverview{720, 450, 720, 720, 359.5, 224.5};
 constexpr int kMostMapPixels = 700, kMostMotions = 2500, kMostCubes = 60'000;
-constexpr Rgb kPlainSurface = {176, 174, 168}, kCameraLines = {214, 60, 40};
-constexpr Rgb kNotSeen = {196, 70, 60}, kNeverSeen = {70, 70, 74}, kOpening = {226, 62, 205};
+constexpr Rgb kCameraLines = {214, 60, 40}, kOpening = {226, 62, 205};
 constexpr double kMuchUnknown = 0.1;   // of what is known
 constexpr double kMuchOutside = 0.03;  // likewise
 const Vector3d kGap = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-
-// From dark violet over green to yellow (viridis, a few stops of it).
-Rgb color_of_share(double share) {
-  constexpr double kStops[5][3] = {
-      {68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
-  const double at = std::clamp(share, 0.0, 1.0) * 4;
-  const int k = std::min(3, static_cast<int>(at));
-  Rgb color;
-  for (std::size_t c = 0; c < 3; ++c)
-    color[c] =
-        static_cast<std::uint8_t>(kStops[k][c] + (at - k) * (kStops[k + 1][c] - kStops[k][c]));
-  return color;
-}
 
 Image overview_image(const MeshScene& scene, const Eigen::AlignedBox3d& box, double yaw,
                      const std::string& caption) {
@@ -69,7 +60,14 @@ Section known_section(const ScanRecord& record, const Eigen::AlignedBox3d& regio
   return section;
 }
 
-Section candidates_section(const ScanRecord& record) {
+// What the flight was asked to see, and what it keeps.
+void add_site(const Plan& plan, Drawing& drawing) {
+  add_region(plan.task.scan->region, drawing);
+  add_surroundings(plan, {}, drawing);
+  if (const auto& pilot = plan.environment.pilot) drawing.points.push_back({"pilot", pilot->eye});
+}
+
+Section candidates_section(const Plan& plan, const ScanRecord& record) {
   Polyline motions{"motions", {}, {}, {}}, first{"first flight", {}, {}, {}};
   const std::size_t every = record.motions.size() / kMostMotions + 1;
   for (std::size_t k = 0; k < record.motions.size(); k += every) {
@@ -82,6 +80,7 @@ Section candidates_section(const ScanRecord& record) {
   Drawing drawing;
   drawing.lines.push_back(std::move(motions));
   if (first.points.size() > 1) drawing.lines.push_back(std::move(first));
+  add_site(plan, drawing);
   std::string title = std::to_string(record.candidates.size()) + " candidates and " +
                       (every > 1 ? "one in " + std::to_string(every) + " of the " : "the ") +
                       std::to_string(record.motions.size()) + " motions between them";
@@ -128,7 +127,7 @@ MeshScene colored_voxels(const ScanRecord& record, const std::vector<VoxelShare>
     const Vector3d middle = grid.center(voxels[k].voxel);
     builder.box(middle - half, middle + half);
   }
-  add_camera(record.shown, scan.camera, 0.12 * scan.region.diagonal().norm(), builder);
+  add_camera(record.shown, scan.camera, 0.12 * scan.region.bounds().diagonal().norm(), builder);
   TriangleMesh mesh = builder.take();
   append(record.prior->mesh(), mesh);
   mesh.colors.resize(mesh.triangles.size(), kPlainSurface);
@@ -139,7 +138,7 @@ Section view_section(const ScanRecord& record, const ScanTask& scan) {
   const double yaw = record.shown.yaw + 0.7;
   return {
       "One view",
-      {overview_image(colored_voxels(record, record.told, scan), scan.region, yaw,
+      {overview_image(colored_voxels(record, record.told, scan), scan.region.bounds(), yaw,
                       "The view of the tour with the most information (red), and the voxels "
                       "that its rays meet: from none (violet) to a third of the full information "
                       "about a voxel (yellow); grey is the prior mesh")}};
@@ -247,15 +246,16 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   for (const VoxelShare& v : record.coverage) sum += v.share;
   const auto all = static_cast<double>(std::max<std::size_t>(record.coverage.size(), 1));
   const SurfaceAreas& areas = record.areas;
+  const std::string whole = record.tours == 1 ? "the tour" : "all tours";
   Facts facts{{
       {"known surface of the region", square_metres(areas.known), "m^2"},
-      {"of it seen by the tour", square_metres(areas.seen),
+      {"of it seen by " + whole, square_metres(areas.seen),
        "m^2, " + percent(areas.seen, areas.known) + " %"},
       {"of it " + visible_in_words(record), square_metres(areas.visible),
        "m^2, " + percent(areas.visible, areas.known) + " %"},
       {"unknown, not counted: behind openings of the measured space, at least",
        lower_bound_text(unknown_area(record)), "m^2"},
-      {"mean information of the tour", number_text(100 * sum / all, 3),
+      {"mean information of " + whole, number_text(100 * sum / all, 3),
        "% of the full information about a voxel that any candidate sees"},
   }};
   if (!record.openings.empty())
@@ -269,21 +269,27 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
         {"true surface that could be seen (simulation)", square_metres(truth.open), "m^2"});
     facts.facts.push_back({"of it seen by the first flight", square_metres(truth.first),
                            "m^2, " + percent(truth.first, truth.open) + " %"});
-    facts.facts.push_back({"of it seen by the tour", square_metres(truth.seen),
+    facts.facts.push_back({"of it seen by " + whole, square_metres(truth.seen),
                            "m^2, " + percent(truth.seen, truth.open) + " %"});
   }
   const MeshScene scene = colored_surface(record);
   const std::string caption =
-      "Information of the tour about the known surface, from little (violet) to all (yellow). Red: "
-      "seen from a candidate view, but not by the tour. Dark: seen from no candidate. Light grey: "
+      "Information of " + whole +
+      " about the known surface, from little (violet) to all (yellow). "
+      "Red: seen from a candidate view, but not by " +
+      whole +
+      ". Dark: seen from no candidate. "
+      "Light grey: "
       "outside the region. Magenta: openings to space that nobody measured. No surface is known "
       "elsewhere";
   TextBlock words;
   words.text = areas_in_words(record);
   if (record.truth) words.text += "\n\n" + truth_in_words(record);
   return {"Coverage",
-          {std::move(words), std::move(facts), overview_image(scene, scan.region, 1.05, caption),
-           overview_image(scene, scan.region, 1.05 + 3.14159, "The same from the other side")}};
+          {std::move(words), std::move(facts),
+           overview_image(scene, scan.region.bounds(), 1.05, caption),
+           overview_image(scene, scan.region.bounds(), 1.05 + 3.14159,
+                          "The same from the other side")}};
 }
 
 Section tour_section(const Plan& plan, const ScanRecord& record) {
@@ -298,7 +304,7 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
     path.values.push_back(s.time);
   }
   drawing.lines.push_back(std::move(path));
-  const double length = 0.02 * scan.region.diagonal().norm();
+  const double length = 0.02 * scan.region.bounds().diagonal().norm();
   for (const ViewKind kind : {ViewKind::planned, ViewKind::matching}) {
     Polyline views{kind == ViewKind::planned ? "planned views" : "matching views", {}, {}, {}};
     for (const PlannedView& view : scan.views) {
@@ -310,6 +316,7 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
     }
     if (!views.points.empty()) drawing.lines.push_back(std::move(views));
   }
+  add_site(plan, drawing);
   const auto planned = std::count_if(scan.views.begin(), scan.views.end(), [](const auto& view) {
     return view.kind == ViewKind::planned;
   });
@@ -331,6 +338,17 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
            Scene3D{"The tour in space", drawing}, std::move(chart)}};
 }
 
+std::vector<Section> shown_sections(const Plan& plan, const ScanRecord& record) {
+  std::vector<Section> sections{coverage_section(record, *plan.task.scan)};
+  if (record.prediction) sections.push_back(prediction_section(*record.prediction));
+  return sections;
+}
+
+// "the tour sees", "the 4 tours see"
+std::string tour_sees(const ScanRecord& record) {
+  return record.tours == 1 ? "the tour sees" : "the " + std::to_string(record.tours) + " tours see";
+}
+
 }  // namespace
 
 double unknown_area(const ScanRecord& record) {
@@ -341,8 +359,8 @@ double unknown_area(const ScanRecord& record) {
 
 std::string areas_in_words(const ScanRecord& record) {
   const SurfaceAreas& areas = record.areas;
-  std::string text = "surface: the tour sees " + percent(areas.seen, areas.known) + " % of the " +
-                     square_metres(areas.known) + " m^2 that are known; " +
+  std::string text = "surface: " + tour_sees(record) + " " + percent(areas.seen, areas.known) +
+                     " % of the " + square_metres(areas.known) + " m^2 that are known; " +
                      percent(areas.visible, areas.known) + " % are " + visible_in_words(record) +
                      "; unknown and not counted: ";
   if (record.openings.empty())
@@ -359,7 +377,7 @@ std::string truth_in_words(const ScanRecord& record) {
   const TrueAreas& truth = *record.truth;
   return "true surface (simulation): of the " + square_metres(truth.open) +
          " m^2 that could be seen, the first flight sees " + percent(truth.first, truth.open) +
-         " %, the tour " + percent(truth.seen, truth.open) + " %";
+         " %, " + tour_sees(record) + " " + percent(truth.seen, truth.open) + " %";
 }
 
 Value areas_as_value(const ScanRecord& record) {
@@ -393,9 +411,22 @@ Value areas_as_value(const ScanRecord& record) {
 }
 
 std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record) {
-  const ScanTask& scan = *plan.task.scan;
-  return {known_section(record, scan.region), candidates_section(record),
-          view_section(record, scan), tour_section(plan, record), coverage_section(record, scan)};
+  std::vector<Section> sections{known_section(record, plan.task.scan->region.bounds()),
+                                candidates_section(plan, record)};
+  for (auto more : {tour_sections(plan, record), shown_sections(plan, record)})
+    std::move(more.begin(), more.end(), std::back_inserter(sections));
+  return sections;
+}
+
+std::vector<Section> tour_sections(const Plan& plan, const ScanRecord& record) {
+  return {view_section(record, *plan.task.scan), tour_section(plan, record)};
+}
+
+std::vector<Section> fleet_sections(const Plan& plan, const ScanRecord& record) {
+  std::vector<Section> sections = shown_sections(plan, record);
+  sections.push_back(known_section(record, plan.task.scan->region.bounds()));
+  sections.push_back(candidates_section(plan, record));
+  return sections;
 }
 
 }  // namespace lapwing

@@ -12,6 +12,7 @@
 #include "framework/geometry/mesh_scene.h"
 #include "framework/map/known_surface.h"
 #include "framework/map/unknown_edge.h"
+#include "framework/photogrammetry/surface_prediction.h"
 #include "framework/picture/render.h"
 #include "framework/trajectory/plan.h"
 
@@ -22,6 +23,15 @@ struct TrueAreas {
   double open = 0;   // that who flies could see from somewhere
   double first = 0;  // of it, seen before the tour
   double seen = 0;   // of it, seen by the tour
+};
+
+// What the images of a tour will show of the prior mesh.
+struct ScanPrediction {
+  std::shared_ptr<const MeshScene> surface;
+  std::vector<char> counted;                  // of its triangles, whether they are in the region
+  std::vector<TrianglePrediction> triangles;  // of all of them
+  std::vector<SurfaceHole> holes;             // the largest first
+  double pixel_error = 0;                     // pixels, of a point in an image
 };
 
 // What a scan was planned on, beside what its plan holds. Shared, not copied.
@@ -40,10 +50,12 @@ struct ScanRecord {
   SurfaceAreas areas;                        // of those
   std::vector<Opening> openings;             // to what nobody saw, largest first
   double body_width = 0;                     // m; what passes through passable ones
+  int tours = 1;                             // whose views these are of
   std::optional<TrueAreas> truth;
-  std::vector<double> seconds, score;  // after every view of the tour
-  double reachable = 0;                // score of all views within the budget
-  double upper_bound = 0;              // no tour scores more
+  std::optional<ScanPrediction> prediction;  // none of a tour of which nothing was predicted
+  std::vector<double> seconds, score;        // after every view of the tour
+  double reachable = 0;                      // score of all views within the budget
+  double upper_bound = 0;                    // no tour scores more
 };
 
 // m^2 of all openings: a lower bound of the surface behind them.
@@ -61,5 +73,9 @@ Value areas_as_value(const ScanRecord& record);
 // Sections on the scene, map and prior; candidates; one view's rays; the tour; coverage; score over
 // budget. The plan is that of a scan.
 std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record);
+// The parts of it that are of one tour of several, and of all of them: there the plan is any one of
+// the fleet.
+std::vector<Section> tour_sections(const Plan& plan, const ScanRecord& record);
+std::vector<Section> fleet_sections(const Plan& plan, const ScanRecord& record);
 
 }  // namespace lapwing

@@ -6,10 +6,12 @@
 //                           and 65535 are none
 //   NAME.pose.txt           4 x 4 numbers: camera (x right, y down, z forward) to world, metres
 //
-// Frames are in the order of their names. Their world need not have z up.
+// A DepthLayout states other names, units and conventions. Frames are in the order of their names.
+// Their world need not have z up.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,12 +19,25 @@
 
 namespace lapwing {
 
+// How the files of a folder are named and what their numbers mean.
+struct DepthLayout {
+  // Names with one `*`, which stands for the name of the frame; a folder may precede it
+  // ("depth/*.png").
+  std::string depth = "*.depth.png", pose = "*.pose.txt";
+  std::string intrinsics = "camera-intrinsics.txt";  // 3 x 3 or 4 x 4 numbers
+  // Focal lengths x and y and principal point x and y in pixels, in place of that file.
+  std::optional<Eigen::Vector4d> camera;
+  double unit = 0.001;           // m that 1 in a depth image is
+  bool poses_to_camera = false;  // poses take the world to the camera
+};
+
 class DepthFolder {
  public:
   // Reads camera, poses and the size of the first image. Throws InputError naming the file: none
   // there, numbers missing or not finite, focal lengths not above 0, a pose that is no rotation (to
-  // 1e-3) with a translation, an image without a pose.
-  explicit DepthFolder(const std::filesystem::path& folder);
+  // 1e-3) with a translation, an image without a pose, a pose without an image; for a layout whose
+  // names have not one `*` each or whose unit is not above 0.
+  explicit DepthFolder(const std::filesystem::path& folder, const DepthLayout& layout = {});
 
   std::size_t size() const { return names_.size(); }
   const std::string& name(std::size_t frame) const { return names_[frame]; }
@@ -37,6 +52,7 @@ class DepthFolder {
   std::filesystem::path image_path(std::size_t frame) const;
 
   std::filesystem::path folder_;
+  DepthLayout layout_;
   std::vector<std::string> names_;
   std::vector<Pose> poses_;
   Pinhole pinhole_;

@@ -8,11 +8,13 @@
 
 #include "framework/core/error.h"
 #include "framework/core/parallel.h"
+#include "framework/core/portable.h"
 
 namespace lapwing {
 
 RTCDeviceTy* tracing_device() {
-  static const RTCDevice shared = rtcNewDevice("set_affinity=0");
+  static const RTCDevice shared =
+      rtcNewDevice(is_portable() ? "set_affinity=0,isa=sse2" : "set_affinity=0");
   // The library forgets the reason once it was asked for.
   static const RTCError reason = shared ? RTC_ERROR_NONE : rtcGetDeviceError(nullptr);
   if (reason == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();

@@ -11,7 +11,7 @@ namespace lapwing {
 
 using Eigen::Vector3d;
 
-std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const Eigen::AlignedBox3d& region,
+std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const InterestRegion& region,
                                        const VoxelGrid& grid, std::vector<VoxelShare> voxels) {
   const auto before = [](const VoxelShare& a, const VoxelShare& b) { return a.voxel < b.voxel; };
   std::sort(voxels.begin(), voxels.end(), before);
@@ -34,15 +34,16 @@ std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const Eigen::Al
 }
 
 SurfaceAreas areas_of(const TriangleMesh& mesh, std::span<const float> shares,
-                      const Eigen::AlignedBox3d& region) {
+                      const InterestRegion& region) {
   SurfaceAreas areas;
   for (std::size_t t = 0; t < shares.size(); ++t) {
     const double area = mesh.area(t);
     if (shares[t] <= kOutsideRegion) {
       const Vector3d middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
-      const Vector3d beside(middle.x(), middle.y(), region.center().z());
-      if (region.contains(beside))
-        (middle.z() > region.max().z() ? areas.above : areas.below) += area;
+      const auto heights = region.heights_at(middle.head<2>());
+      if (!heights) continue;
+      if (middle.z() > heights->second) areas.above += area;
+      if (middle.z() < heights->first) areas.below += area;
       continue;
     }
     areas.known += area;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "framework/geometry/interest_region.h"
 #include "framework/geometry/triangle_mesh.h"
 #include "framework/map/voxel.h"
 
@@ -24,7 +25,7 @@ inline constexpr float kOutsideRegion = -2, kNeverVisible = -1;
 // kNeverVisible where none of the voxels is listed through which a short line along its normal
 // passes, two voxels to either side; else the largest share of those that are. `voxels`
 // in any order, each key once.
-std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const Eigen::AlignedBox3d& region,
+std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const InterestRegion& region,
                                        const VoxelGrid& grid, std::vector<VoxelShare> voxels);
 
 struct SurfaceAreas {
@@ -37,6 +38,6 @@ struct SurfaceAreas {
 
 // Of what shares_of_triangles says for the same region.
 SurfaceAreas areas_of(const TriangleMesh& mesh, std::span<const float> shares,
-                      const Eigen::AlignedBox3d& region);
+                      const InterestRegion& region);
 
 }  // namespace lapwing

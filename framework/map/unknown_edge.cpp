@@ -21,10 +21,12 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "framework/core/error.h"
 #include "framework/core/parallel.h"
+#include "framework/map/region_voxels.h"
 #include "framework/map/voxel_balls.h"
 
 namespace lapwing {
@@ -64,14 +66,15 @@ class Space {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);
       const double reach = grid_.reach() - 2 * grid_.resolution();
-      const double lowest = std::clamp(settings.region.min()[axis], -reach, reach);
-      const double highest = std::clamp(settings.region.max()[axis], -reach, reach);
+      const double lowest = std::clamp(settings.region.bounds().min()[axis], -reach, reach);
+      const double highest = std::clamp(settings.region.bounds().max()[axis], -reach, reach);
       low_[i] = grid_.index(lowest) + (grid_.center(grid_.index(lowest)) < lowest ? 1 : 0);
       const int high = grid_.index(highest) - (grid_.center(grid_.index(highest)) > highest);
       inner_[i] = block_.size[i] = std::max(0, high + 1 - low_[i]);
       cubes_.size[i] = inner_[i] / kCube + 1;
     }
     require_few();
+    if (!settings.region.is_box()) prisms_.emplace(settings.region, grid_);
     measure_gaps();
     rim_ = 2 + 2 * static_cast<int>(std::ceil(*std::max_element(balls_.begin(), balls_.end())));
     for (std::size_t i = 0; i < 3; ++i) {
@@ -115,7 +118,7 @@ class Space {
   bool in_region(const Index& at) const {
     for (std::size_t i = 0; i < 3; ++i)
       if (at[i] < rim_ || at[i] >= rim_ + inner_[i]) return false;
-    return true;
+    return !prisms_ || prisms_->contains(key(at));
   }
   VoxelKey key(const Index& at) const {
     const auto part = [&](std::size_t i) {
@@ -460,6 +463,7 @@ class Space {
   const MeshScene* mesh_;
   const EdgeSettings& settings_;
   Index low_{}, inner_{};  // key of the first voxel; voxels of the region along each axis
+  std::optional<RegionVoxels> prisms_;  // of a region that is no box
   int rim_ = 0;
   VoxelBlock block_;          // states, of region and rim
   VoxelBlock cubes_;          // of the region; without marks

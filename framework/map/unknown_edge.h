@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "framework/geometry/interest_region.h"
 #include "framework/map/map.h"
 #include "framework/map/ray_gaps.h"
 
@@ -20,7 +21,7 @@ struct Opening {
 };
 
 struct EdgeSettings {
-  Eigen::AlignedBox3d region;
+  InterestRegion region;
   MapRays rays;
   // m. An opening is passable where a sphere so wide fits behind it, and has room when its middle
   // is in it: to 1.5 voxels, farther from all known surface than its radius.

@@ -8,6 +8,7 @@
 #include "framework/mission/fleet_objects.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
+#include "framework/mission/scan_record.h"
 #include "framework/trajectory/fleet_schedule.h"
 
 namespace lapwing {
@@ -29,7 +30,8 @@ ParameterTable fleet_table() {
               "smallest time between two tours of a drone: landing, change of the battery, climb",
               at_least(0))
       .number("reserve", 0, "s", "flight time that is left of a battery after its tour",
-              at_least(0));
+              at_least(0))
+      .number("pixel_error", 0.5, "px", "standard deviation of a point in an image", above(0));
   return table;
 }
 
@@ -94,7 +96,20 @@ void schedule(const std::vector<const PlanObject*>& plans, const std::vector<std
   }
 }
 
-// run:fleet{team =, plans =, drones =, separation =, swap =, reserve =, notes =, figures =}
+// What the images of all tours that are flown will show.
+void tell_fleet(const TeamObject& team, double pixel_error, MissionRun& run, FleetObject& made) {
+  std::vector<TourObject> flown;
+  for (const TourObject& tour : team.tours)
+    if (TourProblem::images_of(tour.walk) > 1) flown.push_back(tour);
+  if (flown.empty()) throw InputError("fleet: no tour of the team takes an image");
+  const auto record = record_of_fleet(flown, pixel_error, run.settings.threads);
+  tell_scan(*record, run, {made.block, made.notes, made.told});
+  const auto plan = std::make_shared<const Plan>(made.plans.front().plan);
+  made.late_sections = [record, plan] { return fleet_sections(*plan, *record); };
+}
+
+// run:fleet{team =, plans =, drones =, separation =, swap =, reserve =, pixel_error =, notes =,
+// figures =}
 int fleet_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -126,6 +141,7 @@ int fleet_of_run(lua_State* state) {
     schedule(plans, drones, made);
     fleet.seen = seen_by_all(made.plans, *team.tours.front().work->visible, run.settings.threads);
     fleet.seen_share = made.plans.front().plan.task.scan->seen_share;
+    tell_fleet(team, given.number("pixel_error"), run, made);
   }
   new_object(state, kFleetType, std::move(made));
   return 1;

@@ -26,7 +26,10 @@ struct FleetObject {
   SolveReport report;
   std::string solver;
   std::vector<std::string> notes;  // sentences for the user
+  std::vector<std::string> told;   // likewise, that stand in no plan
   Value block;                     // figures, for --json
+  // Of the report, once the mission has ended.
+  std::function<std::vector<Section>()> late_sections;
 };
 
 inline constexpr const char* kTeamType = "team";

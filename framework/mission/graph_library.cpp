@@ -9,6 +9,7 @@
 #include "framework/core/parallel.h"
 #include "framework/core/units.h"
 #include "framework/mission/guard.h"
+#include "framework/mission/hidden_parts.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
 
@@ -65,7 +66,7 @@ std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun
   sight.range = given.number("range");
   if (given.has("usable_range")) sight.usable_range = given.number("usable_range");
   sight.usable_incidence = radians(given.number("usable_incidence_deg"));
-  sight.region = box_of(given.table("region"), "the region of interest");
+  sight.region = region_of(given.table("region"));
   work.prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
   work.visible = std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
   const TriangleMesh& known = work.prior->mesh->mesh();
@@ -137,14 +138,14 @@ ParameterTable flight_table() {
 
 ParameterTable graph_table() {
   ParameterTable table;
-  table.table("region", box_table(), "region of interest")
+  table.table("region", region_table(), "region of interest")
       .table("allowed", box_table(), "box for the centre of the vehicle")
       .tables("starts", viewpoint_table(), "places from which candidates grow, if they are free",
               true)
       .boolean("fixed", true,
                "tours begin at the first of the starts; false: at the first of those "
                "that are connected to most views")
-      .integer("needed", 1, "number of starts, the first ones, that must be free", between(1, 1000))
+      .integer("needed", 1, "number of starts, the first ones, that must be free", between(0, 1000))
       .boolean("loops", false,
                "tours begin and end at any of the needed starts; false: at the first one, and "
                "end at the second one, if it is needed")
@@ -161,7 +162,8 @@ ParameterTable graph_table() {
       .number("usable_incidence_deg", 90, "deg",
               "known angle of incidence beyond which an image shows nothing of use",
               {.minimum = 0, .maximum = 90, .minimum_excluded = true})
-      .table("flight", flight_table(), "speeds along a tour");
+      .table("flight", flight_table(), "speeds along a tour")
+      .boolean("each", false, "every view scores 1, whatever it shows");
   return table;
 }
 
@@ -172,7 +174,10 @@ Eigen::Vector3d vector3_of(std::span<const double> numbers) {
 ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run) {
   ScanGraphSettings s;
   const Parameters& candidates = given.table("candidates");
-  s.candidates.region = box_of(given.table("region"), "the region of interest");
+  const InterestRegion region = region_of(given.table("region"));
+  s.candidates.region = region.bounds();
+  for (const RegionPrism& prism : region.prisms())
+    s.candidates.aims.push_back({prism.bounds(), prism.weight * prism.area()});
   s.candidates.allowed = box_of(given.table("allowed"), "the box for the vehicle");
   s.candidates.half = vector3_of(given.numbers("body"));
   s.candidates.step = candidates.number("step");
@@ -200,7 +205,7 @@ ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run)
 // The first `needed` must be free; of the others those count that are.
 std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::size_t needed,
                                    bool loops, const FreeSpace& space,
-                                   const CandidateSettings& settings) {
+                                   const CandidateSettings& settings, const FlightRules& rules) {
   std::vector<Viewpoint> starts;
   for (const Parameters& entry : given) {
     const Viewpoint view = viewpoint_of(entry);
@@ -216,10 +221,32 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
         starts.empty() || loops ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
         2 * settings.half.y(), 2 * settings.half.z(),
         settings.allowed.contains(p) ? "" : ", and it lies outside the space of the tour");
-    throw InputError(entry.origin(), text);
+    const std::string forbidden = forbidden_by(rules, p, settings.half);
+    const std::string why = !forbidden.empty() ? ", and " + forbidden
+                            : rules.pilot      ? ", or the pilot does not see this place"
+                                               : "";
+    throw InputError(entry.origin(), text + why);
   }
-  if (starts.empty()) throw InputError("no free start: none is given");
+  if (starts.empty() && given.empty()) throw InputError("no free start: none is given");
+  if (starts.empty())
+    throw InputError("no free start: none of " + std::to_string(given.size()) + " places is free" +
+                     (rules.empty() ? "" : " and allowed by the zones and the pilot's sight"));
   return starts;
+}
+
+// The graph, into the work. What sees nothing says what the rules have to do with it.
+void make_graph(ScanWork& work, const FreeSpace& space, const VisibleVoxels& visible,
+                const std::vector<Viewpoint>& starts, const ScanGraphSettings& settings,
+                const MissionRun& run) {
+  try {
+    work.graph = make_scan_graph(space, visible, *work.information, starts, settings,
+                                 run.settings.cancellation, run.settings.progress);
+  } catch (const NothingSeen& error) {
+    if (work.rules->empty()) throw;
+    throw InputError(std::string(error.what()) +
+                     ", or the zones and the pilot's sight allow no place that sees it: "
+                     "100 % of it stays unseen");
+  }
 }
 
 // What each motion takes.
@@ -246,6 +273,7 @@ const Vehicle& vehicle_argument(lua_State* state, int table) {
 constexpr BoundField kGraphObjects[] = {
     {"prior", "lapwing.prior", "known map and mesh"},
     {"vehicle", "lapwing.vehicle", "vehicle"},
+    {"rules?", "lapwing.flight_rules", "zones and a pilot that the flight keeps"},
     {"information", "lapwing.information", "information of a view about a voxel"},
     {"planner", "lapwing.path_planner", "planner of paths around obstacles"}};
 
@@ -258,6 +286,7 @@ int scan_graph_of_run(lua_State* state) {
   work->prior = object_argument<PriorObject>(state, -1, kPriorType).prior;
   if (!work->prior->mesh) throw InputError("scan_graph: the prior has no mesh; reconstruct it");
   work->vehicle = vehicle_argument(state, 2);
+  work->rules = rules_argument(state, 2);
   const Registry& registry = *run.settings.registry;
   const PluginChoice information = choice_at(state, 2, "information");
   const PluginChoice planner = choice_at(state, 2, "planner");
@@ -265,6 +294,7 @@ int scan_graph_of_run(lua_State* state) {
   const auto path_planner =
       registry.create<PathPlanner>(planner.type, planner.parameters, "planner");
   settings.motions.planner = path_planner.get();
+  settings.motions.search_near = !work->rules->empty();
   const Parameters& flight = given.table("flight");
   work->flight = {.speed = flight.number("speed"),
                   .view_speed = flight.number("view_speed"),
@@ -278,15 +308,22 @@ int scan_graph_of_run(lua_State* state) {
     work->smooth = {work->flight.speed, work->flight.acceleration, flight.number("stray")};
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const auto coarser = make_sight(*work, run, given, information);
-  const auto space = space_of(*work->prior, given.number("mesh_room"));
+  const double mesh_room = given.number("mesh_room");
+  const auto space =
+      ruled(space_of(*work->prior, mesh_room), *work->rules, work->prior->mapping.map);
   const std::vector<Viewpoint> starts =
       free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
-                  given.boolean("loops"), *space, settings.candidates);
+                  given.boolean("loops"), *space, settings.candidates, *work->rules);
   begin_planning(run);
   work->allowed = settings.candidates.allowed;
   work->body = settings.candidates.half;
-  work->graph = make_scan_graph(*space, *coarser, *work->information, starts, settings,
-                                run.settings.cancellation, run.settings.progress);
+  make_graph(*work, *space, *coarser, starts, settings, run);
+  if (given.boolean("each"))
+    work->graph.score = std::make_shared<const ViewScore>(
+        additive_score(std::vector<double>(work->graph.candidates.viewpoints.size(), 1)));
+  if (!work->rules->empty())
+    work->hidden = hidden_parts(*work, *space_of(*work->prior, mesh_room), *coarser, starts,
+                                settings, run.settings.cancellation);
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
   const ScanGraph& graph = work->graph;
   work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);
@@ -333,7 +370,11 @@ constexpr BoundField kGraphFields[] = {
     {"total", "number", "score of full information about all voxels"},
     {"home", "integer", "candidate at which tours begin, from 1"},
     {"joined", "integer", "number of views connected to `home`, including itself"},
-    {"reach", "string", "sentence with the number of views connected to the start"}};
+    {"joined_from", "integer[]", "the same of each of the free starts, in their order"},
+    {"reach", "string", "sentence with the number of views connected to the start"},
+    {"hidden", "table[]",
+     "what zones and the pilot's sight hide: {name, visible, hidden}, m^2 of the known surface; "
+     "the first one of all regions together, name ''"}};
 
 int graph_field(lua_State* state) {
   const ScanWork& work = *object_argument<GraphObject>(state, 1, kGraphType).work;
@@ -348,7 +389,18 @@ int graph_field(lua_State* state) {
   fields.set("total", graph.score->total());
   fields.set("home", static_cast<std::int64_t>(work.home + 1));
   fields.set("joined", work.islands.joined(work.home));
+  Value& joined_from = fields.set("joined_from", Value::list());
+  for (int start = 0; start < graph.candidates.given; ++start)
+    joined_from.push_back(std::int64_t{work.islands.joined(start)});
   fields.set("reach", reach_in_words(work, work.home));
+  Value& hidden = fields.set("hidden", Value::list());
+  for (const HiddenPart& part : work.hidden) {
+    Value entry = Value::map();
+    entry.set("name", part.name);
+    entry.set("visible", part.visible);
+    entry.set("hidden", part.hidden);
+    hidden.push_back(std::move(entry));
+  }
   const std::string field = text_argument(state, 2, "scan graph");
   return push_field(state, "a scan graph", field, fields, kGraphFields);
 }

@@ -12,6 +12,7 @@
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
 #include "framework/mission/options.h"
+#include "framework/mission/photo_objects.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scene_script.h"
 #include "framework/mission/script_lines.h"
@@ -74,6 +75,7 @@ void open_script_libraries(lua_State* state, MissionRun& run) {
   open_run_library(state);
   open_map_library(state);
   open_site_library(state);
+  open_photo_library(state);
   open_scan_library(state);
   open_fleet_library(state);
   open_explore_library(state);
@@ -285,8 +287,11 @@ MissionResult result_of(Sandbox& sandbox, const FleetObject& made, const Mission
   result.report = made.report;
   result.solver = made.solver;
   result.notes = made.notes;
+  result.told = made.told;
   result.block = made.block;
   result.block_name = "tour";
+  const Sandbox::ClockPause pause(sandbox);
+  result.sections = made.late_sections();
   return result;
 }
 

@@ -33,7 +33,7 @@ ParameterTable pass_table() {
 
 ParameterTable pass_graph_table() {
   ParameterTable table;
-  table.table("region", box_table(), "region of interest")
+  table.table("region", region_table(), "region of interest")
       .table("allowed", box_table(), "box for the centre of the vehicle; all of it must be free")
       .tables("passes", pass_table(), "straight and level passes, with images along them", true)
       .numbers("body", {1, 1, 0.5}, "m", "half edges of the box of the vehicle")
@@ -93,11 +93,20 @@ void trim_passes(ScanWork& work) {
 constexpr BoundField kPassGraphObjects[] = {
     {"prior", "lapwing.prior", "known map and mesh"},
     {"vehicle", "lapwing.vehicle", "vehicle"},
+    {"rules?", "lapwing.flight_rules", "zones and a pilot that the flight keeps"},
     {"information", "lapwing.information", "information of a view about a voxel"}};
 
 void check_air(const ScanWork& work, double mesh_room, const Parameters& given) {
   const Eigen::AlignedBox3d& air = work.allowed;
   const Eigen::Vector3d middle = air.center(), half = air.sizes() / 2 + work.body;
+  if (const std::string why = forbidden_by(*work.rules, middle, half); !why.empty())
+    throw InputError(given.origin("allowed"),
+                     "zones reach into the air that passes and turns need, or the pilot's range "
+                     "does not: a flight in passing keeps all of it free (" +
+                         why + ")");
+  if (work.rules->pilot)
+    throw InputError(given.origin("rules"),
+                     "a line of sight to a pilot is for flights that rest at their views");
   if (space_of(*work.prior, mesh_room)->swept_box_free(middle, middle, half)) return;
   char text[300];
   std::snprintf(text, sizeof text,
@@ -127,6 +136,7 @@ int pass_graph_of_run(lua_State* state) {
   const PluginChoice information = plugin_choice(state, lua_gettop(state), "information");
   work->allowed = box_of(given.table("allowed"), "the box for the vehicle");
   work->body = vector_of(given.numbers("body"));
+  work->rules = rules_argument(state, 2);
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const auto coarser = make_sight(*work, run, given, information);
   check_air(*work, given.number("mesh_room"), given);

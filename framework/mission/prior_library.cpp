@@ -9,6 +9,7 @@
 #include "framework/map/map_file.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
+#include "framework/mission/photo_objects.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/site_objects.h"
 #include "framework/picture/mesh_picture.h"
@@ -34,6 +35,52 @@ ParameterTable box_table() {
   table.required_numbers("lower", 3, "m", "lowest corner, world")
       .required_numbers("upper", 3, "m", "highest corner, world");
   return table;
+}
+
+namespace {
+
+GroundPolygon polygon_of(const Parameters& given) {
+  const auto numbers = given.numbers("corners");
+  if (numbers.size() % 2 != 0)
+    throw InputError(given.origin("corners"), "corners: expected pairs x, y");
+  GroundPolygon corners;
+  for (std::size_t i = 0; i < numbers.size(); i += 2)
+    corners.emplace_back(numbers[i], numbers[i + 1]);
+  return corners;
+}
+
+}  // namespace
+
+ParameterTable region_table() {
+  ParameterTable hole;
+  hole.required_numbers("corners", 0, "m", "x and y of each corner, in order, world");
+  ParameterTable prism;
+  prism.text("name", "", "name in messages")
+      .required_numbers("corners", 0, "m", "x and y of each corner, in order, world")
+      .tables("holes", hole, "polygons that do not belong to it")
+      .required_number("low", "m", "lower end, world")
+      .required_number("high", "m", "upper end, world")
+      .number("weight", 1, "", "what a voxel of it counts", {0, 1e6, true});
+  ParameterTable table = box_table();
+  table.tables("prisms", prism, "parts of the region; absent: all of the box");
+  return table;
+}
+
+InterestRegion region_of(const Parameters& given) {
+  const Eigen::AlignedBox3d box = box_of(given, "the region of interest");
+  std::vector<RegionPrism> prisms;
+  for (const Parameters& entry : given.tables("prisms")) {
+    RegionPrism prism{.name = entry.text("name"),
+                      .outline = polygon_of(entry),
+                      .holes = {},
+                      .low = entry.number("low"),
+                      .high = entry.number("high"),
+                      .weight = entry.number("weight")};
+    for (const Parameters& hole : entry.tables("holes")) prism.holes.push_back(polygon_of(hole));
+    prisms.push_back(std::move(prism));
+  }
+  if (prisms.empty()) return box;
+  return InterestRegion(std::move(prisms));
 }
 
 Eigen::AlignedBox3d box_of(const Parameters& given, const std::string& what) {
@@ -384,7 +431,8 @@ void open_prior_type(lua_State* state) {
        &earlier_table},
       {"reconstruct", &guarded<reconstruct>, "(settings: @)",
        "reconstructs its mesh from all images", &reconstruct_table}};
-  define_type<PriorObject>(state, kPriorType, {methods, site_methods_of_prior()},
+  define_type<PriorObject>(state, kPriorType,
+                           {methods, photo_methods_of_prior(), site_methods_of_prior()},
                            &guarded<prior_field>);
   note_fields(state, kPriorType, kPriorFields);
 }

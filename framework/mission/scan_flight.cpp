@@ -248,13 +248,15 @@ ParameterTable scan_plan_table() {
       .required_number("budget", "s", "flight time", above(0))
       .number("seen_share", ScanTask{}.seen_share, "",
               "fraction of the voxels that must be seen again", {0, 1, true})
+      .number("pixel_error", 0.5, "px", "standard deviation of a point in an image", above(0))
+      .boolean("part_of_fleet", false,
+               "run:fleet tells what the images show, of all its plans together")
       .boolean("closed_loop_required", true, "false: tracking under control is reported only");
   return table;
 }
 
-// run:scan_plan{tour =, flight =, margin =, budget =, closed_loop_required =, seen_share =, notes
-// =,
-//               figures =, sections =, legs =, explored =}
+// run:scan_plan{tour =, flight =, margin =, budget =, closed_loop_required =, seen_share =,
+// notes =, part_of_fleet =, figures =, sections =, legs =, explored =}
 int scan_plan_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -324,16 +326,22 @@ int scan_plan_of_run(lua_State* state) {
     };
     keep("prior", "mesh", "prior.ply", ply_bytes(prior.mesh->mesh()));
     keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *prior.mapping.map));
+    for (const Obstacle& zone : work.rules->zones.obstacles)
+      plan.environment.obstacles.push_back(zone);
+    plan.environment.pilot = work.rules->pilot;
+    plan.environment.accuracy = work.rules->accuracy;
     plan.geodetic_origin = run.origin;
     plan.home = run.home;
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
-    const auto record = record_of_scan(*told, run.settings.threads);
-    if (!made.block.is_map()) made.block = Value::map();
-    made.block.set("surface", areas_as_value(*record));
-    made.notes.push_back(areas_in_words(*record));
-    if (record->truth) made.told.push_back(truth_in_words(*record));
-    made.late_sections = [record](const Plan& of) { return scan_sections(of, *record); };
+    if (given.boolean("part_of_fleet")) {
+      const auto record = record_of_tour(*told);
+      made.late_sections = [record](const Plan& of) { return tour_sections(of, *record); };
+    } else {
+      const auto record = record_of_scan(*told, given.number("pixel_error"), run.settings.threads);
+      tell_scan(*record, run, {made.block, made.notes, made.told});
+      made.late_sections = [record](const Plan& of) { return scan_sections(of, *record); };
+    }
     const std::string small = warning_of_small_camera(plan.task.scan->camera);
     if (!small.empty()) made.notes.push_back(small);
   }

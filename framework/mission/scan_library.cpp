@@ -140,6 +140,7 @@ int solve_tour_of_run(lua_State* state) {
 
 void open_scan_library(lua_State* state) {
   open_prior_type(state);
+  open_flight_rules_type(state);
   open_graph_type(state);
   define_type<TourObject>(state, kTourType, {}, &guarded<tour_field>);
   note_fields(state, kTourType, kTourFields);
@@ -152,8 +153,9 @@ std::span<const Binding> scan_methods_of_run() {
   static const std::vector<Binding> all = [] {
     std::vector<Binding> list;
     for (const std::span<const Binding> part :
-         {graph_methods_of_run(), std::span<const Binding>(own), pass_methods_of_run(),
-          prior_methods_of_run(), scan_plan_methods_of_run()})
+         {prism_methods_of_run(), flight_rule_methods_of_run(), graph_methods_of_run(),
+          std::span<const Binding>(own), pass_methods_of_run(), prior_methods_of_run(),
+          scan_plan_methods_of_run()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/map/ray_gaps.h"
+#include "framework/mission/flight_rules.h"
 #include "framework/mission/map_objects.h"
 #include "framework/picture/render.h"
 #include "framework/surface/point_fusion.h"
@@ -52,6 +53,13 @@ struct LegFlight {
   double seconds(const Points& way, const Viewpoint& from, const Viewpoint& to) const;
 };
 
+// What of a region the rules of a flight keep from being seen: m^2 of the known surface.
+struct HiddenPart {
+  std::string name;    // of the region, or "" of all of them together
+  double visible = 0;  // from places that are free, whatever the rules say
+  double hidden = 0;   // of it, what no candidate that the rules allow sees
+};
+
 // A graph, and what its tours take in seconds.
 struct ScanWork : LegFlight {
   std::shared_ptr<Prior> prior;
@@ -63,6 +71,8 @@ struct ScanWork : LegFlight {
   int home = 0;                 // of the views, where tours begin
   Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
   Eigen::Vector3d body;         // half edges of the vehicle's box, m
+  std::shared_ptr<const FlightRules> rules = std::make_shared<const FlightRules>();
+  std::vector<HiddenPart> hidden;  // what the rules keep from all candidates
   // Of views that are taken in passing: their numbers, pass by pass, and the courses, rad.
   std::vector<std::vector<int>> passes;
   std::vector<double> courses;
@@ -104,6 +114,7 @@ std::span<const Binding> graph_methods_of_run();
 std::span<const Binding> prior_methods_of_run();
 std::span<const Binding> scan_plan_methods_of_run();
 std::span<const Binding> pass_methods_of_run();
+std::span<const Binding> prism_methods_of_run();  // prisms
 void open_prior_type(lua_State* state);
 void open_graph_type(lua_State* state);
 
@@ -116,6 +127,10 @@ ParameterTable viewpoint_table();
 Viewpoint viewpoint_of(const Parameters& given);
 ParameterTable box_table();
 Eigen::AlignedBox3d box_of(const Parameters& given, const std::string& what);
+// A box as well, around `prisms` where there are any: {name =, corners = {x, y, ...}, holes =
+// {{corners =}}, low =, high =, weight =}.
+ParameterTable region_table();
+InterestRegion region_of(const Parameters& given);
 ParameterTable pinhole_table();
 Pinhole pinhole_of(const Parameters& given);
 

@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "framework/geometry/ground_span.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
@@ -149,6 +150,29 @@ int ground_of_site(lua_State* state) {
   return 1;
 }
 
+// site:ground_within{x, y, ...}: the lowest and the highest ground within a polygon, or nil where
+// none is known.
+int ground_within_site(lua_State* state) {
+  const Site& site = *object_argument<SiteObject>(state, 1, kSiteType).site;
+  luaL_checktype(state, 2, LUA_TTABLE);
+  GroundPolygon polygon;
+  const lua_Integer numbers = luaL_len(state, 2);
+  for (lua_Integer i = 1; i + 1 <= numbers; i += 2) {
+    lua_geti(state, 2, i);
+    lua_geti(state, 2, i + 1);
+    polygon.emplace_back(luaL_checknumber(state, -2), luaL_checknumber(state, -1));
+    lua_pop(state, 2);
+  }
+  const auto span = site.ground ? ground_span(*site.ground, polygon) : std::nullopt;
+  if (!span) {
+    lua_pushnil(state);
+    return 1;
+  }
+  lua_pushnumber(state, span->lowest);
+  lua_pushnumber(state, span->highest);
+  return 2;
+}
+
 constexpr BoundField kSiteFields[] = {
     {"name", "string", "name of its file"},
     {"description", "string", "format and size of its data"},
@@ -237,7 +261,10 @@ int add_site(lua_State* state) {
 void open_site_library(lua_State* state) {
   static const Binding methods[] = {
       {"ground", &guarded<ground_of_site>, "(x: number, y: number): number?",
-       "height of the terrain at a place, m, world; nil where it is not known"}};
+       "height of the terrain at a place, m, world; nil where it is not known"},
+      {"ground_within", &guarded<ground_within_site>, "(corners: number[]): number?, number?",
+       "lowest and highest terrain within a polygon {x, y, ...}, m, world; nil where none is "
+       "known"}};
   define_type<SiteObject>(state, kSiteType, {methods}, &guarded<site_field>);
   note_fields(state, kSiteType, kSiteFields);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/solve/active_set.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lapwing {
@@ -8,9 +9,10 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int kSteps = 6;          // of the set, until it is given up
-constexpr double kSolved = 1e-7;   // relative residual of a linear system
-constexpr double kBeyond = 1e-10;  // scaled: what a bound may be missed by, for rounding
+constexpr int kMostSystems = 6;         // until the set is given up
+constexpr double kSystemSolved = 1e-7;  // relative residual of a linear system
+// Scaled: what a bound may be broken by, for rounding; and at a point that is worth drawing.
+constexpr double kBroken = 1e-10, kDrawable = 1e-3;
 
 }  // namespace
 
@@ -24,10 +26,12 @@ std::optional<QuadraticResult> ActiveSet::solve(const QuadraticProgram& problem,
       (problem.row_lower.array() > problem.row_upper.array()).any())
     return {};
   begin(problem, near);
-  for (int k = 1; k <= kSteps; ++k) {
+  for (int k = 1; k <= kMostSystems; ++k) {
     if (options.cancellation && options.cancellation->cancelled()) return {};
     if (!step()) return {};
-    if (choose_next()) continue;
+    choose_next();
+    if (k == 1 && options.early && broken_ <= kDrawable) options.early(scaling_.unscaled_x(x_));
+    if (changes_ > 0) continue;
     std::optional<QuadraticResult> found = result(problem, options.tolerance);
     if (found) found->iterations = k;
     return found;
@@ -98,24 +102,26 @@ bool ActiveSet::step() {
   kkt_.set_up(p_, fixed_, taken_);
   if (!kkt_.factorise(VectorXd::Zero(n + m))) return false;
   const VectorXd solution = kkt_.solve(right);
-  if (!solution.allFinite() || kkt_.error() > kSolved) return false;
+  if (!solution.allFinite() || kkt_.error() > kSystemSolved) return false;
   x_ += solution.head(n);
   y_ -= solution.tail(m);
   return true;
 }
 
-// Takes bounds in that are broken and lets those go that pull; false where none is.
-bool ActiveSet::choose_next() {
-  const auto next = [](Hold hold, double value, double multiplier, double low, double high) {
+// Takes bounds in that are broken and lets those go that pull.
+void ActiveSet::choose_next() {
+  broken_ = 0;
+  changes_ = 0;
+  const auto next = [&](Hold hold, double value, double multiplier, double low, double high) {
+    if (hold == Hold::none) broken_ = std::max({broken_, low - value, value - high});
     if (hold == Hold::lower && multiplier >= 0) return hold;
     if (hold == Hold::upper && multiplier <= 0) return hold;
     if (hold != Hold::none) return Hold::none;
-    if (value < low - kBeyond) return Hold::lower;
-    return value > high + kBeyond ? Hold::upper : Hold::none;
+    if (value < low - kBroken) return Hold::lower;
+    return value > high + kBroken ? Hold::upper : Hold::none;
   };
-  bool changed = false;
   const auto put = [&](Hold& hold, Hold now) {
-    changed |= hold != now;
+    changes_ += hold != now;
     hold = now;
   };
   VectorXd left = p_.gradient - p_.jacobian.transpose() * y_;
@@ -127,7 +133,6 @@ bool ActiveSet::choose_next() {
   for (std::size_t r = 0; r < kinds_.size(); ++r)
     if (kinds_[r] == RowKind::inequality)
       put(of_rows_[r], next(of_rows_[r], values(r), y_(r), p_.row_lower(r), p_.row_upper(r)));
-  return changed;
 }
 
 // In the numbers of the problem, where it is as exact as asked.

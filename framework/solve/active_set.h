@@ -33,7 +33,7 @@ class ActiveSet {
   void begin(const QuadraticProgram& problem, const QuadraticWarmStart& near);
   void choose_first(const Eigen::VectorXd& bound_multipliers);
   bool step();
-  bool choose_next();
+  void choose_next();
   std::optional<QuadraticResult> result(const QuadraticProgram& problem, double tolerance) const;
 
   Equilibration scaling_;
@@ -43,6 +43,8 @@ class ActiveSet {
   std::vector<RowKind> kinds_, taken_;
   std::vector<Hold> of_variables_, of_rows_;
   Eigen::VectorXd x_, y_;  // scaled
+  double broken_ = 0;      // scaled: what the point breaks a bound by, at most
+  int changes_ = 0;        // of the set, after the last system
 };
 
 }  // namespace lapwing

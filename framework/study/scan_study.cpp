@@ -9,7 +9,8 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
-#include "framework/core/parallel.h"
+#include "framework/core/portable.h"
+#include "framework/items/statement.h"
 #include "framework/study/counted_surface.h"
 #include "framework/study/scan_photos.h"
 #include "framework/study/stopwatch.h"
@@ -35,49 +36,69 @@ struct RowPlace {
   std::size_t mission, budget, method, seed;
 };
 
+// What the rows of one case share.
+struct PreparedCase {
+  ScanCase scan;
+  std::vector<TourProblem> problems;  // by budget: shortest ways serve all methods
+  std::unique_ptr<SurfaceSample> surface;
+  double seconds = 0;  // that the preparation took
+};
+
 class StudyRun {
  public:
-  StudyRun(const ScanStudy& study, fs::path folder, const Registry& registry,
+  StudyRun(const ScanStudy& study, fs::path folder, int threads, const Registry& registry,
            const CancellationToken* cancellation,
            const std::function<void(const std::string&)>& say)
       : study_(study),
         folder_(std::move(folder)),
+        threads_(threads),
         registry_(registry),
         cancellation_(cancellation),
-        say_(say) {}
-
-  void begin(bool resume) const {
-    const std::string stated = to_json(statement()) + "\n";
-    const fs::path file = folder_ / "study.json";
-    if (!fs::exists(file)) {
-      if (fs::exists(folder_ / "rows")) {
-        throw InputError("'" + folder_.string() + "' has rows, but no study");
-      }
-      write_file_atomically(file, stated);
-      return;
-    }
-    if (!resume) {
-      throw InputError(
-          "'" + folder_.string() +
-          "' contains a study: continue it with --resume, or name another folder with --out");
-    }
-    if (read_file(file) != stated) {
-      throw InputError("'" + file.string() +
-                       "' states another study (missions, methods, seeds, budgets, options or "
-                       "scripts differ): --resume continues the same one only");
-    }
+        say_(say),
+        mark_(made_by(study.program, statement())) {
+    for (std::size_t m = 0; m < study_.missions.size(); ++m)
+      for (std::size_t s = 0; s < study_.seeds.size(); ++s)
+        for (std::size_t b = 0; b < budgets(); ++b)
+          for (std::size_t k = 0; k < study_.methods.size(); ++k) places_.push_back({m, b, k, s});
   }
 
-  std::vector<ScanRow> run() const {
-    for (std::size_t m = 0; m < study_.missions.size(); ++m) {
-      for (std::size_t s = 0; s < study_.seeds.size(); ++s) run_case(m, s);
+  void open(const ItemOptions& options) const {
+    if (!fs::exists(folder_ / "study.json") && fs::exists(folder_ / "rows"))
+      throw InputError("'" + folder_.string() + "' has rows, but no study");
+    open_statement(folder_ / "study.json", statement(), options, "study");
+  }
+
+  ItemList list() const {
+    ItemList list;
+    list.folder = folder_;
+    list.groups = study_.missions.size() * study_.seeds.size();
+    for (const RowPlace& at : places_) {
+      const std::string& method = study_.methods[at.method].name;
+      list.items.push_back({name_of(at, "rows").string(),
+                            at.mission * study_.seeds.size() + at.seed,
+                            {method + " for " + study_.missions[at.mission] + budget_text(at),
+                             method + " for " + study_.missions[at.mission], method}});
     }
+    list.is_made = [this](std::size_t item) {
+      return has_item(folder_ / name_of(places_[item], "rows"), mark_);
+    };
+    list.prepare = [this](std::size_t group) {
+      return prepare(group / study_.seeds.size(), group % study_.seeds.size());
+    };
+    list.make = [this](std::size_t item, const void* prepared) {
+      make(places_[item], *static_cast<const PreparedCase*>(prepared));
+    };
+    return list;
+  }
+
+  // All of them are there.
+  std::vector<ScanRow> rows() const {
     std::vector<ScanRow> rows;
     for (std::size_t m = 0; m < study_.missions.size(); ++m) {
       for (std::size_t b = 0; b < budgets(); ++b) {
         for (std::size_t k = 0; k < study_.methods.size(); ++k) {
           for (std::size_t s = 0; s < study_.seeds.size(); ++s) {
-            const fs::path file = file_of({m, b, k, s}, "rows");
+            const fs::path file = folder_ / name_of({m, b, k, s}, "rows");
             rows.push_back(scan_row_from(from_json(read_file(file), file.string())));
           }
         }
@@ -86,12 +107,10 @@ class StudyRun {
     return rows;
   }
 
- private:
-  std::size_t budgets() const { return std::max<std::size_t>(1, study_.budgets.size()); }
-
   Value statement() const {
     Value value = Value::map();
     value.set("format", 2);
+    value.set(kMachineEntry, machine_of_numbers());
     const auto list = [&](const char* key, const auto& entries, const auto& entry_of) {
       Value& made = value.set(key, Value::list());
       for (const auto& entry : entries) made.push_back(entry_of(entry));
@@ -114,86 +133,91 @@ class StudyRun {
     return value;
   }
 
-  fs::path file_of(const RowPlace& at, const char* kind) const {
-    std::string name =
-        study_.missions[at.mission] + "_seed" + std::to_string(study_.seeds[at.seed]);
-    if (!study_.budgets.empty()) {
-      char text[40];
-      std::snprintf(text, sizeof text, "_%gs", study_.budgets[at.budget]);
-      name += text;
-    }
-    return folder_ / kind / (file_name(name + "_" + study_.methods[at.method].name) + ".json");
+ private:
+  std::size_t budgets() const { return std::max<std::size_t>(1, study_.budgets.size()); }
+
+  std::string budget_text(const RowPlace& at) const {
+    if (study_.budgets.empty()) return "";
+    char text[40];
+    std::snprintf(text, sizeof text, "_%gs", study_.budgets[at.budget]);
+    return text;
   }
 
-  void run_case(std::size_t m, std::size_t s) const {
-    std::vector<RowPlace> missing;
-    for (std::size_t b = 0; b < budgets(); ++b) {
-      for (std::size_t k = 0; k < study_.methods.size(); ++k) {
-        if (!fs::exists(file_of({m, b, k, s}, "rows"))) missing.push_back({m, b, k, s});
-      }
-    }
-    if (missing.empty()) return;
-    const std::string name = study_.missions[m] + ", seed " + std::to_string(study_.seeds[s]);
+  // Of a file, within the folder.
+  fs::path name_of(const RowPlace& at, const char* kind) const {
+    const std::string name = study_.missions[at.mission] + "_seed" +
+                             std::to_string(study_.seeds[at.seed]) + budget_text(at) + "_" +
+                             study_.methods[at.method].name;
+    return fs::path(kind) / (file_name(name) + ".json");
+  }
+
+  std::shared_ptr<const PreparedCase> prepare(std::size_t mission, std::size_t seed) const {
+    const std::string name =
+        study_.missions[mission] + ", seed " + std::to_string(study_.seeds[seed]);
     say_(name + ": candidates and motions");
+    const auto made = std::make_shared<PreparedCase>();
     const Stopwatch preparing;
-    const ScanCase scan = study_.prepare(m, s);
-    const double prepared = preparing.seconds();
-    const SurfaceSample surface = ground_truth(scan, study_.missions[m]);
-    // One problem for each budget: its shortest ways serve all methods.
-    std::vector<TourProblem> problems;
+    made->scan = study_.prepare(mission, seed);
+    made->seconds = preparing.seconds();
+    made->surface =
+        std::make_unique<SurfaceSample>(ground_truth(made->scan, study_.missions[mission]));
     for (std::size_t b = 0; b < budgets(); ++b) {
-      TourDefinition definition = scan.definition;
+      TourDefinition definition = made->scan.definition;
       if (!study_.budgets.empty()) definition.budget = study_.budgets[b];
-      problems.emplace_back(std::move(definition));
+      made->problems.emplace_back(std::move(definition));
     }
-    say_(name + ": " + std::to_string(scan.viewpoints.size()) + " candidates, " +
-         std::to_string(problems.back().reachable().size()) +
-         " of them connected to the start within the budget; " + std::to_string(missing.size()) +
-         " rows");
-    parallel_for(missing.size(), study_.threads, [&](std::size_t i) {
-      if (cancellation_ && cancellation_->cancelled()) throw Cancelled();
-      const RowPlace& at = missing[i];
-      double seconds = 0;
-      std::vector<Pose> cameras;
-      ScanRow row = measure(scan, problems[at.budget], surface, study_.methods[at.method], study_,
-                            study_.seeds[s], registry_, cancellation_, seconds, cameras);
-      row.mission = study_.missions[m];
-      Value time = Value::map();
-      time.set("mission", row.mission);
-      time.set("method", row.method);
-      time.set("budget", row.budget);
-      time.set("seed", static_cast<std::int64_t>(row.seed));
-      time.set("first_flight", scan.first_seconds);
-      time.set("flight", row.seconds);
-      time.set("prepare", prepared);
-      time.set("plan", seconds);
-      write_file_atomically(file_of(at, "times"), to_json(time) + "\n");
-      if (study_.photos && row.found) take_photos(at, scan, cameras, row);
-      write_file_atomically(file_of(at, "rows"), to_json(to_value(row)) + "\n");
-      char score[40] = "", text[120];
-      if (std::isfinite(row.score_share))
-        std::snprintf(score, sizeof score, ", score %.1f %%", 100 * row.score_share);
-      std::snprintf(text, sizeof text, ": F %.2f %%%s, %d images, %.0f s", 100 * row.with_first.f,
-                    score, row.images, row.seconds);
-      say_(name + ", " + row.method + (row.found ? text : ": no tour (" + row.message + ")"));
-    });
+    say_(name + ": " + std::to_string(made->scan.viewpoints.size()) + " candidates, " +
+         std::to_string(made->problems.back().reachable().size()) +
+         " of them connected to the start within the budget");
+    return made;
+  }
+
+  void make(const RowPlace& at, const PreparedCase& prepared) const {
+    if (cancellation_ && cancellation_->cancelled()) throw Cancelled();
+    double seconds = 0;
+    std::vector<Pose> cameras;
+    ScanRow row = measure(prepared.scan, prepared.problems[at.budget], *prepared.surface,
+                          study_.methods[at.method], study_, study_.seeds[at.seed], registry_,
+                          cancellation_, seconds, cameras);
+    row.mission = study_.missions[at.mission];
+    Value time = Value::map();
+    time.set("mission", row.mission);
+    time.set("method", row.method);
+    time.set("budget", row.budget);
+    time.set("seed", static_cast<std::int64_t>(row.seed));
+    time.set("first_flight", prepared.scan.first_seconds);
+    time.set("flight", row.seconds);
+    time.set("prepare", prepared.seconds);
+    time.set("plan", seconds);
+    write_file_atomically(folder_ / name_of(at, "times"), to_json(time) + "\n");
+    if (study_.photos && row.found) take_photos(at, prepared.scan, cameras, row);
+    Value value = to_value(row);
+    value.set(kMadeByEntry, mark_);
+    write_file_atomically(folder_ / name_of(at, "rows"), to_json(value) + "\n");
+    char score[40] = "", text[120];
+    if (std::isfinite(row.score_share))
+      std::snprintf(score, sizeof score, ", score %.1f %%", 100 * row.score_share);
+    std::snprintf(text, sizeof text, ": F %.2f %%%s, %d images, %.0f s", 100 * row.with_first.f,
+                  score, row.images, row.seconds);
+    say_(row.mission + ", seed " + std::to_string(row.seed) + ", " + row.method +
+         (row.found ? text : ": no tour (" + row.message + ")"));
   }
 
   SurfaceSample ground_truth(const ScanCase& scan, const std::string& mission) const {
     const ReconstructionSettings judge = judged_by(study_, scan);
-    SurfaceSample surface(scan.surface->mesh(), judge, study_.threads);
+    SurfaceSample surface(scan.surface->mesh(), judge, threads_);
     if (!scan.viewing) return surface;
     std::vector<Eigen::Vector3d> from;
     for (const Pose& camera : scan.first_flight) from.push_back(camera.position);
     count_visible(surface, scan.surface, judge, *scan.viewing, from, folder_ / "surface",
-                  file_name(mission), study_.threads, say_);
+                  file_name(mission), threads_, say_);
     return surface;
   }
 
   // Before the row is written: where there is a row there is what its photographs came to.
   void take_photos(const RowPlace& at, const ScanCase& scan, const std::vector<Pose>& cameras,
                    const ScanRow& row) const {
-    fs::path folder = file_of(at, "photos");
+    fs::path folder = folder_ / name_of(at, "photos");
     folder.replace_extension();
     const Registered found =
         register_photos(*scan.surface, cameras, scan.camera, folder, 1, cancellation_);
@@ -212,9 +236,12 @@ class StudyRun {
 
   const ScanStudy& study_;
   fs::path folder_;
+  int threads_;
   const Registry& registry_;
   const CancellationToken* cancellation_;
   const std::function<void(const std::string&)>& say_;
+  Value mark_;
+  std::vector<RowPlace> places_;  // by item
 };
 
 template <class T>
@@ -227,9 +254,11 @@ void require_different(const std::vector<T>& entries, const std::string& what) {
 
 }  // namespace
 
-std::vector<ScanRow> run_study(const ScanStudy& study, const fs::path& folder, bool resume,
-                               const Registry& registry, const CancellationToken* cancellation,
-                               const std::function<void(const std::string&)>& say) {
+std::optional<std::vector<ScanRow>> run_study(const ScanStudy& study, const fs::path& folder,
+                                              ItemRun& run, const Registry& registry,
+                                              const CancellationToken* cancellation,
+                                              const std::function<void()>& claim,
+                                              const std::function<void(const std::string&)>& say) {
   std::vector<std::string> methods, missions;
   for (const ScanMethod& method : study.methods) methods.push_back(file_name(method.name));
   for (const std::string& mission : study.missions) missions.push_back(file_name(mission));
@@ -242,9 +271,13 @@ std::vector<ScanRow> run_study(const ScanStudy& study, const fs::path& folder, b
     const std::lock_guard lock(saying);
     say(line);
   };
-  const StudyRun run(study, folder, registry, cancellation, say_alone);
-  run.begin(resume);
-  return run.run();
+  const StudyRun rows(study, folder, run.threads(), registry, cancellation, say_alone);
+  const bool whole = run.make(rows.list(), rows.statement(), [&] {
+    claim();
+    rows.open(run.options());
+  });
+  if (!whole) return std::nullopt;
+  return rows.rows();
 }
 
 }  // namespace lapwing

@@ -3,8 +3,9 @@
 // candidates, by what their images would make of the true surface.
 //
 // A study is a list of cases (a mission and a seed), budgets and methods; a row is what one method
-// did in one case with one budget. Every row is a file, written whole; a study that was ended at
-// any moment goes on from those that are there, and ends with the same bytes.
+// did in one case with one budget. Every row is an item (framework/items): a file, written whole. A
+// study that was ended at any moment goes on from those that are there, and ends with the same
+// bytes.
 #pragma once
 
 #include <filesystem>
@@ -16,6 +17,7 @@
 
 #include "framework/core/progress.h"
 #include "framework/core/value.h"
+#include "framework/items/item_run.h"
 #include "framework/plugin/registry.h"
 #include "framework/study/scan_row.h"
 #include "framework/surface/viewing_space.h"
@@ -53,8 +55,9 @@ struct ScanStudy {
   std::optional<double> range, incidence;  // m and rad, that are judged by in place of the case's
   Value statement;      // of all else that rows depend on: scripts, configurations
   bool photos = false;  // whether COLMAP is asked to register photographs (study/scan_photos.h)
-  int threads = 1;      // rows at once; results are the same
-  // Makes a case: mission and seed, by their places. Called once for each that lacks a row.
+  std::string program;  // name and version, for the rows' marks (items/statement.h)
+  // Makes a case: mission and seed, by their places. A process calls it when it begins rows of the
+  // case.
   std::function<ScanCase(std::size_t mission, std::size_t seed)> prepare;
 };
 
@@ -68,13 +71,16 @@ ScanRow measure(const ScanCase& scan, const TourProblem& problem, const SurfaceS
                 double& work_seconds, std::vector<Pose>& cameras);
 
 // Rows of the whole study in their order: mission, budget, method, seed. Files go to `folder`:
-// study.json, rows/, times/, surface/ (study/counted_surface.h) and, with photographs, photos/.
-// Without `resume` a folder with another
-// study's rows is refused, with it one of a study that differs. InputError; Cancelled when told to
-// stop, rows so far are kept.
-std::vector<ScanRow> run_study(const ScanStudy& study, const std::filesystem::path& folder,
-                               bool resume, const Registry& registry,
-                               const CancellationToken* cancellation,
-                               const std::function<void(const std::string&)>& say);
+// study.json, rows/, times/, surface/ (study/counted_surface.h) and, with photographs, photos/. The
+// rows are the items of `run`, and those of one case are a group; nothing where `run` leaves no
+// results to this process. `claim` is called in process 0 before the folder is used. Without an
+// option that continues a study, a folder with another study's rows is refused, with it one of a
+// study that differs. InputError; Cancelled when told to stop, rows so far are kept.
+std::optional<std::vector<ScanRow>> run_study(const ScanStudy& study,
+                                              const std::filesystem::path& folder, ItemRun& run,
+                                              const Registry& registry,
+                                              const CancellationToken* cancellation,
+                                              const std::function<void()>& claim,
+                                              const std::function<void(const std::string&)>& say);
 
 }  // namespace lapwing

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "framework/core/json.h"
+#include "framework/items/statement.h"
 
 namespace lapwing {
 
@@ -39,6 +40,7 @@ std::string settings_difference(const Value& there, const Value& here) {
     for (const auto& [key, ignored] : one->as_map()) {
       if (key == "files" || key == "world_moves") continue;
       const Value *a = there.find(key), *b = here.find(key);
+      if (key == kMachineEntry && !(a && b && *a == *b)) return statement_difference(there, here);
       if (!a || !b || !(*a == *b))
         return key + " is " + (a ? to_json(*a, -1) : "not said") + " there, " +
                (b ? to_json(*b, -1) : "not said") + " here";

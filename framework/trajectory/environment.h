@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "framework/core/value.h"
+#include "framework/geometry/pilot_place.h"
 #include "framework/geometry/triangle_mesh.h"
 #include "framework/shape/shape.h"
 
@@ -71,6 +73,8 @@ struct Environment {
   std::vector<Obstacle> obstacles;
   std::vector<Subject> subjects;  // filmed, or bystanders
   double margin = 0;              // m kept from every surface, vehicle radius included
+  double accuracy = 0;            // m of the margin that is the accuracy of the position in flight
+  std::optional<PilotPlace> pilot = {};  // who must see the vehicle during the whole flight
 };
 
 // The one of that type and name; null where there is none.

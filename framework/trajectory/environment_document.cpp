@@ -187,6 +187,13 @@ auto read_all(std::vector<Fields> entries, Read read) {
 Value environment_to_value(const Environment& environment) {
   Value value = Value::map();
   value.set("margin", environment.margin);
+  if (environment.accuracy > 0) value.set("accuracy", environment.accuracy);
+  if (environment.pilot) {
+    Value& pilot = value.set("pilot", Value::map());
+    pilot.set("eye", list_of(environment.pilot->eye));
+    pilot.set("range", environment.pilot->range);
+    pilot.set("beside", environment.pilot->beside);
+  }
   value.set("obstacles", entries_of(environment.obstacles));
   if (!environment.subjects.empty()) value.set("subjects", entries_of(environment.subjects));
   return value;
@@ -195,6 +202,12 @@ Value environment_to_value(const Environment& environment) {
 Environment environment_from(Fields fields, int format) {
   Environment environment;
   environment.margin = fields.number("margin");
+  environment.accuracy = fields.optional_number("accuracy").value_or(0.0);
+  if (fields.has("pilot")) {
+    Fields pilot = fields.table("pilot");
+    environment.pilot = {pilot.vector3("eye"), pilot.number("range"), pilot.number("beside")};
+    pilot.finish();
+  }
   const auto add = [&](std::vector<Fields> entries, auto read) {
     for (Obstacle& obstacle : read_all(std::move(entries), read))
       environment.obstacles.push_back(std::move(obstacle));

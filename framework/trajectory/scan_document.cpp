@@ -59,13 +59,90 @@ Pinhole camera_from(Fields fields) {
   return camera;
 }
 
+Value rows_of(const GroundPolygon& corners) {
+  Value list = Value::list();
+  for (const Eigen::Vector2d& corner : corners) list.push_back(list_of({corner.x(), corner.y()}));
+  return list;
+}
+
+// A box by its corners, everything else by its prisms.
+Value to_value(const InterestRegion& region) {
+  Value value = Value::map();
+  if (region.is_box()) {
+    value.set("lower", list_of(region.bounds().min()));
+    value.set("upper", list_of(region.bounds().max()));
+    return value;
+  }
+  Value& prisms = value.set("prisms", Value::list());
+  for (const RegionPrism& prism : region.prisms()) {
+    Value entry = Value::map();
+    if (!prism.name.empty()) entry.set("name", prism.name);
+    entry.set("corners", rows_of(prism.outline));
+    if (!prism.holes.empty()) {
+      Value& holes = entry.set("holes", Value::list());
+      for (const GroundPolygon& corners : prism.holes) {
+        Value hole = Value::map();
+        hole.set("corners", rows_of(corners));
+        holes.push_back(std::move(hole));
+      }
+    }
+    entry.set("low", prism.low);
+    entry.set("high", prism.high);
+    entry.set("weight", prism.weight);
+    prisms.push_back(std::move(entry));
+  }
+  return value;
+}
+
+GroundPolygon polygon_from(Fields& fields) {
+  GroundPolygon corners;
+  for (const std::vector<double>& corner : fields.rows("corners", 2))
+    corners.emplace_back(corner[0], corner[1]);
+  return corners;
+}
+
+RegionPrism prism_from(Fields& fields) {
+  RegionPrism prism;
+  prism.name = fields.optional_text("name");
+  prism.outline = polygon_from(fields);
+  for (Fields& hole : fields.optional_tables("holes")) {
+    prism.holes.push_back(polygon_from(hole));
+    hole.finish();
+  }
+  prism.low = fields.number("low");
+  prism.high = fields.number("high");
+  prism.weight = fields.number("weight");
+  return prism;
+}
+
+// What bounds no region is an error, so that a region that was read can be asked.
+InterestRegion region_from(Fields fields) {
+  if (!fields.has("prisms")) {
+    const Eigen::AlignedBox3d box(fields.vector3("lower"), fields.vector3("upper"));
+    fields.finish();
+    return box;
+  }
+  std::vector<RegionPrism> prisms;
+  bool sound = true;
+  for (Fields& entry : fields.tables("prisms")) {
+    prisms.push_back(prism_from(entry));
+    if (const std::string fault = region_fault(prisms.back()); !fault.empty()) {
+      entry.add_error("corners", fault);
+      sound = false;
+    }
+    entry.finish();
+  }
+  if (prisms.empty()) fields.add_error("prisms", "expected at least one");
+  fields.finish();
+  if (prisms.empty() || !sound) return {};
+  return InterestRegion(std::move(prisms));
+}
+
 }  // namespace
 
 Value scan_to_value(const ScanTask& scan) {
   Value value = Value::map(), views = Value::list();
-  Value& region = value.set("region", Value::map());
-  region.set("lower", list_of(scan.region.min()));
-  region.set("upper", list_of(scan.region.max()));
+  value.set("region", to_value(scan.region));
   value.set("camera", to_value(scan.camera));
   value.set("range", scan.range);
   value.set("map", scan.map);
@@ -80,9 +157,7 @@ Value scan_to_value(const ScanTask& scan) {
 
 ScanTask scan_from(Fields fields) {
   ScanTask scan;
-  Fields region = fields.table("region");
-  scan.region = {region.vector3("lower"), region.vector3("upper")};
-  region.finish();
+  scan.region = region_from(fields.table("region"));
   scan.camera = camera_from(fields.table("camera"));
   scan.range = fields.number("range");
   scan.map = fields.text("map");

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "framework/geometry/camera_view.h"
+#include "framework/geometry/interest_region.h"
 
 namespace lapwing {
 
@@ -26,7 +27,7 @@ struct PlannedView {
 };
 
 struct ScanTask {
-  Eigen::AlignedBox3d region;       // of interest, m, world
+  InterestRegion region;            // of interest, world
   Pinhole camera;                   // of the images
   double range = 60;                // m, of a ray through a pixel; beyond it nothing counts as seen
   std::string map;                  // in which the views see: a name of the environment's maps

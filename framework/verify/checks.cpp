@@ -6,6 +6,7 @@ namespace lapwing {
 Check make_check(std::string_view name) {
   std::vector<CheckKind> kinds(kCheckKinds.begin(), kCheckKinds.end());
   kinds.insert(kinds.end(), kMotionCheckKinds.begin(), kMotionCheckKinds.end());
+  kinds.insert(kinds.end(), kPilotCheckKinds.begin(), kPilotCheckKinds.end());
   kinds.insert(kinds.end(), kHomeCheckKinds.begin(), kHomeCheckKinds.end());
   for (const CheckKind& kind : kinds) {
     if (name != kind.name) continue;

@@ -90,6 +90,12 @@ inline constexpr std::array kMotionCheckKinds{
     CheckKind{"sideslip", CheckGroup::safety, true, "rad"},
 };
 
+// Listed for plans that state a pilot alone, behind 'flight_zone'.
+inline constexpr std::array kPilotCheckKinds{
+    CheckKind{"pilot_distance", CheckGroup::safety, true, "m"},
+    CheckKind{"pilot_sight", CheckGroup::safety, true, "s"},
+};
+
 // Listed for plans alone that state what they need, behind the distances that all have.
 inline constexpr std::array kHomeCheckKinds{
     CheckKind{"height_above_home", CheckGroup::safety, true, "m"},
@@ -151,6 +157,8 @@ void check_dynamics(const Flight& flight, Certificate& certificate);
 void check_limits(const Flight& flight, Certificate& certificate);
 void check_clearance(const Flight& flight, Certificate& certificate);
 void check_flight_zones(const Flight& flight, Certificate& certificate);
+// Of plans without a pilot nothing is listed.
+void check_pilot(const Flight& flight, Certificate& certificate);
 void check_subject_distance(const Flight& flight, Certificate& certificate);
 void check_home(const Flight& flight, Certificate& certificate);
 // What was flown, where the motion model can be.

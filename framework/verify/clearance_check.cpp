@@ -208,7 +208,12 @@ void check_side(const Flight& flight, Side side, const char* name, const char* n
   along(flight.motion, [&](const Chord& chord, double time, double duration) {
     see_all(flight, side, chord, time, duration, clearance);
   });
-  certificate.checks.push_back(clearance.check());
+  Check check = clearance.check();
+  if (environment.accuracy > 0)
+    check.detail += (check.detail.empty() ? "" : "; ") +
+                    ("the margin includes " + plain_number(environment.accuracy) +
+                     " m, the accuracy of the position");
+  certificate.checks.push_back(check);
 }
 
 }  // namespace

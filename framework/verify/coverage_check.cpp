@@ -45,8 +45,9 @@ MotionPoint motion_at(Motion& motion, double time) {
 void list_scan_problems(const Plan& plan, std::vector<std::string>& problems) {
   const ScanTask& scan = *plan.task.scan;
   const auto add = [&](const std::string& text) { problems.push_back("the scan " + text); };
-  if (!sound(scan.region.min()) || !sound(scan.region.max()) ||
-      !(scan.region.min().array() < scan.region.max().array()).all())
+  const Eigen::AlignedBox3d& region = scan.region.bounds();
+  if (!sound(region.min()) || !sound(region.max()) ||
+      !(region.min().array() < region.max().array()).all())
     add("must have a region with its lower corner below its upper one");
   const Pinhole& camera = scan.camera;
   if (camera.width < 1 || camera.height < 1 || !(camera.focal_x > 0) || !(camera.focal_y > 0) ||

@@ -81,7 +81,7 @@ class Reader {
   }
 
   // Where the flight comes, as far as clearance is told apart, and what it films; of the map in
-  // which a scan's views see also the region, and the places of the views.
+  // which a scan's views see also the region, and the places of the views. The pilot's eye.
   Eigen::AlignedBox3d surroundings(const Vehicle& vehicle, const Obstacle& map) const {
     Motion motion(plan_.trajectory, vehicle);
     Eigen::AlignedBox3d box;
@@ -102,10 +102,11 @@ class Reader {
       around.extend(box.max() + room - move);
     }
     box = around;
+    if (plan_.environment.pilot) box.extend(plan_.environment.pilot->eye);
     const auto& scan = plan_.task.scan;
     if (!scan || scan->map != map.name) return box;
     for (const PlannedView& view : scan->views) box.extend(view.position);
-    return box.merged(scan->region);
+    return box.merged(scan->region.bounds());
   }
 
   // How far constraints of the script tell distances to maps apart, m.

@@ -37,6 +37,14 @@ void list_problems(const Environment& environment, std::vector<std::string>& pro
   if (!(environment.margin >= 0) || !sound(environment.margin)) {
     problems.push_back("the margin must be at least 0");
   }
+  if (!(environment.accuracy >= 0 && environment.accuracy <= environment.margin))
+    problems.push_back("the accuracy of the position is part of the margin: from 0 to the margin");
+  if (const auto& pilot = environment.pilot;
+      pilot && !(sound(pilot->eye) && pilot->range > 0 && pilot->range <= 1e5 &&
+                 pilot->beside >= 0 && pilot->beside <= 100))
+    problems.push_back(
+        "the pilot needs a place, a range above 0 and at most 1e5 m, and from 0 to 100 m beside "
+        "which nothing hides the flight");
   for (std::size_t i = 0; i < environment.obstacles.size(); ++i) {
     const Obstacle& obstacle = environment.obstacles[i];
     const std::string problem = problem_of(obstacle);

@@ -52,7 +52,7 @@ std::string map_digest(const Plan& plan) {
 }
 
 bool same_region(const ScanTask& a, const ScanTask& b) {
-  return a.region.isApprox(b.region, 0) && a.range == b.range && a.camera.width == b.camera.width &&
+  return a.region == b.region && a.range == b.range && a.camera.width == b.camera.width &&
          a.camera.height == b.camera.height && a.camera.focal_x == b.camera.focal_x &&
          a.camera.focal_y == b.camera.focal_y && a.camera.principal_x == b.camera.principal_x &&
          a.camera.principal_y == b.camera.principal_y;
@@ -271,7 +271,7 @@ std::unique_ptr<JudgedShape> map_of_fleet(const FlownFleet& flown,
   const Obstacle* map = find_obstacle(first.environment, "map", first.task.scan->map);
   const Value* file = map ? map->parameters.find("file") : nullptr;
   if (!file || !file->is_text()) return nullptr;
-  Eigen::AlignedBox3d box = first.task.scan->region;
+  Eigen::AlignedBox3d box = first.task.scan->region.bounds();
   for (const PlannedView& view : views) box.extend(view.position);
   const auto found = request.elsewhere.find(file->as_text());
   return judged_shape(

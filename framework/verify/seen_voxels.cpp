@@ -140,10 +140,12 @@ double reach_of(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
   return enters <= leaves ? leaves : -1;
 }
 
-// Voxels with their middle in the region, one by one, as seen or not.
+// Voxels with their middle in the box around the region, one by one, as seen or not.
 class SeenVoxels {
  public:
-  SeenVoxels(const BlockedVoxels& voxels, const Eigen::AlignedBox3d& region) {
+  SeenVoxels(const BlockedVoxels& voxels, const InterestRegion& whole)
+      : voxels_(voxels), region_(whole) {
+    const Eigen::AlignedBox3d& region = whole.bounds();
     std::size_t count = 1;
     for (int i = 0; i < 3; ++i) {
       const VoxelGrid& grid = voxels.grid();
@@ -170,9 +172,25 @@ class SeenVoxels {
     }
     std::atomic_ref(seen_[place]).store(1, std::memory_order_relaxed);
   }
-  std::int64_t count() const { return std::count(seen_.begin(), seen_.end(), 1); }
+  // Of a region that is no box, those in one of its prisms.
+  std::int64_t count() const {
+    if (region_.is_box()) return std::count(seen_.begin(), seen_.end(), 1);
+    const VoxelGrid& grid = voxels_.grid();
+    std::int64_t count = 0;
+    std::size_t place = 0;
+    for (int z = 0; z < size_[2]; ++z)
+      for (int y = 0; y < size_[1]; ++y)
+        for (int x = 0; x < size_[0]; ++x)
+          if (seen_[place++])
+            count += region_.contains({grid.center(voxels_.first(0) + low_[0] + x),
+                                       grid.center(voxels_.first(1) + low_[1] + y),
+                                       grid.center(voxels_.first(2) + low_[2] + z)});
+    return count;
+  }
 
  private:
+  const BlockedVoxels& voxels_;
+  const InterestRegion& region_;
   int low_[3], size_[3];
   std::vector<char> seen_;
 };
@@ -189,7 +207,7 @@ void look(const PlannedView& view, const ScanTask& scan, const SeeThrough& space
       const Eigen::Vector3d way = ahead + (x - camera.principal_x) / camera.focal_x * right +
                                   (y - camera.principal_y) / camera.focal_y * down;
       const Eigen::Vector3d direction = way.normalized();
-      const double reach = reach_of(view.position, direction, scan.region, edge);
+      const double reach = reach_of(view.position, direction, scan.region.bounds(), edge);
       int hit[3];
       if (space.meet(view.position, direction, std::min(scan.range, reach), hit)) seen.see(hit);
     }

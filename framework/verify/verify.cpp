@@ -111,7 +111,10 @@ Certificate verify(const Plan& plan, const VerifyRequest& request) {
   next(check_dynamics);
   next(check_limits);
   next(check_clearance);
-  next(check_flight_zones);
+  next([](const Flight& whole, Certificate& judged) {
+    check_flight_zones(whole, judged);
+    check_pilot(whole, judged);
+  });
   next(check_subject_distance);
   next(check_home);
   check_time(flight, certificate);

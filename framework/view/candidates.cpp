@@ -25,6 +25,9 @@ constexpr double kOneStep = 1 - 1e-9;  // times a step: neighbours of a lattice 
 void check(const CandidateSettings& s) {
   const auto refuse = [](const std::string& why) { throw InputError("candidates: " + why); };
   if (s.region.isEmpty()) refuse("the region of interest is empty");
+  for (const ViewAim& aim : s.aims)
+    if (aim.box.isEmpty() || !(aim.share > 0))
+      refuse("a part of the region is empty, or has a share that is not above 0");
   if (s.allowed.isEmpty()) refuse("the box for the vehicle is empty");
   if (!(s.half.minCoeff() >= 0)) refuse("the vehicle's box must have edges of at least 0 m");
   if (!(s.step > 0) || !(s.step_growth >= 0)) refuse("the step must be above 0 m and grow");
@@ -256,18 +259,29 @@ class Generator {
     if (cancellation_ && cancellation_->cancelled()) throw Cancelled();
   }
 
+  // The region, or one of its parts.
+  const Eigen::AlignedBox3d& aimed_at() {
+    if (s_.aims.empty()) return s_.region;
+    double all = 0;
+    for (const ViewAim& aim : s_.aims) all += aim.share;
+    double left = s_.aims.size() > 1 ? random_.uniform(0, all) : 0;
+    for (const ViewAim& aim : s_.aims)
+      if ((left -= aim.share) < 0) return aim.box;
+    return s_.aims.back().box;
+  }
+
   // Towards the middle of the region, more or less. From within the region any way is towards it.
   Viewpoint looking_from(const Vector3d& p) {
-    const Vector3d middle = s_.region.center();
+    const Eigen::AlignedBox3d& aim = aimed_at();
+    const Vector3d middle = aim.center();
     const Vector3d towards = middle - p;
     const double yaw = std::atan2(towards.y(), towards.x());
     const double pitch = std::atan2(towards.z(), towards.head<2>().norm());
     double wide = 0, high = 0;
-    const bool above = (p.head<2>().array() >= s_.region.min().head<2>().array()).all() &&
-                       (p.head<2>().array() <= s_.region.max().head<2>().array()).all();
+    const bool above = (p.head<2>().array() >= aim.min().head<2>().array()).all() &&
+                       (p.head<2>().array() <= aim.max().head<2>().array()).all();
     for (int corner = 0; corner < 8; ++corner) {
-      const Vector3d to =
-          s_.region.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)) - p;
+      const Vector3d to = aim.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)) - p;
       const double turn = std::atan2(to.y(), to.x()) - yaw;
       wide = std::max(wide, std::abs(std::remainder(turn, 2 * std::numbers::pi)));
       high = std::max(high, std::abs(std::atan2(to.z(), to.head<2>().norm()) - pitch));

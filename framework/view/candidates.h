@@ -12,8 +12,15 @@
 
 namespace lapwing {
 
+// A part of the region that views look at: one of several, drawn by their shares.
+struct ViewAim {
+  Eigen::AlignedBox3d box;
+  double share = 1;  // above 0, in any unit
+};
+
 struct CandidateSettings {
-  Eigen::AlignedBox3d region;          // of interest
+  Eigen::AlignedBox3d region;          // of interest, all of it
+  std::vector<ViewAim> aims = {};      // empty: views look at all of the region
   Eigen::AlignedBox3d allowed;         // where the body's middle may be
   Eigen::Vector3d half = {1, 1, 0.5};  // m, half edges of the vehicle's box
   double step = 1.5;                   // m between neighbours at the region
@@ -40,9 +47,9 @@ struct Candidates {
 // Places grow from the given viewpoints along the axes, in random order, until there is nothing
 // new. Where they are more than `most` candidates can have, places are left out evenly, so that the
 // farthest corner that the steps led to keeps its share. Each place then has as many views as
-// `most` allows, which look towards the middle of the region, turned by a normal error as wide as
-// half the angle that the region's box takes. A pitch beyond the camera's limits is drawn again.
-// The same seed gives the same candidates.
+// `most` allows, which look towards the middle of the region or of one of its parts, turned by a
+// normal error as wide as half the angle that its box takes. A pitch beyond the camera's limits is
+// drawn again. The same seed gives the same candidates.
 //
 // InputError: no given viewpoint, one whose box is not free or lies outside `allowed` (naming it),
 // an empty region, settings that make no sense. Cancelled when told to stop.

@@ -2,6 +2,7 @@
 #include "framework/view/motions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "framework/core/error.h"
@@ -56,6 +57,20 @@ std::vector<Pair> neighbour_pairs(const std::vector<Viewpoint>& viewpoints,
 
 enum class Outcome { blocked, straight, planned, cancelled };
 
+// Iterations of a search in a small box, where a planner's own limit is meant for wide spaces.
+constexpr std::int64_t kNearIterations = 500;
+
+// Around all ways between two places that are not longer than `length`, m: around the ellipsoid
+// whose foci the places are.
+Eigen::AlignedBox3d box_of_ways(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                double length) {
+  const Eigen::Vector3d middle = (from + to) / 2, along = (to - from) / 2;
+  // Half axes: length / 2 along the line, sqrt(length^2 / 4 - |along|^2) across.
+  const double across = std::max(0.0, length * length / 4 - along.squaredNorm());
+  const Eigen::Vector3d reach = (along.cwiseAbs2().array() + across).sqrt();
+  return {middle - reach, middle + reach};
+}
+
 }  // namespace
 
 MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& viewpoints,
@@ -103,10 +118,15 @@ MotionGraph find_motions(const FreeSpace& space, const std::vector<Viewpoint>& v
       return;
     }
     if (!settings.planner) return;
-    PathProblem problem{&space, from, to, settings.half, settings.allowed};
+    PathProblem problem{&space, from, to, settings.half,
+                        settings.search_near
+                            ? box_of_ways(from, to, settings.longest_detour * straight)
+                                  .intersection(settings.allowed)
+                            : settings.allowed};
     PathRequest request;
     request.seed = seeds.split(k).bits();
     request.cancellation = cancellation;
+    if (settings.search_near) request.iteration_limit = kNearIterations;
     PathResult path = settings.planner->plan(problem, request);
     if (path.report.status != PathStatus::found ||
         path.report.length > settings.longest_detour * straight)

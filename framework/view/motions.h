@@ -26,6 +26,9 @@ struct MotionSettings {
   const PathPlanner* planner = nullptr;
   // A way round that is longer than this many straight lines is none.
   double longest_detour = 4;
+  // Whether a planner searches only where ways of that length can lead. Elsewhere it finds more
+  // ways, and takes long to find none: where zones and a pilot's sight part many pairs.
+  bool search_near = false;
 };
 
 // Between two viewpoints, both ways.

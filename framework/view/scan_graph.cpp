@@ -100,8 +100,9 @@ std::shared_ptr<const ViewScore> score_views(const VisibleVoxels& visible,
                                              const CancellationToken* cancellation,
                                              const Share& share, ScanGraph& graph) {
   const std::vector<Viewpoint>& views = graph.candidates.viewpoints;
-  VoxelNumbers numbers(visible.settings().region, visible.map().grid());
-  ViewScoreBuilder builder(0);
+  const InterestRegion& region = visible.settings().region;
+  VoxelNumbers numbers(region.bounds(), visible.map().grid());
+  ViewScoreBuilder builder = ViewScoreBuilder::growing(region.largest_weight());
   std::vector<std::vector<Told>> told(kChunk);
   std::vector<ViewScore::Contribution> contributions;
   const auto look = [&](std::size_t view, std::size_t place) {
@@ -113,18 +114,20 @@ std::shared_ptr<const ViewScore> score_views(const VisibleVoxels& visible,
   };
   const auto keep = [&](std::size_t place) {
     contributions.clear();
-    const std::size_t before = numbers.count();
-    for (const Told& t : told[place])
-      contributions.push_back({numbers.number(t.voxel), std::min(t.amount, 1.0f)});
-    builder.add_voxels(numbers.count() - before);
+    for (const Told& t : told[place]) {
+      const auto weight = static_cast<float>(visible.weight(t.voxel));
+      const std::size_t before = numbers.count();
+      contributions.push_back({numbers.number(t.voxel), weight * std::min(t.amount, 1.0f)});
+      if (numbers.count() > before) builder.add_voxel(weight);
+    }
     builder.add_view(contributions);
   };
   in_chunks(views.size(), threads, cancellation, share, "view", look, keep);
   graph.voxels = numbers.take();
   if (graph.voxels.empty())
-    throw InputError("none of " + std::to_string(views.size()) +
-                     " candidates sees the region of interest: it has no surface, or "
-                     "lies beyond the range of the rays");
+    throw NothingSeen("none of " + std::to_string(views.size()) +
+                      " candidates sees the region of interest: it has no surface, or "
+                      "lies beyond the range of the rays");
   return std::make_shared<const ViewScore>(std::move(builder).take());
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "framework/core/error.h"
 #include "framework/core/progress.h"
 #include "framework/path/free_space.h"
 #include "framework/view/candidates.h"
@@ -25,6 +26,12 @@ struct ScanGraphSettings {
   int coarse_across = 120;
   std::uint64_t seed = 1;
   int threads = 1;
+};
+
+// No candidate sees anything of the region.
+class NothingSeen : public InputError {
+ public:
+  using InputError::InputError;
 };
 
 struct ScanGraph {

@@ -44,20 +44,21 @@ double way_out(const Vector3d& from, const Vector3d& direction, const Eigen::Ali
 
 }  // namespace
 
-TrueSurface::TrueSurface(std::shared_ptr<const MeshScene> scene, const Eigen::AlignedBox3d& region,
+TrueSurface::TrueSurface(std::shared_ptr<const MeshScene> scene, const InterestRegion& region,
                          const Eigen::AlignedBox3d& room, int threads)
     : scene_(std::move(scene)) {
   const TriangleMesh& mesh = scene_->mesh();
+  const Eigen::AlignedBox3d& bounds = region.bounds();
   double whole = 0;  // of triangles that may come into the region
   const auto near = [&](std::size_t t) {
     Eigen::AlignedBox3d box(mesh.corner(t, 0));
     box.extend(mesh.corner(t, 1)).extend(mesh.corner(t, 2));
-    return region.intersects(box);
+    return bounds.intersects(box);
   };
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     if (near(t)) whole += mesh.area(t);
   // A ground far beyond the region takes places that do not count.
-  const double held = std::min(whole, 20 * region.sizes().maxCoeff() * region.sizes().maxCoeff());
+  const double held = std::min(whole, 20 * bounds.sizes().maxCoeff() * bounds.sizes().maxCoeff());
   area_of_place_ = held / kPlaces;
   if (!(area_of_place_ > 0)) throw InputError("the region of interest holds no surface");
   std::vector<Place> tried;
@@ -81,7 +82,7 @@ TrueSurface::TrueSurface(std::shared_ptr<const MeshScene> scene, const Eigen::Al
   }
   const std::vector<Vector3d> ways = directions();
   Eigen::AlignedBox3d space = room;
-  space.extend(region);
+  space.extend(bounds);
   std::vector<char> counts(tried.size(), 0);
   parallel_for(tried.size(), threads, [&](std::size_t k) {
     const Vector3d from = tried[k].position + kAway * tried[k].normal;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "framework/geometry/interest_region.h"
 #include "framework/geometry/mesh_scene.h"
 #include "framework/view/viewpoint.h"
 
@@ -18,7 +19,7 @@ namespace lapwing {
 class TrueSurface {
  public:
   // The same for any number of threads. InputError for a region without such a surface.
-  TrueSurface(std::shared_ptr<const MeshScene> scene, const Eigen::AlignedBox3d& region,
+  TrueSurface(std::shared_ptr<const MeshScene> scene, const InterestRegion& region,
               const Eigen::AlignedBox3d& room, int threads);
 
   double area() const;  // m^2, of all places that count

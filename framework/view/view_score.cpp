@@ -61,6 +61,7 @@ ViewScoreBuilder::ViewScoreBuilder(std::size_t voxels, std::span<const double> w
     }
     largest = std::max(largest, weights[v]);
   }
+  largest_ = largest;
   score_.unit_ = unit_for(largest, kCoverageBits);
   score_.capacities_.resize(voxels);
   for (std::size_t v = 0; v < voxels; ++v) {
@@ -70,13 +71,23 @@ ViewScoreBuilder::ViewScoreBuilder(std::size_t voxels, std::span<const double> w
   sums_.resize(voxels);
 }
 
-void ViewScoreBuilder::add_voxels(std::size_t count) {
-  const std::size_t voxels = score_.voxels() + count;
-  if (voxels > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError("a view score has fewer than 2^32 voxels, not " + std::to_string(voxels));
-  }
-  score_.capacities_.resize(voxels, static_cast<Amount>(std::lround(1 / score_.unit_)));
-  sums_.resize(voxels);
+ViewScoreBuilder ViewScoreBuilder::growing(double largest) {
+  if (!(largest > 0) || !sound_amount(largest))
+    throw InputError("the largest weight of a voxel must be a finite number above 0");
+  ViewScoreBuilder builder(0);
+  builder.largest_ = largest;
+  builder.score_.unit_ = unit_for(largest, kCoverageBits);
+  return builder;
+}
+
+void ViewScoreBuilder::add_voxel(double weight) {
+  if (score_.voxels() >= std::numeric_limits<std::uint32_t>::max())
+    throw InputError("a view score has fewer than 2^32 voxels");
+  if (!sound_amount(weight) || weight > largest_)
+    throw InputError("the weight of voxel " + std::to_string(score_.voxels()) +
+                     " must be a finite number from 0 to " + std::to_string(largest_));
+  score_.capacities_.push_back(static_cast<Amount>(std::lround(weight / score_.unit_)));
+  sums_.push_back(0);
 }
 
 void ViewScoreBuilder::add_view(std::span<const ViewScore::Contribution> contributions) {

@@ -59,8 +59,12 @@ class ViewScoreBuilder {
   // Amounts are rounded to 2^-20 of the largest weight's next power of two. InputError otherwise.
   explicit ViewScoreBuilder(std::size_t voxels, std::span<const double> weights = {});
 
-  // More voxels, of weight 1, behind those that there are. InputError for too many.
-  void add_voxels(std::size_t count);
+  // Without voxels so far, and with weights of up to `largest` to come: above 0, finite.
+  static ViewScoreBuilder growing(double largest);
+
+  // One more voxel, behind those that there are. InputError for too many, and for a weight that is
+  // larger than those that the amounts are rounded for.
+  void add_voxel(double weight = 1);
 
   // The next view. Voxels in any order, each at most once. InputError names view and voxel.
   void add_view(std::span<const ViewScore::Contribution> contributions);
@@ -69,6 +73,7 @@ class ViewScoreBuilder {
 
  private:
   ViewScore score_;
+  double largest_ = 1;              // of all weights
   std::vector<std::int64_t> sums_;  // per voxel, of all views
   std::vector<ViewScore::Contribution> sorted_;
 };

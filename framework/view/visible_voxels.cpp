@@ -11,24 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The voxels whose centres lie in a box.
-VoxelBox voxels_within(const Eigen::AlignedBox3d& box, const VoxelGrid& grid) {
-  std::array<int, 3> lower, upper;
-  for (int axis = 0; axis < 3; ++axis) {
-    lower[axis] = grid.index(box.min()[axis]);
-    if (grid.center(lower[axis]) < box.min()[axis]) ++lower[axis];
-    upper[axis] = grid.index(box.max()[axis]);
-    if (grid.center(upper[axis]) > box.max()[axis]) --upper[axis];
-    if (lower[axis] > upper[axis])
-      throw InputError("the region of interest is thinner than a voxel of the map");
-  }
-  const auto key = [](const std::array<int, 3>& i) {
-    return VoxelKey{static_cast<std::uint16_t>(i[0]), static_cast<std::uint16_t>(i[1]),
-                    static_cast<std::uint16_t>(i[2])};
-  };
-  return {key(lower), key(upper)};
-}
-
 // The same view with `across` pixels a row.
 Pinhole coarser(const Pinhole& fine, int across) {
   const double share = static_cast<double>(across) / fine.width;
@@ -50,18 +32,15 @@ VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<con
   check_camera(settings_.pinhole, settings_.range);
   if (!(settings_.usable_range > 0) || !(settings_.usable_incidence > 0))
     throw InputError("the usable range and angle of an image must be above 0");
-  if (settings_.region.isEmpty() || !settings_.region.min().allFinite() ||
-      !settings_.region.max().allFinite())
-    throw InputError("the region of interest is empty");
+  region_.emplace(settings_.region, map_->grid());
+  const Eigen::AlignedBox3d& bounds = settings_.region.bounds();
   const Vector3d reach = Vector3d::Constant(settings_.range);
-  if (!map_->grid().contains(settings_.region.min() - reach) ||
-      !map_->grid().contains(settings_.region.max() + reach))
+  if (!map_->grid().contains(bounds.min() - reach) || !map_->grid().contains(bounds.max() + reach))
     throw InputError(
         "the region of interest is too far from the origin for a map of this resolution");
-  region_ = voxels_within(settings_.region, map_->grid());
   // Wider by a voxel: rays are only to be spared what cannot count.
   const Vector3d margin = Vector3d::Constant(map_->grid().resolution());
-  reach_ = {settings_.region.min() - margin, settings_.region.max() + margin};
+  reach_ = {bounds.min() - margin, bounds.max() + margin};
   const bool fewer = settings_.across > 0 && settings_.across < settings_.pinhole.width;
   rays_ =
       tiled_pixel_rays(fewer ? coarser(settings_.pinhole, settings_.across) : settings_.pinhole);
@@ -109,7 +88,7 @@ std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
     hits.resize(rays.size());
     map_->cast(rays, hits);
     for (const MapRayHit& hit : hits) {
-      if (hit.state == VoxelState::free || !region_.contains(hit.voxel)) continue;
+      if (hit.state == VoxelState::free || !region_->contains(hit.voxel)) continue;
       if (keys.empty() || keys.back() != hit.voxel) keys.push_back(hit.voxel);
     }
   }

@@ -4,10 +4,13 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "framework/geometry/interest_region.h"
 #include "framework/geometry/mesh_scene.h"
 #include "framework/map/map.h"
+#include "framework/map/region_voxels.h"
 #include "framework/view/view_information.h"
 #include "framework/view/viewpoint.h"
 
@@ -17,7 +20,7 @@ struct SightSettings {
   Pinhole pinhole{600, 450, 345, 345, 299.5, 224.5};  // thesis 4.4.4
   double range = 60;                                  // m, of the rays (reading 4.11)
   // Only voxels with their centre inside count (reading 4.1).
-  Eigen::AlignedBox3d region;
+  InterestRegion region;
   // m: where camera to surface and camera to voxel differ by as much or more, the surface that the
   // ray meets is not the voxel's, and its normal is not known (reading 4.3).
   double normal_tolerance = 0.5;
@@ -40,12 +43,14 @@ struct SeenVoxel {
 class VisibleVoxels {
  public:
   // InputError for a camera without pixels or focal length, ranges or an angle that are not above
-  // 0, an empty region, or a range that reaches out of the largest map from the region.
+  // 0, what RegionVoxels refuses, or a range that reaches out of the largest map from the region.
   VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<const MeshScene> prior,
                 SightSettings settings);
 
   const SightSettings& settings() const { return settings_; }
   const Map& map() const { return *map_; }
+  // What a voxel counts; 0 outside the region.
+  double weight(const VoxelKey& voxel) const { return region_->weight(voxel); }
 
   // In the order of keys, each once: occupied and unknown voxels of the region that are usable.
   std::vector<SeenVoxel> seen_from(const Viewpoint& viewpoint) const;
@@ -65,9 +70,9 @@ class VisibleVoxels {
   std::shared_ptr<const Map> map_;
   std::shared_ptr<const MeshScene> prior_;
   SightSettings settings_;
-  VoxelBox region_;
-  Eigen::AlignedBox3d reach_;          // around it
-  std::vector<Eigen::Vector3d> rays_;  // unit vectors of the camera, tile by tile
+  std::optional<RegionVoxels> region_;  // always there once constructed
+  Eigen::AlignedBox3d reach_;           // around it
+  std::vector<Eigen::Vector3d> rays_;   // unit vectors of the camera, tile by tile
 };
 
 // Whether two views can be matched: they share at least `alpha` of the mean of what they see (4.8).

@@ -198,7 +198,7 @@ function M.fly(run, shot, terms)
   if outcome.holds then outcome, told = one_problem.improved(run, outcome, told) end
   local notes = outcome.holds and told.notes or with_constraint(run, outcome, told.notes)
   return finished(run, outcome, { notes = notes, figures = told.figures,
-                                  certified = outcome.holds and 1 or nil })
+                                  certified = outcome.holds and 1 or told.certified })
 end
 
 return M

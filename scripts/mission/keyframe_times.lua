@@ -1,9 +1,13 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Times and unwrapped yaw angles of keyframes. Functions return new lists of keyframes and do not
 -- change their arguments.
+local film_keyframes = require "mission.film_keyframes"
+
 local times = {}
 
-local SHORTEST_LEG = 1  -- s, between keyframes without times
+local SHORTEST_LEG = 1       -- s, between keyframes without times
+local SHORTEST_LEAST = 1e-3  -- s, below which nothing is known of a leg
+local CERTAIN = 0.99         -- share of the least time, for the tolerances of the verifier
 
 -- Seconds for a leg at half the vehicle's speed, and for speeding up and slowing down.
 local function leg_time(from, to, vehicle)
@@ -185,9 +189,39 @@ function times.fastest_leg(keyframes, vehicle, miss, late, speed_limit)
   return least, sentence
 end
 
+-- Seconds that a leg between two keyframes takes at least: straight ahead at the speeds of the
+-- vehicle, each end missed as far as the certificate allows, and early or late by `late` s.
+-- `ends`: {first, last}, whether the film begins or ends with the leg.
+function times.least_of_leg(from, to, vehicle, options, ends, late)
+  local d = lapwing.vector(to.position) - from.position
+  local miss = options.hard or film_keyframes.MISS
+  local function left(distance) return math.max(0, distance - 2 * miss) end
+  local across, speed = left(lapwing.norm { d.x, d.y }), vehicle.speed_across
+  local least = across / speed
+  local rests = (ends.first and options.start == "rest" and 1 or 0)
+    + (ends.last and options.finish == "rest" and 1 or 0)
+  -- Models without forces have their speed at once. Others reach it after v^2 / 2a metres.
+  if options.model.type == "quadrotor" and rests > 0 then
+    local a = vehicle.acceleration_across
+    if 2 * a * across <= rests * speed ^ 2 then
+      least = math.sqrt(2 * rests * across / a)
+    else
+      least = least + rests * speed / (2 * a)
+    end
+  end
+  least = math.max(least, left(d.z) / vehicle.climb_speed, left(-d.z) / vehicle.descent_speed)
+  if options.speed_limit then
+    least = math.max(least, left(lapwing.norm(d)) / options.speed_limit)
+  end
+  return math.max(SHORTEST_LEAST, CERTAIN * least - 2 * late)
+end
+
+-- s, that one battery lasts.
+function times.battery(run, vehicle) return run.options.battery or vehicle.flight_time end
+
 -- Refuses a flight of `duration` seconds that is longer than the battery lasts.
 function times.check_battery(run, vehicle, duration)
-  local battery = run.options.battery or vehicle.flight_time
+  local battery = times.battery(run, vehicle)
   if duration <= battery then return end
   run:fail("duration", string.format("%.4g s of flight are more than the %g s that %s", duration,
     battery, run.options.battery and "`battery` allows"

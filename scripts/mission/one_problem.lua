@@ -81,10 +81,11 @@ local function cost_of(run, outcome)
                                                  times_of(request))
 end
 
--- Whether the film asks for more than the flight, and for times that are not all given.
+-- Whether the film asks for more than the flight, or its times are a makeshift, and not all given.
 function M.matters(run, outcome)
   local o = run.options
-  return (outcome.camera or #o.costs > 0 or #o.constraints > 0)
+  local memory = outcome.request.memory
+  return (outcome.camera or #o.costs > 0 or #o.constraints > 0 or memory.straight)
     and film_times.open(outcome.request.wishes)
 end
 
@@ -117,7 +118,8 @@ function M.improved(run, outcome, told)
     return { notes = notes, figures = figures }
   end
   local function kept(why, more)
-    notes[#notes + 1] = "the times are those found without the camera: " .. why
+    notes[#notes + 1] = (told.notes_if_better and "no better times were found from there: "
+                         or "the times are those found without the camera: ") .. why
     return outcome, with_figures(more)
   end
   if horizons.wanted(run, outcome.request) then return kept("the film is solved in parts") end
@@ -139,6 +141,7 @@ function M.improved(run, outcome, told)
                               costs.cost_together, costs.cost_apart), costs)
   end
   costs.duration, costs.path_error = film.request.duration, figures.path_error
+  if told.notes_if_better then notes = told.notes_if_better end
   return film, with_figures(costs)
 end
 

@@ -5,36 +5,36 @@
 --   local scan = require "mission.scan"
 --   return scan.of_scene { name = "church", scene = "church", tour = { budget = 300 } }
 --
--- A first flight at a safe height gives depth images, and these give a map and a mesh. The planner
--- knows nothing else (reading 4.9). Candidate views in free space are evaluated in the map. Paths
--- are planned between views whose images match. A tour solver selects a tour within the budget,
--- which is flown from view to view. A vehicle that cannot stand still takes images in passing
--- (scan_passing.lua).
+-- A first flight gives depth images, and these give a map and a mesh, which are all that is known
+-- (reading 4.9). Candidate views are evaluated in the map. Paths are planned between views whose
+-- images match. A tour solver selects a tour within the budget, flown from view to view.
 local mission_of = require "mission.mission_of"
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
 local fleet = require "mission.scan_fleet"
+local images = require "mission.scan_images"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
+local polygons = require "mission.scan_polygons"
 local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
 local tours = require "mission.scan_tours"
 local usable = require "mission.scan_usable"
+local views = require "mission.scan_views"
 local words = require "mission.scan_words"
+local zones = require "mission.scan_zones"
 local DECLARATIONS = require "mission.scan_options"
 
 local M = {}
 local TIGHTER = 4          -- times that a tour which flies too long is planned on less
 
--- What options say together, before anything is flown.
 local function check(run)
   local o = run.options
   tours.check(run)
   if o.rounds > 1 and not (o.scene or o.input) then
-    run:fail("rounds", "rounds after the first need a simulation: "
-                       .. "name a scene or an input, or plan each round from the files of the "
-                       .. "round before")
+    run:fail("rounds", "rounds after the first need a simulation: name a scene or an input, or "
+                       .. "plan each round from the files of the round before")
   end
   for axis = 1, 3 do
     if not (o.body[axis] > 0) then run:fail("body", "half edges must be above 0 m") end
@@ -47,11 +47,16 @@ local function graph_of(run, known, vehicle, starts, finish)
   local region = space.region_of(run)
   local gimbal = vehicle.gimbal
   local c = o.candidates
-  return run:scan_graph {
-    prior = known, vehicle = vehicle, region = region,
-    allowed = space.room(run, starts),
-    starts = first.few(starts, finish, c.most), needed = finish, loops = fleet.wanted(run),
-    fixed = o.start ~= nil or o.exploration.images > 0, body = o.body, mesh_room = o.mesh_room,
+  local room = space.room(run, starts)
+  local most = views.wanted(run) and math.huge or c.most
+  return run:scan_graph(views.settle(run, {
+    prior = known, vehicle = vehicle, region = region, rules = zones.rules(run), allowed = room,
+    starts = first.few(starts, finish, most), loops = fleet.wanted(run),
+    needed = (o.start or o.finish or #o.fleet.starts > 0 or o.exploration.images > 0) and finish
+      or 0,
+    fixed = o.start ~= nil or #o.fleet.starts > 0 or o.exploration.images > 0,
+    body = zones.body(run),
+    mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
       step_growth = c.step_growth,
@@ -62,7 +67,7 @@ local function graph_of(run, known, vehicle, starts, finish)
     usable_range = usable.range(run), usable_incidence_deg = o.usable.incidence_deg,
     flight = o.flight,
     information = o.information, planner = o.planner,
-  }
+  }))
 end
 
 -- What the mission was asked for, and what could have been had.
@@ -112,12 +117,13 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
     notes[#notes + 1] = little
     local apart = words.cut_off(graph)
     notes[#notes + 1] = apart
+    zones.add_notes(run, graph, notes)
     local legs = tours.legs(run, vehicle, tour, notes, begin)
     begin("flight")
     local plan = run:scan_plan {
-      tour = tour, legs = legs, margin = o.margin, budget = asked,
+      tour = tour, legs = legs, margin = zones.margin(run), budget = asked,
       closed_loop_required = o.closed_loop == "required",
-      notes = notes, explored = explored,
+      notes = notes, explored = explored, pixel_error = o.pixel_error,
       figures = words.figures(graph, tour, asked, evaluations, explored),
     }
     -- Corners and rests may take a little more than the legs one by one.
@@ -137,6 +143,7 @@ local function planned(run)
   local vehicle = run:vehicle(o.vehicle)
   local in_passing = smooth.check(run, vehicle)
   passing.check(run, vehicle, in_passing)
+  views.check(run, in_passing)
   exploration.check(run)
   fleet.check(run, vehicle, in_passing)
   local seconds = exploration.seconds(run, vehicle, tours.budget(run))
@@ -144,6 +151,7 @@ local function planned(run)
   local known, poses, surface, explored =
     first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
   local starts, finish
+  poses = views.poses(run, known, poses)
   if not in_passing then starts, finish = fleet.starts(run, poses) end
   local plan
   for round = 1, o.rounds do
@@ -173,16 +181,20 @@ local function planned(run)
   return plan
 end
 
-local function mission(given) return mission_of("scan", DECLARATIONS, given, planned) end
-
--- Likewise of a surveyor's data, which are known in place of a first flight.
-local function mission_with(source)
+-- A function that makes scans. `source(run)` states first what replaces a simulated first flight.
+local function made(source, declarations)
   return function(given)
-    return mission_of("scan", DECLARATIONS, given, function(run)
-      site.expect(run, source)
+    return mission_of("scan", declarations or DECLARATIONS, polygons.written_out(given), function(run)
+      if source then source(run) end
       return planned(run)
     end)
   end
+end
+local mission = made()
+local function surveyed(kind) return made(function(run) site.expect(run, kind) end) end
+-- Images of a real first flight, which `reader(run)` reads; `own`: the option of their kind.
+local function photographed(own, reader)
+  return made(function(run) images.expect(run, reader) end, images.declarations(DECLARATIONS, own))
 end
 
 -- A scene of scripts/scene, a mesh file of the user (`--set input=PATH`), or files of a real flight
@@ -195,9 +207,15 @@ M.of_mesh = mission
 M.of_prior = mission
 -- A point cloud (`--set input=PATH`).
 ---@type fun(given: lapwing.scan.of_cloud): lapwing.mission
-M.of_cloud = mission_with("cloud")
+M.of_cloud = surveyed("cloud")
 -- A raster of heights (`--set input=PATH`).
 ---@type fun(given: lapwing.scan.of_terrain): lapwing.mission
-M.of_terrain = mission_with("terrain")
+M.of_terrain = surveyed("terrain")
+-- Depth images with poses (`--set folder=PATH`).
+---@type fun(given: lapwing.scan.of_images): lapwing.mission
+M.of_images = photographed(images.DEPTH, images.depth_images)
+-- A COLMAP model (`--set folder=PATH`).
+---@type fun(given: lapwing.scan.of_colmap): lapwing.mission
+M.of_colmap = photographed(images.COLMAP, images.colmap)
 
 return M

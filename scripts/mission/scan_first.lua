@@ -2,9 +2,11 @@
 -- The first flight of a scan and its results (thesis 4.3): a map, a mesh, free places. Only the
 -- simulator uses the scene itself.
 local exploration = require "mission.scan_exploration"
+local images = require "mission.scan_images"
 local patterns = require "mission.scan_patterns"
 local site = require "mission.scan_site"
 local space = require "mission.scan_space"
+local zones = require "mission.scan_zones"
 
 local M = {}
 
@@ -20,7 +22,7 @@ local function check_prior(run)
   if not (o.start or #o.fleet.starts > 0 or flown_in and #o.flights > 0) then
     lacks[1], give[1] = "the start of the tour", "start = {x, y, z}"
   end
-  if not (flown_in or o.region.lower and o.region.upper) then
+  if not (flown_in or #o.regions > 0 or o.region.lower and o.region.upper) then
     lacks[#lacks + 1] = "the region of interest"
     give[#give + 1] = "region = { lower = {x, y, z}, upper = {x, y, z} }"
   end
@@ -41,12 +43,14 @@ function M.check(run)
                                     o.scene))
   end
   site.check(run)
+  images.check(run)
   if not o.input and (o.ground or o.unit or o.up ~= "file") then
     run:fail(o.ground and "ground" or o.unit and "unit" or "up",
              "is for the mesh file of input, which is not set (the mesh of a prior "
              .. "is in the frame of its map)")
   end
   check_prior(run)
+  zones.check(run)
   local region = o.region
   if region.lower and region.upper then
     for axis = 1, 3 do
@@ -124,7 +128,7 @@ end
 -- the box `air`, if there is one.
 local function open_air(run, known, surface, poses, air)
   local o, region = run.options, space.region_of(run)
-  local margin = o.body[1] + 1
+  local margin = zones.body(run)[1] + 1
   local lower = { region.lower[1] - o.reach, region.lower[2] - o.reach, space.safe_height(run) }
   local upper = { region.upper[1] + o.reach, region.upper[2] + o.reach, space.ceiling_of(run) }
   for _, pose in ipairs(poses) do
@@ -138,7 +142,7 @@ local function open_air(run, known, surface, poses, air)
     upper[axis] = math.max(upper[axis], air.upper[axis])
   end
   for axis = 1, 2 do lower[axis], upper[axis] = lower[axis] - margin, upper[axis] + margin end
-  upper[3] = upper[3] + o.body[3]
+  upper[3] = upper[3] + zones.body(run)[3]
   known:open_air { lower = lower, upper = upper, surface = surface }
 end
 
@@ -153,9 +157,10 @@ end
 
 -- The prior of a surveyor's data, and places over it, from which candidates grow.
 local function surveyed(run, air)
-  local known, poses = new_prior(run), survey_poses(run)
+  local known, poses = new_prior(run), zones.allowed(run, survey_poses(run))
+  zones.check_home(run, space.room(run, poses), space.safe_height(run))
   run:phase("prior mesh")
-  site.add(run, known, space.resolution(run), space.safe_height(run))
+  site.add(run, known, space.safe_height(run))
   open_air(run, known, nil, poses, air)
   return known, poses
 end
@@ -166,6 +171,13 @@ end
 function M.knowledge(run, seconds, vehicle, air)
   if site.wanted(run) then return surveyed(run, air) end
   local o = run.options
+  if images.wanted(run) then
+    local known, allowed = new_prior(run), space.room(run, {})
+    local function open(prior) open_air(run, prior, nil, {}, air) end
+    zones.check_home(run, allowed, math.min(space.safe_height(run), allowed.upper[3]))
+    local places = images.knowledge(run, known, space.range(run), allowed, o.safe_height and open)
+    return known, zones.allowed(run, places)
+  end
   local files, surface = space.prior_files(run), space.surface_of(run)
   if not surface and not files then
     lapwing.fail("no scene: name a scene, a mesh with --set input=PATH (.obj, .ply, .dae, "
@@ -177,6 +189,10 @@ function M.knowledge(run, seconds, vehicle, air)
     return known, poses, surface, done
   end
   local known, poses = new_prior(run), {}
+  if surface and not (files and #o.flights == 0) then
+    poses = zones.allowed(run, survey_poses(run))
+  end
+  zones.check_home(run, space.room(run, poses), space.safe_height(run))
   if files then
     known:load { map = files.map, mesh = files.mesh, camera = depth_camera(run),
                  range = space.range(run) }
@@ -185,7 +201,6 @@ function M.knowledge(run, seconds, vehicle, air)
     if not files then warnings[run] = check_range(run) end
     sparse[run] = space.sparse(run)
     if sparse[run] then print("note: " .. sparse[run]) end
-    poses = survey_poses(run)
     run:phase("first flight")
     open_air(run, known, surface, poses, air)
     M.look(run, known, surface, poses)

@@ -6,6 +6,7 @@ local patterns = require "mission.scan_patterns"
 local space = require "mission.scan_space"
 local tours = require "mission.scan_tours"
 local words = require "mission.scan_words"
+local zones = require "mission.scan_zones"
 
 local M = {}
 local TIGHTER = 4  -- times that tours which fly too long are planned on less
@@ -25,7 +26,8 @@ M.DECLARATIONS = {
       .. "per drone; absent: `start` for all", table = {
         { name = "position", type = "numbers", size = 3, unit = "m", required = true,
           summary = "place in the air, world" } } },
-    number("separation", 5, "m", "smallest distance of two drones in flight"),
+    number("separation", 5, "m", "smallest distance of two drones in flight, by their true "
+           .. "positions; plans keep it and twice gps_accuracy; 0: any"),
     number("swap", 60, "s",
            "smallest time between two tours of a drone: landing, change of the battery, climb"),
     number("reserve", 60, "s", "flight time that is left of a battery after its tour") } },
@@ -53,6 +55,9 @@ function M.check(run, vehicle, in_passing)
   if in_passing then
     run:fail("batteries", "a vehicle that takes its images in passing flies one tour: "
                           .. "expected one battery")
+  end
+  if o.exploration.images > 0 then
+    run:fail("exploration", "an exploration and its tour share one battery: expected one battery")
   end
   if o.finish then
     run:fail("finish", "every tour of several batteries ends where it began: leave finish out")
@@ -139,7 +144,8 @@ local function flown(run, vehicle, team, asked, begin)
       local legs = tours.legs(run, vehicle, tour, notes, begin)
       begin("flight")
       local plan = run:scan_plan {
-        tour = tour, legs = legs, margin = o.margin, budget = asked, notes = notes,
+        tour = tour, legs = legs, margin = zones.margin(run), budget = asked, notes = notes,
+        part_of_fleet = true,
         closed_loop_required = o.closed_loop == "required",
         figures = { score = tour.score, seconds = tour.seconds, images = tour.images },
       }
@@ -160,12 +166,22 @@ local function notes_of(run, graph, known, explored, plans)
     notes[#notes + 1] = apart
     print("warning: " .. apart)
   end
+  for drone in ipairs(o.fleet.starts) do
+    notes[#notes + 1] = words.cut_off_start(graph, drone)
+  end
+  zones.add_notes(run, graph, notes)
   if #plans < o.batteries then
     notes[#notes + 1] = string.format(
       "%d of %d batteries are flown: no view adds information to the tours of the others",
       #plans, o.batteries)
   end
   return notes
+end
+
+-- Between planned positions: each drone may be elsewhere by the accuracy of its position.
+local function separation(run)
+  local o = run.options
+  return o.fleet.separation > 0 and o.fleet.separation + 2 * o.gps_accuracy or 0
 end
 
 -- The fleet. `begin(phase)` reports the phase that begins.
@@ -184,8 +200,8 @@ function M.plan(run, graph, vehicle, known, explored, begin)
       local figures = words.figures(graph, team, asked, evaluations, explored)
       figures.batteries, figures.drones, figures.tours = o.batteries, o.drones, #plans
       return run:fleet {
-        team = team, plans = plans, drones = drones, separation = o.fleet.separation,
-        swap = o.fleet.swap, reserve = o.fleet.reserve,
+        team = team, plans = plans, drones = drones, separation = separation(run),
+        swap = o.fleet.swap, reserve = o.fleet.reserve, pixel_error = o.pixel_error,
         notes = notes_of(run, graph, known, explored, plans), figures = figures,
       }
     end

@@ -3,7 +3,10 @@
 local exploration = require "mission.scan_exploration"
 local fleet = require "mission.scan_fleet"
 local passes = require "mission.scan_passes"
+local regions = require "mission.scan_regions"
 local site = require "mission.scan_site"
+local views = require "mission.scan_views"
+local zones = require "mission.scan_zones"
 
 local function number(name, default, unit, summary, more)
   local entry = { name = name, type = "number", default = default, unit = unit, summary = summary }
@@ -53,8 +56,8 @@ local DECLARATIONS = {
     .. "point cloud of `scan.of_cloud`, or raster of heights of `scan.of_terrain`" },
   { name = "ground", type = "boolean", default = false,
     summary = "add a ground plane under the mesh" },
-  number("unit", nil, "m", "metres per unit of the mesh file; absent: as the file says. Of a cloud or raster "
-         .. "without reference system; absent: 1", POSITIVE),
+  number("unit", nil, "m", "metres per unit of the mesh file; absent: as the file says. Of a cloud "
+         .. "or raster without reference system; absent: 1", POSITIVE),
   { name = "up", type = "choice", default = "file", choices = { "file", "x", "y", "z" },
     summary = "axis of the mesh file that points up; file: as the file says" },
   { name = "prior", type = "table",
@@ -97,12 +100,15 @@ local DECLARATIONS = {
     number("sigma", 0, "m", "standard deviation of the depth", { minimum = 0, maximum = 100 }) } },
   number("range", nil, "m", "largest depth; absent: 60 m, up to 200 m if the first flight needs it "
          .. "to see the floor", POSITIVE),
-  { name = "usable", type = "table", summary = "limits within which an image is of use to the model; "
-    .. "`lapwing evaluate scan` judges by the same", table = {
+  { name = "usable", type = "table", summary = "limits within which an image is of use to the "
+    .. "model; `lapwing evaluate scan` judges by the same", table = {
     number("range", nil, "m", "largest distance of a surface; absent: 30 m for a focal length of "
            .. "345 px, in proportion to it; for images in passing, any", POSITIVE),
     number("incidence_deg", 75, "deg", "largest angle between the ray and the normal of a surface",
            { above = 0, maximum = 90 }) } },
+  number("pixel_error", 0.5, "px", "standard deviation of a point's place in an image, for the "
+         .. "predicted accuracy", { above = 0, maximum = 100 }),
+  views.DECLARATION,
   { name = "effort", type = "table", summary = "effort of computing", table = {
     integer("pixels", 0, 0, 10000, "pixels per row in the first flight and in the evaluation of "
             .. "views; 0: those of the camera. The plan keeps the camera"),
@@ -172,6 +178,8 @@ local DECLARATIONS = {
         "solver whose tour local_search improves, or none; absent: cost_benefit" } } },
 }
 
-for _, declared in ipairs(fleet.DECLARATIONS) do DECLARATIONS[#DECLARATIONS + 1] = declared end
+for _, list in ipairs { regions.DECLARATIONS, zones.DECLARATIONS, fleet.DECLARATIONS } do
+  table.move(list, 1, #list, #DECLARATIONS + 1, DECLARATIONS)
+end
 
 return DECLARATIONS

@@ -8,6 +8,7 @@ local passes = require "mission.scan_passes"
 local point_mass = require "mission.point_mass"
 local space = require "mission.scan_space"
 local words = require "mission.scan_words"
+local zones = require "mission.scan_zones"
 
 local M = {}
 
@@ -149,9 +150,9 @@ function M.plan(run, vehicle, known, budget, begin)
   local list, spacing = passes.of(run, vehicle)
   local graph = run:pass_graph {
     prior = known, vehicle = vehicle, information = o.information, region = space.region_of(run),
-    allowed = air, passes = list, body = o.body, mesh_room = o.mesh_room, camera = o.camera,
-    across = o.effort.pixels, range = space.range(run), usable_range = o.usable.range,
-    usable_incidence_deg = o.usable.incidence_deg }
+    allowed = air, passes = list, rules = zones.rules(run), body = zones.body(run),
+    mesh_room = o.mesh_room, camera = o.camera, across = o.effort.pixels, range = space.range(run),
+    usable_range = o.usable.range, usable_incidence_deg = o.usable.incidence_deg }
   local tour, solution = flown(run, vehicle, graph, air, budget, begin)
   local notes = words.notes(run, known, nil, string.format(
     "%d passes %.3g m apart at %.4g m/s, %.4g m high", #list, spacing, passes.speed(run, vehicle),
@@ -161,7 +162,7 @@ function M.plan(run, vehicle, known, budget, begin)
   if little then print("warning: " .. little) end
   begin("flight")
   return run:scan_plan {
-    tour = tour, flight = solution, margin = o.margin, budget = budget,
+    tour = tour, flight = solution, margin = zones.margin(run), budget = budget,
     closed_loop_required = o.closed_loop == "required", notes = notes,
     figures = words.figures(graph, tour, budget, tour.evaluations, nil) }
 end

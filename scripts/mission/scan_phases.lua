@@ -2,6 +2,7 @@
 -- The phases of a scan, for the progress line. Each has a duration in s, measured on one machine.
 -- Only the ratios matter, and the measurements of the run correct them.
 local exploration = require "mission.scan_exploration"
+local images = require "mission.scan_images"
 local site = require "mission.scan_site"
 local space = require "mission.scan_space"
 
@@ -34,7 +35,10 @@ function M.expect(run, seconds, in_passing)
   if exploration.wanted(run) then
     add("exploration", EXPLORE * o.exploration.images)
   elseif site.wanted(run) then
-    add("prior mesh", SURVEYED * site.points(run, space.resolution(run)))
+    add("prior mesh", SURVEYED * site.points(run))
+  elseif images.wanted(run) then
+    add("images", LOOK * all * images.of(run).images)
+    add("prior mesh", MESH * all * images.of(run).images)
   elseif space.surface_of(run) and not (space.prior_files(run) and #o.flights == 0) then
     local images = 0
     for _, flight in ipairs(space.flights_of(run)) do

@@ -7,6 +7,9 @@
 -- stated. A raster tells what is solid: all that is under it; what is above it is open sky.
 -- Everything else is unknown and blocks flight: what lies under roofs and behind overhangs, and
 -- columns without data below the safe height.
+local polygons = require "mission.scan_polygons"
+local resolution = require "mission.scan_resolution"
+
 local M = {}
 
 local LONGEST = 200  -- m, longest line from a scanner
@@ -101,18 +104,22 @@ end
 local function kept(run)
   local o = run.options
   local lower, upper = o.region.lower, o.region.upper
+  if #o.regions > 0 then
+    -- Their outlines alone: the data may be what their heights are above.
+    lower, upper = polygons.across(polygons.prisms(run, "regions", "from", "to", "world"))
+  end
   if not (lower and upper) then return nil, nil end
-  local beyond = o.reach + 2 * math.max(o.body[1], o.body[2]) + o.mesh_room
+  local beyond = o.reach + 2 * (math.max(o.body[1], o.body[2]) + o.gps_accuracy) + o.mesh_room
   return { lower[1] - beyond, lower[2] - beyond }, { upper[1] + beyond, upper[2] + beyond }
 end
 
-local function site_of(run, resolution)
+local function site_of(run)
   if found[run] then return found[run] end
   local o, source = run.options, sources[run]
   local stated = o[source]
   local lower, upper = kept(run)
   local asked = { file = o.input, option = source, system = stated.system, zero = stated.zero,
-                  unit = o.unit, height_unit = stated.height_unit, resolution = resolution,
+                  unit = o.unit, height_unit = stated.height_unit, resolution = resolution.of(run),
                   spacing = o.surface.spacing, lower = lower, upper = upper }
   if source == "cloud" then
     asked.columns, asked.without, asked.scanners = stated.columns, stated.without, stated.scanners
@@ -125,11 +132,17 @@ local function site_of(run, resolution)
   return found[run]
 end
 
-function M.points(run, resolution) return site_of(run, resolution).points end
+function M.points(run) return site_of(run).points end
+
+-- Whether the data tell the ground beneath buildings and plants.
+function M.has_ground(run) return sources[run] == "terrain" and run.options.terrain.ground ~= "" end
+
+-- The lowest and the highest ground within a polygon {x, y, ...}, or nil where none is known.
+function M.ground_within(run, corners) return site_of(run):ground_within(corners) end
 
 -- The default region: as far as the data reach, and `moved` metres above and below.
-function M.box(run, resolution, moved)
-  local site = site_of(run, resolution)
+function M.box(run, moved)
+  local site = site_of(run)
   local lower, upper = site.lower, site.upper
   return { lower = { lower[1], lower[2], lower[3] - moved },
            upper = { upper[1], upper[2], upper[3] + moved } }
@@ -143,8 +156,8 @@ local function free_by(run)
 end
 
 -- Map and mesh of the prior.
-function M.add(run, known, resolution, safe_height)
-  local o, site = run.options, site_of(run, resolution)
+function M.add(run, known, safe_height)
+  local o, site = run.options, site_of(run)
   if site.upper[3] > safe_height then
     run:fail("safe_height", string.format("the data reach up to %.4g m, above %.4g m from which "
                                           .. "all air is said to be free: raise it",

@@ -1,24 +1,26 @@
 -- SPDX-License-Identifier: Apache-2.0
--- The space of a scan: the simulated surface, the region of interest, and the heights and places of
--- its first flights.
+-- The space of a scan: surface, region of interest, heights and places of its first flights.
 local exploration = require "mission.scan_exploration"
+local images = require "mission.scan_images"
 local named_scene = require "mission.named_scene"
 local patterns = require "mission.scan_patterns"
+local regions = require "mission.scan_regions"
+local resolution = require "mission.scan_resolution"
 local site = require "mission.scan_site"
 
 local M = {}
 
 local SAFE_ABOVE = 4      -- m of a region, unless said otherwise
 local FLIGHT_ABOVE, FLIGHT_ABOVE_ELSE = { crosshatch = 5 }, 15  -- m of the safe height, likewise
-local VIEW = 4            -- m from a wall, to look along it: beside the body, round a mesh's bounds
+local VIEW = 4            -- m from a wall, to look along it, round a mesh's bounds
 local DOWN_APART = 0.5    -- heights over the floor, between images that look down
 local FEWEST_DOWN, MOST_DOWN, MOST_CROSSED = 6, 200, 400  -- images, unless said otherwise
 local RANGE = 60          -- m, where nothing asks for more
 local FARTHEST = 200      -- m; farther than that a user says so
 local LOOKS_DOWN = 0.5    -- sine of the pitch below the horizon; what looks flatter is no measure
 local OVERHEAD = 2        -- m of free air above the highest first flight
+local surfaces = setmetatable({}, { __mode = "k" })
 
-local surfaces = setmetatable({}, { __mode = "k" })  -- of runs
 -- What the first flight is flown in, or nothing with files of an earlier one.
 function M.surface_of(run)
   if surfaces[run] then return surfaces[run] end
@@ -34,34 +36,7 @@ function M.surface_of(run)
   return surface
 end
 
-function M.prior_files(run)
-  local files = run.options.prior
-  if not files.map and not files.mesh then return nil end
-  if not (files.map and files.mesh) then
-    run:fail("prior", "expected both a map and a mesh of an earlier flight")
-  end
-  return files
-end
-
-local resolutions = setmetatable({}, { __mode = "k" })  -- of runs
-
--- The edge of the map's voxels: files of an earlier flight have theirs, whatever a quick look asks.
-function M.resolution(run)
-  if resolutions[run] then return resolutions[run] end
-  local o, files = run.options, M.prior_files(run)
-  local edge = o.resolution or exploration.wanted(run) and exploration.RESOLUTION
-               or o.effort.resolution
-  if files then
-    edge = run:map_resolution(files.map)
-    if o.resolution and math.abs(o.resolution - edge) > 1e-9 * edge then
-      run:fail("resolution", string.format(
-        "%.6g m, and the prior's map '%s' has voxels of %.6g m: leave resolution out",
-        o.resolution, files.map, edge))
-    end
-  end
-  resolutions[run] = edge
-  return edge
-end
+M.prior_files, M.resolution = resolution.prior_files, resolution.of
 
 -- How far the map and the reconstruction may move a surface up or down.
 local function moved(run) return M.resolution(run) + run.options.surface.cell end
@@ -77,12 +52,13 @@ local function around(run, bounds)
   return { lower = lower, upper = upper }
 end
 
--- The box of interest: as given, or the scene's own, or round the mesh.
+-- The box of interest: as given, round the regions, the scene's own, or round the mesh.
 function M.region_of(run)
-  local given = run.options.region
+  local given = regions.of(run) or run.options.region
   if given.lower and given.upper then return given end
   if given.lower or given.upper then run:fail("region", "expected both lower and upper") end
-  if site.wanted(run) then return site.box(run, M.resolution(run), moved(run)) end
+  if site.wanted(run) then return site.box(run, moved(run)) end
+  if images.wanted(run) then return images.region(run) end
   local surface = M.surface_of(run)  -- there is one, or first.check has refused
   return run.options.input and around(run, surface.region) or surface.region
 end
@@ -90,7 +66,7 @@ end
 -- What the lowest flight is measured from: the region's lower corner as given, or a mesh's lowest.
 local function lowest(run)
   local o, region = run.options, M.region_of(run)
-  if o.input and not o.region.lower then return region.lower[3] + moved(run) end
+  if o.input and not o.region.lower and #o.regions == 0 then return region.lower[3] + moved(run) end
   return region.lower[3]
 end
 
@@ -162,7 +138,7 @@ function M.range(run)
   if ranges[run] then return ranges[run] end
   local o, range = run.options, run.options.range
   if not range then
-    range = RANGE
+    range = images.range(run) or RANGE
     if M.surface_of(run) and not exploration.wanted(run) and not (M.prior_files(run)
                                                                   and #o.flights == 0) then
       local floor = M.region_of(run).lower[3]
@@ -212,12 +188,13 @@ end
 -- The highest that anything flies.
 function M.ceiling_of(run)
   local given = run.options.ceiling
-  local flown = not M.prior_files(run) and not exploration.wanted(run)  -- over the safe height
+  local flown = not (M.prior_files(run) or exploration.wanted(run) or images.wanted(run))
   if given and flown and given < M.safe_height(run) then
     run:fail("ceiling", string.format("%.4g m is below safe_height, %.4g m, over which the first "
                                       .. "flight goes", given, M.safe_height(run)))
   end
   if given then return given end
+  if images.wanted(run) and not run.options.safe_height then return images.ceiling(run) end
   local ceiling = M.safe_height(run) + OVERHEAD
   if flown then
     for _, flight in ipairs(M.flights_of(run)) do

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Notes and warnings of a scan: the prior knowledge, and tours that use little of it.
 local first = require "mission.scan_first"
+local images = require "mission.scan_images"
 local site = require "mission.scan_site"
 
 local M = {}
@@ -17,6 +18,8 @@ function M.notes(run, known, explored, views)
               views }
   elseif site.wanted(run) then
     notes = site.notes(run, views)
+  elseif images.wanted(run) then
+    notes = images.notes(run, views)
   else
     local before = string.format("%d depth images %s", known.images,
                                  run.options.rounds > 1 and "so far" or "of the first flight")
@@ -33,6 +36,14 @@ function M.cut_off(graph)
   return graph.reach .. ". The content of the others is not seen. More candidates "
          .. "(candidates.most), first flights closer to the region or a lower motions.alpha "
          .. "connect more of them"
+end
+
+-- The note for the start of a drone, one of several, that is connected to few candidates, or nil.
+function M.cut_off_start(graph, drone)
+  local joined = graph.joined_from[drone]
+  if joined >= LITTLE * graph.candidates then return nil end
+  return string.format("the start of drone %d is connected to %d of %d candidates", drone, joined,
+                       graph.candidates)
 end
 
 -- The note for a tour that uses little of the budget although it may have more images, or nil.

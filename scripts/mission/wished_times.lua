@@ -3,7 +3,7 @@
 -- keyframes has its own step. The time of a keyframe is exact, preferred with a weight, within a
 -- window, or free. Each second of flight costs `weights.time`. The film is then planned at the
 -- times found. If it fails, times are searched again with a larger reserve of thrust. If there are
--- none, the film is planned at the times of straight flight from stop to stop, stretched.
+-- none, the film is planned at times of straight flight (straight_times.lua).
 local attempts = require "mission.film_attempt"
 local film_keyframes = require "mission.film_keyframes"
 local film_problem = require "mission.film_problem"
@@ -11,6 +11,7 @@ local film_times = require "mission.film_times"
 local point_mass = require "mission.point_mass"
 local requests = require "mission.film_request"
 local surroundings = require "mission.film_environment"
+local straight = require "mission.straight_times"
 local times = require "mission.keyframe_times"
 local timing = require "mission.timing"
 local ways = require "mission.ways"
@@ -21,7 +22,6 @@ local FEWEST, MOST = 8, 16             -- intervals of a leg while times are loo
 local STEP = 0.4                       -- s, of the first guess, where that makes neither
 local END_STEP = 0.15                  -- s, likewise where the flight begins or ends at rest
 local SHARES = { 0.95, 0.85, 0.7, 0.5 }  -- of the thrust, until the film itself holds
-local STRETCHES = { 1, 1.25, 1.6, 2, 3, 4 }  -- of straight flight, until the film itself holds
 local LONGEST = 10                     -- times the first guess, that a leg may take
 
 -- Legs at the vehicle's pace, stretched between the keyframes whose times are `fixed`.
@@ -114,32 +114,30 @@ local function at_times(run, request, list, legs, memory)
   return film_times.set(request, list, { legs = legs, memory = memory })
 end
 
--- The film at the times of straight flight from stop to stop, stretched by the number of `memory`,
--- as the wishes allow: what is left where no better times are found. `why`: a sentence. nil where
--- the wishes allow none.
-local function straight(run, request, memory, number, why)
-  local legs = {}
+-- A keyframe whose wish straight flight is too slow for, at the speeds of the vehicle, and a
+-- sentence on it; else nil. `late`: s, by which keyframes may be early or late.
+local function too_early(run, request, late)
+  local legs, earliest = {}, 0
   for i = 2, #request.keyframes do
-    legs[i - 1] = STRETCHES[number] * times.of_leg(request.keyframes[i - 1].position,
-                                                   request.keyframes[i].position, request.vehicle)
+    local ends = { first = i == 2, last = i == #request.keyframes }
+    legs[i - 1] = times.least_of_leg(request.keyframes[i - 1], request.keyframes[i],
+                                     request.vehicle, run.options, ends, late)
   end
-  local chosen = run:keyframe_times { wishes = request.wishes, legs = legs }
-  if not chosen and number > 1 then return nil end
-  return at_times(run, request, chosen or memory.guess, request.legs, {
-    guess = memory.guess, straight = number, why = why })
-end
-
--- Whether wishes ask for a keyframe no later than some time, which may be too early.
-local function hurried(wishes)
-  for i, wish in ipairs(wishes) do
-    if i > 1 and (wish.latest or wish.time and not wish.time_weight) then return true end
+  local chosen, refused = run:keyframe_times { wishes = request.wishes, legs = legs }
+  if chosen then return nil end
+  for i = 2, refused do
+    local wish = request.wishes[i - 1]
+    local first = wish.earliest or not wish.time_weight and wish.time or 0
+    earliest = math.max(earliest, first) + legs[i - 1]
   end
-  return false
+  return refused, string.format(
+    "no times meet every wish: vehicle '%s' takes at least %.4g s from keyframe %d to %d, which it "
+    .. "passes at %.4g s at the earliest", request.vehicle.name, legs[refused - 1], refused - 1,
+    refused, earliest)
 end
 
 -- The film of a request at the times found with the share of the thrust that `memory` names. Where
--- the solver finds none: at times of straight flight; nil where it had found some with more thrust,
--- and an error where the wishes are the reason.
+-- the solver finds none: at times of straight flight; nil where it had found some with more thrust.
 local function at_share(run, request, memory)
   local stated, ways_of_legs = problem_of(run, request, memory)
   local solution = run:solve(stated, run.options.solver)
@@ -148,11 +146,8 @@ local function at_share(run, request, memory)
     if memory.number > 1 then return nil end
     local reason = solution.status
     if solution.message ~= "" then reason = reason .. ": " .. solution.message end
-    if solution.status == "infeasible" and hurried(request.wishes) then
-      run:fail("keyframes", "no times meet every wish within the limits of the vehicle: " .. reason)
-    end
-    return straight(run, request, memory, 1,
-                    "the solver found no times of its own (" .. reason .. ")")
+    return straight.first(run, request, memory,
+                          "the solver found no times of its own (" .. reason .. ")")
   end
   local list = film_times.of(solution, request.wishes)
   return at_times(run, request, list, ways_of_legs, memory)
@@ -170,38 +165,28 @@ function M.first(run, film)
   local request = requests.first {
     vehicle = film.vehicle, subjects = film.subjects, cuts = film.cuts, terms = film.terms,
     origin = film.origin, keyframes = keyframes, wishes = wishes }
-  local memory = { guess = guessed(keyframes, wishes, film.vehicle) }
-  return at_share(run, request, remembered(memory, 1))
-end
-
--- The next request after an outcome at times of straight flight; and what is told.
-local function next_straight(run, outcome)
-  local request, memory = outcome.request, outcome.request.memory
-  local told = { figures = { duration = request.duration, stretch_of_legs =
-                             STRETCHES[memory.straight] }, notes = { string.format(
-    "%s; flown at the times of straight flight from stop to stop, stretched by %.3g", memory.why,
-    STRETCHES[memory.straight]) } }
-  if outcome.holds or run:cancelled() or not STRETCHES[memory.straight + 1] then
-    if not outcome.holds then told.notes[2] = attempts.complaint(outcome) end
-    return nil, told
-  end
-  return straight(run, requests.with(request, { legs = outcome.legs }), memory,
-                  memory.straight + 1, memory.why), told
+  local refused, sentence = too_early(run, request, run.options.hard and 0 or film_keyframes.LATE)
+  if refused then run:fail("keyframes[" .. refused .. "]", sentence) end
+  local memory = remembered({ guess = guessed(keyframes, wishes, film.vehicle) }, 1)
+  -- What only a late flight grants has no solution where times are exact.
+  local _, strict = too_early(run, request, 0)
+  if strict then return straight.first(run, request, memory, strict) end
+  return at_share(run, request, memory)
 end
 
 -- The next request after an outcome; told are {notes, figures}.
 function M.next(run, outcome)
   local request, memory = outcome.request, outcome.request.memory
-  if memory.straight then return next_straight(run, outcome) end
+  if memory.straight then return straight.next(run, outcome) end
   local figures = { duration = request.duration, share = memory.share }
   if outcome.holds or run:cancelled() then return nil, { notes = {}, figures = figures } end
   local told = { figures = figures, notes = { string.format(
     "at the times found with %.2g of the thrust: %s", memory.share,
     attempts.complaint(outcome)) } }
   local again = requests.with(request, { legs = outcome.legs })
-  local request_with_spare = SHARES[memory.number + 1]
+  local with_spare = SHARES[memory.number + 1]
     and at_share(run, again, remembered(memory, memory.number + 1))
-  return request_with_spare or straight(run, again, memory, 1, told.notes[1]), told
+  return with_spare or straight.first(run, again, memory, told.notes[1]), told
 end
 
 return M

@@ -243,6 +243,19 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
            {"log_cut", "cut short", "reading a log throws: too short"},
            {"log_damage", "damage", "a number that is not finite"},
            {"log_throws", "example", "reading a log throws: no"},
+           {"executor_place", "exchange", "it is process 1 of 1"},
+           {"executor_exchange", "exchange", "comes back as another one"},
+           {"executor_lost", "items", "is made 0 times"},
+           {"executor_twice", "items", "item 1 is made 2 times"},
+           {"executor_silent", "items", "is reported 0 times"},
+           {"executor_times", "items", "it reports other times than `make` returned"},
+           {"executor_order", "order", "in the order of the queue"},
+           {"executor_crowd", "threads", "it makes 4 items at once"},
+           {"executor_swallows", "failure", "does not throw the exception of an item"},
+           {"executor_goes_on", "failure", "it begins items after one has failed"},
+           {"executor_deaf", "cancellation", "it does not throw Cancelled"},
+           {"executor_throws", "exchange", "making items throws: no"},
+           {"executor_refuses", "creation", "not even its own defaults will do"},
            {"map_empty", "empty", "a new map knows voxels"},
            {"map_integration", "integration", "has log odds"},
            {"map_casts", "ray casts", " meets "},
@@ -268,8 +281,8 @@ TEST_F(Authoring, EveryTestOfEveryKindBites) {
 
 // (A sound map is among the shipped plugins.)
 TEST_F(Authoring, WithoutAMistakeEveryKindPasses) {
-  for (const char* plugin :
-       {"solver", "model", "planner", "tours", "information", "utility", "exporter", "log"}) {
+  for (const char* plugin : {"solver", "model", "planner", "tours", "information", "utility",
+                             "exporter", "log", "executor"}) {
     const auto found = outcomes_of("broken_" + std::string(plugin), "broken_kinds", {});
     EXPECT_EQ(status_, 0) << plugin << ": " << message_;
     EXPECT_EQ(found.at("sidecar"), "passed");

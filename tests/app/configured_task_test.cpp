@@ -201,7 +201,11 @@ TEST_F(ConfiguredTask, OfAScanIsHeldToItsConfiguration) {
   EXPECT_THAT(compare_with_configuration(plan).faults, testing::IsEmpty());
   EXPECT_THAT(compare_with_configuration(plan).not_compared, testing::SizeIs(1));
   const std::pair<const char*, std::function<void(Plan&)>> edits[] = {
-      {"the region", [](Plan& p) { p.task.scan->region.max().x() = 3; }},
+      {"the region",
+       [](Plan& p) {
+         p.task.scan->region =
+             Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(3, 9, 5));
+       }},
       {"the budget is 900 s", [](Plan& p) { p.budget = 900; }},
       {"the budget is not stated", [](Plan& p) { p.budget.reset(); }},
       {"the margin is 0.1 m", [](Plan& p) { p.environment.margin = 0.1; }},
@@ -212,6 +216,70 @@ TEST_F(ConfiguredTask, OfAScanIsHeldToItsConfiguration) {
       {"directions of view is 1 rad", [](Plan& p) { p.task.scan->angle_tolerance = 1; }},
       {"the closed loop", [](Plan& p) { p.task.closed_loop_required = false; }},
       {"no region to scan", [](Plan& p) { p.task.scan.reset(); }}};
+  for (const auto& [said, change] : edits) {
+    Plan edited = plan;
+    change(edited);
+    EXPECT_THAT(compare_with_configuration(edited).faults, testing::ElementsAre(HasSubstr(said)));
+  }
+}
+
+TEST_F(ConfiguredTask, ZonesRegionsAndThePilotOfAScanAreHeldToItsConfiguration) {
+  Plan plan;
+  plan.kind = "scan";
+  plan.configuration = from_json(
+      R"({"candidates": {}, "motions": {}, "closed_loop": "required", "margin": 0.4, "tour": {},
+          "gps_accuracy": 0.5, "heights": "unstated", "coordinates": "",
+          "regions": [{"corners": [0, 0, 9, 0, 0, 9], "from": 0, "to": 5, "weight": 2,
+                       "holes": [{"corners": [1, 1, 2, 1, 1, 2]}], "file": ""}],
+          "no_fly_zones": [{"corners": [20, 0, 29, 0, 20, 9], "ceiling": 30, "file": ""},
+                           {"file": "zones.geojson"}],
+          "flight_zones": [{"corners": [-50, -50, 50, -50, 0, 90], "file": ""}],
+          "pilot": {"position": [-9, 0, 1.7], "range": 120}})",
+      "scan");
+  plan.budget = 300;
+  Environment& around = plan.environment;
+  around.margin = 0.9;
+  around.accuracy = 0.5;
+  around.pilot = PilotPlace{{-9, 0, 1.7}, 120, 1};
+  const auto zone = [](const char* parameters, Side side) {
+    Obstacle obstacle;
+    obstacle.type = "prism";
+    obstacle.parameters = from_json(parameters, "zone");
+    obstacle.side = side;
+    return obstacle;
+  };
+  around.obstacles = {zone(R"({"corners": [20, 0, 29, 0, 20, 9], "ceiling": 30})", Side::keep_out),
+                      zone(R"({"corners": [40, 0, 49, 0, 40, 9]})", Side::keep_out),
+                      zone(R"({"corners": [-50, -50, 50, -50, 0, 90]})", Side::keep_inside)};
+  const RegionPrism prism{"", {{0, 0}, {9, 0}, {0, 9}}, {{{1, 1}, {2, 1}, {1, 2}}}, 0, 5, 2};
+  plan.task.scan.emplace().region = InterestRegion({prism});
+  EXPECT_THAT(compare_with_configuration(plan).faults, testing::IsEmpty());
+  EXPECT_THAT(compare_with_configuration(plan).not_compared,
+              testing::Contains(HasSubstr("no_fly_zones[2]")));
+  const std::pair<const char*, std::function<void(Plan&)>> edits[] = {
+      {"regions[1]",
+       [&](Plan& p) {
+         RegionPrism other = prism;
+         other.weight = 1;
+         p.task.scan->region = InterestRegion({other});
+       }},
+      {"regions[1]",
+       [&](Plan& p) {
+         RegionPrism other = prism;
+         other.holes.clear();
+         p.task.scan->region = InterestRegion({other});
+       }},
+      {"no_fly_zones[1]",
+       [](Plan& p) { p.environment.obstacles[0].parameters.set("ceiling", 10.0); }},
+      {"the number of no_fly_zones is 1",
+       [](Plan& p) { p.environment.obstacles.erase(p.environment.obstacles.begin() + 1); }},
+      {"flight_zones[1]", [](Plan& p) { p.environment.obstacles[2].parameters.set("floor", 3.0); }},
+      {"the plan has no pilot", [](Plan& p) { p.environment.pilot.reset(); }},
+      {"pilot.position", [](Plan& p) { p.environment.pilot->eye.x() = 9; }},
+      {"pilot.range is 500 m", [](Plan& p) { p.environment.pilot->range = 500; }},
+      {"nothing hides the flight", [](Plan& p) { p.environment.pilot->beside = 90; }},
+      {"the accuracy of the position is 0 m", [](Plan& p) { p.environment.accuracy = 0; }},
+      {"the margin is 0.5 m", [](Plan& p) { p.environment.margin = 0.5; }}};
   for (const auto& [said, change] : edits) {
     Plan edited = plan;
     change(edited);

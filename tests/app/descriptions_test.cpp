@@ -175,7 +175,8 @@ TEST(Described, EveryMissionFunctionIsAsked) {
   EXPECT_EQ(all,
             "explore.of_mesh explore.of_scene film.from_file film.shot light_painting.picture "
             "light_painting.strokes light_painting.text map.of_file map.of_folder map.of_scene "
-            "race.course scan.of_mesh scan.of_prior scan.of_scene ");
+            "race.course scan.of_cloud scan.of_colmap scan.of_images scan.of_mesh scan.of_prior "
+            "scan.of_scene scan.of_terrain ");
 }
 
 const std::vector<std::string> kKinds{"explore", "film", "light_painting", "map", "race", "scan"};

@@ -32,6 +32,7 @@ return scan.of_mesh {
   reach = 8, resolution = 0.4,
   camera = { width = 120, height = 90, focal = 70 },
   surface = { spacing = 0.5, cell = 0.6, trim = 1.2 },
+  usable = { range = 30 },
   candidates = { most = 80, step = 3, distance_apart = 2 },
   motions = { coarse = 40, alpha = 0.2 },
 })";
@@ -102,7 +103,7 @@ TEST_F(EvaluateScan, KilledAtAnyMomentItGoesOnToTheSameBytes) {
   for (const char* name : {"study.json", "rows.csv", "tables.csv", "tables.txt", "report.html"}) {
     ASSERT_TRUE(whole.count(name)) << name;
   }
-  EXPECT_EQ(whole.size(), 5u + 6u);
+  EXPECT_EQ(whole.size(), 5u + 6u + 1u);  // six rows, and the surface that counts
   EXPECT_NE(whole.at("tables.txt").find("2 seeds"), std::string::npos);
   std::vector<std::string> resumed = kFew;
   resumed.push_back("--resume");

@@ -34,7 +34,7 @@ TEST_F(NewFiles, NamesOfTheKernelsClassesAreRefused) {
   const std::regex declared("(^|\n)(class|struct|enum class|using) ([A-Z][A-Za-z0-9]*)");
   for (const char* room : {"core", "geometry", "picture", "surface", "shape", "trajectory",
                            "vehicle", "map", "path", "problem", "symbolic", "solve", "view",
-                           "explore", "verify", "export", "plugin", "flight_log"})
+                           "explore", "verify", "export", "plugin", "flight_log", "items"})
     for (const auto& file :
          fs::directory_iterator(fs::path(LAPWING_SOURCE_DIR) / "framework" / room)) {
       if (file.path().extension() != ".h") continue;

@@ -104,6 +104,20 @@ TEST_F(Reproduce, GoesOnWithWhatIsThereAndOnlyWithTheSame) {
             std::string::npos);
 }
 
+TEST_F(Reproduce, IsNoCommandForMpirun) {
+  ::setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
+  for (const char* rank : {"0", "1"}) {
+    ::setenv("OMPI_COMM_WORLD_RANK", rank, 1);
+    const Finished finished = reproduce({"9.1", "--data", "data"});
+    const bool first = *rank == '0';
+    EXPECT_EQ(finished.status, first ? 2 : 0);
+    EXPECT_EQ(finished.err.find("mpirun started 2 processes") != std::string::npos, first)
+        << finished.err;
+  }
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"}) ::unsetenv(name);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
 TEST_F(Reproduce, RefusesWhatIsNotThere) {
   const Finished unknown = reproduce({"9.2"});
   EXPECT_EQ(unknown.status, 2);

@@ -5,5 +5,7 @@ if(TARGET test_app)
   add_dependencies(test_app lapwing_app lapwing_manual ${plugins})
   add_dependencies(test_mission ${plugins})
   # The longest program begins first; with another one last, a core would idle.
-  set_tests_properties(app PROPERTIES COST 2000)
+  set_tests_properties(app PROPERTIES COST 2000 ENVIRONMENT "GTEST_FILTER=-LongItems.*")
+  add_test(NAME app_long COMMAND test_app)
+  set_tests_properties(app_long PROPERTIES LABELS long ENVIRONMENT "GTEST_FILTER=LongItems.*")
 endif()

@@ -20,10 +20,10 @@ using Names = std::set<std::string>;
 // What a room may include besides itself and core.
 const std::map<std::string, Names>& rooms() {
   static const Names kAllButApp{
-      "geometry",    "trajectory", "vehicle",       "map",     "path",   "problem",
-      "solve",       "view",       "explore",       "verify",  "export", "config",
-      "conformance", "plugin",     "mission",       "surface", "shape",  "picture",
-      "symbolic",    "flight_log", "flight_review", "mavlink", "fly",    "survey"};
+      "geometry", "trajectory", "vehicle", "map",     "path",     "problem",     "solve",
+      "view",     "explore",    "verify",  "export",  "config",   "conformance", "plugin",
+      "mission",  "surface",    "shape",   "picture", "symbolic", "flight_log",  "flight_review",
+      "mavlink",  "fly",        "survey",  "items",      "photogrammetry"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -38,6 +38,7 @@ const std::map<std::string, Names>& rooms() {
       {"surface", {"geometry"}},
       {"picture", {"geometry"}},
       {"survey", {"geometry"}},
+      {"photogrammetry", {"geometry", "surface"}},
       {"shape", {"geometry", "map"}},
       {"trajectory", {"geometry", "shape"}},
       {"vehicle", {"geometry", "trajectory"}},
@@ -50,16 +51,18 @@ const std::map<std::string, Names>& rooms() {
       {"explore", {"geometry", "map", "view", "path"}},
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
       {"export",
-       {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map"}},  // limits
+       {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map",  // limits
+        "photogrammetry"}},
       {"flight_log", {"geometry", "mavlink"}},
       {"flight_review", {"geometry", "trajectory", "vehicle", "verify", "export", "flight_log"}},
       {"mavlink", {}},
       {"fly", {"geometry", "shape", "trajectory", "vehicle", "verify", "export", "map", "mavlink"}},
       {"config", {}},
       {"plugin", {}},
+      {"items", {}},
       {"conformance", without(without(without(kAllButApp, "mission"), "fly"), "mavlink")},
       {"mission", without(without(kAllButApp, "fly"), "mavlink")},
-      {"study", {"geometry", "surface", "view", "export", "config", "plugin"}},
+      {"study", {"geometry", "surface", "view", "export", "config", "plugin", "items"}},
       {"studio", without(without(kAllButApp, "fly"), "mavlink")},
       {"app", with(with(with(kAllButApp, "app"), "study"), "studio")},
   };
@@ -87,6 +90,7 @@ const std::map<std::string, Kind>& kinds() {
       {"controllers", {"controller", "solve"}},
       {"exporters", {"exporter", "export"}},
       {"flight_logs", {"flight_log", "flight_log"}},
+      {"executors", {"executor", "items"}},
   };
   return kKinds;
 }
@@ -130,6 +134,8 @@ constexpr Containment kContained[] = {
     {"gdal", "framework/survey/", true},
     {"cpl_", "framework/survey/", true},
     {"ogr_", "framework/survey/", true},
+    {"mpi.h", "plugins/executors/mpi/", true},
+    {"libexif/", "framework/photogrammetry/", true},
 };
 // Of these, one source file of the framework alone.
 constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/", "png.h",     "octomap/",

@@ -94,6 +94,7 @@ const std::map<std::string, std::string> kPackages{// find_package and pkg_check
                                                    {"fish", "fish"},
                                                    {"groff", "groff-base"},
                                                    {"make", "make"},
+                                                   {"mpirun", "openmpi-bin"},
                                                    {"nm", "binutils"},
                                                    {"script", ""},
                                                    {"zsh", "zsh"}};
@@ -129,6 +130,7 @@ std::set<std::string> needs_of(const std::string& text, bool cmake) {
 TEST(TestTools, TheListsOfPackagesHoldWhatTestsNeed) {
   std::set<std::string> known = packages_of("lapwing_packages");
   known.merge(packages_of("lapwing_test_packages"));
+  known.merge(packages_of("lapwing_cluster_packages"));  // test.sh installs them, too
   std::set<std::string> seen;
   for (const auto& item : fs::recursive_directory_iterator(kRoot / "tests")) {
     const fs::path& path = item.path();

@@ -19,9 +19,9 @@ const Registry& plugins() {
 std::vector<PluginEntry> checked_entries() {
   std::vector<PluginEntry> result;
   for (const PluginEntry& entry : plugins().entries())
-    for (const char* kind :
-         {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map", "path_planner",
-          "tour_solver", "information", "utility", "exporter", "shape", "controller", "flight_log"})
+    for (const char* kind : {"cost_term", "constraint", "vehicle_model", "trajectory_solver", "map",
+                             "path_planner", "tour_solver", "information", "utility", "exporter",
+                             "shape", "controller", "flight_log", "executor"})
       if (entry.kind == kind) result.push_back(entry);
   return result;
 }
@@ -97,6 +97,7 @@ TEST(EveryPlugin, IsThere) {
                                    {"flight_log", "ulog"},
                                    {"flight_log", "csv"},
                                    {"flight_log", "tlog"},
+                                   {"executor", "threads"},
                                    {"tour_solver", "greedy"},
                                    {"tour_solver", "cost_benefit"},
                                    {"tour_solver", "recursive_greedy"},

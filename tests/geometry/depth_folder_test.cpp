@@ -140,6 +140,53 @@ TEST_F(DepthFolders, TheCameraMustMakeSense) {
   EXPECT_THROW(DepthFolder(folder_ / "absent"), InputError);
 }
 
+// Names in folders of their own, another unit, poses of the other direction, a camera of 4 x 4.
+TEST_F(DepthFolders, OtherLayouts) {
+  const PosedDepthImage before = DepthFolder(folder_).read(1);
+  fs::create_directories(folder_ / "depth");
+  fs::create_directories(folder_ / "pose");
+  for (const char* name : {"frame-1", "frame-2"}) {
+    fs::rename(folder_ / (std::string(name) + ".depth.png"),
+               folder_ / "depth" / (std::string(name) + ".png"));
+    fs::rename(folder_ / (std::string(name) + ".pose.txt"),
+               folder_ / "pose" / (std::string(name) + ".txt"));
+  }
+  write("k.txt", "10 0 3.5 0\n0 11 2.5 0\n0 0 1 0\n0 0 0 1\n");
+  DepthLayout layout;
+  layout.depth = "depth/*.png";
+  layout.pose = "pose/*.txt";
+  layout.intrinsics = "k.txt";
+  layout.unit = 0.0002;
+  layout.poses_to_camera = true;
+  const DepthFolder folder(folder_, layout);
+  ASSERT_EQ(folder.size(), 2u);
+  EXPECT_EQ(folder.name(1), "frame-2");
+  EXPECT_EQ(folder.pinhole().focal_y, 11);
+  const PosedDepthImage frame = folder.read(1);
+  EXPECT_EQ(frame.image.depth[2], static_cast<float>(1234 / 5000.0));
+  EXPECT_LT((frame.camera.orientation * before.camera.position + frame.camera.position).norm(),
+            1e-12);
+  layout.camera = Eigen::Vector4d(20, 21, 3, 2);
+  EXPECT_EQ(DepthFolder(folder_, layout).pinhole().focal_x, 20);
+  layout.camera = Eigen::Vector4d(20, 21, 8, 2);
+  EXPECT_THROW(DepthFolder(folder_, layout), InputError);
+  layout.camera.reset();
+  for (const char* bad : {"depth/one.png", "depth/*/*.png", "*/a.png", ""}) {
+    DepthLayout wrong = layout;
+    wrong.depth = bad;
+    EXPECT_THROW(DepthFolder(folder_, wrong), InputError) << bad;
+  }
+  fs::remove(folder_ / "pose/frame-1.txt");
+  try {
+    DepthFolder(folder_, layout);
+    ADD_FAILURE() << "an image without a pose";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("its pose pose/frame-1.txt is missing"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(RealDepth, IsRead) {
   const char* data = std::getenv("LAPWING_DATA");
   if (!data) GTEST_SKIP() << "LAPWING_DATA is not set";

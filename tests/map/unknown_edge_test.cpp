@@ -179,7 +179,8 @@ TEST(UnknownEdge, IsNotAGapBetweenRays) {
 
 TEST(UnknownEdge, RefusesARegionThatIsTooLarge) {
   const SmallMap air = map_of([](const Vector3d&) { return Kind::air; });
-  EdgeSettings settings{{Vector3d::Constant(-500), Vector3d::Constant(500)}, {}, 0, 1};
+  EdgeSettings settings{
+      Eigen::AlignedBox3d(Vector3d::Constant(-500), Vector3d::Constant(500)), {}, 0, 1};
   EXPECT_THROW(unknown_openings(air, nullptr, settings), InputError);
 }
 
@@ -234,7 +235,8 @@ class RayMap final : public PlainMap {
 // gate of 4 m x 3 m where there is one.
 struct Court {
   std::shared_ptr<const MeshScene> all, known;  // known: without the inside of the hall
-  EdgeSettings settings{{Vector3d(-10.5, -10.5, -0.5), Vector3d(19.5, 10.5, 9)}, {}, 2, 2};
+  EdgeSettings settings{
+      Eigen::AlignedBox3d(Vector3d(-10.5, -10.5, -0.5), Vector3d(19.5, 10.5, 9)), {}, 2, 2};
 
   explicit Court(bool hall) {
     MeshBuilder outside;

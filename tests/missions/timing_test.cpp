@@ -142,11 +142,27 @@ TEST_F(FreeFilms, WhereNoTimesAreFoundThoseOfStraightFlightAreFlown) {
 TEST_F(FreeFilms, WhatCannotBeGrantedIsNamed) {
   const Flown early = timed(", latest = 1.5", "", "", "", 2);
   EXPECT_EQ(early.status, 2);
-  EXPECT_NE(to_json(early.result).find("no times meet every wish"), std::string::npos)
+  // 13.1 m from rest at 4 m/s^2, 0.1 s early and late.
+  EXPECT_NE(to_json(early.result)
+                .find("keyframes[2]: no times meet every wish: vehicle "
+                      "'vehicles/solo' takes at least 2.339 s from keyframe 1"),
+            std::string::npos)
       << to_json(early.result);
   const Flown fixed = timed("", "", "stretch = 2,", "", 2);
   EXPECT_EQ(fixed.status, 2);
   EXPECT_NE(to_json(fixed.result).find("finds the times itself"), std::string::npos);
+}
+
+// A time that only a late flight would keep: the film is no promise, and it is told how late.
+TEST_F(FreeFilms, TimesThatAreSlightlyTooEarlyAreToldWithWhatWouldDo) {
+  const Flown flown = timed(", time = 2.4");
+  EXPECT_EQ(flown.status, 1);
+  const std::string notes = to_json(flown.result.at("notes"));
+  EXPECT_NE(notes.find("takes at least 2.539 s from keyframe 1 to 2"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("certified if all times are multiplied by 1.25"), std::string::npos)
+      << notes;
+  EXPECT_EQ(flown.result.at("film").at("certified_stretch").as_number(), 1.25);
+  EXPECT_EQ(read_plan(flown.folder / "plan.json").task.keyframes.at(1).time, 2.4);
 }
 
 // Times that are found together with the camera and the terms of the script.

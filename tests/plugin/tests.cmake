@@ -12,7 +12,7 @@ lapwing_add_plugin(fixture duplicate SOURCES ${fixtures}/duplicate.cpp
 lapwing_add_plugin(cost_term broken_term SOURCES ${fixtures}/broken_term.cpp
                    OUTPUT ${fixture_output}/broken_terms)
 # Plugins of the other kinds, likewise: without a mistake, and with one each.
-foreach(name broken_motion broken_views broken_logs)
+foreach(name broken_motion broken_views broken_logs broken_executor)
   lapwing_add_plugin(fixture ${name} SOURCES ${fixtures}/${name}.cpp
                      OUTPUT ${fixture_output}/broken_kinds)
   add_dependencies(test_app lapwing_fixture_${name})

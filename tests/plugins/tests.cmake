@@ -18,6 +18,13 @@ add_test(NAME copied_term COMMAND ${CMAKE_COMMAND}
   -DCOMPILER=${CMAKE_CXX_COMPILER} -DCHECK=$<TARGET_FILE:check_plugin_folder>
   -P ${CMAKE_CURRENT_LIST_DIR}/copied_term/copied_term.cmake)
 
+# How long executors take for an item, alone or under mpirun.
+add_executable(executor_pace ${CMAKE_CURRENT_LIST_DIR}/executors/pace/executor_pace.cpp)
+target_link_libraries(executor_pace PRIVATE lapwing)
+target_compile_definitions(executor_pace PRIVATE LAPWING_BUILD_DIR="${CMAKE_BINARY_DIR}")
+target_precompile_headers(executor_pace REUSE_FROM lapwing_precompiled)
+add_dependencies(test_app executor_pace)
+
 # The example plugin, built and run against an install tree; and a new plugin of every kind.
 foreach(name installed_plugin new_plugins)
   add_test(NAME ${name} COMMAND ${CMAKE_COMMAND}

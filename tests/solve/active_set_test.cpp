@@ -83,6 +83,26 @@ TEST(ActiveSet, AnswersAsTheInteriorPointDoes) {
   EXPECT_GT(held, 100);
 }
 
+// The first point is drawn at once, unless it breaks bounds that were not taken yet.
+TEST(ActiveSet, GivesAnEarlyPointOnlyWithinItsBounds) {
+  const auto program = [](double along_x) {
+    return dense_program(2 * MatrixXd::Identity(2, 2), numbers({along_x, -2}), MatrixXd::Ones(1, 2),
+                         numbers({-kOpen}), numbers({kOpen}), numbers({-kOpen, -kOpen}),
+                         numbers({2, kOpen}));
+  };
+  ActiveSet sets;
+  std::vector<VectorXd> early;
+  const InteriorPointOptions options{.early = [&](const VectorXd& x) { early.push_back(x); }};
+  const QuadraticWarmStart at_zero{VectorXd::Zero(2), VectorXd::Zero(1), VectorXd::Zero(2)};
+  ASSERT_TRUE(sets.solve(program(-3), options, at_zero));
+  ASSERT_EQ(early.size(), 1u);
+  EXPECT_NEAR((early[0] - numbers({1.5, 1})).norm(), 0, 1e-8);
+  const auto held = sets.solve(program(-6), options, at_zero);  // first at x = 3, then at 2
+  ASSERT_TRUE(held);
+  EXPECT_EQ(held->iterations, 2);
+  EXPECT_EQ(early.size(), 1u);
+}
+
 TEST(ActiveSet, SaysNothingWhereItCannotKnow) {
   Random random(4);
   ActiveSet sets;

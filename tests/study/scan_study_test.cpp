@@ -128,9 +128,17 @@ class ScanStudies : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(base_); }
 
-  std::vector<ScanRow> run(const ScanStudy& study, const std::string& folder,
-                           bool resume = false) const {
-    return run_study(study, base_ / folder, resume, plugins(), nullptr, [](const std::string&) {});
+  std::vector<ScanRow> run(const ScanStudy& study, const std::string& folder, bool resume = false,
+                           int threads = 1) const {
+    const auto executor = plugins().create<Executor>("threads");
+    const CancellationToken token;
+    ItemOptions options;
+    options.resume = resume;
+    ItemRun items(*executor, options, threads, token, [](const std::string&) {});
+    const auto nothing = [](const std::string&) {};
+    return run_study(
+               study, base_ / folder, items, plugins(), nullptr, [] {}, nothing)
+        .value();
   }
   // Rows and what is made of them; times are the clock's.
   std::map<std::string, std::string> bytes(const std::string& folder) const {
@@ -186,8 +194,7 @@ TEST_F(ScanStudies, AreTheSameForAnyNumberOfThreads) {
   ASSERT_EQ(one.size(), 12u);
   EXPECT_EQ(one[0].budget, 30);
   EXPECT_LT(one[0].score, one[6].score);
-  study.threads = 3;
-  run(study, "three");
+  run(study, "three", false, 3);
   EXPECT_EQ(bytes("one"), bytes("three"));
 }
 
@@ -253,8 +260,11 @@ TEST_F(ScanStudies, ABudgetThatIsTooSmallIsARow) {
 TEST_F(ScanStudies, StopWhenTheyAreTold) {
   CancellationToken token;
   token.cancel();
-  EXPECT_THROW(run_study(small_study({"greedy"}), base_ / "a", false, plugins(), &token,
-                         [](const std::string&) {}),
+  const auto executor = plugins().create<Executor>("threads");
+  ItemRun items(*executor, {}, 1, token, [](const std::string&) {});
+  EXPECT_THROW(run_study(
+                   small_study({"greedy"}), base_ / "a", items, plugins(), &token, [] {},
+                   [](const std::string&) {}),
                Cancelled);
 }
 

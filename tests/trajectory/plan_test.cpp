@@ -411,7 +411,7 @@ TEST(Plan, NotANumberCannotBeWritten) {
 Plan scan_plan() {
   Plan plan = small_plan();
   ScanTask scan;
-  scan.region = {Eigen::Vector3d(-1, -2, 0), Eigen::Vector3d(1.0 / 3, 2, 9)};
+  scan.region = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -2, 0), Eigen::Vector3d(1.0 / 3, 2, 9));
   scan.camera = {600, 450, 345, 346, 299.5, 224.5};
   scan.range = 55;
   scan.map = "known";
@@ -430,8 +430,8 @@ TEST(Plan, ScansSurvive) {
   EXPECT_EQ(plan_text(plan), plan_text(scan_plan()));
   ASSERT_TRUE(plan.task.scan.has_value());
   const ScanTask& scan = *plan.task.scan;
-  EXPECT_EQ(scan.region.min(), Eigen::Vector3d(-1, -2, 0));
-  EXPECT_EQ(scan.region.max(), Eigen::Vector3d(1.0 / 3, 2, 9));
+  EXPECT_EQ(scan.region.bounds().min(), Eigen::Vector3d(-1, -2, 0));
+  EXPECT_EQ(scan.region.bounds().max(), Eigen::Vector3d(1.0 / 3, 2, 9));
   EXPECT_EQ(scan.camera.width, 600);
   EXPECT_EQ(scan.camera.height, 450);
   EXPECT_EQ(scan.camera.focal_x, 345);

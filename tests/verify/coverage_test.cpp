@@ -41,7 +41,7 @@ class Coverage : public testing::Test {
     plan.trajectory.motion = path_motion();
     plan.trajectory.has_gimbal = true;
     ScanTask scan;
-    scan.region = {Vector3d(4, -4, 1), Vector3d(6, 4, 9)};
+    scan.region = Eigen::AlignedBox3d(Vector3d(4, -4, 1), Vector3d(6, 4, 9));
     scan.camera = {32, 24, 18, 18, 15.5, 11.5};
     scan.range = 15;
     scan.map = "known";
@@ -115,7 +115,7 @@ TEST_F(Coverage, AClaimOfMoreIsRefused) {
   EXPECT_TRUE(check(claimed, "coverage").pass);
   // What the wall hides is not seen: a region behind it.
   Plan behind = plan();
-  behind.task.scan->region = {Vector3d(6.5, -2, 3), Vector3d(8, 2, 6)};
+  behind.task.scan->region = Eigen::AlignedBox3d(Vector3d(6.5, -2, 3), Vector3d(8, 2, 6));
   behind.task.scan->seen = 1;
   EXPECT_EQ(check(behind, "coverage").worst.value(), 0);
   EXPECT_FALSE(check(behind, "coverage").pass);
@@ -163,7 +163,79 @@ TEST_F(Coverage, WhatMakesNoSenseIsSaid) {
   EXPECT_THAT(said([](Plan& p) { p.task.scan->camera.width = 1 << 30; }), HasSubstr("10^9"));
   EXPECT_THAT(said([](Plan& p) { p.task.scan->views[0].yaw = std::nan(""); }),
               HasSubstr("not finite"));
-  EXPECT_THAT(said([](Plan& p) { p.task.scan->region.max().x() = -9; }), HasSubstr("region"));
+  EXPECT_THAT(said([](Plan& p) {
+                p.task.scan->region = Eigen::AlignedBox3d(Vector3d(4, -4, 1), Vector3d(-9, 4, 9));
+              }),
+              HasSubstr("region"));
+}
+
+TEST_F(Coverage, OfPrismsWithHolesCountsTheirVoxelsAlone) {
+  const RegionPrism ring{.name = "ring",
+                         .outline = {{4, -4}, {6, -4}, {6, 4}, {4, 4}},
+                         .holes = {{{4.6, -1.1}, {5.9, -1.1}, {5.9, 2.1}, {4.6, 2.1}}},
+                         .low = 1,
+                         .high = 9};
+  Plan holed = plan();
+  const std::int64_t whole = holed.task.scan->seen;
+  holed.task.scan->region = InterestRegion({ring});
+  holed.task.scan->seen = static_cast<std::int64_t>(seen(*holed.task.scan).size());
+  EXPECT_LT(holed.task.scan->seen, whole * 3 / 4);
+  EXPECT_GT(holed.task.scan->seen, whole / 3);
+  EXPECT_NEAR(check(holed, "coverage").worst.value(), 1, 0.03);
+  holed.task.scan->seen = whole;
+  EXPECT_FALSE(check(holed, "coverage").pass) << "the hole is no part of the region";
+  // The document keeps it.
+  const Plan read = plan_from_value(to_value(holed));
+  ASSERT_EQ(read.task.scan->region.prisms().size(), 1u);
+  EXPECT_EQ(read.task.scan->region.prisms()[0].holes, ring.holes);
+  EXPECT_EQ(to_value(read), to_value(holed));
+}
+
+TEST_F(Coverage, APilotSeesTheWholeFlightOrTheCertificateSaysSince) {
+  const auto with = [&](const Vector3d& eye, double range) {
+    Plan seen = plan();
+    seen.environment.pilot = PilotPlace{eye, range, 1};
+    return seen;
+  };
+  const Plan good = with({-8, 0, 2}, 7);
+  EXPECT_TRUE(check(good, "pilot_sight").pass);
+  EXPECT_TRUE(verify(good, folder_).feasible());
+  EXPECT_NEAR(check(good, "pilot_distance").worst.value(), std::sqrt(25 + 9 + 9), 1e-6);
+  EXPECT_FALSE(check(with({-8, 0, 2}, 6), "pilot_distance").pass);
+  // The wall is between them all the time.
+  const Check behind = check(with({8, 0, 5}, 50), "pilot_sight");
+  EXPECT_NEAR(behind.worst.value(), 4, 0.1);
+  EXPECT_EQ(behind.at, 0);
+  // From (8, -6, 5) the wall hides what lies beyond y = 4/3; the flight passes it at 1.5 m/s.
+  const Check beside = check(with({8, -6, 5}, 50), "pilot_sight");
+  EXPECT_FALSE(beside.pass);
+  EXPECT_NEAR(beside.worst.value(), (3 - 4.0 / 3) / 1.5, 0.1);
+  EXPECT_NEAR(beside.at, (3 + 4.0 / 3) / 1.5, 0.1);
+  // What is unknown hides as well.
+  EXPECT_FALSE(check(with({-14, 0, 5}, 50), "pilot_sight").pass);
+  EXPECT_EQ(to_value(plan_from_value(to_value(good))), to_value(good));
+  for (const Check& listed : verify(plan(), folder_).checks)
+    EXPECT_FALSE(listed.name.starts_with("pilot")) << "no pilot is stated";
+}
+
+TEST_F(Coverage, OpaqueShapesHideTheFlightFromAPilotAndOthersDoNot) {
+  Plan seen = plan();
+  seen.environment.pilot = PilotPlace{{-8, 0, 5}, 50, 1};
+  ASSERT_TRUE(check(seen, "pilot_sight").pass);
+  seen.environment.obstacles.push_back(sphere_at("balloon", {-5.5, 0, 5}, 0.6));
+  EXPECT_FALSE(check(seen, "pilot_sight").pass);
+  EXPECT_TRUE(check(seen, "clearance").pass) << "it is in nobody's way";
+  seen.environment.obstacles.back().opaque = false;
+  EXPECT_TRUE(check(seen, "pilot_sight").pass);
+}
+
+TEST_F(Coverage, TheAccuracyOfThePositionIsPartOfTheMargin) {
+  Plan accurate = plan();
+  accurate.environment.accuracy = 0.3;
+  EXPECT_THAT(check(accurate, "clearance").detail,
+              testing::HasSubstr("the margin includes 0.3 m, the accuracy of the position"));
+  accurate.environment.accuracy = 0.6;
+  EXPECT_THAT(check(accurate, "document").detail, testing::HasSubstr("part of the margin"));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ class Fleets : public testing::Test {
     plan.trajectory.motion = path_motion();
     plan.trajectory.has_gimbal = true;
     ScanTask scan;
-    scan.region = {Vector3d(4, -4, 1), Vector3d(6, 4, 9)};
+    scan.region = Eigen::AlignedBox3d(Vector3d(4, -4, 1), Vector3d(6, 4, 9));
     scan.camera = {32, 24, 40, 40, 15.5, 11.5};
     scan.range = 15;
     scan.map = "known";

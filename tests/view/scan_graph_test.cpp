@@ -57,6 +57,46 @@ struct World {
   }
 };
 
+TEST(ScanGraph, VoxelsCountWhatTheirRegionWeighs) {
+  World world;
+  SightSettings sight = World::sight({Vector3d(4, -4, 0), Vector3d(6, 4, 9)});
+  sight.region =
+      InterestRegion(std::vector{RegionPrism{.name = "left",
+                                             .outline = {{4, -4}, {6, -4}, {6, -1}, {4, -1}},
+                                             .holes = {},
+                                             .low = 0,
+                                             .high = 9,
+                                             .weight = 4},
+                                 RegionPrism{.name = "right",
+                                             .outline = {{4, 1}, {6, 1}, {6, 4}, {4, 4}},
+                                             .holes = {},
+                                             .low = 0,
+                                             .high = 9,
+                                             .weight = 0.5}});
+  const VisibleVoxels weighted(world.map, wall_face(), sight);
+  const ScanGraph graph =
+      make_scan_graph(*world.space, weighted, Halves(), {{{-5, 0, 5}, 0, 0}}, world.settings);
+  ASSERT_EQ(graph.score->views(), 40);
+  std::map<double, int> voxels;
+  for (std::size_t v = 0; v < graph.voxels.size(); ++v) {
+    const double y = world.map->grid().center(graph.voxels[v]).y();
+    EXPECT_GT(std::abs(y), 1) << "what lies between the regions counts nothing";
+    const double weight = y < 0 ? 4 : 0.5;
+    EXPECT_NEAR(graph.score->capacities()[v] * graph.score->unit(), weight, 1e-5);
+    ++voxels[weight];
+  }
+  EXPECT_GT(voxels[4], 20);
+  EXPECT_GT(voxels[0.5], 20);
+  for (int view = 0; view < graph.score->views(); ++view) {
+    const std::vector<SeenVoxel> seen =
+        weighted.seen_from(graph.candidates.viewpoints[static_cast<std::size_t>(view)]);
+    const std::vector<float> told = contributions_of(seen, Halves());
+    double sum = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) sum += told[i] * weighted.weight(seen[i].voxel);
+    EXPECT_NEAR(graph.score->alone(view), sum, 1e-4 * (1 + sum));
+  }
+}
+
 TEST(ScanGraph, ScoresWhatEveryViewSees) {
   World world;
   const ScanGraph graph = world.graph();

@@ -31,8 +31,10 @@ TEST(TrueSurface, IsWhatCanBeSeenFromOutside) {
   const TrueSurface surface(seen_house(), kHouseRegion, kHouseRoom, 1);
   EXPECT_NEAR(surface.area(), kHouseOutside + kHouseGround, 0.02 * (kHouseOutside + kHouseGround));
   EXPECT_EQ(TrueSurface(seen_house(), kHouseRegion, kHouseRoom, 2).area(), surface.area());
-  EXPECT_THROW(TrueSurface(seen_house(), {Vector3d(-6, -6, 10), Vector3d(6, 6, 12)}, kHouseRoom, 1),
-               InputError);
+  EXPECT_THROW(
+      TrueSurface(seen_house(), Eigen::AlignedBox3d(Vector3d(-6, -6, 10), Vector3d(6, 6, 12)),
+                  kHouseRoom, 1),
+      InputError);
 }
 
 TEST(TrueSurface, AViewSeesWhatFacesItAndIsNotHidden) {

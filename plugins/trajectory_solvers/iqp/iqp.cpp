@@ -145,6 +145,8 @@ class Solve {
   }
   bool made_up(double merit) const;
   double worst_violation() const;
+  // Whether the problem is like one solved before. Without a start, memory changes no result.
+  bool edited() const { return request_.memory && request_.warm_start; }
   // Of the last program.
   double fine_tolerance() const { return std::max(kProgramFinest, kProgramShare * tolerance_); }
   void record(double step);
@@ -193,7 +195,7 @@ SolveResult Solve::run() {
   if (!problem_.quadratic()) {
     move_inside_bounds();
     program_tolerance_ = kProgramCoarsest;
-  } else if (request_.memory) {  // one of many edits: as exact as is asked for, and no more
+  } else if (edited()) {  // as exact as is asked for, and no more
     program_tolerance_ = fine_tolerance();
   }
   record(0.0);
@@ -307,7 +309,7 @@ Solve::Step Solve::quadratic_step() {
   std::optional<QuadraticWarmStart> warm;
   if (rows_.size() == problem_.rows() && bounds_.size() == problem_.columns())
     warm = QuadraticWarmStart{VectorXd::Zero(problem_.columns()), rows_, bounds_};
-  if (warm && request_.memory) {  // between edits mostly the same limits hold the flight back
+  if (warm && edited()) {  // mostly the same limits as before hold the flight back
     std::optional<QuadraticResult> near = sets_.solve(program_, options, *warm);
     if (near) return {near->status, near->x, near->row_multipliers, near->bound_multipliers};
   }

@@ -49,6 +49,33 @@ function T.untimed_ones_stand_evenly_between_timed_ones()
   check.near(filled { a, at(1, 0, 0, { time = 5 }), c, d }, { 0, 5, 5 + pace, 5 + 2 * pace }, 1e-12)
 end
 
+-- Keyframes may be missed by 0.5 m each: 51 m are 50 m. Of what follows the tolerances of the
+-- verifier take 1 %.
+function T.a_leg_takes_at_least_what_straight_flight_takes()
+  local options = { start = "rest", finish = "rest", model = { type = "quadrotor" } }
+  local function least(to, ends, late, more)
+    local all = {}
+    for name, value in pairs(options) do all[name] = value end
+    for name, value in pairs(more or {}) do all[name] = value end
+    return times.least_of_leg(at(0, 0, 0), to, VEHICLE, all, ends or {}, late or 0)
+  end
+  check.near(least(at(51, 0, 0)), 0.99 * 5, 1e-12, "at 10 m/s")
+  check.near(least(at(51, 0, 0), nil, 0.1), 0.99 * 5 - 0.2, 1e-12, "late at the end, early before")
+  -- At rest, 10 m/s are reached after 10 m and 2 s.
+  check.near(least(at(51, 0, 0), { first = true }), 0.99 * 6, 1e-12)
+  check.near(least(at(51, 0, 0), { first = true, last = true }), 0.99 * 7, 1e-12)
+  check.near(least(at(9, 0, 0), { last = true }), 0.99 * math.sqrt(2 * 8 / 5), 1e-12)
+  check.near(least(at(9, 0, 0), { first = true, last = true }), 0.99 * 2 * math.sqrt(8 / 5), 1e-12)
+  check.near(least(at(51, 0, 0), { first = true }, 0, { start = "moving" }), 0.99 * 5, 1e-12)
+  check.near(least(at(51, 0, 0), { first = true }, 0, { model = { type = "velocity" } }), 0.99 * 5,
+             1e-12)
+  check.near(least(at(51, 0, 0), {}, 0, { speed_limit = 4 }), 0.99 * 12.5, 1e-12)
+  check.near(least(at(50, 0, 0), {}, 0, { hard = 0.01 }), 0.99 * 49.98 / 10, 1e-12)
+  check.near(least(at(3, 0, 9)), 0.99 * 2, 1e-12, "up at 4 m/s")
+  check.near(least(at(3, 0, -9)), 0.99 * 4, 1e-12, "down at 2 m/s")
+  check.near(least(at(0.5, 0, 0), {}, 0.1), 1e-3, 1e-12, "nothing is known")
+end
+
 function T.what_is_given_is_not_changed()
   local list = { at(0, 0, 0), at(9, 0, 0), at(9, 9, 0, { yaw_deg = 20, look_at = { 1, 2, 3 } }) }
   local result = times.filled(list, 30, VEHICLE)

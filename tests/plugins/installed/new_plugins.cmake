@@ -14,7 +14,7 @@ endfunction()
 set(list "cmake_minimum_required(VERSION 3.25)\nproject(new_plugins LANGUAGES CXX)\ninclude(CTest)\n")
 string(APPEND list "find_package(lapwing REQUIRED)\n")
 set(kinds cost_term constraint vehicle_model trajectory_solver path_planner information tour_solver
-    utility exporter map shape controller flight_log)
+    utility exporter map shape controller flight_log executor)
 foreach(kind ${kinds})
   run("Writing a ${kind}" ${LAPWING_BUILD_DIR}/bin/lapwing new plugin ${kind} my_${kind})
   file(READ ${root}/my_${kind}/my_${kind}.cpp text)
