@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "framework/trajectory/plan_sections.h"
 #include "framework/verify/checks.h"
 #include "framework/verify/drone_distance.h"
 #include "framework/verify/seen_voxels.h"
@@ -135,6 +136,8 @@ class FleetReader {
     if (!same_region(*member.plan->task.scan, *first.task.scan) ||
         map_digest(*member.plan) != map_digest(first))
       add(name + " has another region, camera or map than the first tour");
+    if (environment_to_value(member.plan->environment) != environment_to_value(first.environment))
+      add(name + " keeps another margin, or other obstacles, zones or pilots, than the first tour");
   }
 
   const Fleet& fleet_;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Judges the plans of a fleet together: what the certificate of one plan cannot say.
 //
-// fleet_document  contradictions of the fleet document; what was changed in it after writing; a
-// file
-//                 that is not the plan named
+// fleet_document  contradictions of the fleet document, and between its plans; what was changed in
+//                 it after writing; a file that is not the plan named
 // tours           tours whose own certificate fails
 // sequence        s, least time between two tours of one drone: at least the swap
 // homes           m, between the places where the tours of one drone begin and end

@@ -231,8 +231,21 @@ TEST_F(Fleets, ADocumentThatContradictsItselfOrItsFilesIsRefused) {
   EXPECT_THAT(judged(&changed).checks.front().detail, HasSubstr("changed after writing: tours[1]"));
   const DigestFindings none;
   EXPECT_FALSE(judged(&none).feasible());
-  plans_[1].task.scan->region.max().x() += 1;
+  const std::vector<Plan> plans = plans_;
+  Eigen::AlignedBox3d larger = plans_[1].task.scan->region.bounds();
+  larger.max().x() += 1;
+  plans_[1].task.scan->region = larger;
   refused("another region, camera or map");
+  plans_ = plans;
+  // Without the zone that the other tour keeps.
+  Obstacle zone;
+  zone.name = "school";
+  zone.type = "box";
+  zone.parameters.set("lower", Value(Value::List{-30.0, -30.0, 0.0}));
+  zone.parameters.set("upper", Value(Value::List{-29.0, -29.0, 1.0}));
+  plans_[0].environment.obstacles.push_back(zone);
+  refused("drone 2, battery 1 keeps another margin");
+  plans_ = plans;
   plans_[1].trajectory.samples.clear();
   refused("the document of drone 2, battery 1 does not hold");
 }
