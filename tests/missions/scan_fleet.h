@@ -11,6 +11,9 @@ inline constexpr const char* kTwoDrones =
     "--set batteries=3 --set drones=2 --set fleet.swap=20 "
     "--set 'fleet.starts=[{position: [-8,-8,13]},{position: [8,8,13]}]'";
 
+inline constexpr const char* kPond =
+    "--set 'no_fly_zones=[{name: pond, corners: [9,9,12,9,12,12,9,12]}]'";
+
 class FleetScans : public Scanning {
  protected:
   Fleet fleet() const {

@@ -5,9 +5,12 @@
 namespace lapwing {
 namespace {
 
-// The smallest: two short tours, all files, and the verdict of another process.
+// The smallest: two short tours, all files. Both plans keep the zone and the accuracy.
 TEST_F(FleetScans, TwoBatteriesMakeTwoPlansAndAFleet) {
-  ASSERT_EQ(run("--set batteries=2 --set tour.budget=30"), 0) << error();
+  ASSERT_EQ(run(std::string("--set batteries=2 --set tour.budget=30 --set gps_accuracy=0.2 ") +
+                kPond),
+            0)
+      << error();
   const Value said = answer();
   EXPECT_EQ(said.at("status").as_text(), "ok");
   EXPECT_EQ(said.at("tours").as_list().size(), 2u);
@@ -16,8 +19,18 @@ TEST_F(FleetScans, TwoBatteriesMakeTwoPlansAndAFleet) {
   for (const FleetTour& tour : document.tours) EXPECT_EQ(tour.drone, "1");
   EXPECT_GE(document.tours[1].start,
             document.tours[0].start + plan_of(document.tours[0]).trajectory.duration() + 60);
+  for (const FleetTour& tour : document.tours) {
+    const Environment kept = plan_of(tour).environment;
+    EXPECT_EQ(kept.accuracy, 0.2);
+    EXPECT_NE(find_obstacle(kept, "prism", "pond"), nullptr);
+  }
+  // What the images show is told of both tours together.
+  EXPECT_GT(said.at("tour").at("prediction").as_map().size(), 0u);
+  EXPECT_EQ(said.at("tours").as_list()[0].at("tour").find("prediction"), nullptr);
+  EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr("the 2 tours see"));
   EXPECT_FALSE(fs::exists(folder_ / "out/plan.json"));
-  for (const char* file : {"report.html", "report_2.html", "trajectory_2.csv", "map.ot"})
+  for (const char* file :
+       {"report.html", "report_2.html", "trajectory_2.csv", "map.ot", "prediction.ply"})
     EXPECT_TRUE(fs::exists(folder_ / "out" / file)) << file;
 }
 
@@ -33,6 +46,12 @@ TEST_F(FleetScans, WhatCannotBeFlownIsOneMessage) {
               HasSubstr("expected one start for each of the 2 drones, got 1"));
   EXPECT_THAT(refused_fleet("--set batteries=2 --set tour.budget=1180"),
               HasSubstr("more than the 1200 s that one battery"));
+  EXPECT_THAT(refused_fleet("--set batteries=2 --set exploration.images=20"),
+              HasSubstr("an exploration and its tour share one battery"));
+  EXPECT_THAT(refused_fleet(std::string(kPond) +
+                            " --set batteries=2 --set drones=2 --set "
+                            "'fleet.starts=[{position: [-8,-8,13]}, {position: [10,10,13]}]'"),
+              HasSubstr("fleet.starts: the start of drone 2: it lies in zone 'pond'"));
 }
 
 }  // namespace

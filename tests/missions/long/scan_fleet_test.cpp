@@ -130,6 +130,42 @@ TEST_F(FleetScans, FlownToursSeeTogetherWhatTheFleetPromised) {
   EXPECT_GE(static_cast<double>(both.size()) / promised, 0.9);
 }
 
+// Positions that are less exact keep drones farther apart; the pilot sees all of them.
+TEST_F(FleetScans, PilotAndAccuracyHoldForEveryTour) {
+  ASSERT_EQ(run(std::string(kTwoDrones) +
+                " --set gps_accuracy=0.3 --set fleet.separation=4 --set pilot.position=[0,-25,2] "
+                "--set pilot.range=80 " +
+                kPond),
+            0)
+      << error();
+  const Fleet document = fleet();
+  EXPECT_DOUBLE_EQ(document.separation, 4.6);
+  for (const FleetTour& tour : document.tours) {
+    const Plan plan = plan_of(tour);
+    ASSERT_TRUE(plan.environment.pilot);
+    const Certificate certificate = Certificate::from_value(plan.certificate);
+    ASSERT_NE(certificate.find("pilot_sight"), nullptr);
+    EXPECT_TRUE(certificate.find("pilot_sight")->pass);
+  }
+  EXPECT_EQ(verify_again("out"), 0) << verified();
+}
+
+// Views that are given, each photographed by one of the tours.
+TEST_F(FleetScans, GivenViewsAreSharedByTheTours) {
+  std::string views;
+  for (int k = 0; k < 8; ++k)
+    views += std::string(k ? "," : "") + "{position: [" + std::to_string(k < 4 ? -8 : 8) + "," +
+             std::to_string(-6 + 4 * (k % 4)) + ",10], yaw_deg: " + (k < 4 ? "0" : "180") +
+             ", pitch_deg: -30}";
+  ASSERT_EQ(run("--set batteries=2 --set tour.budget=40 --set 'views=[" + views + "]'"), 0)
+      << error();
+  std::set<std::pair<double, double>> places;
+  for (const FleetTour& tour : fleet().tours)
+    for (const PlannedView& view : plan_of(tour).task.scan->views)
+      places.emplace(view.position.x(), view.position.y());
+  EXPECT_GE(places.size(), 7u);
+}
+
 // A score of batteries that cannot be worse than one of them.
 TEST_F(FleetScans, MoreBatteriesShowMore) {
   double before = 0;
