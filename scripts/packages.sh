@@ -8,7 +8,7 @@ lapwing_packages=(
   libcgal-dev liboctomap-dev libopencv-calib3d-dev libompl-dev coinor-libipopt-dev libnlopt-dev
   coinor-libcbc-dev libboost-dev libexpat1-dev libzstd-dev liblz4-dev
 )
-lapwing_test_packages=(libgtest-dev libgmock-dev chromium binutils groff-base zsh fish)
+lapwing_test_packages=(libgtest-dev libgmock-dev chromium binutils groff-base zsh fish gdal-bin)
 lapwing_bench_packages=(libbenchmark-dev)
 lapwing_fuzz_packages=(clang libclang-rt-14-dev)
 lapwing_learn_packages=(libtorch-dev)

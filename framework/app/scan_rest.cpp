@@ -98,12 +98,12 @@ std::string rest_mission(const Plan& plan, const std::vector<std::size_t>& missi
       ",\n  prior = { map = \"map.ot\", mesh = \"prior.ply\" },\n  start = " + lua_point(start) +
       ",\n";
   const Value* region = plan.configuration.find("region");
-  text +=
-      "  region = " +
-      (region && !says_nothing(*region) ? lua_value(*region)
-                                        : "{ lower = " + lua_point(scan.region.min()) +
-                                              ", upper = " + lua_point(scan.region.max()) + " }") +
-      ",\n";
+  const Value* polygons = plan.configuration.find("regions");  // copied below like other options
+  if (region && !says_nothing(*region))
+    text += "  region = " + lua_value(*region) + ",\n";
+  else if (!polygons || says_nothing(*polygons))
+    text += "  region = { lower = " + lua_point(scan.region.bounds().min()) +
+            ", upper = " + lua_point(scan.region.bounds().max()) + " },\n";
   double highest = start.z();
   for (const std::size_t k : missing) highest = std::max(highest, scan.views[k].position.z());
   const Value* ceiling = plan.configuration.find("ceiling");

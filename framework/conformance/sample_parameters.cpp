@@ -60,6 +60,14 @@ class Sampler {
     return list;
   }
 
+  // x, y, z of three points, of a size that is like that of the random positions.
+  static Value corner_of_a_path() {
+    Value list = Value::list();
+    for (const double number : {-15.0, -10.0, 2.0, 0.0, 5.0, -3.0, 12.0, -8.0, 6.0})
+      list.push_back(number);
+    return list;
+  }
+
   Value made_up(const ParameterSpec& spec, int turn) const {
     static constexpr double kMoments[] = {0.31, 0.77, 1.0};  // between two stages, and on the last
     const bool time = spec.unit == "s" && !std::isfinite(spec.range.maximum);
@@ -72,11 +80,12 @@ class Sampler {
         return time ? kMoments[std::min(turn % 3 + (spec.name == "finish"), 2)] * duration_
                     : inside(spec.range);
       case ParameterType::numbers:
+        if (spec.name == "points") return corner_of_a_path();
         return list_of(inside(spec.range), spec.size > 0 ? spec.size : numbers_);
       case ParameterType::choice:
         return spec.choices.front();
       case ParameterType::text:
-        return "position";
+        return spec.name == "subject" ? Value(subject_) : Value("position");
       case ParameterType::table:
         return required(*spec.table, turn);
       case ParameterType::tables:

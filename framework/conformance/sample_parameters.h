@@ -21,8 +21,8 @@ struct ParameterCase {
 // Defaults first (with made-up values for what is required), then every range's ends, every choice,
 // every flag, every optional value. Lists of tables get three entries at times inside the horizon,
 // of which one number may contradict another; numbers of any count get as many as the block that
-// the table's `block` names by default. Where there is a parameter `subject` every case is tried
-// again with a subject of the setting.
+// the table's `block` names by default. `points` are a path with a corner. Where there is a
+// parameter `subject` every case is tried again with a subject of the setting.
 std::vector<ParameterCase> parameter_cases(const ParameterTable& table,
                                            const StandardSetting& standard);
 

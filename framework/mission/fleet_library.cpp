@@ -161,8 +161,7 @@ int fleet_field(lua_State* state) {
     end = std::max(end, made.document.tours[t].start + plan.trajectory.duration());
     for (const PlannedView& view : plan.task.scan->views) {
       Value entry = Value::map();
-      entry.set("position",
-                Value(Value::List{view.position.x(), view.position.y(), view.position.z()}));
+      entry.set("position", list_of(view.position));
       entry.set("yaw", view.yaw);
       entry.set("pitch", view.pitch);
       views.push_back(std::move(entry));

@@ -6,6 +6,7 @@
 // do not remember their lines: every node gets the origin given, that of the call that took it.
 #pragma once
 
+#include <Eigen/Core>
 #include <lua.hpp>
 
 #include <span>
@@ -28,5 +29,10 @@ Value value_from_lua(lua_State* state, int index, const Origin& origin,
 void claim_copies(lua_State* state, const Value& options);
 
 void push_value(lua_State* state, const Value& value);
+
+// {x, y, z}.
+inline Value list_of(const Eigen::Vector3d& v) {
+  return Value(Value::List{v.x(), v.y(), v.z()});
+}
 
 }  // namespace lapwing

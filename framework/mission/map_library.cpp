@@ -20,10 +20,6 @@ MapWork work_of(const MissionRun& run) {
   return {run.settings.threads, run.settings.cancellation, run.settings.progress};
 }
 
-Value list_of(const Eigen::Vector3d& v) {
-  return Value(Value::List{v.x(), v.y(), v.z()});
-}
-
 Eigen::Vector3d point_argument(lua_State* state, int index, const char* what) {
   const Value given = value_from_lua(state, index, Sandbox::of(state).script_position(state), what);
   if (!given.is_list() || given.as_list().size() != 3)

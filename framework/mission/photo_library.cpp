@@ -19,10 +19,6 @@ using Eigen::Vector3d;
 constexpr int kOverviewStride = 8;        // pixels
 constexpr double kUpright = radians(10);  // a world whose z is so near to up stays as it is
 
-Value list_of(const Vector3d& v) {
-  return Value(Value::List{v.x(), v.y(), v.z()});
-}
-
 std::string vector_text(const Vector3d& v) {
   char text[120];
   std::snprintf(text, sizeof text, "{%.4f, %.4f, %.4f}", v.x(), v.y(), v.z());

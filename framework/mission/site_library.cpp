@@ -185,9 +185,6 @@ constexpr BoundField kSiteFields[] = {
 int site_field(lua_State* state) {
   const Site& site = *object_argument<SiteObject>(state, 1, kSiteType).site;
   const std::string field = text_argument(state, 2, "site");
-  const auto list_of = [](const Eigen::Vector3d& v) {
-    return Value(Value::List{v.x(), v.y(), v.z()});
-  };
   Value fields = Value::map();
   fields.set("name", site.name);
   fields.set("description", site.description);

@@ -71,10 +71,6 @@ Way way_of(const Value& given, const Origin& origin, const std::string& what) {
   return way;
 }
 
-Value list_of(const Eigen::Vector3d& p) {
-  return Value(Value::List{p.x(), p.y(), p.z()});
-}
-
 std::vector<Way> excluded_argument(lua_State* state, const Origin& origin) {
   std::vector<Way> ways;
   lua_getfield(state, 2, "excluded");

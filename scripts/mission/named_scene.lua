@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Makes the scene of the options `scene` and `scene_seed` (scripts/scene).
-local SCENES = "arcade, church, courtyard, district, downtown, office, street, suburb or towers"
+local SCENES = "arcade, church, courtyard, district, downtown, grasslands, office, street, "
+               .. "suburb or towers"
 
 return function(run)
   local o = run.options

@@ -184,7 +184,8 @@ end
 -- A function that makes scans. `source(run)` states first what replaces a simulated first flight.
 local function made(source, declarations)
   return function(given)
-    return mission_of("scan", declarations or DECLARATIONS, polygons.written_out(given), function(run)
+    given = polygons.written_out(given)
+    return mission_of("scan", declarations or DECLARATIONS, given, function(run)
       if source then source(run) end
       return planned(run)
     end)

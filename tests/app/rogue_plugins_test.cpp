@@ -323,6 +323,7 @@ return scan.of_mesh {
   name = "hut", input = "hut.obj", ground = true, safe_height = 7, reach = 8, resolution = 0.4,
   region = { lower = {-4, -3.5, -0.5}, upper = {4, 3.5, 4.5} },
   flights = { { pattern = "circle", height = 9, views = 8, reach = 4 } },
+  usable = { range = 30 },
   camera = { width = 120, height = 90, focal = 70 },
   surface = { spacing = 0.5, cell = 0.6, trim = 1.2 },
   candidates = { most = 40, step = 3, distance_apart = 2 },

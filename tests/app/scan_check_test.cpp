@@ -34,7 +34,7 @@ class ScanCheck : public CommandLine {
       plan_.trajectory.samples.push_back(sample);
     }
     ScanTask scan;
-    scan.region = {Vector3d(-10, -10, 0), Vector3d(50, 20, 10)};
+    scan.region = Eigen::AlignedBox3d{Vector3d(-10, -10, 0), Vector3d(50, 20, 10)};
     scan.camera = {640, 480, 400, 400, 319.5, 239.5};
     scan.map = "known";
     scan.seen = 1;

@@ -20,10 +20,11 @@ using Names = std::set<std::string>;
 // What a room may include besides itself and core.
 const std::map<std::string, Names>& rooms() {
   static const Names kAllButApp{
-      "geometry", "trajectory", "vehicle", "map",     "path",     "problem",     "solve",
-      "view",     "explore",    "verify",  "export",  "config",   "conformance", "plugin",
-      "mission",  "surface",    "shape",   "picture", "symbolic", "flight_log",  "flight_review",
-      "mavlink",  "fly",        "survey",  "items",      "photogrammetry"};
+      "geometry",    "trajectory",    "vehicle",       "map",     "path",   "problem",
+      "solve",       "view",          "explore",       "verify",  "export", "config",
+      "conformance", "plugin",        "mission",       "surface", "shape",  "picture",
+      "symbolic",    "flight_log",    "flight_review", "mavlink", "fly",    "survey",
+      "items",       "photogrammetry"};
   static const auto without = [](Names names, const std::string& name) {
     names.erase(name);
     return names;
@@ -267,11 +268,11 @@ Violations check_third_party(const SourceFile& file) {
     }
   }
   static const std::regex kOpen(R"(\bdlopen\s*\()");
-  const bool opens = file.path.starts_with("framework/plugin/") ||
-                     file.path == "framework/core/side_library.cpp";
-  if (!opens && has_extension(file.path, {".h", ".cpp"}) &&
-      std::regex_search(file.text, kOpen)) {
-    found.push_back(file.path + ": dlopen belongs in framework/plugin/ and framework/core/side_library.cpp");
+  const bool opens =
+      file.path.starts_with("framework/plugin/") || file.path == "framework/core/side_library.cpp";
+  if (!opens && has_extension(file.path, {".h", ".cpp"}) && std::regex_search(file.text, kOpen)) {
+    found.push_back(file.path +
+                    ": dlopen belongs in framework/plugin/ and framework/core/side_library.cpp");
   }
   return found;
 }

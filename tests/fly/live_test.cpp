@@ -213,6 +213,7 @@ end
   expect_flown(planned(R"(return require "mission.scan".of_scene {
   name = "hut", scene = "hut", resolution = 0.4, range = 30, reach = 8,
   tour = { budget = 40, iterations = 10 },
+  usable = { range = 30 },
   camera = { width = 80, height = 60, focal = 46 },
   flights = { { pattern = "ellipse", views = 8, reach = 3, pitch_deg = -40, height = 14 },
               { pattern = "meander", views = 12, reach = 1, height = 13 } },

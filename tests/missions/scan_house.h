@@ -61,6 +61,7 @@ class Covering : public Scanning {
     write_file_atomically(folder_ / "house.lua", R"(
 return require("mission.scan").of_mesh {
   name = "house", resolution = 0.4, tour = { budget = 120, iterations = 60 },
+  usable = { range = 30 },
   camera = { width = 80, height = 60, focal = 46 }, surface = { spacing = 0.8, cell = 1, trim = 2 },
   candidates = { most = 80, step = 2.5, distance_apart = 2 },
   motions = { alpha = 0.3, coarse = 40 },

@@ -34,6 +34,7 @@ local scan = require "mission.scan"
 return scan.of_scene {
   name = "hut", scene = "hut", resolution = 0.4, range = 30, reach = 8,
   tour = { budget = 70, iterations = 60 },
+  usable = { range = 30 },
   camera = { width = 80, height = 60, focal = 46 },
   flights = { { pattern = "ellipse", views = 8, reach = 3, pitch_deg = -40, height = 14 },
               { pattern = "meander", views = 12, reach = 1, height = 13 } },

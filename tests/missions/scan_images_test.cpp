@@ -69,7 +69,7 @@ TEST_F(ScanningImages, AreThePriorOfATour) {
     ADD_FAILURE() << to_line(check);
   EXPECT_THAT(plan(), HasSubstr("images.up = {"));
   // The world of the plan has z up: the hall's floor and ceiling are its lowest and highest.
-  const Eigen::AlignedBox3d& region = read.task.scan->region;
+  const Eigen::AlignedBox3d& region = read.task.scan->region.bounds();
   EXPECT_GE(region.sizes().z(), 3.9);  // whole voxels outwards, and the noise
   EXPECT_LE(region.sizes().z(), 4.5);
   EXPECT_NEAR(region.sizes().x(), 12, 0.6);

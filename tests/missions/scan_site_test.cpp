@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* kSmall = R"(
   resolution = 0.5, reach = 5, range = 40, safe_height = 9, tour = { budget = 60, iterations = 40 },
+  usable = { range = 30 },
   camera = { width = 60, height = 45, focal = 34 },
   surface = { spacing = 0.5, cell = 0.7, trim = 1.5 },
   candidates = { most = 40, step = 2.5, distance_apart = 2 },

@@ -68,6 +68,7 @@ TEST_F(Scanning, ASecondPlanContinuesFromFilesOfTheFirst) {
 return require("mission.scan").of_prior {
   name = "again", resolution = 0.4, range = 30, reach = 8, safe_height = 9, ceiling = 15,
   region = { lower = {-6, -5, -0.4}, upper = {6, 5, 7} }, start = {0, 0, 13},
+  usable = { range = 30 },
   tour = { budget = 70, iterations = 60 }, camera = { width = 80, height = 60, focal = 46 },
   candidates = { most = 60, step = 2.5, distance_apart = 2 },
   motions = { alpha = 0.3, coarse = 40 },

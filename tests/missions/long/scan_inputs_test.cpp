@@ -43,6 +43,7 @@ TEST_F(ScanInputs, FilesOfAnEarlierFlightAreLookedAtQuickly) {
 return require("mission.scan").of_prior {
   range = 30, reach = 8, safe_height = 9, ceiling = 15,
   region = { lower = {-6, -5, -0.4}, upper = {6, 5, 7} }, start = {0, 0, 13},
+  usable = { range = 30 },
   tour = { budget = 70, iterations = 60 }, camera = { width = 80, height = 60, focal = 46 },
 }
 )");
