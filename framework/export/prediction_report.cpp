@@ -184,7 +184,7 @@ std::string prediction_in_words(const ScanPrediction& p) {
   const double not_chosen = area_of_holes(p, HoleReason::not_chosen);
   if (no_view + not_chosen > 0)
     text += ". Not reconstructed: " + number_text(not_chosen, 4) +
-            " m^2 for want of images in this tour, and " + number_text(no_view, 4) +
+            " m^2 for want of planned images, and " + number_text(no_view, 4) +
             " m^2 for want of candidate views from two places";
   return text;
 }

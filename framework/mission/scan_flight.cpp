@@ -232,11 +232,33 @@ std::vector<const SolutionObject*> legs_argument(lua_State* state, int table) {
   return legs;
 }
 
+// Files of what is known, and the rules that the graph was made with; no margin.
+Environment environment_of_scan(const ScanWork& work, MissionRun& run) {
+  Environment environment;
+  const auto keep = [&](const char* name, const char* type, const char* file,
+                        const std::string& bytes) {
+    Obstacle obstacle;
+    obstacle.name = name;
+    obstacle.type = type;
+    obstacle.parameters.set("file", file);
+    obstacle.parameters.set("sha256", run.obstacles.keep(file, bytes));
+    environment.obstacles.push_back(std::move(obstacle));
+  };
+  keep("prior", "mesh", "prior.ply", ply_bytes(work.prior->mesh->mesh()));
+  keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *work.prior->mapping.map));
+  for (const Obstacle& zone : work.rules->zones.obstacles) environment.obstacles.push_back(zone);
+  environment.pilot = work.rules->pilot;
+  environment.accuracy = work.rules->accuracy;
+  return environment;
+}
+
 constexpr BoundField kScanPlanObjects[] = {
     {"tour", "lapwing.tour", "flown tour"},
     {"legs?", "lapwing.solution[]", "solutions from view to view; absent: pure pursuit"},
     {"flight?", "lapwing.solution", "solution of a tour of passes"},
     {"explored?", "lapwing.exploration", "exploration before it, for the report"},
+    {"shares?", "lapwing.plan",
+     "earlier plan of the same graph, with which it shares the files of map and mesh"},
     {"notes?", "string[]", "sentences for the user"},
     {"figures?", "table", "figures of the tour, for --json"},
     kStatedSections};
@@ -256,7 +278,7 @@ ParameterTable scan_plan_table() {
 }
 
 // run:scan_plan{tour =, flight =, margin =, budget =, closed_loop_required =, seen_share =,
-// notes =, part_of_fleet =, figures =, sections =, legs =, explored =}
+// notes =, part_of_fleet =, shares =, figures =, sections =, legs =, explored =}
 int scan_plan_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -278,6 +300,9 @@ int scan_plan_of_run(lua_State* state) {
   if ((flight != nullptr) != (tour.passing != nullptr) || (flight && !legs.empty()))
     throw InputError(
         "scan_plan: a tour of passes has a solution as its 'flight', others have none");
+  const PlanObject* shared = nullptr;
+  if (lua_getfield(state, 2, "shares") != LUA_TNIL)
+    shared = &object_argument<PlanObject>(state, -1, kPlanType);
   made.block_name = "tour";
   made.sections = stated_sections(state, 2, "scan_plan.sections");
   if (lua_getfield(state, 2, "explored") != LUA_TNIL)
@@ -313,23 +338,8 @@ int scan_plan_of_run(lua_State* state) {
     plan.budget = given.number("budget");
     plan.task.closed_loop_required = given.boolean("closed_loop_required");
     plan.task.scan->seen_share = given.number("seen_share");
-    const Prior& prior = *work.prior;
+    plan.environment = shared ? shared->plan.environment : environment_of_scan(work, run);
     plan.environment.margin = given.number("margin");
-    const auto keep = [&](const char* name, const char* type, const char* file,
-                          const std::string& bytes) {
-      Obstacle obstacle;
-      obstacle.name = name;
-      obstacle.type = type;
-      obstacle.parameters.set("file", file);
-      obstacle.parameters.set("sha256", run.obstacles.keep(file, bytes));
-      plan.environment.obstacles.push_back(std::move(obstacle));
-    };
-    keep("prior", "mesh", "prior.ply", ply_bytes(prior.mesh->mesh()));
-    keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *prior.mapping.map));
-    for (const Obstacle& zone : work.rules->zones.obstacles)
-      plan.environment.obstacles.push_back(zone);
-    plan.environment.pilot = work.rules->pilot;
-    plan.environment.accuracy = work.rules->accuracy;
     plan.geodetic_origin = run.origin;
     plan.home = run.home;
     plan.configuration = run.configuration;

@@ -134,8 +134,9 @@ local function solved(run, graph, budget)
   return team, (spent or 0) + team.evaluations
 end
 
--- Plans of the tours that take images elsewhere than at home, and the drones that fly them.
-local function flown(run, vehicle, team, asked, begin)
+-- Plans of the tours that take images elsewhere than at home, and the drones that fly them. Map and
+-- mesh are written once: `shared` is an earlier plan on the same graph, or nil.
+local function flown(run, vehicle, team, asked, begin, shared)
   local o = run.options
   local plans, drones, longest = {}, {}, 0
   for k, tour in ipairs(team.tours) do
@@ -145,7 +146,7 @@ local function flown(run, vehicle, team, asked, begin)
       begin("flight")
       local plan = run:scan_plan {
         tour = tour, legs = legs, margin = zones.margin(run), budget = asked, notes = notes,
-        part_of_fleet = true,
+        part_of_fleet = true, shares = plans[1] or shared,
         closed_loop_required = o.closed_loop == "required",
         figures = { score = tour.score, seconds = tour.seconds, images = tour.images },
       }
@@ -190,10 +191,12 @@ function M.plan(run, graph, vehicle, known, explored, begin)
   local asked = tours.budget(run)
   -- Smooth legs take what was counted; the rest in the first view comes on top.
   local budget = asked - (o.flight.smooth and o.flight.pause or 0)
+  local shared
   for round = 1, TIGHTER do
     begin("tour")
     local team, evaluations = solved(run, graph, budget)
-    local plans, drones, longest = flown(run, vehicle, team, asked, begin)
+    local plans, drones, longest = flown(run, vehicle, team, asked, begin, shared)
+    shared = plans[1]
     -- Corners and rests may take a little more than the legs one by one.
     local over = longest - asked
     if over <= 0 or round == TIGHTER then

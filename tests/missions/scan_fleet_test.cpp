@@ -7,7 +7,9 @@ namespace {
 
 // The smallest: two short tours, all files. Both plans keep the zone and the accuracy.
 TEST_F(FleetScans, TwoBatteriesMakeTwoPlansAndAFleet) {
-  ASSERT_EQ(run(std::string("--set batteries=2 --set tour.budget=30 --set gps_accuracy=0.2 ") +
+  ASSERT_EQ(run(std::string("--set batteries=2 --set tour.budget=25 --set gps_accuracy=0.2 --set "
+                            "resolution=0.8 --set surface.spacing=1.5 --set camera.width=40 --set "
+                            "camera.height=30 --set camera.focal=23 ") +
                 kPond),
             0)
       << error();
@@ -46,7 +48,7 @@ TEST_F(FleetScans, WhatCannotBeFlownIsOneMessage) {
               HasSubstr("expected one start for each of the 2 drones, got 1"));
   EXPECT_THAT(refused_fleet("--set batteries=2 --set tour.budget=1180"),
               HasSubstr("more than the 1200 s that one battery"));
-  EXPECT_THAT(refused_fleet("--set batteries=2 --set exploration.images=20"),
+  EXPECT_THAT(refused_fleet("--set batteries=2 --set exploration.images=20 --set flights=[]"),
               HasSubstr("an exploration and its tour share one battery"));
   EXPECT_THAT(refused_fleet(std::string(kPond) +
                             " --set batteries=2 --set drones=2 --set "
