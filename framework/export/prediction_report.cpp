@@ -25,7 +25,7 @@ constexpr double kBest = 0.02, kWorst = 0.98;  // shares of the area, ends of th
 const char* reason_in_words(HoleReason reason) {
   return reason == HoleReason::no_view
              ? "no view: no two candidate views from different places show it"
-             : "not chosen: such candidate views show it, the tour takes too few of them";
+             : "not chosen: such candidate views show it, too few of them are planned";
 }
 
 double counted_area(const ScanPrediction& p) {

@@ -222,7 +222,8 @@ std::string unknown_warning(const ScanRecord& record) {
     return text + ". Data that were measured from other sides, such as from the ground, show more";
   return text +
          ". Fly the first flight lower, more obliquely or wider (flights), or plan again with "
-         "the images of this tour (rounds = 2)";
+         "the images of " +
+         (record.tours == 1 ? "this tour" : "these tours") + " (rounds = 2)";
 }
 
 // What nobody looked from is not considered: other free places may show more.
@@ -275,13 +276,10 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   const MeshScene scene = colored_surface(record);
   const std::string caption =
       "Information of " + whole +
-      " about the known surface, from little (violet) to all (yellow). "
-      "Red: seen from a candidate view, but not by " +
-      whole +
-      ". Dark: seen from no candidate. "
-      "Light grey: "
-      "outside the region. Magenta: openings to space that nobody measured. No surface is known "
-      "elsewhere";
+      " about the known surface, from little (violet) to all (yellow)." +
+      " Red: seen from a candidate view, but " + (record.tours == 1 ? "not by the" : "by no") +
+      " tour. Dark: seen from no candidate. Light grey: outside the region. Magenta: openings to "
+      "space that nobody measured. No surface is known elsewhere";
   TextBlock words;
   words.text = areas_in_words(record);
   if (record.truth) words.text += "\n\n" + truth_in_words(record);

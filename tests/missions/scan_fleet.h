@@ -12,7 +12,7 @@ inline constexpr const char* kTwoDrones =
     "--set 'fleet.starts=[{position: [-8,-8,13]},{position: [8,8,13]}]'";
 
 inline constexpr const char* kPond =
-    "--set 'no_fly_zones=[{name: pond, corners: [9,9,12,9,12,12,9,12]}]'";
+    "--set 'no_fly_zones=[{name: pond, corners: [9,-12,12,-12,12,-9,9,-9]}]'";
 
 class FleetScans : public Scanning {
  protected:

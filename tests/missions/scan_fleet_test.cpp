@@ -52,7 +52,7 @@ TEST_F(FleetScans, WhatCannotBeFlownIsOneMessage) {
               HasSubstr("an exploration and its tour share one battery"));
   EXPECT_THAT(refused_fleet(std::string(kPond) +
                             " --set batteries=2 --set drones=2 --set "
-                            "'fleet.starts=[{position: [-8,-8,13]}, {position: [10,10,13]}]'"),
+                            "'fleet.starts=[{position: [-8,-8,13]}, {position: [10,-10,13]}]'"),
               HasSubstr("fleet.starts: the start of drone 2: it lies in zone 'pond'"));
 }
 

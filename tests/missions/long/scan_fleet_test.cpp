@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans of several batteries and drones, from script to certified plans, and their flights.
 #include <iterator>
+#include <limits>
 #include <set>
 
 #include "framework/core/checksum.h"
@@ -21,19 +22,33 @@ std::shared_ptr<const Map> map_in(const fs::path& file) {
   return map;
 }
 
-// What one view sees in a map: a walk in small steps along every ray, sure of what it passes.
+// Metres along a ray from a point to the face at which it leaves the point's voxel.
+double way_out(const VoxelGrid& grid, const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    if (way(i) == 0) continue;
+    const double face = grid.face(grid.index(from(i)) + (way(i) > 0 ? 1 : 0));
+    least = std::min(least, (face - from(i)) / way(i));
+  }
+  return std::max(least, 0.0);
+}
+
+// What one view sees in a map: along every ray from voxel to voxel, none left out.
 void see(const Map& map, const ScanTask& scan, const Eigen::Vector3d& position, double yaw,
          double pitch, std::set<VoxelKey>& seen) {
-  const double step = map.grid().resolution() / 10;
+  constexpr double kPastFace = 1e-9;  // m
   const Pose pose = camera_pose(position, yaw, pitch);
   for (int y = 0; y < scan.camera.height; ++y)
     for (int x = 0; x < scan.camera.width; ++x) {
       const Eigen::Vector3d way = (pose.orientation * pixel_ray(scan.camera, x, y)).normalized();
-      for (double along = 0; along < scan.range; along += step) {
-        const VoxelKey key = map.grid().key(position + along * way);
-        if (map.read(key).state == VoxelState::free) continue;
-        if (scan.region.contains(map.grid().center(key))) seen.insert(key);
-        break;
+      for (double along = 0; along < scan.range;) {
+        const Eigen::Vector3d p = position + along * way;
+        const VoxelKey key = map.grid().key(p);
+        if (map.read(key).state != VoxelState::free) {
+          if (scan.region.contains(map.grid().center(key))) seen.insert(key);
+          break;
+        }
+        along += way_out(map.grid(), p, way) + kPastFace;
       }
     }
 }
