@@ -66,7 +66,7 @@ function M.check(run, vehicle, in_passing)
     run:fail("start", "fleet.starts states the starts of all drones: give one of the two")
   end
   if #fleet.starts > 0 and #fleet.starts ~= o.drones then
-    run:fail("fleet.starts", string.format("expected one start for each of the %d drones, got %d",
+    run:fail("fleet.starts", string.format("expected as many starts as drones, %d, got %d",
                                            o.drones, #fleet.starts))
   end
   local budget = tours.budget(run)

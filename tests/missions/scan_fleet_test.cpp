@@ -45,7 +45,7 @@ TEST_F(FleetScans, WhatCannotBeFlownIsOneMessage) {
               HasSubstr("every tour of several batteries ends where it began"));
   EXPECT_THAT(refused_fleet("--set batteries=2 --set drones=2 --set "
                             "'fleet.starts=[{position: [8,8,13]}]'"),
-              HasSubstr("expected one start for each of the 2 drones, got 1"));
+              HasSubstr("expected as many starts as drones, 2, got 1"));
   EXPECT_THAT(refused_fleet("--set batteries=2 --set tour.budget=1180"),
               HasSubstr("more than the 1200 s that one battery"));
   EXPECT_THAT(refused_fleet("--set batteries=2 --set exploration.images=20 --set flights=[]"),

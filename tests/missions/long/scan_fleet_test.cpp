@@ -148,7 +148,7 @@ TEST_F(FleetScans, FlownToursSeeTogetherWhatTheFleetPromised) {
 // Positions that are less exact keep drones farther apart; the pilot sees all of them.
 TEST_F(FleetScans, PilotAndAccuracyHoldForEveryTour) {
   ASSERT_EQ(run(std::string(kTwoDrones) +
-                " --set gps_accuracy=0.3 --set fleet.separation=4 --set pilot.position=[0,-25,2] "
+                " --set gps_accuracy=0.3 --set fleet.separation=4 --set pilot.position=[0,-14,10] "
                 "--set pilot.range=80 " +
                 kPond),
             0)
@@ -172,13 +172,19 @@ TEST_F(FleetScans, GivenViewsAreSharedByTheTours) {
     views += std::string(k ? "," : "") + "{position: [" + std::to_string(k < 4 ? -8 : 8) + "," +
              std::to_string(-6 + 4 * (k % 4)) + ",10], yaw_deg: " + (k < 4 ? "0" : "180") +
              ", pitch_deg: -30}";
-  ASSERT_EQ(run("--set batteries=2 --set tour.budget=40 --set 'views=[" + views + "]'"), 0)
-      << error();
+  const std::string given = "--set 'views=[" + views + "]' --set batteries=2 --set tour.budget=";
+  ASSERT_EQ(run(given + "60"), 0) << error();
+  const Fleet document = fleet();
+  EXPECT_EQ(document.tours.size(), 2u);
   std::set<std::pair<double, double>> places;
-  for (const FleetTour& tour : fleet().tours)
-    for (const PlannedView& view : plan_of(tour).task.scan->views)
+  for (const FleetTour& tour : document.tours) {
+    const Plan plan = plan_of(tour);
+    EXPECT_LE(plan.trajectory.duration(), 60);
+    for (const PlannedView& view : plan.task.scan->views)
       places.emplace(view.position.x(), view.position.y());
-  EXPECT_GE(places.size(), 7u);
+  }
+  EXPECT_EQ(places.size(), 8u);
+  EXPECT_NEAR(answer().at("tour").at("score").as_number(), 8, 1e-9) << "each counts 1, once";
 }
 
 // A score of batteries that cannot be worse than one of them.
