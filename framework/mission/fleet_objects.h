@@ -36,7 +36,7 @@ inline constexpr const char* kTeamType = "team";
 inline constexpr const char* kFleetType = "fleet";
 
 void open_fleet_library(lua_State* state);
-// solve_team, fleet.
+// solve_team, team_solvers, fleet.
 std::span<const Binding> fleet_methods_of_run();
 
 // The parts of that list.

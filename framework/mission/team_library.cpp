@@ -171,6 +171,18 @@ int solve_team_of_run(lua_State* state) {
   return 1;
 }
 
+// run:team_solvers(): names.
+int team_solvers(lua_State* state) {
+  Value names = Value::list();
+  for (const PluginEntry& entry : run_of(state).settings.registry->entries())
+    if (entry.kind == TourSolver::kKind &&
+        std::find(entry.extensions.begin(), entry.extensions.end(), kTakesTeams) !=
+            entry.extensions.end())
+      names.push_back(entry.name);
+  push_value(state, names);
+  return 1;
+}
+
 }  // namespace
 
 void open_team_type(lua_State* state) {
@@ -181,7 +193,9 @@ void open_team_type(lua_State* state) {
 std::span<const Binding> team_methods_of_run() {
   static const Binding methods[] = {
       {"solve_team", &guarded<solve_team_of_run>, "(settings: @): lapwing.team",
-       "tours of views within a budget each, that share one score", &team_table, kTeamObjects}};
+       "tours of views within a budget each, that share one score", &team_table, kTeamObjects},
+      {"team_solvers", &guarded<team_solvers>, "(): string[]",
+       "names of the tour solvers that run:solve_team takes"}};
   return methods;
 }
 

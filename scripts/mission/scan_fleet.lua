@@ -35,6 +35,20 @@ M.DECLARATIONS = {
 
 function M.wanted(run) return run.options.batteries > 1 or run.options.drones > 1 end
 
+-- Every solver that is asked for must take teams.
+local function check_solvers(run)
+  local able = run:team_solvers()
+  for option, solver in pairs { ["tour.solver"] = run.options.tour.solver,
+                                ["tour.begin"] = tours.beginner(run) } do
+    local takes = false
+    for _, name in ipairs(able) do takes = takes or name == solver end
+    if not takes then
+      run:fail(option, string.format("%s plans one tour, not several that share one score; expected "
+                                     .. "one of: %s", solver, table.concat(able, ", ")))
+    end
+  end
+end
+
 -- What the options say, before anything is flown.
 function M.check(run, vehicle, in_passing)
   local o = run.options
@@ -69,6 +83,7 @@ function M.check(run, vehicle, in_passing)
     run:fail("fleet.starts", string.format("expected as many starts as drones, %d, got %d",
                                            o.drones, #fleet.starts))
   end
+  check_solvers(run)
   local budget = tours.budget(run)
   if budget + fleet.reserve > vehicle.flight_time then
     run:fail("fleet.reserve", string.format(
@@ -108,7 +123,7 @@ local function refuse(run, graph, team, budget)
   local found = team.status == "optimal" or team.status == "feasible"
   local why = found and "no further view adds information within that time"
     or team.message ~= "" and team.message or team.status
-  run:fail(team.status == "unsupported" and "tour.solver" or "tour", string.format(
+  run:fail("tour", string.format(
     "no %d tours of %.4g s: %s. From the start (one of %d candidates) %s; %d views lie within the "
     .. "budget", run.options.batteries, budget, why, graph.candidates, graph.reach,
     team.reachable))

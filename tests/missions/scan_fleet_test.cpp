@@ -48,6 +48,9 @@ TEST_F(FleetScans, WhatCannotBeFlownIsOneMessage) {
               HasSubstr("expected as many starts as drones, 2, got 1"));
   EXPECT_THAT(refused_fleet("--set batteries=2 --set tour.budget=1180"),
               HasSubstr("more than the 1200 s that one battery"));
+  EXPECT_THAT(refused_fleet("--set batteries=2 --set tour.begin=recursive_greedy"),
+              HasSubstr("tour.begin: recursive_greedy plans one tour, not several that share one "
+                        "score; expected one of: cost_benefit, greedy, local_search"));
   EXPECT_THAT(refused_fleet("--set batteries=2 --set exploration.images=20 --set flights=[]"),
               HasSubstr("an exploration and its tour share one battery"));
   EXPECT_THAT(refused_fleet(std::string(kPond) +
