@@ -87,7 +87,12 @@ Fleet fleet_from_value(const Value& value) {
   fleet.reserve = fields.number("reserve");
   fleet.seen = fields.integer("seen");
   fleet.seen_share = fields.number("seen_share");
-  for (Fields& tour : fields.tables("tours")) {
+  std::vector<Fields> tours = fields.tables("tours");
+  if (tours.size() > Fleet::kMostTours)
+    throw InputError(value.origin(), "tours: expected at most " +
+                                         std::to_string(Fleet::kMostTours) + ", got " +
+                                         std::to_string(tours.size()));
+  for (Fields& tour : tours) {
     fleet.tours.push_back(tour_from(tour));
     const std::string& file = fleet.tours.back().file;
     if (!file.empty() && !is_plain_name(file))

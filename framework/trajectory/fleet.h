@@ -7,6 +7,7 @@
 // the same bytes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct FleetTour {
 
 struct Fleet {
   static constexpr int kFormat = 1;
+  static constexpr std::size_t kMostTours = 1000;
   std::string mission;    // name as the script gave it
   std::string kind;       // scan
   double separation = 0;  // m, least distance between two drones in flight

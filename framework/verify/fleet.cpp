@@ -18,7 +18,6 @@ constexpr double kSameHome = 0.1;             // m, between places that are one
 constexpr double kTimeRounding = 1e-6;        // s
 constexpr double kSeparationRounding = 1e-3;  // m
 constexpr std::size_t kProblemsListed = 5;
-constexpr std::size_t kMostTours = 1000;
 
 constexpr CheckKind kFleetCheckKinds[] = {
     {"fleet_document", CheckGroup::safety, true, ""}, {"tours", CheckGroup::safety, true, ""},
@@ -69,7 +68,7 @@ class FleetReader {
     if (digest_) changes();
     numbers();
     if (fleet_.tours.empty()) add("there is no tour");
-    if (fleet_.tours.size() > kMostTours) add("there are more than 1000 tours");
+    if (fleet_.tours.size() > Fleet::kMostTours) add("there are more than 1000 tours");
     if (members_.size() != fleet_.tours.size()) add("plans are missing");
     if (problems_.empty())
       for (std::size_t t = 0; t < fleet_.tours.size(); ++t) tour(t);

@@ -59,6 +59,9 @@ TEST(FleetDocument, SaysEverythingThatIsWrong) {
     for (const char* said : {"separaton", "battery", "beside the fleet document", "seen"})
       EXPECT_THAT(error.what(), HasSubstr(said));
   }
+  Fleet many = small_fleet();
+  many.tours.resize(Fleet::kMostTours + 1, many.tours.front());
+  EXPECT_THROW(fleet_from_value(to_value(many)), InputError);
   Value newer = to_value(small_fleet());
   newer.set("fleet_format", 2);
   EXPECT_THROW(fleet_from_value(newer), InputError);
