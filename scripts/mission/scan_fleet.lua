@@ -43,8 +43,9 @@ local function check_solvers(run)
     local takes = false
     for _, name in ipairs(able) do takes = takes or name == solver end
     if not takes then
-      run:fail(option, string.format("%s plans one tour, not several that share one score; expected "
-                                     .. "one of: %s", solver, table.concat(able, ", ")))
+      run:fail(option, string.format(
+        "%s plans one tour, not several that share one score; expected one of: %s", solver,
+        table.concat(able, ", ")))
     end
   end
 end
