@@ -37,8 +37,16 @@ const PluginLibrary* open_new(const std::filesystem::path& path) {
   const ActiveCall mark(lasting_text(path.string()), "dlopen");
   void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
-    const char* why = ::dlerror();
-    refuse(why ? why : "unknown reason");
+    const char* said = ::dlerror();
+    const std::string why = said ? said : "unknown reason";
+    // Words of the loader of glibc, where an address space is full.
+    if (why.find("failed to map segment") != why.npos ||
+        why.find("annot allocate memory") != why.npos)
+      throw PluginError("cannot open plugin library '" + path.string() +
+                        "': out of memory: it needs more than the system or a limit (ulimit -v) "
+                        "gives (" +
+                        why + ")");
+    refuse(why);
   }
   note_opened(path);
   // Never closed, not even when it is refused: its static objects may be registered somewhere.

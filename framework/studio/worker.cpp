@@ -203,7 +203,8 @@ class StudioWorker {
       while (editor_.work()) {
       }
       if (!refused_ && !settled) return;
-      if (!refused_ && drawn_last_) before = drawn_last_->plan->trajectory;
+      // A coarse plan is not compared with the whole one.
+      if (!refused_ && drawn_last_ && !(dragged_step_ > 0)) before = drawn_last_->plan->trajectory;
     }
     if (!whole_->cancelled()) plan_whole(layer, before);
   }

@@ -9,7 +9,7 @@
 //       command: evaluate scan
 //       arguments: ["{examples}/scan/courtyard.lua"]
 //       options: {seeds: "1,2,3,4,5", method: [greedy, circle_50]}  # --seeds ..., --method ...
-//       twice quick: {seeds: 1}                                           # over the options
+//       quick: {seeds: 1}                                           # over the options
 //   columns:
 //     - {name: F, unit: "%", figure: with_first/f, scale: 100}
 //   rows:

@@ -190,7 +190,7 @@ TEST_F(Completing, BashPutsItsPiecesTogether) {
 // Files stand beside the names, and a name of another list does not.
 TEST_F(Completing, FilesJoinTheNames) {
   write("scan.yaml", "");
-  EXPECT_EQ(in_bash("lapwing run --config scan"), "scan/fused\nscan/small\nscan.yaml\n");
+  EXPECT_EQ(in_bash("lapwing run --config scan"), "scan/fused\nscan/room\nscan/small\nscan.yaml\n");
   EXPECT_EQ(in_bash("lapwing run --config vehicles/"), "\n");
   EXPECT_EQ(in_bash("lapwing plugins check cost_term/input"), "cost_term/input_effort\n");
   EXPECT_EQ(in_bash("lapwing evaluate explore --world wal"), "\n") << "a part of scenes";

@@ -37,8 +37,9 @@ TEST_F(Slips, WordsOfTheCommandLine) {
   slip({"evaluate", "explore", "--world"}, "'--world' wants NAME[:FIRST-LAST]: a scene of");
   slip({"--set", "step=1", "run", "shot.lua"},
        "'--set' is an option of 'lapwing run': write it behind that");
-  slip({"scan", "--help"},
-       "unknown command 'scan'; scan is a kind of mission: `lapwing new mission scan FILE.lua` ");
+  slip({"explore", "--help"},
+       "unknown command 'explore'; explore is a kind of mission: `lapwing new mission explore "
+       "FILE.lua` ");
   slip({"help", "film"}, "'lapwing' has no command 'film'; film is a kind of mission: ");
   slip({"map", "inof", "--help"}, "unknown command 'inof'; did you mean 'info'?");
   slip({"new", "plugin", "cost", "keep_low"},

@@ -227,7 +227,7 @@ return film.shot {
   });
   EXPECT_EQ(judged.at("grade"), Value("certified"));
   EXPECT_EQ(samples(judged), 1201u);
-  EXPECT_EQ(judged.at("message"), Value(""));
+  EXPECT_EQ(judged.at("message").as_text(), "");
   EXPECT_EQ(grades.count("certified"), 0u);
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include "framework/core/error.h"
 #include "framework/flight_log/byte_reader.h"
@@ -54,18 +56,56 @@ class Reading {
 
   // One record that is whole, or what stands in its place. False: nothing behind it can be read.
   bool step(std::size_t& at, std::size_t end, const Head& head) {
-    const bool followed = head_follows(head.next, end);
-    // Bytes that were lost from a record let it reach into the ones behind it.
-    if (!followed && resume(at, head.next)) return true;
+    if (is_torn(at, head.next, end)) return true;
     const std::string_view body = bytes_.substr(at + 3, head.next - at - 3);
     if (!take(head.type, body, at)) {
-      if (!lettered(head.type) || !followed) return resume(at, bytes_.size()) || lost(at);
+      if (!lettered(head.type) || !head_follows(head.next, end))
+        return resume(at, bytes_.size()) || lost(at);
       note_unusable(at, head);
     } else {
       outcome_.read += head.next - at;
     }
     at = head.next;
     return true;
+  }
+
+  // Bytes that were lost from a record let it reach into the ones behind it: to the middle of one,
+  // or, where as many bytes were lost as some of them have, to the end of one. Then the record is
+  // dropped, and `at` becomes the place of the first record that it reached into.
+  bool is_torn(std::size_t& at, std::size_t next, std::size_t end) {
+    if (!certain_at(next, end)) return resume(at, next);
+    const std::size_t inner = first_within(at, next);
+    if (inner == next) return false;
+    skip_to(inner, at);
+    return true;
+  }
+
+  // Whether the part ends there, or a record that can be told from other bytes begins.
+  bool certain_at(std::size_t at, std::size_t end) const {
+    return at == end || next_if_certain(at, end).has_value();
+  }
+
+  // The place behind the record that begins there, if it ends before `end` and can be told from
+  // other bytes. The type is compared first: it excludes nearly all places.
+  std::optional<std::size_t> next_if_certain(std::size_t at, std::size_t end) const {
+    if (at + 3 > end) return {};
+    const char type = bytes_[at + 2];
+    if (type != 'D' && type != 'S' && type != 'L' && type != 'O') return {};
+    const Head head = head_at(at);
+    if (head.next > end || !certain(type, bytes_.substr(at + 3, head.next - at - 3))) return {};
+    return head.next;
+  }
+
+  // The first place within the record at `at` from which whole records lead to its end, `next`;
+  // else `next`. A dropout alone is too short to be told from the data of a record.
+  std::size_t first_within(std::size_t at, std::size_t next) const {
+    std::set<std::size_t> leading{next};
+    for (std::size_t place = next - 1; place > at; --place) {
+      const auto behind = next_if_certain(place, next);
+      if (!behind || !leading.count(*behind)) continue;
+      if (*behind < next || bytes_[place + 2] != 'O') leading.insert(place);
+    }
+    return *leading.begin();
   }
 
   static bool known(char type) {
@@ -87,17 +127,16 @@ class Reading {
   }
 
   // Whether a record begins there beyond doubt: a sync, or three in a row that can be told from
-  // other bytes, or two that end the file.
+  // other bytes, or fewer that end the file, other than a dropout alone.
   bool begins(std::size_t at) const {
-    if (bytes_.compare(at, kSync.size(), kSync) == 0) return true;
     constexpr int kRow = 3;
-    int found = 0;
-    for (std::size_t place = at; found < kRow; ++found) {
-      if (place == bytes_.size()) return found >= kRow - 1;
-      const Head head = head_at(place);
-      if (head.next > bytes_.size()) return false;
-      if (!certain(head.type, bytes_.substr(place + 3, head.next - place - 3))) return false;
-      place = head.next;
+    std::size_t place = at;
+    for (int found = 0; found < kRow; ++found) {
+      if (place == bytes_.size()) return found > 1 || (found == 1 && bytes_[at + 2] != 'O');
+      const auto next = next_if_certain(place, bytes_.size());
+      if (!next) return false;
+      if (found == 0 && bytes_[at + 2] == 'S') return true;
+      place = *next;
     }
     return true;
   }
@@ -121,9 +160,12 @@ class Reading {
   bool fits(std::string_view body) const {
     const auto id = number_in<std::uint16_t>(body, 0);
     const auto topic = id ? topics_.find(*id) : topics_.end();
-    if (topic == topics_.end()) return false;
-    const std::size_t size = topic->second.format->size;
-    return body.size() - 2 >= size && body.size() - 2 < size + kMostPadding;
+    return topic != topics_.end() && has_size_of(*topic->second.format, body);
+  }
+
+  static bool has_size_of(const Format& format, std::string_view body) {
+    const std::size_t size = body.size() - 2;
+    return size >= format.size && size < format.size + kMostPadding;
   }
 
   // The end of the part of the file that a place lies in: data that were appended later follow a
@@ -153,12 +195,16 @@ class Reading {
   bool resume(std::size_t& at, std::size_t end) {
     for (std::size_t next = at + 1; next < end; ++next) {
       if (!begins(next)) continue;
-      lost(at);
-      outcome_.skipped += next - at;
-      at = next;
+      skip_to(next, at);
       return true;
     }
     return false;
+  }
+
+  void skip_to(std::size_t next, std::size_t& at) {
+    lost(at);
+    outcome_.skipped += next - at;
+    at = next;
   }
 
   // Says where it was that no record begins. False, for the end of the reading.
@@ -272,7 +318,7 @@ class Reading {
     const auto id = number_in<std::uint16_t>(body, 0);
     if (!id) return false;
     const auto topic = topics_.find(*id);
-    if (topic == topics_.end() || body.size() - 2 < topic->second.format->size) return false;
+    if (topic == topics_.end() || !has_size_of(*topic->second.format, body)) return false;
     const std::string_view message = body.substr(2);
     if (const Field* time = topic->second.format->field("timestamp"))
       time_ = std::max(time_, 1e-6 * value_of(*time, message));

@@ -116,8 +116,6 @@ const Format& Formats::resolved(const std::string& name) {
   if (known != resolved_.end()) return known->second;
   Format format;
   append(name, "", 0, format);
-  fields_ += format.fields.size();
-  if (fields_ > kMostFields) throw InputError("the formats have more than 2^20 fields together");
   // What pads the end is not written.
   while (!format.fields.empty() && format.fields.back().name.starts_with("_padding"))
     format.fields.pop_back();
@@ -132,8 +130,7 @@ const Format& Formats::resolved(const std::string& name) {
 }
 
 // `into.size` is the place of the next field.
-void Formats::append(const std::string& name, const std::string& prefix, int depth,
-                     Format& into) const {
+void Formats::append(const std::string& name, const std::string& prefix, int depth, Format& into) {
   const auto found = defined_.find(name);
   if (found == defined_.end())
     throw InputError("the format '" + name.substr(0, 60) + "' is not defined");
@@ -142,18 +139,22 @@ void Formats::append(const std::string& name, const std::string& prefix, int dep
     const Known* known = known_named(member.type);
     if (prefix.size() + member.name.size() > kLongestName)
       throw InputError("the format '" + name.substr(0, 60) + "' has a name of more than 255 bytes");
-    for (std::size_t k = 0; k < std::max<std::size_t>(1, member.count); ++k) {
-      const std::string one =
-          prefix + member.name + (member.count > 0 ? "[" + std::to_string(k) + "]" : "");
+    const std::string all = prefix + member.name;
+    const std::size_t count = std::max<std::size_t>(1, member.count);
+    if (into.size + count * (known ? known->size : 1) > kLongestMessage)
+      throw InputError("the format '" + name.substr(0, 60) +
+                       "' is longer than the 65535 bytes of a message");
+    for (std::size_t k = 0; k < count; ++k) {
+      std::string one = member.count > 0 ? all + "[" + std::to_string(k) + "]" : all;
+      // A file may name a format that is refused again and again: what was laid out of it counts.
+      if (++fields_ > kMostFields)
+        throw InputError("the formats have more than 2^20 fields together");
       if (!known) {
         append(member.type, one + ".", depth + 1, into);
       } else {
-        into.fields.push_back({one, known->type, into.size});
+        into.fields.push_back({std::move(one), known->type, into.size});
         into.size += known->size;
       }
-      if (into.size > kLongestMessage)
-        throw InputError("the format '" + name.substr(0, 60) +
-                         "' is longer than the 65535 bytes of a message");
     }
   }
 }

@@ -35,7 +35,8 @@ class Formats {
   // InputError for a line of another form. A format that was resolved stays as it is.
   void add(std::string_view definition);
   // Resolved with what it contains. InputError for a format that is not defined, that contains
-  // itself, or that is longer than a message can be (65535 bytes); and for 2^20 fields of all.
+  // itself, or that is longer than a message can be (65535 bytes); and once 2^20 fields were laid
+  // out, those of refused formats and of arrays of formats included.
   const Format& resolved(const std::string& name);
 
  private:
@@ -43,11 +44,11 @@ class Formats {
     std::string type, name;
     std::size_t count = 0;  // of an array; 0: not an array
   };
-  void append(const std::string& name, const std::string& prefix, int depth, Format& into) const;
+  void append(const std::string& name, const std::string& prefix, int depth, Format& into);
 
   std::map<std::string, std::vector<Member>> defined_;
   std::map<std::string, Format> resolved_;
-  std::size_t fields_ = 0;  // of all that are resolved
+  std::size_t fields_ = 0;  // laid out so far, those of formats that were refused included
 };
 
 }  // namespace lapwing::ulog

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <ctime>
+
 #include "tests/plugins/flight_logs/reader_fixture.h"
 
 namespace lapwing {
@@ -130,32 +132,56 @@ TEST(Ulog, AFileWithoutSyncsGoesOnBehindWhatIsNoRecord) {
   EXPECT_THAT(log.damage, HasSubstr("begins no record; 50 bytes were skipped"));
 }
 
-// Where bytes of a record were lost, its stated length reaches into the ones behind it.
+// The places that a log gives are those of the flight; its times name them.
+void expect_no_invented_position(const FlightLog& log, const std::vector<RecordedState>& states) {
+  const LogSeries& positions = *log.find("position");
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto state = std::find_if(states.begin(), states.end(), [&](const RecordedState& s) {
+      return std::abs(s.time - positions.times[i]) < 1e-4;
+    });
+    ASSERT_NE(state, states.end()) << positions.times[i];
+    EXPECT_LT((row_of(log, "position", i) - state->position).norm(), 1e-5);
+  }
+}
+
+// Where bytes of a record were lost, its stated length reaches into the ones behind it: to the
+// middle of one, to the end of one, or of the file.
 TEST(Ulog, ARecordThatLostBytesIsNotInvented) {
   const auto states = short_flight();
-  const std::string whole = ulog_head() + ulog_formats();
-  std::string before = whole, behind;
-  for (std::size_t i = 0; i < 10; ++i) before += ulog_state(states[i], true);
-  for (std::size_t i = 11; i < 20; ++i) behind += ulog_state(states[i], true);
-  const std::string torn = ulog_state(states[10], true);
-  for (std::size_t lost = 1; lost < 30; ++lost) {
-    // The bytes behind the time of its first record.
-    const std::string bytes = before + torn.substr(0, 14) + torn.substr(14 + lost) + behind;
+  for (const std::size_t torn_one : {10, 17, 18, 19})
+    for (std::size_t kept = 13; kept < 24; ++kept)
+      for (std::size_t lost = 1; lost + kept < 60; ++lost) {
+        std::string bytes = ulog_head() + ulog_formats();
+        for (std::size_t i = 0; i < 20; ++i) {
+          std::string state = ulog_state(states[i], true);
+          if (i == torn_one) state.erase(kept, lost);
+          bytes += state;
+        }
+        SCOPED_TRACE(std::to_string(lost) + " lost behind " + std::to_string(kept) + " of " +
+                     std::to_string(torn_one));
+        const FlightLog log = reader_named("ulog")->read(bytes);
+        EXPECT_THAT(faults_of(log), IsEmpty());
+        EXPECT_NE(log.damage, "");
+        EXPECT_EQ(log.find("position")->size(), 19u);
+        EXPECT_EQ(log.find("orientation")->size(), 20u);
+        expect_no_invented_position(log, states);
+      }
+}
+
+TEST(Ulog, DataLongerThanTheirFormatAreNotUsed) {
+  const auto states = short_flight();
+  for (const std::size_t more : {7, 8}) {  // up to 7 bytes pad the end
+    std::string bytes = ulog_head() + ulog_formats();
+    for (std::size_t i = 0; i < 10; ++i) {
+      std::string state = ulog_state(states[i], true);
+      if (i == 4) state.insert(3 + std::size_t{static_cast<unsigned char>(state[0])}, more, 'x');
+      if (i == 4) state[0] = static_cast<char>(state[0] + static_cast<char>(more));
+      bytes += state;
+    }
     const FlightLog log = reader_named("ulog")->read(bytes);
-    EXPECT_THAT(faults_of(log), IsEmpty()) << lost;
-    EXPECT_NE(log.damage, "") << lost;
-    const LogSeries& positions = *log.find("position");
-    EXPECT_GE(positions.size(), 19u) << lost;
-    for (std::size_t i = 0; i < positions.size(); ++i)
-      EXPECT_LT((row_of(log, "position", i) -
-                 std::find_if(states.begin(), states.end(),
-                              [&](const RecordedState& s) {
-                                return std::abs(s.time - positions.times[i]) < 1e-4;
-                              })
-                     ->position)
-                    .norm(),
-                1e-5)
-          << lost;
+    EXPECT_EQ(log.find("position")->size(), more == 7 ? 10u : 9u);
+    EXPECT_THAT(log.damage, testing::StartsWith(more == 7 ? "" : "1 record cannot be used"));
+    EXPECT_EQ(log.damage.empty(), more == 7);
   }
 }
 
@@ -168,7 +194,13 @@ TEST(Ulog, RefusesWhatItDoesNotKnow) {
               HasSubstr("expected vehicle_local_position"));
 }
 
+// Of the processor, since `began`.
+double seconds_since(std::clock_t began) {
+  return static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+}
+
 TEST(Ulog, HostileFormatsTakeNoMemoryAndNoTime) {
+  const std::clock_t began = std::clock();
   std::string deep = ulog_head();
   for (int k = 0; k < 40; ++k)
     deep += ulog_format("f" + std::to_string(k) + ":f" + std::to_string(k + 1) + "[65535] a;");
@@ -183,6 +215,32 @@ TEST(Ulog, HostileFormatsTakeNoMemoryAndNoTime) {
   EXPECT_NE(refusal_of(*reader_named("ulog"), wide), "");
   std::string self = ulog_head() + ulog_format("a:a b;") + ulog_topic(1, "a");
   EXPECT_NE(refusal_of(*reader_named("ulog"), self), "");
+  // Each is refused at its last field.
+  std::string doubled = ulog_head() + ulog_format("d0:uint8_t a;uint8_t b;");
+  for (int k = 1; k < 16; ++k) {
+    const std::string inner = "d" + std::to_string(k - 1);
+    doubled += ulog_format("d" + std::to_string(k) + ":" + inner + " a;" + inner + " b;");
+  }
+  for (int k = 0; k < 3000; ++k) {
+    const std::string name = "r" + std::to_string(k);
+    doubled += ulog_format(name + ":d14 a;d14 b;") + ulog_topic(1, name);
+  }
+  EXPECT_NE(refusal_of(*reader_named("ulog"), doubled), "");
+  EXPECT_LT(seconds_since(began), 5);
+}
+
+// Places where a record seems to begin, in a row, overlapping, or within a record.
+TEST(Ulog, HostileRecordsTakeNoTime) {
+  const std::string head = ulog_head() + ulog_formats(), dropout("\2\0O\0\0", 5);
+  std::string dropouts, heads, records;
+  for (int k = 0; k < 12000; ++k) dropouts += dropout;
+  for (int k = 0; k < 1000000; ++k) heads += std::string("\x44\x44\x44", 3);
+  for (int k = 0; k < 60; ++k) records += ulog_record('D', dropouts);
+  for (const std::string& rest : {heads, records, records + std::string(1, 'x') + heads}) {
+    const std::clock_t began = std::clock();
+    EXPECT_NE(refusal_of(*reader_named("ulog"), head + rest), "");
+    EXPECT_LT(seconds_since(began), 5);
+  }
 }
 
 // Counted by a program of its own: the number of messages of each topic.
