@@ -50,7 +50,7 @@ const std::vector<CommandExamples>& command_examples() {
        {"lapwing diff out/a out/b", "lapwing diff out/a/plan.json out/b/plan.json -o diff.html"},
        "0 the plans are the same; 1 they differ; 2 bad input; 3 internal error"},
       {"lapwing verify",
-       {"lapwing verify out/shot/plan.json"},
+       {"lapwing verify out/shot/plan.json", "lapwing verify out/two_drones"},
        "0 certified; 1 not certified; 2 bad input; 3 internal error"},
       {"lapwing simulate",
        {"lapwing simulate out/shot/plan.json --wind 5,1 --mass-error 10 -o flight.html",

@@ -86,8 +86,11 @@ void add_sweep(CLI::App& app, Invocation& invocation, Sweep& asked, Command& com
 void add_plan_commands(CLI::App& app, Invocation& invocation, std::filesystem::path& plan,
                        ExportRequest& asked, Judges& judges, Command& command) {
   CLI::App* verify =
-      app.add_subcommand("verify", "judge a plan again, independently of its solver");
-  add_plan(*verify, plan);
+      app.add_subcommand("verify", "judge a plan or a fleet again, independently of its solver");
+  add_text(*verify, "plan", "PLAN.json|FLEET",
+           "plan document; fleet.json, or its folder, judges all its plans and the fleet",
+           [&](const std::string& path) { plan = path; })
+      ->required();
   add_text(*verify, "--vehicle", "FILE",
            "vehicle file, or its name in configs/, that states the limits; default: the vehicle of "
            "the plan",

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <thread>
 
+#include "framework/app/provenance.h"
 #include "framework/config/lookup.h"
 #include "framework/config/shipped.h"
 #include "framework/core/log.h"
@@ -102,7 +103,7 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
   for (const std::string& name : invocation.configs) layers.push_back(mission_config(name, search));
   settings.limits = sandbox_limits(layers, invocation.overrides);
   if (!invocation.from.empty())
-    settings.start = std::make_shared<const Plan>(read_plan(invocation.from));
+    settings.start = std::make_shared<const Plan>(read_plan_file(invocation.from));
   settings.cancellation = cancellation;
   settings.progress = progress;
   settings.observe_surface = observers.surface;

@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <iostream>
 
+#include "framework/app/check_lines.h"
 #include "framework/app/command_line.h"
+#include "framework/app/fleet_verify.h"
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
@@ -17,17 +19,6 @@
 namespace lapwing {
 
 namespace {
-
-void print_check(const Check& check) {
-  const bool made = check.skipped.empty();
-  std::string verdict = !made ? "skipped" : check.pass ? "pass   " : "FAIL   ";
-  verdict = tinted(!made ? Tone::faint : check.pass ? Tone::good : Tone::bad, verdict);
-  const bool above = check.name == "provenance" && check.pass;  // in the lines before the checks
-  const std::string result = above ? "as its sources say, see above" : result_of(check);
-  std::printf("  %s  %-22s %s%s\n", verdict.c_str(), visible_line(check.name).c_str(),
-              visible_line(result).c_str(),
-              check.required || !check.skipped.empty() ? "" : " (reported only)");
-}
 
 // All but the failures. What could not be checked because the document failed is counted.
 void print_others(const Certificate& certificate) {
@@ -42,10 +33,6 @@ void print_others(const Certificate& certificate) {
   }
   if (not_made > 0)
     std::printf("  the other %d checks were not made: they need a consistent document\n", not_made);
-}
-
-void print_failures(const Certificate& certificate) {
-  for (const Check& check : certificate.failures()) print_check(check);
 }
 
 // A plan carries the verdict of its run; a plan changed since may no longer deserve it.
@@ -79,6 +66,11 @@ ExitStatus verify_plan(const std::filesystem::path& file, const Judges& given,
   judges.cancellation = &interruption.token();
   judges.progress = &progress;
   judges.controllers = controllers_of(invocation);
+  if (const auto fleet = fleet_file(file)) {
+    const JudgedFleet judged = judge_fleet(*fleet, judges);
+    progress.clear();
+    return print_fleet(*fleet, judged, invocation);
+  }
   const JudgedPlan judged = judge_file(file, judges);
   progress.clear();
   const Certificate& certificate = judged.certificate;

@@ -14,6 +14,7 @@
 #include "framework/core/units.h"
 #include "framework/export/run_folder.h"
 #include "framework/geometry/mesh_file.h"
+#include "framework/trajectory/fleet.h"
 #include "framework/verify/provenance.h"
 #include "framework/verify/verify.h"
 
@@ -312,6 +313,7 @@ class Examination {
   throw InputError("'" + file.string() + "' is " + what + "; " + wanted);
 }
 
+constexpr const char* kWantedTour = "expected the plan of one tour, such as plan_1.json beside it";
 constexpr const char* kWantedPlan = "expected a document such as plan.json in the folder of a run";
 
 // Of what is given in place of a plan, as far as its name tells.
@@ -320,6 +322,10 @@ void refuse_other_kinds(const fs::path& file) {
   std::error_code code;
   if (fs::is_directory(file, code)) {
     const fs::path plan = file / "plan.json";
+    if (fs::exists(file / "fleet.json", code))
+      refuse_file(file, "the folder of a fleet",
+                  "expected the plan of one tour, such as plan_1.json "
+                  "in it");
     refuse_file(file, "a folder",
                 fs::exists(plan, code) ? "its plan is '" + plan.string() + "'"
                                        : "expected a plan, such as plan.json in the folder of a "
@@ -338,6 +344,7 @@ Value plan_document(const std::string& text, const fs::path& file) {
   if (begin == text.npos) refuse_file(file, "empty", kWantedPlan);
   if (text[begin] != '{') refuse_file(file, "not a plan", kWantedPlan);
   Value document = from_json(text, file.string());
+  if (is_fleet(document)) refuse_file(file, "a fleet document", kWantedTour);
   if (!document.find("format") && !document.find("samples"))
     refuse_file(file, "not a plan: JSON without `format` and `samples`", kWantedPlan);
   return document;
@@ -363,6 +370,7 @@ JudgedPlan judge(Plan plan, const fs::path& folder, const DigestFindings* digest
   state_provenance(examination.provenance(), judged.certificate);
   judged.provenance = examination.value();
   judged.lines = examination.lines();
+  judged.elsewhere = examination.elsewhere();
   if (!judged_by_others(judges))
     judged.changes = changes_since(plan.certificate, judged.certificate);
   judged.provenance.set("changes",

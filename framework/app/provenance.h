@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct JudgedPlan {
   std::vector<std::string> changes;  // against the certificate that the plan holds
   Value provenance;                  // for --json
   std::string lines;                 // for people, indented, each with its line end
+  // Where files of the judge's lie, see VerifyRequest.
+  std::map<std::string, std::filesystem::path> elsewhere = {};
 };
 
 // `digest`: what the document's own digest says; null for a plan that has not been written yet.

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "framework/app/command_line.h"
+#include "framework/app/fleet_run.h"
 #include "framework/app/interruption.h"
 #include "framework/app/mapping_run.h"
 #include "framework/app/mission_loading.h"
@@ -12,6 +13,7 @@
 #include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
 #include "framework/app/run_additions.h"
+#include "framework/app/run_outcome.h"
 #include "framework/app/run_target.h"
 #include "framework/app/terminal.h"
 #include "framework/core/files.h"
@@ -25,8 +27,6 @@ namespace lapwing {
 
 namespace {
 
-constexpr std::size_t kLargestObstacle = std::size_t{1} << 30;  // bytes, as the verifier reads
-
 struct RunOutcome {
   MissionResult result = {};
   Certificate certificate = {};
@@ -36,46 +36,6 @@ struct RunOutcome {
   double seconds = 0;     // wall clock, all of it
   std::vector<RunAddition> additions = {};
 };
-
-// With what stands in no plan.
-std::vector<std::string> told_notes(const MissionResult& result) {
-  std::vector<std::string> all = result.notes;
-  all.insert(all.end(), result.told.begin(), result.told.end());
-  return all;
-}
-
-// With what was tried on the way: for the report, the log and --json.
-std::vector<std::string> all_notes(const MissionResult& result) {
-  std::vector<std::string> all = told_notes(result);
-  all.insert(all.end(), result.details.begin(), result.details.end());
-  return all;
-}
-
-std::string status_of(const MissionResult& result, const Certificate& certificate, bool cancelled) {
-  if (cancelled || result.report.status == SolveStatus::cancelled) return "cancelled";
-  // Who stays where it is breaks no rule, but has done nothing of what was asked.
-  const bool idle =
-      result.report.status == SolveStatus::infeasible && !(result.plan.trajectory.duration() > 0);
-  if (certificate.feasible() && !idle) return "ok";
-  switch (result.report.status) {
-    case SolveStatus::infeasible:
-      return "infeasible";
-    case SolveStatus::unsupported:
-    case SolveStatus::numerical_error:
-      return "failed";
-    default:
-      return "not_certified";
-  }
-}
-
-ExitStatus exit_status_of(const std::string& status) {
-  if (status == "ok") return ExitStatus::done;
-  return status == "cancelled" ? ExitStatus::interrupted : ExitStatus::not_certified;
-}
-
-Value finite(double number) {
-  return std::isfinite(number) ? Value(number) : Value();
-}
 
 Value json_of(const RunOutcome& outcome, const Invocation& invocation) {
   const MissionResult& result = outcome.result;
@@ -91,13 +51,7 @@ Value json_of(const RunOutcome& outcome, const Invocation& invocation) {
   seconds.set("solve", result.solve_seconds);
   object.set("reproducible",
              outcome.status != "cancelled" && result.report.status != SolveStatus::time_limit);
-  Value& solver = object.set("solver", Value::map());
-  solver.set("name", result.solver);
-  solver.set("status", to_string(result.report.status));
-  solver.set("iterations", result.report.iterations);
-  solver.set("cost", finite(result.report.cost));
-  Value& terms = solver.set("terms", Value::map());
-  for (const TermCost& term : result.report.terms) terms.set(term.name, finite(term.cost));
+  object.set("solver", solver_figures(result));
   object.set("provenance", outcome.provenance);
   object.set("certificate", outcome.certificate.to_value());
   if (const auto all = all_notes(result); !all.empty())
@@ -168,27 +122,6 @@ void print_summary(const RunOutcome& outcome, bool verbose) {
   std::cout.flush();
 }
 
-std::string report_page(const RunOutcome& outcome) {
-  Report report = flight_report(outcome.result.plan, outcome.result.obstacle_folder);
-  if (outcome.status == "cancelled") {
-    report.status = "cancelled";
-    report.status_mark = Mark::fail;
-  }
-  if (const auto all = all_notes(outcome.result); !all.empty()) {
-    std::string text;
-    for (const std::string& note : all) text += note + "\n\n";
-    TextBlock findings;
-    findings.text = text;
-    report.sections.insert(report.sections.begin(), Section{"Findings", {findings}});
-  }
-  std::vector<Section> own;
-  for (const RunAddition& addition : outcome.additions)
-    own.insert(own.end(), addition.sections.begin(), addition.sections.end());
-  own.insert(own.end(), outcome.result.sections.begin(), outcome.result.sections.end());
-  report.sections.insert(report.sections.begin() + 1, own.begin(), own.end());
-  return render_html(report);
-}
-
 void write_files(const RunOutcome& outcome, const Registry& registry,
                  const logging::Capture& capture) {
   const Plan& plan = outcome.result.plan;
@@ -196,7 +129,10 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
   files.plan = plan_text(plan);
   const auto exporter = registry.create<Exporter>("csv");
   files.trajectory = in_plugin(*exporter, "write", [&] { return exporter->write(plan); });
-  files.report = report_page(outcome);
+  std::vector<Section> own;
+  for (const RunAddition& addition : outcome.additions)
+    own.insert(own.end(), addition.sections.begin(), addition.sections.end());
+  files.report = report_page(outcome.result, outcome.status, std::move(own));
   logging::info("status " + outcome.status);
   for (const std::string& note : all_notes(outcome.result)) logging::info(note);
   for (const RunAddition& addition : outcome.additions) {
@@ -206,23 +142,8 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
   for (const Check& check : outcome.certificate.failures())
     logging::info("fails: " + to_line(check));
   files.log = capture.text();
-  for (const std::string& name : outcome.result.obstacle_files) {
-    std::string bytes = read_file(outcome.result.obstacle_folder / name, kLargestObstacle);
-    if (name == "map.ot")
-      files.map = std::move(bytes);
-    else
-      files.obstacles.emplace_back(name, std::move(bytes));
-  }
+  add_obstacles(outcome.result, files);
   outcome.target.write(files);
-}
-
-void complete_plan(RunOutcome& outcome) {
-  Plan& plan = outcome.result.plan;
-  plan.certificate = outcome.certificate.to_value();
-  std::vector<std::string> all = outcome.result.notes;
-  all.insert(all.end(), outcome.result.details.begin(), outcome.result.details.end());
-  if (!all.empty()) plan.solver.set("notes", Value(Value::List(all.begin(), all.end())));
-  if (outcome.status == "cancelled") plan.solver.set("cancelled", true);
 }
 
 }  // namespace
@@ -246,6 +167,9 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
     outcome.seconds = steady_seconds() - begin;
     return finish_mapping({outcome.result, target, outcome.seconds}, invocation, capture);
   }
+  if (outcome.result.fleet)
+    return finish_fleet({outcome.result, target, interruption.token(), progress, begin}, invocation,
+                        registry, capture);
   progress.begin("certificate");
   // Also the best so far of a run that was told to end is judged.
   JudgedPlan judged = judge(outcome.result.plan, outcome.result.obstacle_folder, nullptr,
@@ -255,7 +179,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   progress.begin("files");
   progress.report(-1, "");
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
-  complete_plan(outcome);
+  complete_plan(outcome.result, outcome.certificate, outcome.status);
   outcome.additions = run_additions(outcome.result, outcome.certificate, interruption.token());
   write_files(outcome, registry, capture);
   progress.clear();

@@ -11,12 +11,14 @@
 namespace lapwing {
 namespace {
 
-// Options of the first flight, and of candidates, which the views replace.
-const std::set<std::string> kLeftOut{
-    "scene",      "scene_seed", "input",       "ground",  "unit",   "up",         "prior",
-    "flights",    "noise",      "exploration", "utility", "folder", "images",     "colmap",
-    "cloud",      "terrain",    "surface",     "rounds",  "start",  "candidates", "motions",
-    "resolution", "passing",    "views",       "region",  "finish"};
+// Options of the first flight, of candidates, which the views replace, and of several batteries:
+// the rest is one tour.
+const std::set<std::string> kLeftOut{"scene",   "scene_seed", "input",   "ground", "unit",
+                                     "up",      "prior",      "flights", "noise",  "exploration",
+                                     "utility", "folder",     "images",  "colmap", "cloud",
+                                     "terrain", "surface",    "rounds",  "start",  "candidates",
+                                     "motions", "resolution", "passing", "views",  "region",
+                                     "finish",  "batteries",  "drones",  "fleet"};
 const std::set<std::string> kKeywords{"and",   "break", "do",       "else", "elseif", "end",
                                       "false", "for",   "function", "goto", "if",     "in",
                                       "local", "nil",   "not",      "or",   "repeat", "return",

@@ -72,23 +72,6 @@ Verdict verdict_of(const Plan& plan) {
           feasible ? Mark::pass : Mark::fail, certificate.failures()};
 }
 
-Section certificate_section(const Plan& plan) {
-  const Certificate certificate = Certificate::from_value(plan.certificate);
-  Section section{"Certificate", {}};
-  for (const CheckGroup group : {CheckGroup::safety, CheckGroup::task}) {
-    std::vector<Check> checks;
-    for (const Check& check : certificate.checks) {
-      if (check.group == group) checks.push_back(check);
-    }
-    if (checks.empty()) continue;
-    section.blocks.push_back(check_table(group == CheckGroup::safety
-                                             ? "Safety: the vehicle can fly the plan"
-                                             : "Task: the requirements of the mission",
-                                         checks));
-  }
-  return section;
-}
-
 double length_of(const Trajectory& trajectory) {
   double length = 0;
   for (std::size_t i = 1; i < trajectory.samples.size(); ++i) {
@@ -266,6 +249,22 @@ Section solver_section(const Value& solver) {
 
 }  // namespace
 
+Section certificate_section(const Certificate& certificate) {
+  Section section{"Certificate", {}};
+  for (const CheckGroup group : {CheckGroup::safety, CheckGroup::task}) {
+    std::vector<Check> checks;
+    for (const Check& check : certificate.checks) {
+      if (check.group == group) checks.push_back(check);
+    }
+    if (checks.empty()) continue;
+    section.blocks.push_back(check_table(group == CheckGroup::safety
+                                             ? "Safety: the vehicle can fly the plan"
+                                             : "Task: the requirements of the mission",
+                                         checks));
+  }
+  return section;
+}
+
 std::vector<Section> flight_sections(const Plan& plan, const std::filesystem::path& folder) {
   if (plan.trajectory.samples.empty()) throw Error("a flight without samples has no report");
   const Vehicle vehicle = vehicle_from_value(plan.vehicle);
@@ -280,7 +279,7 @@ std::vector<Section> flight_sections(const Plan& plan, const std::filesystem::pa
   if (!plan.task.keyframes.empty()) sections.push_back(keyframe_section(plan));
   if (!plan.solver.is_null()) sections.push_back(solver_section(plan.solver));
   if (!plan.certificate.is_null()) {
-    sections.push_back(certificate_section(plan));
+    sections.push_back(certificate_section(Certificate::from_value(plan.certificate)));
   }
   if (!plan.configuration.is_null()) {
     sections.push_back(

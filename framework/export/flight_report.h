@@ -7,6 +7,7 @@
 
 #include "framework/export/report.h"
 #include "framework/trajectory/plan.h"
+#include "framework/verify/certificate.h"
 
 namespace lapwing {
 
@@ -17,6 +18,9 @@ namespace lapwing {
 // lack. Throws InputError naming the field when certificate, solver report or vehicle is malformed.
 // Meshes of the environment are drawn where `folder`, the plan's, holds them.
 std::vector<Section> flight_sections(const Plan& plan, const std::filesystem::path& folder = {});
+
+// The checks of a certificate, safety and task one by one.
+Section certificate_section(const Certificate& certificate);
 
 // The whole page: title, verdict, the sections above.
 Report flight_report(const Plan& plan, const std::filesystem::path& folder = {});

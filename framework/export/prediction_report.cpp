@@ -25,7 +25,7 @@ constexpr double kBest = 0.02, kWorst = 0.98;  // shares of the area, ends of th
 const char* reason_in_words(HoleReason reason) {
   return reason == HoleReason::no_view
              ? "no view: no two candidate views from different places show it"
-             : "not chosen: such candidate views show it, the tour takes too few of them";
+             : "not chosen: such candidate views show it, too few of them are planned";
 }
 
 double counted_area(const ScanPrediction& p) {
@@ -184,7 +184,7 @@ std::string prediction_in_words(const ScanPrediction& p) {
   const double not_chosen = area_of_holes(p, HoleReason::not_chosen);
   if (no_view + not_chosen > 0)
     text += ". Not reconstructed: " + number_text(not_chosen, 4) +
-            " m^2 for want of images in this tour, and " + number_text(no_view, 4) +
+            " m^2 for want of planned images, and " + number_text(no_view, 4) +
             " m^2 for want of candidate views from two places";
   return text;
 }

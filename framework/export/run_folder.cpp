@@ -24,18 +24,30 @@ constexpr int kMostKept = 10000;           // older runs beside one folder
 
 // run.log first: a folder with it is known for a run's. The plan last.
 constexpr const char* kRunFiles[] = {"run.log",     "map.ot",         "long_exposure.png",
-                                     "report.html", "trajectory.csv", "plan.json"};
+                                     "report.html", "trajectory.csv", "fleet.json",
+                                     "plan.json"};
 constexpr std::string_view kMissionLine = "info: mission ";
 constexpr std::string_view kSeed = ", seed ";
 
+// Whether a name is the stem, a number and one of the endings.
+bool is_numbered(const std::string& name, std::string_view stem,
+                 std::initializer_list<std::string_view> endings) {
+  if (!name.starts_with(stem)) return false;
+  const std::size_t end = name.find_first_not_of("0123456789", stem.size());
+  return end != std::string::npos && end > stem.size() &&
+         std::find(endings.begin(), endings.end(), name.substr(end)) != endings.end();
+}
+
 // obstacle_12.ply, obstacle_1.ot, prior.ply, prediction.ply
 bool names_obstacle(const std::string& name) {
-  constexpr std::string_view kStem = "obstacle_";
-  if (name == "prior.ply" || name == "prediction.ply") return true;
-  if (!name.starts_with(kStem)) return false;
-  const std::size_t end = name.find_first_not_of("0123456789", kStem.size());
-  return end != std::string::npos && end > kStem.size() &&
-         (name.substr(end) == ".ply" || name.substr(end) == ".ot");
+  return name == "prior.ply" || name == "prediction.ply" ||
+         is_numbered(name, "obstacle_", {".ply", ".ot"});
+}
+
+// plan_1.json, report_12.html, trajectory_3.csv
+bool names_tour(const std::string& name) {
+  return is_numbered(name, "plan_", {".json"}) || is_numbered(name, "report_", {".html"}) ||
+         is_numbered(name, "trajectory_", {".csv"});
 }
 
 // What of the folder bears names that runs give their files.
@@ -53,8 +65,10 @@ std::vector<std::string> run_files_in(const fs::path& folder) {
 
 FileSet set_of(const fs::path& folder, const RunFiles& files) {
   FileSet set{files.obstacles, run_files_in(folder), names_run_file};
+  set.files.insert(set.files.end(), files.tours.begin(), files.tours.end());
   const std::optional<std::string>* contents[] = {
-      &files.log, &files.map, &files.long_exposure, &files.report, &files.trajectory, &files.plan};
+      &files.log,        &files.map,   &files.long_exposure, &files.report,
+      &files.trajectory, &files.fleet, &files.plan};
   for (std::size_t i = 0; i < std::size(kRunFiles); ++i) {
     const bool listed =
         std::any_of(files.obstacles.begin(), files.obstacles.end(),
@@ -142,7 +156,8 @@ fs::path write_beside_old(const fs::path& given, const RunFiles& files) {
 }  // namespace
 
 bool names_run_file(const std::string& name) {
-  return names_obstacle(name) || std::count(std::begin(kRunFiles), std::end(kRunFiles), name) > 0;
+  return names_obstacle(name) || names_tour(name) ||
+         std::count(std::begin(kRunFiles), std::end(kRunFiles), name) > 0;
 }
 
 std::string run_folder_name(std::string_view mission) {

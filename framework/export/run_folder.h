@@ -32,6 +32,10 @@ struct RunFiles {
   // Meshes and maps that the plan names: obstacle_1.ply, obstacle_2.ot, ..., map.ot, prior.ply; and
   // the mesh of what a scan will show, prediction.ply.
   std::vector<std::pair<std::string, std::string>> obstacles = {};
+  std::optional<std::string> fleet = {};  // fleet.json
+  // In place of plan and trajectory, of each tour of a fleet: plan_1.json, report_1.html,
+  // trajectory_1.csv, plan_2.json, ...
+  std::vector<std::pair<std::string, std::string>> tours = {};
 };
 
 // Whether runs give files of theirs this name: plan.json, obstacle_1.ply, ...

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 
 #include "framework/core/png.h"
@@ -221,7 +222,8 @@ std::string unknown_warning(const ScanRecord& record) {
     return text + ". Data that were measured from other sides, such as from the ground, show more";
   return text +
          ". Fly the first flight lower, more obliquely or wider (flights), or plan again with "
-         "the images of this tour (rounds = 2)";
+         "the images of " +
+         (record.tours == 1 ? "this tour" : "these tours") + " (rounds = 2)";
 }
 
 // What nobody looked from is not considered: other free places may show more.
@@ -245,15 +247,16 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
   for (const VoxelShare& v : record.coverage) sum += v.share;
   const auto all = static_cast<double>(std::max<std::size_t>(record.coverage.size(), 1));
   const SurfaceAreas& areas = record.areas;
+  const std::string whole = record.tours == 1 ? "the tour" : "all tours";
   Facts facts{{
       {"known surface of the region", square_metres(areas.known), "m^2"},
-      {"of it seen by the tour", square_metres(areas.seen),
+      {"of it seen by " + whole, square_metres(areas.seen),
        "m^2, " + percent(areas.seen, areas.known) + " %"},
       {"of it " + visible_in_words(record), square_metres(areas.visible),
        "m^2, " + percent(areas.visible, areas.known) + " %"},
       {"unknown, not counted: behind openings of the measured space, at least",
        lower_bound_text(unknown_area(record)), "m^2"},
-      {"mean information of the tour", number_text(100 * sum / all, 3),
+      {"mean information of " + whole, number_text(100 * sum / all, 3),
        "% of the full information about a voxel that any candidate sees"},
   }};
   if (!record.openings.empty())
@@ -267,15 +270,16 @@ Section coverage_section(const ScanRecord& record, const ScanTask& scan) {
         {"true surface that could be seen (simulation)", square_metres(truth.open), "m^2"});
     facts.facts.push_back({"of it seen by the first flight", square_metres(truth.first),
                            "m^2, " + percent(truth.first, truth.open) + " %"});
-    facts.facts.push_back({"of it seen by the tour", square_metres(truth.seen),
+    facts.facts.push_back({"of it seen by " + whole, square_metres(truth.seen),
                            "m^2, " + percent(truth.seen, truth.open) + " %"});
   }
   const MeshScene scene = colored_surface(record);
   const std::string caption =
-      "Information of the tour about the known surface, from little (violet) to all (yellow). Red: "
-      "seen from a candidate view, but not by the tour. Dark: seen from no candidate. Light grey: "
-      "outside the region. Magenta: openings to space that nobody measured. No surface is known "
-      "elsewhere";
+      "Information of " + whole +
+      " about the known surface, from little (violet) to all (yellow)." +
+      " Red: seen from a candidate view, but " + (record.tours == 1 ? "not by the" : "by no") +
+      " tour. Dark: seen from no candidate. Light grey: outside the region. Magenta: openings to "
+      "space that nobody measured. No surface is known elsewhere";
   TextBlock words;
   words.text = areas_in_words(record);
   if (record.truth) words.text += "\n\n" + truth_in_words(record);
@@ -332,6 +336,17 @@ Section tour_section(const Plan& plan, const ScanRecord& record) {
            Scene3D{"The tour in space", drawing}, std::move(chart)}};
 }
 
+std::vector<Section> shown_sections(const Plan& plan, const ScanRecord& record) {
+  std::vector<Section> sections{coverage_section(record, *plan.task.scan)};
+  if (record.prediction) sections.push_back(prediction_section(*record.prediction));
+  return sections;
+}
+
+// "the tour sees", "the 4 tours see"
+std::string tour_sees(const ScanRecord& record) {
+  return record.tours == 1 ? "the tour sees" : "the " + std::to_string(record.tours) + " tours see";
+}
+
 }  // namespace
 
 double unknown_area(const ScanRecord& record) {
@@ -342,8 +357,8 @@ double unknown_area(const ScanRecord& record) {
 
 std::string areas_in_words(const ScanRecord& record) {
   const SurfaceAreas& areas = record.areas;
-  std::string text = "surface: the tour sees " + percent(areas.seen, areas.known) + " % of the " +
-                     square_metres(areas.known) + " m^2 that are known; " +
+  std::string text = "surface: " + tour_sees(record) + " " + percent(areas.seen, areas.known) +
+                     " % of the " + square_metres(areas.known) + " m^2 that are known; " +
                      percent(areas.visible, areas.known) + " % are " + visible_in_words(record) +
                      "; unknown and not counted: ";
   if (record.openings.empty())
@@ -360,7 +375,7 @@ std::string truth_in_words(const ScanRecord& record) {
   const TrueAreas& truth = *record.truth;
   return "true surface (simulation): of the " + square_metres(truth.open) +
          " m^2 that could be seen, the first flight sees " + percent(truth.first, truth.open) +
-         " %, the tour " + percent(truth.seen, truth.open) + " %";
+         " %, " + tour_sees(record) + " " + percent(truth.seen, truth.open) + " %";
 }
 
 Value areas_as_value(const ScanRecord& record) {
@@ -394,11 +409,21 @@ Value areas_as_value(const ScanRecord& record) {
 }
 
 std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record) {
-  const ScanTask& scan = *plan.task.scan;
-  std::vector<Section> sections{known_section(record, scan.region.bounds()),
-                                candidates_section(plan, record), view_section(record, scan),
-                                tour_section(plan, record), coverage_section(record, scan)};
-  if (record.prediction) sections.push_back(prediction_section(*record.prediction));
+  std::vector<Section> sections{known_section(record, plan.task.scan->region.bounds()),
+                                candidates_section(plan, record)};
+  for (auto more : {tour_sections(plan, record), shown_sections(plan, record)})
+    std::move(more.begin(), more.end(), std::back_inserter(sections));
+  return sections;
+}
+
+std::vector<Section> tour_sections(const Plan& plan, const ScanRecord& record) {
+  return {view_section(record, *plan.task.scan), tour_section(plan, record)};
+}
+
+std::vector<Section> fleet_sections(const Plan& plan, const ScanRecord& record) {
+  std::vector<Section> sections = shown_sections(plan, record);
+  sections.push_back(known_section(record, plan.task.scan->region.bounds()));
+  sections.push_back(candidates_section(plan, record));
   return sections;
 }
 

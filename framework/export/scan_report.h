@@ -50,6 +50,7 @@ struct ScanRecord {
   SurfaceAreas areas;                        // of those
   std::vector<Opening> openings;             // to what nobody saw, largest first
   double body_width = 0;                     // m; what passes through passable ones
+  int tours = 1;                             // whose views these are of
   std::optional<TrueAreas> truth;
   std::optional<ScanPrediction> prediction;  // none of a tour of which nothing was predicted
   std::vector<double> seconds, score;        // after every view of the tour
@@ -72,5 +73,9 @@ Value areas_as_value(const ScanRecord& record);
 // Sections on the scene, map and prior; candidates; one view's rays; the tour; coverage; score over
 // budget. The plan is that of a scan.
 std::vector<Section> scan_sections(const Plan& plan, const ScanRecord& record);
+// The parts of it that are of one tour of several, and of all of them: there the plan is any one of
+// the fleet.
+std::vector<Section> tour_sections(const Plan& plan, const ScanRecord& record);
+std::vector<Section> fleet_sections(const Plan& plan, const ScanRecord& record);
 
 }  // namespace lapwing

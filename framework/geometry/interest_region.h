@@ -24,6 +24,7 @@ struct RegionPrism {
   bool contains(const Eigen::Vector2d& p) const;  // heights apart
   double area() const;                            // m^2 on the ground, without its holes
   Eigen::AlignedBox3d bounds() const;
+  bool operator==(const RegionPrism&) const = default;
   // Of messages: "region 'yard'", or with its number in the list (from 1) where it has no name.
   std::string label(std::size_t number) const;
 };
@@ -38,6 +39,10 @@ class InterestRegion {
   // InputError, which names the prism, for what region_fault finds.
   explicit InterestRegion(std::vector<RegionPrism> prisms);
 
+  bool operator==(const InterestRegion& other) const {
+    return bounds_.min() == other.bounds_.min() && bounds_.max() == other.bounds_.max() &&
+           prisms_ == other.prisms_;
+  }
   bool is_box() const { return prisms_.empty(); }
   bool is_empty() const { return bounds_.isEmpty(); }
   const Eigen::AlignedBox3d& bounds() const { return bounds_; }

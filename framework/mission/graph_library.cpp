@@ -145,7 +145,10 @@ ParameterTable graph_table() {
       .boolean("fixed", true,
                "tours begin at the first of the starts; false: at the first of those "
                "that are connected to most views")
-      .integer("needed", 1, "number of starts, the first ones, that must be free", between(0, 2))
+      .integer("needed", 1, "number of starts, the first ones, that must be free", between(0, 1000))
+      .boolean("loops", false,
+               "tours begin and end at any of the needed starts; false: at the first one, and "
+               "end at the second one, if it is needed")
       .numbers("body", {1, 1, 0.5}, "m", "half edges of the vehicle's box")
       .number("mesh_room", 1, "m", "additional distance from the prior mesh", at_least(0))
       .table("candidates", candidates_table(), "candidate views")
@@ -201,8 +204,8 @@ ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run)
 
 // The first `needed` must be free; of the others those count that are.
 std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::size_t needed,
-                                   const FreeSpace& space, const CandidateSettings& settings,
-                                   const FlightRules& rules) {
+                                   bool loops, const FreeSpace& space,
+                                   const CandidateSettings& settings, const FlightRules& rules) {
   std::vector<Viewpoint> starts;
   for (const Parameters& entry : given) {
     const Viewpoint view = viewpoint_of(entry);
@@ -215,7 +218,7 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
         text, sizeof text,
         "no free %s: at (%.4g, %.4g, %.4g) the map does not show free space "
         "for a box of %.3g x %.3g x %.3g m%s",
-        starts.empty() ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
+        starts.empty() || loops ? "start" : "finish", p.x(), p.y(), p.z(), 2 * settings.half.x(),
         2 * settings.half.y(), 2 * settings.half.z(),
         settings.allowed.contains(p) ? "" : ", and it lies outside the space of the tour");
     const std::string forbidden = forbidden_by(rules, p, settings.half);
@@ -309,8 +312,8 @@ int scan_graph_of_run(lua_State* state) {
   const auto space =
       ruled(space_of(*work->prior, mesh_room), *work->rules, work->prior->mapping.map);
   const std::vector<Viewpoint> starts =
-      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")), *space,
-                  settings.candidates, *work->rules);
+      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
+                  given.boolean("loops"), *space, settings.candidates, *work->rules);
   begin_planning(run);
   work->allowed = settings.candidates.allowed;
   work->body = settings.candidates.half;
@@ -367,6 +370,7 @@ constexpr BoundField kGraphFields[] = {
     {"total", "number", "score of full information about all voxels"},
     {"home", "integer", "candidate at which tours begin, from 1"},
     {"joined", "integer", "number of views connected to `home`, including itself"},
+    {"joined_from", "integer[]", "the same of each of the free starts, in their order"},
     {"reach", "string", "sentence with the number of views connected to the start"},
     {"hidden", "table[]",
      "what zones and the pilot's sight hide: {name, visible, hidden}, m^2 of the known surface; "
@@ -385,6 +389,9 @@ int graph_field(lua_State* state) {
   fields.set("total", graph.score->total());
   fields.set("home", static_cast<std::int64_t>(work.home + 1));
   fields.set("joined", work.islands.joined(work.home));
+  Value& joined_from = fields.set("joined_from", Value::list());
+  for (int start = 0; start < graph.candidates.given; ++start)
+    joined_from.push_back(std::int64_t{work.islands.joined(start)});
   fields.set("reach", reach_in_words(work, work.home));
   Value& hidden = fields.set("hidden", Value::list());
   for (const HiddenPart& part : work.hidden) {

@@ -7,6 +7,7 @@
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/mission/explore_library.h"
+#include "framework/mission/fleet_objects.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/map_objects.h"
@@ -76,6 +77,7 @@ void open_script_libraries(lua_State* state, MissionRun& run) {
   open_site_library(state);
   open_photo_library(state);
   open_scan_library(state);
+  open_fleet_library(state);
   open_explore_library(state);
   open_scene_library(state);
 }
@@ -252,6 +254,49 @@ bool Mission::planning_began() const {
   return impl_->run.planning_began;
 }
 
+namespace {
+
+MissionResult result_of(Sandbox& sandbox, const PlanObject& planned) {
+  MissionResult result;
+  result.plan = planned.plan;
+  result.report = planned.report;
+  result.solver = planned.solver;
+  result.notes = planned.notes;
+  result.details = planned.details;
+  result.pilots = planned.pilots;
+  result.block = planned.block;
+  result.block_name = planned.block_name;
+  result.told = planned.told;
+  result.sections = planned.sections;
+  if (planned.late_sections) {
+    const Sandbox::ClockPause pause(sandbox);
+    for (Section& section : planned.late_sections(result.plan))
+      result.sections.push_back(std::move(section));
+  }
+  return result;
+}
+
+MissionResult result_of(Sandbox& sandbox, const FleetObject& made, const MissionRun& run) {
+  MissionResult result;
+  result.fleet = std::make_shared<FleetResult>();
+  result.fleet->document = made.document;
+  for (const PlanObject& plan : made.plans) result.fleet->tours.push_back(result_of(sandbox, plan));
+  result.plan.mission = run.name;
+  result.plan.kind = run.kind;
+  result.plan.configuration = run.configuration;
+  result.report = made.report;
+  result.solver = made.solver;
+  result.notes = made.notes;
+  result.told = made.told;
+  result.block = made.block;
+  result.block_name = "tour";
+  const Sandbox::ClockPause pause(sandbox);
+  result.sections = made.late_sections();
+  return result;
+}
+
+}  // namespace
+
 MissionResult Mission::plan() {
   MissionResult result;
   Impl& impl = *impl_;
@@ -268,32 +313,28 @@ MissionResult Mission::plan() {
       result.plan.configuration = impl.run.configuration;
       return;
     }
-    PlanObject* planned = test_object<PlanObject>(state, -1, kPlanType);
+    if (const FleetObject* fleet = test_object<FleetObject>(state, -1, kFleetType)) {
+      result = result_of(impl.sandbox, *fleet, impl.run);
+      return;
+    }
+    const PlanObject* planned = test_object<PlanObject>(state, -1, kPlanType);
     if (!planned) {
       throw InputError(
           impl.sandbox.script_position(state),
-          std::string("plan: expected the function to return run:plan{...} or a map, got ") +
+          std::string(
+              "plan: expected the function to return run:plan{...}, a map or a fleet, got ") +
               luaL_typename(state, -1));
     }
-    result.plan = planned->plan;
-    result.report = planned->report;
-    result.solver = planned->solver;
-    result.notes = planned->notes;
-    result.details = planned->details;
-    result.pilots = planned->pilots;
-    result.block = planned->block;
-    result.block_name = planned->block_name;
-    result.told = planned->told;
-    result.sections = planned->sections;
-    if (planned->late_sections) {
-      const Sandbox::ClockPause pause(impl.sandbox);
-      for (Section& section : planned->late_sections(result.plan))
-        result.sections.push_back(std::move(section));
-    }
+    result = result_of(impl.sandbox, *planned);
   });
   result.solve_seconds = impl.run.solve_seconds;
   result.obstacle_folder = impl.run.obstacles.folder();
   result.obstacle_files = impl.run.obstacles.files();
+  if (result.fleet)
+    for (MissionResult& tour : result.fleet->tours) {
+      tour.obstacle_folder = result.obstacle_folder;
+      tour.obstacle_files = result.obstacle_files;
+    }
   return result;
 }
 

@@ -18,12 +18,17 @@
 #include "framework/mission/map_work.h"
 #include "framework/mission/options.h"
 #include "framework/mission/run.h"
+#include "framework/trajectory/fleet.h"
 
 namespace lapwing {
+
+struct FleetResult;
 
 struct MissionResult {
   // Of a mapping mission, which returns a map and has no plan; else null.
   std::shared_ptr<const Mapping> mapping;
+  // Of a mission of several batteries, which returns a fleet: `plan` has no flight; else null.
+  std::shared_ptr<FleetResult> fleet;
   Plan plan;  // without certificate
   SolveReport report;
   std::string solver;
@@ -39,6 +44,12 @@ struct MissionResult {
   // names.
   std::filesystem::path obstacle_folder = {};
   std::vector<std::string> obstacle_files = {};
+};
+
+// The fleet document, its plans without files' checksums, and one result for each of its tours.
+struct FleetResult {
+  Fleet document;
+  std::vector<MissionResult> tours;
 };
 
 class Mission {

@@ -158,7 +158,7 @@ inline constexpr BoundField kMissionParts[] = {
     {"name?", "string", "name of the mission; absent: the file name of the script"},
     {"options?", "lapwing.options|table", "declared options"},
     {"takes_start?", "boolean", "whether it begins from `run.start`, the plan of --from"},
-    {"plan", "fun(run: lapwing.run): lapwing.plan|lapwing.map",
+    {"plan", "fun(run: lapwing.run): lapwing.plan|lapwing.map|lapwing.fleet",
      "called once the options are known"}};
 
 // All that scripts are given.

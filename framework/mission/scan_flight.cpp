@@ -8,7 +8,6 @@
 
 #include "framework/core/parallel.h"
 #include "framework/core/units.h"
-#include "framework/export/prediction_report.h"
 #include "framework/export/small_camera.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/map/map_file.h"
@@ -212,16 +211,6 @@ SolveStatus status_of(TourStatus status) {
   return SolveStatus::numerical_error;
 }
 
-SolveReport report_of(const TourReport& tour) {
-  SolveReport report;
-  report.status = status_of(tour.status);
-  report.message = tour.message;
-  report.iterations = static_cast<int>(tour.iterations);
-  report.cost = std::numeric_limits<double>::quiet_NaN();
-  report.seconds = tour.wall_seconds;
-  return report;
-}
-
 std::vector<std::string> texts_of(const Value& list) {
   std::vector<std::string> texts;
   if (list.is_list())
@@ -243,11 +232,33 @@ std::vector<const SolutionObject*> legs_argument(lua_State* state, int table) {
   return legs;
 }
 
+// Files of what is known, and the rules that the graph was made with; no margin.
+Environment environment_of_scan(const ScanWork& work, MissionRun& run) {
+  Environment environment;
+  const auto keep = [&](const char* name, const char* type, const char* file,
+                        const std::string& bytes) {
+    Obstacle obstacle;
+    obstacle.name = name;
+    obstacle.type = type;
+    obstacle.parameters.set("file", file);
+    obstacle.parameters.set("sha256", run.obstacles.keep(file, bytes));
+    environment.obstacles.push_back(std::move(obstacle));
+  };
+  keep("prior", "mesh", "prior.ply", ply_bytes(work.prior->mesh->mesh()));
+  keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *work.prior->mapping.map));
+  for (const Obstacle& zone : work.rules->zones.obstacles) environment.obstacles.push_back(zone);
+  environment.pilot = work.rules->pilot;
+  environment.accuracy = work.rules->accuracy;
+  return environment;
+}
+
 constexpr BoundField kScanPlanObjects[] = {
     {"tour", "lapwing.tour", "flown tour"},
     {"legs?", "lapwing.solution[]", "solutions from view to view; absent: pure pursuit"},
     {"flight?", "lapwing.solution", "solution of a tour of passes"},
     {"explored?", "lapwing.exploration", "exploration before it, for the report"},
+    {"shares?", "lapwing.plan",
+     "earlier plan of the same graph, with which it shares the files of map and mesh"},
     {"notes?", "string[]", "sentences for the user"},
     {"figures?", "table", "figures of the tour, for --json"},
     kStatedSections};
@@ -260,13 +271,14 @@ ParameterTable scan_plan_table() {
       .number("seen_share", ScanTask{}.seen_share, "",
               "fraction of the voxels that must be seen again", {0, 1, true})
       .number("pixel_error", 0.5, "px", "standard deviation of a point in an image", above(0))
+      .boolean("part_of_fleet", false,
+               "run:fleet tells what the images show, of all its plans together")
       .boolean("closed_loop_required", true, "false: tracking under control is reported only");
   return table;
 }
 
-// run:scan_plan{tour =, flight =, margin =, budget =, closed_loop_required =, seen_share =, notes
-// =,
-//               figures =, sections =, legs =, explored =}
+// run:scan_plan{tour =, flight =, margin =, budget =, closed_loop_required =, seen_share =,
+// notes =, part_of_fleet =, shares =, figures =, sections =, legs =, explored =}
 int scan_plan_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Origin origin = Sandbox::of(state).script_position(state);
@@ -288,6 +300,9 @@ int scan_plan_of_run(lua_State* state) {
   if ((flight != nullptr) != (tour.passing != nullptr) || (flight && !legs.empty()))
     throw InputError(
         "scan_plan: a tour of passes has a solution as its 'flight', others have none");
+  const PlanObject* shared = nullptr;
+  if (lua_getfield(state, 2, "shares") != LUA_TNIL)
+    shared = &object_argument<PlanObject>(state, -1, kPlanType);
   made.block_name = "tour";
   made.sections = stated_sections(state, 2, "scan_plan.sections");
   if (lua_getfield(state, 2, "explored") != LUA_TNIL)
@@ -323,36 +338,20 @@ int scan_plan_of_run(lua_State* state) {
     plan.budget = given.number("budget");
     plan.task.closed_loop_required = given.boolean("closed_loop_required");
     plan.task.scan->seen_share = given.number("seen_share");
-    const Prior& prior = *work.prior;
+    plan.environment = shared ? shared->plan.environment : environment_of_scan(work, run);
     plan.environment.margin = given.number("margin");
-    const auto keep = [&](const char* name, const char* type, const char* file,
-                          const std::string& bytes) {
-      Obstacle obstacle;
-      obstacle.name = name;
-      obstacle.type = type;
-      obstacle.parameters.set("file", file);
-      obstacle.parameters.set("sha256", run.obstacles.keep(file, bytes));
-      plan.environment.obstacles.push_back(std::move(obstacle));
-    };
-    keep("prior", "mesh", "prior.ply", ply_bytes(prior.mesh->mesh()));
-    keep(kMapName, "map", "map.ot", map_file_bytes(".ot", *prior.mapping.map));
-    for (const Obstacle& zone : work.rules->zones.obstacles)
-      plan.environment.obstacles.push_back(zone);
-    plan.environment.pilot = work.rules->pilot;
-    plan.environment.accuracy = work.rules->accuracy;
     plan.geodetic_origin = run.origin;
     plan.home = run.home;
     plan.configuration = run.configuration;
     plan.solver = to_value(tour.report, tour.solver);
-    const auto record = record_of_scan(*told, given.number("pixel_error"), run.settings.threads);
-    if (!made.block.is_map()) made.block = Value::map();
-    made.block.set("surface", areas_as_value(*record));
-    made.notes.push_back(areas_in_words(*record));
-    made.block.set("prediction", prediction_as_value(*record->prediction));
-    made.notes.push_back(prediction_in_words(*record->prediction));
-    run.obstacles.keep("prediction.ply", prediction_ply(*record->prediction));
-    if (record->truth) made.told.push_back(truth_in_words(*record));
-    made.late_sections = [record](const Plan& of) { return scan_sections(of, *record); };
+    if (given.boolean("part_of_fleet")) {
+      const auto record = record_of_tour(*told);
+      made.late_sections = [record](const Plan& of) { return tour_sections(of, *record); };
+    } else {
+      const auto record = record_of_scan(*told, given.number("pixel_error"), run.settings.threads);
+      tell_scan(*record, run, {made.block, made.notes, made.told});
+      made.late_sections = [record](const Plan& of) { return scan_sections(of, *record); };
+    }
     const std::string small = warning_of_small_camera(plan.task.scan->camera);
     if (!small.empty()) made.notes.push_back(small);
   }
@@ -361,6 +360,16 @@ int scan_plan_of_run(lua_State* state) {
 }
 
 }  // namespace
+
+SolveReport report_of(const TourReport& tour) {
+  SolveReport report;
+  report.status = status_of(tour.status);
+  report.message = tour.message;
+  report.iterations = static_cast<int>(tour.iterations);
+  report.cost = std::numeric_limits<double>::quiet_NaN();
+  report.seconds = tour.wall_seconds;
+  return report;
+}
 
 std::span<const Binding> scan_plan_methods_of_run() {
   static const Binding methods[] = {{"scan_plan", &guarded<scan_plan_of_run>,

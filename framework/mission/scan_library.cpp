@@ -16,6 +16,20 @@ PluginChoice choice_at(lua_State* state, int table, const char* key) {
   return plugin_choice(state, lua_gettop(state), key);
 }
 
+TourDefinition tour_definition(const ScanWork& work, const std::string& function) {
+  if (!work.passes.empty())
+    throw InputError(function + ": the graph is of passes, which run:pass_tour orders");
+  TourDefinition definition;
+  definition.score = work.graph.score;
+  definition.view_seconds = {work.view_seconds};
+  for (std::size_t k = 0; k < work.seconds.size(); ++k) {
+    const ViewMotion& m = work.graph.motions.motions[k];
+    definition.motions.push_back({m.a, m.b, work.seconds[k] - work.view_seconds});
+  }
+  definition.start = definition.end = work.home;
+  return definition;
+}
+
 namespace {
 
 constexpr BoundField kTourFields[] = {
@@ -77,23 +91,14 @@ int solve_tour_of_run(lua_State* state) {
   TourObject tour;
   tour.work = object_argument<GraphObject>(state, -1, kGraphType).work;
   const ScanWork& work = *tour.work;
-  if (!work.passes.empty())
-    throw InputError("solve_tour: the graph is of passes, which run:pass_tour orders");
   const PluginChoice chosen = choice_at(state, 2, "solver");
   tour.solver = chosen.type;
   tour.budget = given.number("budget");
-  TourDefinition definition;
-  definition.score = work.graph.score;
-  definition.view_seconds = {work.view_seconds};
-  for (std::size_t k = 0; k < work.seconds.size(); ++k) {
-    const ViewMotion& m = work.graph.motions.motions[k];
-    definition.motions.push_back({m.a, m.b, work.seconds[k] - work.view_seconds});
-  }
+  TourDefinition definition = tour_definition(work, "solve_tour");
   const auto count = static_cast<std::int64_t>(work.graph.candidates.viewpoints.size());
   if (given.integer("finish") > count)
     throw InputError(given.origin("finish"),
                      "solve_tour: there are candidates from 1 to " + std::to_string(count));
-  definition.start = work.home;
   definition.end = static_cast<int>(given.integer("finish") - 1);
   if (given.integer("images") > 0)
     definition.image_limit = static_cast<int>(given.integer("images"));

@@ -86,6 +86,7 @@ struct ScanWork : LegFlight {
 struct MissionRun;
 struct PluginChoice;
 struct SolutionObject;
+struct SolveReport;
 
 struct GraphObject {
   std::shared_ptr<const ScanWork> work;
@@ -132,6 +133,11 @@ ParameterTable region_table();
 InterestRegion region_of(const Parameters& given);
 ParameterTable pinhole_table();
 Pinhole pinhole_of(const Parameters& given);
+
+// Of a graph's tours from its home back to it, without a budget. InputError, which names the
+// function, where the graph is of passes.
+TourDefinition tour_definition(const ScanWork& work, const std::string& function);
+SolveReport report_of(const TourReport& tour);
 
 // The legs of a tour, from view to view: {points = {x, y, z, ...}, yaw_from, yaw_to, seconds}, the
 // seconds without a pause.

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "framework/core/parallel.h"
+#include "framework/export/prediction_report.h"
+#include "framework/mission/run.h"
 #include "framework/view/true_surface.h"
 
 namespace lapwing {
@@ -70,11 +72,8 @@ int most_telling(const ScanGraph& graph, const std::vector<int>& walk) {
   return best;
 }
 
-}  // namespace
-
-std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, double pixel_error,
-                                                 int threads) {
-  const ScanWork& work = *tour.work;
+// What was known, and what was considered.
+std::shared_ptr<ScanRecord> begun_record(const ScanWork& work) {
   const ScanGraph& graph = work.graph;
   auto record = std::make_shared<ScanRecord>();
   record->scene = work.prior->scene;
@@ -84,27 +83,21 @@ std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, double 
   for (const Viewpoint& v : work.prior->views) record->first_views.push_back(v.position);
   for (const Viewpoint& v : graph.candidates.viewpoints) record->candidates.push_back(v.position);
   for (const ViewMotion& m : graph.motions.motions) record->motions.emplace_back(m.a, m.b);
+  record->body_width = 2 * work.body.maxCoeff();
+  return record;
+}
+
+// One view, and the score over the time of the tour.
+void add_progress(const TourObject& tour, ScanRecord& record) {
+  const ScanWork& work = *tour.work;
+  const ScanGraph& graph = work.graph;
   const Viewpoint& shown =
       graph.candidates.viewpoints[static_cast<std::size_t>(most_telling(graph, tour.walk))];
-  record->shown = {0, shown.position, shown.yaw, shown.pitch, ViewKind::planned};
+  record.shown = {0, shown.position, shown.yaw, shown.pitch, ViewKind::planned};
   const std::vector<SeenVoxel> seen = work.visible->seen_from(shown);
   const std::vector<float> amounts = contributions_of(seen, *work.information);
   for (std::size_t i = 0; i < seen.size(); ++i)
-    record->told.push_back({seen[i].voxel, std::min(amounts[i], 1.0f)});
-  const std::vector<int> views = views_of_walk(tour.walk);
-  record->coverage = coverage_of(work, views, threads);
-  const SightSettings& sight = work.visible->settings();
-  record->shares = shares_of_triangles(record->prior->mesh(), sight.region, record->map->grid(),
-                                       record->coverage);
-  record->areas = areas_of(record->prior->mesh(), record->shares, sight.region);
-  record->body_width = 2 * work.body.maxCoeff();
-  record->openings =
-      unknown_openings(*record->map, record->prior.get(),
-                       {sight.region, work.prior->rays, record->body_width, threads});
-  record->truth = true_areas(work, views, threads);
-  std::vector<char> counted;
-  for (const float share : record->shares) counted.push_back(share > kOutsideRegion);
-  record->prediction = prediction_of_scan(work, views, std::move(counted), pixel_error, threads);
+    record.told.push_back({seen[i].voxel, std::min(amounts[i], 1.0f)});
   ScoreState state(*graph.score);
   double clock = 0;
   for (std::size_t i = 0; i < tour.walk.size(); ++i) {
@@ -113,12 +106,65 @@ std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, double 
     else if (i > 0)
       clock += work.leg_seconds(tour.walk[i - 1], tour.walk[i]);
     state.add(tour.walk[i]);
-    record->seconds.push_back(clock);
-    record->score.push_back(state.score());
+    record.seconds.push_back(clock);
+    record.score.push_back(state.score());
   }
-  record->reachable = tour.report.reachable_score;
-  record->upper_bound = tour.report.upper_bound;
+  record.reachable = tour.report.reachable_score;
+  record.upper_bound = tour.report.upper_bound;
+}
+
+// What the views show.
+void add_coverage(const ScanWork& work, const std::vector<int>& views, double pixel_error,
+                  int threads, ScanRecord& record) {
+  record.coverage = coverage_of(work, views, threads);
+  const SightSettings& sight = work.visible->settings();
+  record.shares =
+      shares_of_triangles(record.prior->mesh(), sight.region, record.map->grid(), record.coverage);
+  record.areas = areas_of(record.prior->mesh(), record.shares, sight.region);
+  record.openings = unknown_openings(*record.map, record.prior.get(),
+                                     {sight.region, work.prior->rays, record.body_width, threads});
+  record.truth = true_areas(work, views, threads);
+  std::vector<char> counted;
+  for (const float share : record.shares) counted.push_back(share > kOutsideRegion);
+  record.prediction = prediction_of_scan(work, views, std::move(counted), pixel_error, threads);
+}
+
+}  // namespace
+
+std::shared_ptr<const ScanRecord> record_of_scan(const TourObject& tour, double pixel_error,
+                                                 int threads) {
+  const std::shared_ptr<ScanRecord> record = begun_record(*tour.work);
+  add_progress(tour, *record);
+  add_coverage(*tour.work, views_of_walk(tour.walk), pixel_error, threads, *record);
   return record;
+}
+
+std::shared_ptr<const ScanRecord> record_of_tour(const TourObject& tour) {
+  const std::shared_ptr<ScanRecord> record = begun_record(*tour.work);
+  add_progress(tour, *record);
+  return record;
+}
+
+std::shared_ptr<const ScanRecord> record_of_fleet(std::span<const TourObject> tours,
+                                                  double pixel_error, int threads) {
+  const ScanWork& work = *tours.front().work;
+  const std::shared_ptr<ScanRecord> record = begun_record(work);
+  record->tours = static_cast<int>(tours.size());
+  std::vector<int> walks;
+  for (const TourObject& tour : tours)
+    walks.insert(walks.end(), tour.walk.begin(), tour.walk.end());
+  add_coverage(work, views_of_walk(walks), pixel_error, threads, *record);
+  return record;
+}
+
+void tell_scan(const ScanRecord& record, MissionRun& run, const ToldScan& result) {
+  if (!result.block.is_map()) result.block = Value::map();
+  result.block.set("surface", areas_as_value(record));
+  result.notes.push_back(areas_in_words(record));
+  result.block.set("prediction", prediction_as_value(*record.prediction));
+  result.notes.push_back(prediction_in_words(*record.prediction));
+  run.obstacles.keep("prediction.ply", prediction_ply(*record.prediction));
+  if (record.truth) result.told.push_back(truth_in_words(record));
 }
 
 }  // namespace lapwing

@@ -226,6 +226,10 @@ class StudioWorker {
     if (result.mapping)
       throw InputError("a mission of kind '" + mission->kind() +
                        "' makes a map and no flight that could be drawn; lapwing run plans it");
+    if (result.fleet)
+      throw InputError(
+          "a mission with several batteries makes several flights, and one flight can "
+          "be drawn: set batteries to 1, or plan it by lapwing run");
     EditedPlan edited;
     edited.answer.grade = AnswerGrade::converged;
     edited.answer.result.report = result.report;

@@ -11,6 +11,7 @@
 local mission_of = require "mission.mission_of"
 local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
+local fleet = require "mission.scan_fleet"
 local images = require "mission.scan_images"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
@@ -50,9 +51,11 @@ local function graph_of(run, known, vehicle, starts, finish)
   local most = views.wanted(run) and math.huge or c.most
   return run:scan_graph(views.settle(run, {
     prior = known, vehicle = vehicle, region = region, rules = zones.rules(run), allowed = room,
-    starts = first.few(starts, finish, most),
-    needed = (o.start or o.finish or o.exploration.images > 0) and finish or 0,
-    fixed = o.start ~= nil or o.exploration.images > 0, body = zones.body(run),
+    starts = first.few(starts, finish, most), loops = fleet.wanted(run),
+    needed = (o.start or o.finish or #o.fleet.starts > 0 or o.exploration.images > 0) and finish
+      or 0,
+    fixed = o.start ~= nil or #o.fleet.starts > 0 or o.exploration.images > 0,
+    body = zones.body(run),
     mesh_room = o.mesh_room,
     candidates = {
       most = c.most, least = c.least, directions = c.directions, step = c.step,
@@ -142,13 +145,14 @@ local function planned(run)
   passing.check(run, vehicle, in_passing)
   views.check(run, in_passing)
   exploration.check(run)
+  fleet.check(run, vehicle, in_passing)
   local seconds = exploration.seconds(run, vehicle, tours.budget(run))
-  phases.expect(run, tours.budget(run), in_passing)
+  phases.expect(run, tours.budget(run) * o.batteries, in_passing)
   local known, poses, surface, explored =
     first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
   local starts, finish
   poses = views.poses(run, known, poses)
-  if not in_passing then starts, finish = first.starts(run, poses) end
+  if not in_passing then starts, finish = fleet.starts(run, poses) end
   local plan
   for round = 1, o.rounds do
     local function begin(phase) run:phase(phases.named(run, phase, round)) end
@@ -158,7 +162,11 @@ local function planned(run)
       begin("views")
       local graph = graph_of(run, known, vehicle, starts, finish)
       local last = o.finish and finish or graph.home  -- a loop, unless said otherwise
-      plan = plan_of(run, graph, vehicle, last, known, explored, begin)
+      if fleet.wanted(run) then
+        plan = fleet.plan(run, graph, vehicle, known, explored, begin)
+      else
+        plan = plan_of(run, graph, vehicle, last, known, explored, begin)
+      end
     end
     if round < o.rounds and not run:cancelled() then
       -- The tour is flown, and what it sees is known from then on; candidates grow from where it

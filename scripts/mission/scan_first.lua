@@ -19,7 +19,7 @@ local function check_prior(run)
   if not files or exploration.wanted(run) then return end
   local flown_in = o.scene or o.input
   local lacks, give = {}, {}
-  if not (o.start or flown_in and #o.flights > 0) then
+  if not (o.start or #o.fleet.starts > 0 or flown_in and #o.flights > 0) then
     lacks[1], give[1] = "the start of the tour", "start = {x, y, z}"
   end
   if not (flown_in or #o.regions > 0 or o.region.lower and o.region.upper) then

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- The options of scans. Readings 4.3, 4.6 and 4.11 explain defaults that the thesis does not give.
 local exploration = require "mission.scan_exploration"
+local fleet = require "mission.scan_fleet"
 local passes = require "mission.scan_passes"
 local regions = require "mission.scan_regions"
 local site = require "mission.scan_site"
@@ -177,7 +178,7 @@ local DECLARATIONS = {
         "solver whose tour local_search improves, or none; absent: cost_benefit" } } },
 }
 
-for _, list in ipairs { regions.DECLARATIONS, zones.DECLARATIONS } do
+for _, list in ipairs { regions.DECLARATIONS, zones.DECLARATIONS, fleet.DECLARATIONS } do
   table.move(list, 1, #list, #DECLARATIONS + 1, DECLARATIONS)
 end
 

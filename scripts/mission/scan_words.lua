@@ -38,6 +38,14 @@ function M.cut_off(graph)
          .. "connect more of them"
 end
 
+-- The note for the start of a drone, one of several, that is connected to few candidates, or nil.
+function M.cut_off_start(graph, drone)
+  local joined = graph.joined_from[drone]
+  if joined >= LITTLE * graph.candidates then return nil end
+  return string.format("the start of drone %d is connected to %d of %d candidates", drone, joined,
+                       graph.candidates)
+end
+
 -- The note for a tour that uses little of the budget although it may have more images, or nil.
 function M.little_used(run, tour, budget)
   local most = run.options.tour.images

@@ -80,9 +80,15 @@ function M.check(run)
              or "pilot", "an exploration keeps no zones and no line of sight: scan with a first "
                          .. "flight (flights), or remove it")
   end
+  local function check_place(option, position, which)
+    local why = M.rules(run):forbids { position = position, body = M.body(run) }
+    if why then run:fail(option, which .. why) end
+  end
   for _, option in ipairs { "start", "finish" } do
-    local why = o[option] and M.rules(run):forbids { position = o[option], body = M.body(run) }
-    if why then run:fail(option, why) end
+    if o[option] then check_place(option, o[option], "") end
+  end
+  for drone, start in ipairs(o.fleet.starts) do
+    check_place("fleet.starts", start.position, string.format("the start of drone %d: ", drone))
   end
 end
 
@@ -109,25 +115,34 @@ function M.allowed(run, poses)
   return kept
 end
 
--- Whether flights get anywhere from where they begin: a start, or home, at the height `height`.
-function M.check_home(run, room, height)
-  local o = run.options
-  if M.rules(run).zones == 0 then return end
+-- Places where flights begin, with their options.
+local function beginnings(run, height)
+  local o, places = run.options, {}
   local home = o.home and o.home.position
-  local places = { start = o.start, home = home and { home[1], home[2],
-                                                      math.max(home[3], height) } }
-  for _, option in ipairs { "home", "start" } do
-    local from = places[option]
-    if from then
-      local why = M.rules(run):forbids { position = from, body = M.body(run) }
-      if why then run:fail(option, string.format("at %.4g m, the height of the flight, %s", from[3],
-                                                 why)) end
-      local share = M.rules(run):reach { from = from, lower = room.lower, upper = room.upper,
-                                         body = M.body(run) }
-      if share < REACHED then
-        run:fail(option, string.format("zones close it in: from there %.2g %% of the space "
-                                       .. "between zones can be flown to", 100 * share))
-      end
+  if home then
+    places[1] = { "home", { home[1], home[2], math.max(home[3], height) }, "it" }
+  end
+  if o.start then places[#places + 1] = { "start", o.start, "it" } end
+  for drone, start in ipairs(o.fleet.starts) do
+    places[#places + 1] = { "fleet.starts", start.position,
+                            string.format("the start of drone %d", drone) }
+  end
+  return places
+end
+
+-- Whether flights get anywhere from where they begin: starts, or home, at the height `height`.
+function M.check_home(run, room, height)
+  if M.rules(run).zones == 0 then return end
+  for _, place in ipairs(beginnings(run, height)) do
+    local option, from, what = table.unpack(place)
+    local why = M.rules(run):forbids { position = from, body = M.body(run) }
+    if why then run:fail(option, string.format("at %.4g m, the height of the flight, %s", from[3],
+                                               why)) end
+    local share = M.rules(run):reach { from = from, lower = room.lower, upper = room.upper,
+                                       body = M.body(run) }
+    if share < REACHED then
+      run:fail(option, string.format("zones close %s in: from there %.2g %% of the space "
+                                     .. "between zones can be flown to", what, 100 * share))
     end
   end
 end

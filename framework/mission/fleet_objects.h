@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What scans with several batteries hold: tours that share one score, and the plans made of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/mission/run.h"
+#include "framework/mission/scan_objects.h"
+#include "framework/trajectory/fleet.h"
+
+namespace lapwing {
+
+// Tours of one graph, in the order in which they were asked for.
+struct TeamObject {
+  std::string solver;
+  TeamReport report;
+  std::vector<TourObject> tours;
+};
+
+// Plans and who flies them; `document` has no checksums and no certificate yet. One plan for each
+// of its tours, in its order.
+struct FleetObject {
+  Fleet document;
+  std::vector<PlanObject> plans;
+  SolveReport report;
+  std::string solver;
+  std::vector<std::string> notes;  // sentences for the user
+  std::vector<std::string> told;   // likewise, that stand in no plan
+  Value block;                     // figures, for --json
+  // Of the report, once the mission has ended.
+  std::function<std::vector<Section>()> late_sections;
+};
+
+inline constexpr const char* kTeamType = "team";
+inline constexpr const char* kFleetType = "fleet";
+
+void open_fleet_library(lua_State* state);
+// solve_team, team_solvers, fleet.
+std::span<const Binding> fleet_methods_of_run();
+
+// The parts of that list.
+std::span<const Binding> team_methods_of_run();
+void open_team_type(lua_State* state);
+
+}  // namespace lapwing
