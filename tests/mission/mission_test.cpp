@@ -211,7 +211,7 @@ TEST_F(MissionTest, ScriptsMustReturnMissions) {
   expect("return {kind = 'film', name = 'a\\nb', plan = print}", "name: a line break");
   expect("return {kind = 3, name = 'x', plan = print}", "mission.kind: expected a text");
   expect("return {kind = 'film', name = 'x', plan = function() end}",
-         "plan: expected the function to return run:plan{...} or a map, got nil");
+         "plan: expected the function to return run:plan{...}, a map or a fleet, got nil");
   expect("return {kind = 'film', name = 'x', options = 3, plan = print}", "options: expected");
 }
 

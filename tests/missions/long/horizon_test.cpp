@@ -30,7 +30,9 @@ TEST_F(LongHorizons, CostWithinOnePercentOfTheWhole) {
       std::printf("%d keyframes, seed %d: whole %.6g in %.2f s, parts of 10 s %.6g in %.2f s\n",
                   count, seed, cost(whole), seconds(whole), cost(parts), seconds(parts));
       EXPECT_LT(cost(parts), 1.01 * cost(whole)) << seed;
-      if (before > 0) EXPECT_LT(seconds(parts), 3.5 * before) << "it grows faster than the film";
+      if (before > 0) {
+        EXPECT_LT(seconds(parts), 3.5 * before) << "it grows faster than the film";
+      }
       before = seconds(parts);
     }
   }
