@@ -97,7 +97,9 @@ const std::vector<std::string> kFew{"--method",  "cost_benefit+local_search",
                                     "--seeds",   "1,2",
                                     "--threads", "2"};
 
-TEST_F(EvaluateScan, KilledAtAnyMomentItGoesOnToTheSameBytes) {
+class SlowEvaluateScan : public EvaluateScan {};
+
+TEST_F(SlowEvaluateScan, KilledAtAnyMomentItGoesOnToTheSameBytes) {
   ASSERT_EQ(run("whole", kFew), 0) << log("whole");
   const auto whole = bytes("whole");
   for (const char* name : {"study.json", "rows.csv", "tables.csv", "tables.txt", "report.html"}) {
@@ -129,7 +131,7 @@ TEST_F(EvaluateScan, KilledAtAnyMomentItGoesOnToTheSameBytes) {
   }
 }
 
-TEST_F(EvaluateScan, SeveralMissionsAreOneStudy) {
+TEST_F(SlowEvaluateScan, SeveralMissionsAreOneStudy) {
   fs::copy_file(base_ / "hut.lua", base_ / "shed.lua");
   ASSERT_EQ(run("two", {"shed.lua", "--method", "greedy", "--threads", "2"}), 0) << log("two");
   std::string table = read_file(base_ / "two" / "tables.txt");

@@ -108,7 +108,9 @@ TEST_F(NewFiles, TheGuideOfPluginsHolds) {
           {"--in: 'nowhere/at/all' is not a folder"});
 }
 
-TEST_F(NewFiles, NewMissionsOfEveryKindAreRight) {
+class SlowNewFiles : public NewFiles {};
+
+TEST_F(SlowNewFiles, NewMissionsOfEveryKindAreRight) {
   for (const char* kind : {"film", "race", "light_painting", "map", "scan", "explore", "own"}) {
     const std::string file = std::string("my_") + kind + ".lua";
     Finished finished = run({"new", "mission", kind, file});

@@ -161,7 +161,7 @@ TEST(RoguePlugins, OfEveryKindThatCrashOrExitAreNamed) {
   }
 }
 
-TEST(RoguePlugins, OfEveryKindThatHangAreNamed) {
+TEST(SlowRoguePlugins, OfEveryKindThatHangAreNamed) {
   for (const Deed& deed : deeds()) {
     const auto when = [&] {
       guard_plugin_calls(0.1);
@@ -283,7 +283,9 @@ class RogueCommands : public CommandLine {
   }
 };
 
-TEST_F(RogueCommands, EndWithTheNameOfThePlugin) {
+class SlowRogueCommands : public RogueCommands {};
+
+TEST_F(SlowRogueCommands, EndWithTheNameOfThePlugin) {
   const auto solver = [](const char* how) {
     return hover("",
                  std::string("{ type = 'rogue_solver', where = 'solve', how = '") + how + "' }");

@@ -5,10 +5,7 @@ add_dependencies(test_conformance ${all_plugins})
 target_sources(test_conformance PRIVATE ${PROJECT_SOURCE_DIR}/framework/app/allocation_counter.cpp)
 # What takes some ten seconds by itself runs with the long tests.
 set(slow_plugins tour_solver_recursive_greedy tour_solver_milp path_planner_rrt_star
-    path_planner_informed_rrt_star)
+    path_planner_informed_rrt_star controller_contouring controller_mpc)
 list(TRANSFORM slow_plugins PREPEND Registered/EveryPlugin.Conforms/)
 list(JOIN slow_plugins ":" slow_plugins)
-set_tests_properties(conformance PROPERTIES ENVIRONMENT "GTEST_FILTER=-${slow_plugins}")
-add_test(NAME conformance_long COMMAND test_conformance)
-set_tests_properties(conformance_long PROPERTIES LABELS long
-                     ENVIRONMENT "GTEST_FILTER=${slow_plugins}")
+lapwing_slow_tests(conformance "${slow_plugins}")

@@ -51,8 +51,10 @@ TEST_F(Filming, AMovedKeyframeChangesTheFilm) {
   EXPECT_NEAR(top, 15, 0.3);
 }
 
+class SlowFilming : public Filming {};
+
 // A way that obstacles close: an honest answer with the obstacle and the time.
-TEST_F(Filming, AClosedWayIsReported) {
+TEST_F(SlowFilming, AClosedWayIsReported) {
   write_file_atomically(folder_ / "closed.lua", R"(return require "mission.film".shot {
     name = "closed", duration = 12, hard = 0.5,
     keyframes = { { time = 0, position = {-10, 0, 3} }, { time = 12, position = {10, 0, 3} } },

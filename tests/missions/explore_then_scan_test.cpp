@@ -20,8 +20,10 @@ return scan.of_scene {
   }
 };
 
+class SlowExploringThenScanning : public ExploringThenScanning {};
+
 // The tour begins where the exploration ended, in the map that it made.
-TEST_F(ExploringThenScanning, TheTourIsPlannedOnWhatWasExplored) {
+TEST_F(SlowExploringThenScanning, TheTourIsPlannedOnWhatWasExplored) {
   write_both("");
   ASSERT_EQ(run("", "both.lua"), 0) << error();
   const Value result = answer();

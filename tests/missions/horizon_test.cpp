@@ -90,7 +90,9 @@ TEST_F(HorizonFilms, NoPlanKnowsTheFutureOfALiveSubject) {
   EXPECT_GT(apart, 2) << "it follows either way";
 }
 
-TEST_F(HorizonFilms, ASubjectThatIsSeenLateIsFollowedLater) {
+class SlowHorizonFilms : public HorizonFilms {};
+
+TEST_F(SlowHorizonFilms, ASubjectThatIsSeenLateIsFollowedLater) {
   const auto turns_at = [&](const std::string& delay, const char* name) {
     const Plan a =
         read_plan(film(forked("6", "delay = " + delay + ","), "", name).folder / "plan.json");

@@ -49,8 +49,10 @@ TEST_F(LightPainting, TheHeartOfAPictureIsDrawn) {
   EXPECT_LT(mean_error(flown), 0.005);
 }
 
+class SlowLightPainting : public LightPainting {};
+
 // Fig. 3.8 B: with much weight on smoothness the letters are round, and the certificate says so.
-TEST_F(LightPainting, TooSmoothIsAMatterOfWeights) {
+TEST_F(SlowLightPainting, TooSmoothIsAMatterOfWeights) {
   const Flown smooth =
       fly("../light_painting/hello.lua", "--set weights.smoothness=1 --set tolerance=1");
   EXPECT_EQ(smooth.status, 0);
@@ -79,7 +81,7 @@ TEST_F(LightPainting, TurnedRoundForItsSpectators) {
   for (const auto& p : stroke) EXPECT_NEAR(p.x(), 5, 1e-9);
 }
 
-TEST_F(LightPainting, SvgIsReadWhole) {
+TEST_F(SlowLightPainting, SvgIsReadWhole) {
   // Every command once, relative and not, transforms, shapes, flags without blanks; 10 strokes.
   write_file_atomically(folder_ / "all.svg", R"svg(<?xml version="1.0"?><!DOCTYPE svg>
 <svg><!-- <path d="M bad"/> --><defs><path d="M0,0 L9,9"/></defs>

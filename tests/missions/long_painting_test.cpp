@@ -21,7 +21,9 @@ class LongPainting : public Filming {
   }
 };
 
-TEST_F(LongPainting, TheStepAdaptsAndTheReasonIsSaid) {
+class SlowLongPainting : public LongPainting {};
+
+TEST_F(SlowLongPainting, TheStepAdaptsAndTheReasonIsSaid) {
   const Flown flown = fly(script(""));
   expect_certified(flown);
   const double duration = read_plan(flown.folder / "plan.json").trajectory.duration();

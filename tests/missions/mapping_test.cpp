@@ -18,7 +18,9 @@ class Mapping : public Filming {
   std::string error() const { return read_file(folder_ / "stderr.txt"); }
 };
 
-TEST_F(Mapping, AStreetIsMappedTheSameByBothBackends) {
+class SlowMapping : public Mapping {};
+
+TEST_F(SlowMapping, AStreetIsMappedTheSameByBothBackends) {
   const std::string few = "--config mapping/small --set views=20";
   const Flown brick = fly("../mapping/street.lua", few, "brick");
   const Flown octomap =
@@ -35,7 +37,7 @@ TEST_F(Mapping, AStreetIsMappedTheSameByBothBackends) {
     EXPECT_NE(report.find(section), std::string::npos) << section;
 }
 
-TEST_F(Mapping, ASuburbCountsItsObservations) {
+TEST_F(SlowMapping, ASuburbCountsItsObservations) {
   const Flown flown = fly("../mapping/suburb.lua", "--config mapping/small");
   EXPECT_EQ(flown.status, 0);
   EXPECT_NE(read_file(flown.folder / "report.html").find("Certainty"), std::string::npos);

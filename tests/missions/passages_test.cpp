@@ -153,7 +153,9 @@ TEST_F(PassageFilms, FlightZonesAreKept) {
   EXPECT_GT(north, 8.5);
 }
 
-TEST_F(PassageFilms, TheRealBuildingsMap) {
+class SlowPassageFilms : public PassageFilms {};
+
+TEST_F(SlowPassageFilms, TheRealBuildingsMap) {
   const char* data = std::getenv("LAPWING_DATA");
   if (!data || !fs::exists(fs::path(data) / "maps/geb079.bt"))
     GTEST_SKIP() << "LAPWING_DATA names no folder with maps/geb079.bt";

@@ -5,7 +5,9 @@
 namespace lapwing {
 namespace {
 
-TEST_F(Covering, DefaultsSeeTheOutermostWallsOfAMesh) {
+class SlowCovering : public Covering {};
+
+TEST_F(SlowCovering, DefaultsSeeTheOutermostWallsOfAMesh) {
   const Value answer = of_house("");
   const Value& surface = answer.at("tour").at("surface");
   const Value& truth = surface.at("true");
@@ -45,7 +47,7 @@ TEST_F(Covering, WhatTheFirstFlightNeverSawIsUnknownAndSaidInWords) {
   EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr("unknown, not counted"));
 }
 
-TEST_F(Covering, TheTerminalThePlanAndTheReportSayTheSame) {
+TEST_F(SlowCovering, TheTerminalThePlanAndTheReportSayTheSame) {
   const Value answer = of_house("");
   std::string sentence;
   for (const Value& note : answer.at("notes").as_list())

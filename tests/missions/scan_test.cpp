@@ -60,7 +60,9 @@ end
   EXPECT_EQ(read_file(folder_ / "blind/prior.ply"), read_file(folder_ / "out/prior.ply"));
 }
 
-TEST_F(Scanning, ASecondPlanContinuesFromFilesOfTheFirst) {
+class SlowScanning : public Scanning {};
+
+TEST_F(SlowScanning, ASecondPlanContinuesFromFilesOfTheFirst) {
   ASSERT_EQ(run(""), 0) << error();
   const std::string files =
       "--set prior.map=out/map.ot --set prior.mesh=out/prior.ply --data '" + folder_.string() + "'";
@@ -84,7 +86,7 @@ return require("mission.scan").of_prior {
   EXPECT_THAT(error(), HasSubstr("voxels of"));
 }
 
-TEST_F(Scanning, ATourEndsWhereItIsToldTo) {
+TEST_F(SlowScanning, ATourEndsWhereItIsToldTo) {
   ASSERT_EQ(run("--set start=[-8,-7,11] --set finish=[8,7,12]"), 0) << error();
   EXPECT_EQ(answer().at("status").as_text(), "ok");
   const Plan made = read_plan(folder_ / "out/plan.json");
@@ -96,7 +98,7 @@ TEST_F(Scanning, ATourEndsWhereItIsToldTo) {
   EXPECT_THAT(refused("--set finish=[500,0,12]"), HasSubstr("no free finish"));
 }
 
-TEST_F(Scanning, ASecondRoundKnowsWhatTheFirstOneSaw) {
+TEST_F(SlowScanning, ASecondRoundKnowsWhatTheFirstOneSaw) {
   ASSERT_EQ(run("--set rounds=2", "hut.lua", "twice"), 0) << error();
   EXPECT_EQ(answer().at("status").as_text(), "ok");
   ASSERT_EQ(run("", "hut.lua", "once"), 0) << error();
@@ -104,7 +106,7 @@ TEST_F(Scanning, ASecondRoundKnowsWhatTheFirstOneSaw) {
   EXPECT_NE(read_file(folder_ / "twice/prior.ply"), read_file(folder_ / "once/prior.ply"));
 }
 
-TEST_F(Scanning, NoiseOfDepthIsPlannedWith) {
+TEST_F(SlowScanning, NoiseOfDepthIsPlannedWith) {
   ASSERT_EQ(run("--set noise.sigma=0.05 --set noise.dropped=0.2"), 0) << error();
   EXPECT_EQ(answer().at("status").as_text(), "ok");
   const std::string noisy = read_file(folder_ / "out/map.ot");
@@ -112,7 +114,7 @@ TEST_F(Scanning, NoiseOfDepthIsPlannedWith) {
   EXPECT_NE(noisy, read_file(folder_ / "out/map.ot"));
 }
 
-TEST_F(Scanning, WhatCannotBePlannedIsSaid) {
+TEST_F(SlowScanning, WhatCannotBePlannedIsSaid) {
   EXPECT_THAT(refused("--set start=[0,0,2]"), HasSubstr("no free start"));
   EXPECT_THAT(refused("--set tour.budget=1"), HasSubstr("no tour of 1 s"));
   EXPECT_THAT(refused("--set region.lower=[15,15,2] --set region.upper=[20,20,6]"),

@@ -61,7 +61,9 @@ TEST_F(ZoneScan, TheTourKeepsZonesAndThePilotsSight) {
   EXPECT_FALSE(verify(moved, folder_ / "out").feasible());
 }
 
-TEST_F(ZoneScan, WhatNoZoneAllowsToBeSeenIsSaidWithItsShare) {
+class SlowZoneScan : public ZoneScan {};
+
+TEST_F(SlowZoneScan, WhatNoZoneAllowsToBeSeenIsSaidWithItsShare) {
   // Only south of the hut is free; the north wall stays unseen.
   write_with("hidden.lua", R"(
     no_fly_zones = { { name = 'garden', corners = {{-40, 2}, {40, 2}, {40, 40}, {-40, 40}} } },)");

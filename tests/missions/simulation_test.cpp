@@ -54,9 +54,11 @@ TEST_F(Simulation, WindMassAndSeedCount) {
   EXPECT_NE(read_file(page).find("Rotor thrusts"), std::string::npos);
 }
 
+class SlowSimulation : public Simulation {};
+
 // A controller that keeps to the path is at its end some milliseconds before the plan. What the
 // plan asks of its last moment is asked of the flight's.
-TEST_F(Simulation, AFlightThatEndsBeforeItsPlanIsJudged) {
+TEST_F(SlowSimulation, AFlightThatEndsBeforeItsPlanIsJudged) {
   const fs::path plan = fly("castle_flyover.lua").folder / "plan.json";
   ASSERT_EQ(simulate(plan, "--controller contouring --runs 1"), 0)
       << read_file(folder_ / "simulated.json");

@@ -38,7 +38,7 @@ return scan.of_mesh {
 }
 )";
 
-class LongItems : public MpiItems {
+class SlowItems : public MpiItems {
  protected:
   static constexpr int kEpisodes = 40, kSteps = 3;
 
@@ -88,7 +88,7 @@ class LongItems : public MpiItems {
   }
 };
 
-TEST_F(LongItems, TwentyKillsEndAtTheSameBytes) {
+TEST_F(SlowItems, TwentyKillsEndAtTheSameBytes) {
   ASSERT_EQ(shell(work(1, "whole")).status, 0);
   const auto whole = bytes("whole");
   Random random(static_cast<std::uint64_t>(::getpid()));
@@ -106,7 +106,7 @@ TEST_F(LongItems, TwentyKillsEndAtTheSameBytes) {
   }
 }
 
-TEST_F(LongItems, AKilledProcessLosesItsItemsInFlightOnly) {
+TEST_F(SlowItems, AKilledProcessLosesItsItemsInFlightOnly) {
   ASSERT_EQ(shell(work(1, "whole")).status, 0);
   const auto whole = bytes("whole");
   const pid_t mpirun = started(work(2, "some"));
@@ -127,7 +127,7 @@ TEST_F(LongItems, AKilledProcessLosesItsItemsInFlightOnly) {
   EXPECT_EQ(bytes("some"), whole);
 }
 
-TEST_F(LongItems, TwoProcessesThatResumeOneFolderEndAtTheSameBytes) {
+TEST_F(SlowItems, TwoProcessesThatResumeOneFolderEndAtTheSameBytes) {
   ASSERT_EQ(shell(work(1, "whole")).status, 0);
   const pid_t process = started(work(1, "both"));
   sleep(0.7);
@@ -144,7 +144,7 @@ TEST_F(LongItems, TwoProcessesThatResumeOneFolderEndAtTheSameBytes) {
 }
 
 // What was made is whole, the message names the file, and with more room it goes on.
-TEST_F(LongItems, AFullDiskIsSaidAndGoesOnWhenThereIsRoom) {
+TEST_F(SlowItems, AFullDiskIsSaidAndGoesOnWhenThereIsRoom) {
   fs::create_directories(folder_ / "disk");
   if (::geteuid() != 0 || shell("mount -t tmpfs -o size=120k none disk").status != 0)
     GTEST_SKIP() << "a small disk cannot be mounted here; run as root";
@@ -161,7 +161,7 @@ TEST_F(LongItems, AFullDiskIsSaidAndGoesOnWhenThereIsRoom) {
 }
 
 // The C library chooses other code for `exp` and `sin` where the processor has no FMA and AVX2.
-TEST_F(LongItems, ResultsOfAnotherMachineAreRefusedUnlessBothArePortable) {
+TEST_F(SlowItems, ResultsOfAnotherMachineAreRefusedUnlessBothArePortable) {
   if (shell(std::string(kSlowerMachine) + explore("probe", "--shard 2/7")).status != 0 ||
       shell(explore("probe", "--shard 3/7")).status == 0)
     GTEST_SKIP() << "this processor has neither FMA nor AVX2, or the C library does not use them";
@@ -185,7 +185,7 @@ TEST_F(LongItems, ResultsOfAnotherMachineAreRefusedUnlessBothArePortable) {
   EXPECT_THAT(copied.err, HasSubstr("frontier_1.json' was made on another machine ("));
 }
 
-TEST_F(LongItems, ASweepRunsInAllProcesses) {
+TEST_F(SlowItems, ASweepRunsInAllProcesses) {
   write("shot.lua", film("name = 'hop',"));
   const std::string sweep = std::string(LAPWING_BUILD_DIR) +
                             "/bin/lapwing sweep shot.lua --vary weights.effort=0.01,0.1,1 --quiet";
@@ -199,7 +199,7 @@ TEST_F(LongItems, ASweepRunsInAllProcesses) {
 }
 
 // Kept runs read back as the same bits: output and page are those of runs that are not kept.
-TEST_F(LongItems, KeptRunsAreThoseThatAreNotKept) {
+TEST_F(SlowItems, KeptRunsAreThoseThatAreNotKept) {
   write("shot.lua", film("name = 'hop',"));
   const std::string program = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing ";
   ASSERT_EQ(shell(program + "run shot.lua --quiet -o hop").status, 0);
@@ -225,7 +225,7 @@ TEST_F(LongItems, KeptRunsAreThoseThatAreNotKept) {
 }
 
 // The commands that explore and scan, in processes by threads, and in shards of such.
-TEST_F(LongItems, EveryMixtureOfProcessesThreadsAndShardsGivesTheSameBytes) {
+TEST_F(SlowItems, EveryMixtureOfProcessesThreadsAndShardsGivesTheSameBytes) {
   write("hut.lua", kScannedBox);
   write("hut.obj",
         "v -3 -2.5 0\nv 3 -2.5 0\nv 3 2.5 0\nv -3 2.5 0\nv -3 -2.5 4\nv 3 -2.5 4\n"
@@ -265,7 +265,7 @@ TEST_F(LongItems, EveryMixtureOfProcessesThreadsAndShardsGivesTheSameBytes) {
 
 // Two processes by one thread against one by two, and the time beside the items. Others' load only
 // slows, so that the best of some tries is what counts.
-TEST_F(LongItems, ProcessesAreAsFastAsThreads) {
+TEST_F(SlowItems, ProcessesAreAsFastAsThreads) {
   const auto pace = [&](const std::string& how) {
     std::pair<double, double> best{1e9, 1e9};  // s of the whole, ms beside each item
     for (int turn = 0; turn < 5; ++turn) {
@@ -291,7 +291,7 @@ TEST_F(LongItems, ProcessesAreAsFastAsThreads) {
   }
 }
 
-TEST_F(LongItems, TooFewItemsAreWarnedOf) {
+TEST_F(SlowItems, TooFewItemsAreWarnedOf) {
   const Finished finished = shell(mpirun(5) + explore("few", "", 6));
   EXPECT_EQ(finished.status, 0);
   EXPECT_THAT(finished.err, HasSubstr("warning: 6 items are few for 5 processes by 1 thread"));
