@@ -62,6 +62,16 @@ function M.written_out(given)
   return out
 end
 
+-- The option that a message is about, and the message without it: run:fail adds its place. A file
+-- that is missing is told with the place of the option that names it.
+local function placed(path, why)
+  local found = why:find(path, 1, true)
+  if not found then return path, why end
+  local option, message = why:sub(found):match("^([^:]*): (.*)$")
+  if option == path or option == path .. ".file" then return option, message end
+  return path, why
+end
+
 -- The prisms of all entries of an option, and the numbers of these entries. `low` and `high` name
 -- the keys of the lower and the upper end. `heights` says what these are above, as the option of
 -- that name does; `ground_level` is the height of level ground.
@@ -75,8 +85,8 @@ function M.prisms(run, option, low, high, heights, ground_level)
       high = entry[high], weight = entry.weight, coordinates = o.coordinates,
       heights = heights ~= "unstated" and heights or "", ground_level = ground_level }
     if not prisms then
-      local begin = path .. ": "  -- run:fail says it
-      run:fail(path, why:sub(1, #begin) == begin and why:sub(#begin + 1) or why)
+      local option, message = placed(path, why)
+      run:fail(option, message)
     end
     for _, prism in ipairs(prisms) do all[#all + 1], numbers[#numbers + 1] = prism, i end
   end

@@ -107,6 +107,9 @@ TEST_F(ScanZones, FilesInOtherCoordinatesAreRefused) {
               HasSubstr("a ring has at least four positions"));
   EXPECT_THAT(file("f.kmz", "PK"), HasSubstr("unzip"));
   EXPECT_THAT(file("g.shp", "x"), HasSubstr("expected a file .geojson, .json or .kml"));
+  const std::string missing = said("regions = { { file = 'i.geojson', from = 0, to = 6 } }");
+  EXPECT_THAT(missing, HasSubstr(": regions[1].file: data file 'i.geojson' not found in "));
+  EXPECT_EQ(missing.find("regions[1]"), missing.rfind("regions[1]")) << missing;
   if (!ReferenceSystem::available()) return;
   EXPECT_THAT(file("h.geojson", geojson("[[5, 5], [6, 5], [6, 6], [5, 5]]"),
                    std::string(kOrigin) + "coordinates = 'EPSG:28992', heights = 'ground'"),
