@@ -48,7 +48,9 @@ std::filesystem::path log_name(const FlyRequest& asked, const Plan& plan) {
     char number[8];
     std::snprintf(number, sizeof number, "-%03d", i);
     const std::filesystem::path file = std::filesystem::path("flights") / (name + number);
-    if (!std::filesystem::exists(file.string() + ".tlog")) return file;
+    if (!std::filesystem::exists(file.string() + ".tlog") &&
+        !std::filesystem::exists(file.string() + ".json"))
+      return file;
   }
   throw InputError("flights/ holds 999 logs of '" + name + "'; name another with -o");
 }
@@ -113,7 +115,9 @@ class LiveRun {
   void take(const Arrival& arrival, double now) {
     for (const mavlink::Packet& packet : arrival.packets) session_.receive(packet, now);
     if (log_ || !session_.report().found()) return;
-    log_.emplace(log_name_.string() + ".tlog");
+    // Another flight may have begun a log of this name in the meantime.
+    while (!(log_ = TelemetryLog::begin(log_name_.string() + ".tlog")))
+      log_name_ = log_name(asked_, flight_.plan);
     wire_.begin_log(*log_, epoch_);
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -41,10 +42,11 @@ std::string quoted_lua(const std::string& text) {
   return quoted + "\"";
 }
 
+// The shortest text that reads back as the same number.
 std::string lua_number(double number) {
+  if (std::isinf(number)) return number > 0 ? "math.huge" : "-math.huge";
   char text[40];
-  std::snprintf(text, sizeof text, "%.9g", number);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
 std::string lua_key(const std::string& key) {

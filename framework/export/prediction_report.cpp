@@ -23,9 +23,17 @@ constexpr int kClasses = 5;             // of numbers of images: 0, 1, 2, 3 and 
 constexpr double kBest = 0.02, kWorst = 0.98;  // shares of the area, ends of the colours
 
 const char* reason_in_words(HoleReason reason) {
-  return reason == HoleReason::no_view
-             ? "no view: no two candidate views from different places show it"
-             : "not chosen: such candidate views show it, too few of them are planned";
+  switch (reason) {
+    case HoleReason::not_chosen:
+      return "not chosen: two candidate views from different places show it, too few of them are "
+             "planned";
+    case HoleReason::zone:
+      return "zone: views from two places would show it, and zones or the pilot's sight forbid "
+             "them";
+    case HoleReason::no_view:
+      break;
+  }
+  return "no view: no two candidate views from different places show it";
 }
 
 double counted_area(const ScanPrediction& p) {
@@ -182,10 +190,13 @@ std::string prediction_in_words(const ScanPrediction& p) {
   }
   const double no_view = area_of_holes(p, HoleReason::no_view);
   const double not_chosen = area_of_holes(p, HoleReason::not_chosen);
-  if (no_view + not_chosen > 0)
-    text += ". Not reconstructed: " + number_text(not_chosen, 4) +
-            " m^2 for want of planned images, and " + number_text(no_view, 4) +
-            " m^2 for want of candidate views from two places";
+  const double zone = area_of_holes(p, HoleReason::zone);
+  if (no_view + not_chosen + zone > 0) {
+    text +=
+        ". Not reconstructed: " + number_text(not_chosen, 4) + " m^2 for want of planned images, ";
+    if (zone > 0) text += number_text(zone, 4) + " m^2 because of zones or the pilot's sight, ";
+    text += "and " + number_text(no_view, 4) + " m^2 for want of candidate views from two places";
+  }
   return text;
 }
 
@@ -210,6 +221,7 @@ Value prediction_as_value(const ScanPrediction& p) {
   figures("accuracy", &TrianglePrediction::accuracy, 1);
   Value& reasons = value.set("holes", Value::map());
   reasons.set("no_view", area_of_holes(p, HoleReason::no_view));
+  reasons.set("zone", area_of_holes(p, HoleReason::zone));
   reasons.set("not_chosen", area_of_holes(p, HoleReason::not_chosen));
   Value& largest = reasons.set("largest", Value::list());
   for (std::size_t k = 0; k < listed_holes(p); ++k) {
@@ -217,7 +229,7 @@ Value prediction_as_value(const ScanPrediction& p) {
     Value entry = Value::map();
     entry.set("area", hole.area);
     entry.set("position", Value(Value::List{hole.place.x(), hole.place.y(), hole.place.z()}));
-    entry.set("why", hole.reason == HoleReason::no_view ? "no_view" : "not_chosen");
+    entry.set("why", to_string(hole.reason));
     largest.push_back(std::move(entry));
   }
   return value;

@@ -101,6 +101,13 @@ std::string cure_of(const FlownCheck& check, const Plan& plan, const FlightRevie
            "` = " + plain_number(c.limit - (worst - c.limit)) + " m: the flight went " +
            plain_number(worst - c.limit, 3) + " m beyond it";
   }
+  if (c.name == "pilot_distance")
+    return "plan with `pilot.range` = " + plain_number(c.limit - (worst - c.limit)) +
+           " m: the flight went " + plain_number(worst - c.limit, 3) + " m beyond it";
+  if (c.name == "pilot_sight")
+    return "place the pilot where more of the flight is seen, or plan with a larger `margin`: the "
+           "vehicle was hidden for " +
+           plain_number(worst, 3) + " s";
   if (c.name == "framing" || c.name == "line_of_sight") {
     const ErrorSeries* camera = find_error(review.errors, "camera");
     return "frame the subject with more room: " +

@@ -15,9 +15,9 @@ constexpr double kMissing = 1;          // s, that may be missing,
 constexpr double kMissingShare = 0.01;  // or this share of the plan
 
 bool judges_a_place(const std::string& check) {
-  constexpr std::array<std::string_view, 6> names{"clearance",           "flight_zone",
-                                                  "subject_distance",    "height_above_home",
-                                                  "height_above_ground", "distance_from_home"};
+  constexpr std::array<std::string_view, 8> names{
+      "clearance",           "flight_zone",        "subject_distance", "height_above_home",
+      "height_above_ground", "distance_from_home", "pilot_distance",   "pilot_sight"};
   return std::find(names.begin(), names.end(), check) != names.end();
 }
 

@@ -28,6 +28,8 @@ const std::set<std::string>& judged_names() {
                                            "gimbal_pitch_rate",
                                            "clearance",
                                            "flight_zone",
+                                           "pilot_distance",
+                                           "pilot_sight",
                                            "subject_distance",
                                            "height_above_home",
                                            "distance_from_home",

@@ -14,7 +14,8 @@ using namespace mavlink;
 namespace {
 
 constexpr double kReserve = 20;         // percent of the battery, left at the end
-constexpr double kOffHome = 10;         // m, of the plan's home
+constexpr double kOffHome = 10;         // m across the ground, of the plan's home
+constexpr double kOffHomeHeight = 10;   // m; heights by satellite alone are this uncertain
 constexpr double kFarFromHome = 10000;  // m, of the plan's start
 
 bool hovers(std::uint8_t type) {
@@ -65,11 +66,19 @@ void check_home(const VehicleReport& report, const FlightFrame& frame, const Liv
   if (start > kFarFromHome)
     missing.push_back("the plan begins " + plain_number(start / 1000, 3) +
                       " km from the vehicle's home: is this the plan's origin?");
-  const double off = flight.plan.home ? distance_to(flight.plan.home->position) : 0;
-  if (start <= kFarFromHome && off > kOffHome)
+  if (start > kFarFromHome || !flight.plan.home) return;
+  const char* reason = " of it, because the plan's limits count from there";
+  const double off = distance_to(flight.plan.home->position);
+  if (off > kOffHome)
     missing.push_back("the vehicle's home is " + metres(off) +
-                      " from the plan's; it must be within " + metres(kOffHome) +
-                      " of it, because the plan's limits count from there");
+                      " from the plan's; it must be within " + metres(kOffHome) + reason);
+  // Heights above the ground count from the vehicle's home itself, wherever that is.
+  if (frame.heights_above_home()) return;
+  const double higher = report.home->height - frame.on_earth(flight.plan.home->position)->height;
+  if (std::abs(higher) > kOffHomeHeight)
+    missing.push_back("the vehicle's home is " + metres(std::abs(higher)) +
+                      (higher > 0 ? " above" : " below") + " the plan's; it must be within " +
+                      metres(kOffHomeHeight) + reason);
 }
 
 void check_battery(const VehicleReport& report, const LiveFlight& flight,

@@ -2,6 +2,7 @@
 #include "framework/fly/telemetry_log.h"
 
 #include "framework/core/error.h"
+#include "framework/core/files.h"
 
 namespace lapwing {
 namespace {
@@ -10,13 +11,11 @@ constexpr std::uint64_t kFlushEvery = 1'000'000;  // us
 
 }  // namespace
 
-TelemetryLog::TelemetryLog(const std::filesystem::path& path) : path_(path) {
-  if (std::filesystem::exists(path))
-    throw InputError("'" + path.string() +
-                     "' is there already; the log of a flight is not replaced");
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
-  file_.open(path, std::ios::binary);
-  if (!file_) throw InputError("cannot write '" + path.string() + "'");
+std::optional<TelemetryLog> TelemetryLog::begin(const std::filesystem::path& path) {
+  if (!create_file_atomically(path, "")) return std::nullopt;
+  std::ofstream file(path, std::ios::binary);
+  if (!file) throw InputError("cannot write '" + path.string() + "'");
+  return TelemetryLog(std::move(file));
 }
 
 void TelemetryLog::write(std::uint64_t microseconds, std::string_view packet) {

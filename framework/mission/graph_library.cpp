@@ -323,7 +323,7 @@ int scan_graph_of_run(lua_State* state) {
         additive_score(std::vector<double>(work->graph.candidates.viewpoints.size(), 1)));
   if (!work->rules->empty())
     work->hidden = hidden_parts(*work, *space_of(*work->prior, mesh_room), *coarser, starts,
-                                settings, run.settings.cancellation);
+                                settings, work->forbidden, run.settings.cancellation);
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
   const ScanGraph& graph = work->graph;
   work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);

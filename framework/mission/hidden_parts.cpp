@@ -45,6 +45,7 @@ std::vector<HiddenPart> hidden_parts(const ScanWork& work, const FreeSpace& open
                                      const VisibleVoxels& visible,
                                      const std::vector<Viewpoint>& starts,
                                      const ScanGraphSettings& settings,
+                                     std::vector<Viewpoint>& forbidden,
                                      const CancellationToken* cancellation) {
   CandidateSettings wide = settings.candidates;
   wide.most = 2 * kOpenViews;
@@ -76,6 +77,7 @@ std::vector<HiddenPart> hidden_parts(const ScanWork& work, const FreeSpace& open
     for (std::size_t k = 0; k < region.prisms().size(); ++k)
       parts.push_back(part_of(work, InterestRegion(std::vector{region.prisms()[k]}),
                               region.prisms()[k].label(k + 1), voxels));
+  forbidden = std::move(breaking);
   return parts;
 }
 

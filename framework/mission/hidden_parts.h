@@ -13,10 +13,13 @@ namespace lapwing {
 // keep them nor the candidates of the graph do. Areas are of the prior mesh, and estimates: more
 // views would see more on either side. The first part is of all regions together; of several prisms
 // one part each follows.
+//
+// `forbidden` gets the views that break the rules and that nothing else forbids.
 std::vector<HiddenPart> hidden_parts(const ScanWork& work, const FreeSpace& open,
                                      const VisibleVoxels& visible,
                                      const std::vector<Viewpoint>& starts,
                                      const ScanGraphSettings& settings,
+                                     std::vector<Viewpoint>& forbidden,
                                      const CancellationToken* cancellation);
 
 inline constexpr int kOpenViews = 600;

@@ -72,7 +72,8 @@ struct ScanWork : LegFlight {
   Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
   Eigen::Vector3d body;         // half edges of the vehicle's box, m
   std::shared_ptr<const FlightRules> rules = std::make_shared<const FlightRules>();
-  std::vector<HiddenPart> hidden;  // what the rules keep from all candidates
+  std::vector<HiddenPart> hidden;    // what the rules keep from all candidates
+  std::vector<Viewpoint> forbidden;  // a sample of the views that only the rules forbid
   // Of views that are taken in passing: their numbers, pass by pass, and the courses, rad.
   std::vector<std::vector<int>> passes;
   std::vector<double> courses;

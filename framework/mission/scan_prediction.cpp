@@ -29,8 +29,14 @@ ScanPrediction prediction_of_scan(const ScanWork& work, const std::vector<int>& 
   const ImageSet images(prediction.surface, poses_of(taken), settings);
   prediction.triangles = predict_surface(images, prediction.counted, threads);
   const ImageSet candidates(prediction.surface, poses_of(all), settings);
-  prediction.holes =
-      holes_of(*prediction.surface, prediction.counted, prediction.triangles, candidates, threads);
+  std::optional<ImageSet> with_forbidden;
+  if (!work.forbidden.empty()) {
+    std::vector<Viewpoint> more = all;
+    more.insert(more.end(), work.forbidden.begin(), work.forbidden.end());
+    with_forbidden.emplace(prediction.surface, poses_of(more), settings);
+  }
+  prediction.holes = holes_of(*prediction.surface, prediction.counted, prediction.triangles,
+                              candidates, with_forbidden ? &*with_forbidden : nullptr, threads);
   return prediction;
 }
 

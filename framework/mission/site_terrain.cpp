@@ -72,9 +72,31 @@ class PlacedRaster {
     const float value = between(pixel - Vector2d(0.5, 0.5));
     if (std::isnan(value)) return kNoHeight;
     const double z = reference_->frame.to_world({there.x(), there.y(), value}).z();
-    if (z > kLowest && z < kHighest) return static_cast<float>(z);
+    if (possible(z)) return static_cast<float>(z);
     ++impossible_;
     return kNoHeight;
+  }
+
+  // Points of the surface (m, world) at the middles of the loaded pixels, and between those of
+  // neighbours at most `step` (m) apart: the crests of a bilinear surface run there. `use` takes
+  // each of them, `row_done` the share of the rows.
+  template <class Use, class RowDone>
+  void crests(double step, const Use& use, const RowDone& row_done) const {
+    for (int row = 0; row < window_.height; ++row) {
+      row_done(static_cast<double>(row) / window_.height);
+      for (int column = 0; column < window_.width; ++column) {
+        const auto here = surface_at(column, row);
+        if (!here) continue;
+        use(*here);
+        for (const auto& [right, down] : {std::pair(1, 0), std::pair(0, 1)}) {
+          const auto next = surface_at(column + right, row + down);
+          if (!next) continue;
+          const Vector3d along = *next - *here;
+          const double parts = std::ceil(along.head<2>().norm() / step);
+          for (int k = 1; k < parts; ++k) use(*here + along * (k / parts));
+        }
+      }
+    }
   }
 
  private:
@@ -121,6 +143,19 @@ class PlacedRaster {
         sum += weight * pixel(static_cast<int>(low_x) + right, static_cast<int>(low_y) + down);
     }
     return static_cast<float>(sum);
+  }
+
+  static bool possible(double z) { return z > kLowest && z < kHighest; }
+
+  // The middle of a pixel of the window on the surface (m, world); absent without data.
+  std::optional<Vector3d> surface_at(int column, int row) const {
+    if (column >= window_.width || row >= window_.height) return std::nullopt;
+    const double value = pixel(window_.column + column, window_.row + row);
+    if (std::isnan(value)) return std::nullopt;
+    const Vector2d place =
+        info_.to_coordinates * Vector2d(window_.column + column + 0.5, window_.row + row + 0.5);
+    const Vector3d p = reference_->frame.to_world({place.x(), place.y(), value});
+    return possible(p.z()) ? std::optional(p) : std::nullopt;
   }
 
   double pixel(int column, int row) const {
@@ -215,6 +250,22 @@ SkyColumns columns_of(const HeightGrid& heights, double resolution) {
   return columns;
 }
 
+// Raises columns to what the surface reaches between their corners: a wall may be narrower than a
+// voxel. Columns of which nothing is known stay unknown.
+void raise_to_crests(SkyColumns& columns, const PlacedRaster& raster, const std::string& name,
+                     double resolution, const MapWork& work) {
+  const VoxelGrid grid(resolution);
+  const auto raise = [&](const Vector3d& p) {
+    const int x = grid.index(p.x()), y = grid.index(p.y());
+    const std::int32_t top = columns.top(x, y), here = grid.index(p.z());
+    if (top != SkyColumns::kUnknown && here > top) columns.set_top(x, y, here);
+  };
+  raster.crests(resolution / 2, raise, [&](double share) {
+    if (work.cancellation && work.cancellation->cancelled()) throw Cancelled();
+    if (work.progress) work.progress->report(share, "crests of '" + name + "'");
+  });
+}
+
 void note_gaps(const PlacedRaster& raster, const HeightGrid& grid, const std::string& name,
                std::vector<std::string>& notes) {
   if (grid.known() < 1) {
@@ -250,6 +301,7 @@ Site read_site_terrain(const TerrainRequest& request, const MapWork& work) {
   site.origin = surface.reference().origin;
   site.bounds = heights.bounds();
   site.solid = columns_of(heights, request.resolution);
+  raise_to_crests(*site.solid, surface, request.surface_name, request.resolution, work);
   const int stride = std::max(1, static_cast<int>(std::lround(request.cell / request.resolution)));
   site.mesh = mesh_of_heights(heights, stride);
   if (site.mesh->triangles.empty())

@@ -21,8 +21,9 @@ struct TerrainRequest {
 };
 
 // What is under the surface is solid, down to the lowest height; above it there is air. A column of
-// voxels ends at the highest of its corners' heights, and nothing is known of columns with a corner
-// without data. Heights between pixels are bilinear. The mesh has corners every `cell` metres, a
+// voxels ends at the highest of its corners' heights and of the middles of pixels within it, with
+// the lines between those of neighbours, and nothing is known of columns with a corner without
+// data. Heights between pixels are bilinear. The mesh has corners every `cell` metres, a
 // whole number of voxels. InputError, naming the file: all that raster_info and refer_site refuse,
 // a raster of more than 2^27 pixels within the region, a region without data. Cancelled.
 Site read_site_terrain(const TerrainRequest& request, const MapWork& work);

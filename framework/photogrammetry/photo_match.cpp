@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
 
 #include "framework/core/error.h"
 
@@ -13,6 +14,35 @@ namespace {
 
 constexpr std::size_t kMostPairs = 20'000'000;
 constexpr double kCheaper = 1e-12;  // by which a path must be, so that rounding makes no circles
+
+constexpr int kOffsetSteps = 10;  // offsets of height that are tried, to a distance
+constexpr double kAsGood = 0.98;  // share of the best offset's votes; the least such one counts
+
+// A view and a photograph that are near each other seen from above.
+struct HeightPair {
+  std::size_t view = 0, photo = 0;
+  double height = 0;  // m, of the photograph above the view
+};
+
+// Of each offset (in steps of distance / kOffsetSteps), what it explains: the sum, over the views
+// or the photographs, of 1 where a pair lies just there, falling to 0 at `distance` from there.
+std::map<std::int64_t, double> offset_votes(const std::vector<HeightPair>& pairs,
+                                            std::size_t HeightPair::*side, double distance) {
+  std::map<std::size_t, std::map<std::int64_t, double>> best;  // of each of a side, by offset
+  for (const HeightPair& pair : pairs) {
+    const double place = pair.height / distance * kOffsetSteps;
+    for (int k = -kOffsetSteps; k <= kOffsetSteps; ++k) {
+      const auto offset = std::llround(place) + k;
+      const double vote = 1 - std::abs(static_cast<double>(offset) - place) / kOffsetSteps;
+      double& so_far = best[pair.*side][offset];
+      so_far = std::max(so_far, vote);
+    }
+  }
+  std::map<std::int64_t, double> votes;
+  for (const auto& one : best)
+    for (const auto& [offset, vote] : one.second) votes[offset] += vote;
+  return votes;
+}
 
 struct Pair {
   int photo = 0;
@@ -146,25 +176,43 @@ PhotoMatch match_photos(const std::vector<WantedView>& views, const std::vector<
 
 double common_height_offset(const std::vector<WantedView>& views,
                             const std::vector<TakenPhoto>& photos, double distance) {
-  std::vector<double> heights;
-  for (const WantedView& view : views)
-    for (const TakenPhoto& photo : photos) {
-      const Eigen::Vector3d way = photo.position - view.position;
-      if (way.head<2>().norm() <= distance) heights.push_back(way.z());
+  std::vector<HeightPair> pairs;
+  for (std::size_t v = 0; v < views.size(); ++v)
+    for (std::size_t p = 0; p < photos.size(); ++p) {
+      const Eigen::Vector3d way = photos[p].position - views[v].position;
+      if (way.head<2>().norm() <= distance) pairs.push_back({v, p, way.z()});
     }
-  if (heights.empty()) return 0;
-  std::sort(heights.begin(), heights.end());
-  std::size_t best = 0, first = 0;
-  double offset = 0;
-  for (std::size_t last = 0; last < heights.size(); ++last) {
-    while (heights[last] - heights[first] > 2 * distance) ++first;
-    const std::size_t count = last - first + 1;
-    const double middle = 0.5 * (heights[first + (count - 1) / 2] + heights[first + count / 2]);
-    if (count < best || (count == best && std::abs(middle) >= std::abs(offset))) continue;
-    best = count;
-    offset = middle;
+  if (pairs.empty()) return 0;
+  const auto by_view = offset_votes(pairs, &HeightPair::view, distance);
+  const auto by_photo = offset_votes(pairs, &HeightPair::photo, distance);
+  // One photograph is that of one view: an offset explains no more than the fewer of both.
+  const auto explained = [&](const auto& vote) {
+    const auto other = by_photo.find(vote.first);
+    return other == by_photo.end() ? 0.0 : std::min(vote.second, other->second);
+  };
+  double most = 0;
+  for (const auto& vote : by_view) most = std::max(most, explained(vote));
+  double offset = std::numeric_limits<double>::infinity();
+  for (const auto& vote : by_view) {
+    const double here = static_cast<double>(vote.first) * distance / kOffsetSteps;
+    if (explained(vote) >= kAsGood * most && std::abs(here) < std::abs(offset)) offset = here;
   }
-  return offset;
+  const auto nearest = [&](std::size_t HeightPair::*side) {
+    std::map<std::size_t, double> found;  // the height nearest to the offset
+    for (const HeightPair& pair : pairs) {
+      const auto at = found.emplace(pair.*side, pair.height).first;
+      if (std::abs(pair.height - offset) < std::abs(at->second - offset)) at->second = pair.height;
+    }
+    std::vector<double> heights;
+    for (const auto& entry : found)
+      if (std::abs(entry.second - offset) <= distance) heights.push_back(entry.second);
+    return heights;
+  };
+  std::vector<double> of_views = nearest(&HeightPair::view);
+  std::vector<double> of_photos = nearest(&HeightPair::photo);
+  std::vector<double>& heights = of_views.size() < of_photos.size() ? of_views : of_photos;
+  std::sort(heights.begin(), heights.end());
+  return 0.5 * (heights[(heights.size() - 1) / 2] + heights[heights.size() / 2]);
 }
 
 }  // namespace lapwing

@@ -218,26 +218,45 @@ double quantile_by_area(const TriangleMesh& mesh, std::span<const TrianglePredic
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+const char* to_string(HoleReason reason) {
+  switch (reason) {
+    case HoleReason::not_chosen:
+      return "not_chosen";
+    case HoleReason::zone:
+      return "zone";
+    case HoleReason::no_view:
+      break;
+  }
+  return "no_view";
+}
+
 std::vector<SurfaceHole> holes_of(const MeshScene& surface, std::span<const char> counted,
                                   std::span<const TrianglePrediction> predictions,
-                                  const ImageSet& candidates, int threads,
-                                  const CancellationToken* cancellation) {
+                                  const ImageSet& candidates, const ImageSet* with_forbidden,
+                                  int threads, const CancellationToken* cancellation) {
   const TriangleMesh& mesh = surface.mesh();
-  std::vector<char> missing(counted.size(), 0), visible(counted.size(), 0);
+  std::vector<char> missing(counted.size(), 0);
+  std::vector<HoleReason> reasons(counted.size(), HoleReason::no_view);
   for (std::size_t t = 0; t < counted.size(); ++t)
     missing[t] = counted[t] && !predictions[t].located();
-  for_counted(missing, threads, cancellation,
-              [&](std::size_t t) { visible[t] = candidates.locates(t); });
-  // Vertices come twice: once for each reason.
-  Joined joined(2 * mesh.vertices.size());
+  for_counted(missing, threads, cancellation, [&](std::size_t t) {
+    if (candidates.locates(t))
+      reasons[t] = HoleReason::not_chosen;
+    else if (with_forbidden && with_forbidden->locates(t))
+      reasons[t] = HoleReason::zone;
+  });
+  // Vertices come once for each reason.
+  constexpr std::size_t kReasons = 3;
+  Joined joined(kReasons * mesh.vertices.size());
   const auto vertex = [&](std::size_t t, std::size_t corner) {
-    return 2 * static_cast<std::size_t>(mesh.triangles[t][corner]) + (visible[t] ? 1 : 0);
+    return kReasons * static_cast<std::size_t>(mesh.triangles[t][corner]) +
+           static_cast<std::size_t>(reasons[t]);
   };
   for (std::size_t t = 0; t < missing.size(); ++t)
     for (std::size_t corner = 1; missing[t] && corner < 3; ++corner)
       joined.join(vertex(t, 0), vertex(t, corner));
   std::vector<std::vector<std::size_t>> groups;
-  std::vector<std::size_t> group_of(2 * mesh.vertices.size(), missing.size());
+  std::vector<std::size_t> group_of(kReasons * mesh.vertices.size(), missing.size());
   for (std::size_t t = 0; t < missing.size(); ++t) {
     if (!missing[t]) continue;
     std::size_t& group = group_of[joined.root(vertex(t, 0))];
@@ -248,9 +267,7 @@ std::vector<SurfaceHole> holes_of(const MeshScene& surface, std::span<const char
     groups[group].push_back(t);
   }
   std::vector<SurfaceHole> holes;
-  for (const auto& group : groups)
-    holes.push_back(hole_of(mesh, group,
-                            visible[group.front()] ? HoleReason::not_chosen : HoleReason::no_view));
+  for (const auto& group : groups) holes.push_back(hole_of(mesh, group, reasons[group.front()]));
   std::stable_sort(holes.begin(), holes.end(),
                    [](const SurfaceHole& a, const SurfaceHole& b) { return a.area > b.area; });
   return holes;

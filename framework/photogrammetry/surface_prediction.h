@@ -75,9 +75,12 @@ std::vector<TrianglePrediction> predict_surface(const ImageSet& images,
 double quantile_by_area(const TriangleMesh& mesh, std::span<const TrianglePrediction> predictions,
                         float TrianglePrediction::*value, double share);
 
-// Why a surface is not reconstructed: no candidate views locate it; or they do, and the images that
-// were chosen do not.
-enum class HoleReason { no_view, not_chosen };
+// Why a surface is not reconstructed: candidate views locate it, and the images that were chosen do
+// not; or candidates do so only together with views that zones and the like forbid; or not even
+// those do.
+enum class HoleReason { not_chosen, zone, no_view };
+// "not_chosen", "zone", "no_view"
+const char* to_string(HoleReason reason);
 
 // Triangles that share vertices and a reason, none of which the images locate.
 struct SurfaceHole {
@@ -87,10 +90,11 @@ struct SurfaceHole {
 };
 
 // Of the counted triangles, the largest hole first; those of equal areas in the order of the mesh.
-// `candidates` are all views that could have been chosen.
+// `candidates` are all views that could have been chosen, `with_forbidden` these and those that
+// something else than obstacles forbids; null where nothing does.
 std::vector<SurfaceHole> holes_of(const MeshScene& surface, std::span<const char> counted,
                                   std::span<const TrianglePrediction> predictions,
-                                  const ImageSet& candidates, int threads,
-                                  const CancellationToken* cancellation = nullptr);
+                                  const ImageSet& candidates, const ImageSet* with_forbidden,
+                                  int threads, const CancellationToken* cancellation = nullptr);
 
 }  // namespace lapwing

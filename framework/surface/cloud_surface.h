@@ -10,8 +10,9 @@
 namespace lapwing {
 
 struct CloudSurfaceSettings {
-  double spacing = 0.4;                   // m, edge of the cubes that give a point each
-  std::vector<Eigen::Vector3d> scanners;  // m, world: from where the cloud was measured, if known
+  double spacing = 0.4;  // m, edge of the cubes that give a point each
+  std::vector<Eigen::Vector3d> scanners =
+      {};  // m, world: from where the cloud was measured, if known
   int threads = 1;
 };
 

@@ -28,6 +28,7 @@ class ScanCheck : public CommandLine {
     plan_.geodetic_origin = GeodeticOrigin{47.4, 8.5, 450, HeightOf::ellipsoid};
     plan_.vehicle = Value::map();
     plan_.configuration = Value::map();
+    plan_.configuration.set("span", 0.1 + 0.2);
     for (const double time : {0., 80.}) {
       Sample sample;
       sample.time = time;
@@ -111,7 +112,9 @@ TEST_F(ScanCheck, PhotographsByTheirPositions) {
               "IMG_" + std::to_string(pair.at("view").as_integer()) + ".jpg");
   const std::string rest = read_file(folder_ / "rest.lua");
   EXPECT_THAT(rest, HasSubstr("name = \"roof rest\""));
-  EXPECT_THAT(rest, HasSubstr("position = { 24, 0, 22 }, yaw_deg = 28.6478898"));
+  EXPECT_THAT(rest, HasSubstr("position = { 24, 0, 22 }, yaw_deg = 28.64788975654116,"));
+  // Numbers read back as they were.
+  EXPECT_THAT(rest, HasSubstr("span = 0.30000000000000004"));
   for (const char* view : {"-- view 3\n", "-- view 4\n", "-- view 7\n"})
     EXPECT_THAT(rest, HasSubstr(view));
   EXPECT_THAT(rest, testing::Not(HasSubstr("-- view 1\n")));

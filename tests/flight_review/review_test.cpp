@@ -215,6 +215,35 @@ TEST(Review, AFlightBesideItsPlanIsNotFlownAsPlanned) {
   }
 }
 
+TEST(Review, ThePilotsRangeAndSightAreJudgedAsFlown) {
+  Plan plan = wave_plan();
+  // The pilot stands west of the wave; a wall south of the wave hides nothing of the plan.
+  double south = INFINITY, far = 0;
+  for (const Sample& s : plan.trajectory.samples) south = std::min(south, s.position.y());
+  PilotPlace pilot{{-40, 0, 1.7}, 500, 1};
+  for (const Sample& s : plan.trajectory.samples)
+    far = std::max(far, (s.position - pilot.eye).norm());
+  pilot.range = far + 2;
+  plan.environment.pilot = pilot;
+  plan.environment.obstacles.push_back(box_at("wall", {-30, south - 4, 0}, {30, south - 3, 40}));
+  const auto judged = [&](const Eigen::Vector3d& shift) {
+    return review_flight(plan, own_log(shift), {.clock = {}, .estimate_offset = false}, ".");
+  };
+  const FlightReview good = judged({0, 0, 0});
+  EXPECT_TRUE(good.kept()) << verdict_of(good);
+  for (const char* name : {"pilot_distance", "pilot_sight"}) {
+    ASSERT_NE(good.certificate.find(name), nullptr) << name;
+    EXPECT_TRUE(good.certificate.find(name)->flown.pass) << name;
+  }
+  const FlightReview far_off = judged({2.8, 0, 0});
+  EXPECT_FALSE(far_off.certificate.find("pilot_distance")->flown.pass);
+  EXPECT_TRUE(says(advice_of(plan, far_off), "plan with `pilot.range` = "));
+  const FlightReview behind = judged({0, -14, 0});
+  EXPECT_FALSE(behind.certificate.find("pilot_sight")->flown.pass);
+  EXPECT_GT(*behind.certificate.find("pilot_sight")->flown.worst, 1);
+  EXPECT_TRUE(says(advice_of(plan, behind), "place the pilot where more of the flight is seen"));
+}
+
 TEST(Review, APartOfAFlightIsKeptAsFarAsTheLogGoes) {
   const Plan plan = plan_beside_a_wall();
   const FlightReview part = review_flight(plan, own_log({0, 0, 0}, 12.4), {}, ".");

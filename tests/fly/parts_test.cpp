@@ -4,8 +4,10 @@
 #include <pty.h>
 #include <unistd.h>
 
+#include "framework/core/files.h"
 #include "framework/fly/link.h"
 #include "framework/fly/plan_pacer.h"
+#include "framework/fly/telemetry_log.h"
 #include "framework/mavlink/vocabulary.h"
 #include "framework/trajectory/interpolate.h"
 #include "tests/fly/rehearsal.h"
@@ -79,6 +81,21 @@ TEST(FlightFrames, HeightsAboveHomeCountFromThePlansHome) {
   EXPECT_NEAR(height(), 7, 1e-3) << "home is on the ground of the origin";
   plan.home = Home{{-20, 10, 1.5}, std::nullopt, std::nullopt, {}};
   EXPECT_NEAR(height(), 3.5, 1e-3);
+}
+
+TEST(TelemetryLogs, AreNeverReplaced) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("lapwing_logs_" + std::to_string(getpid()));
+  const std::filesystem::path path = folder / "flights" / "take-001.tlog";
+  std::optional<TelemetryLog> log = TelemetryLog::begin(path);
+  ASSERT_TRUE(log);
+  EXPECT_FALSE(TelemetryLog::begin(path)) << "another flight that began in the same second";
+  log->write(0x0102030405060708, "packet");
+  log.reset();
+  EXPECT_EQ(read_file(path), std::string("\1\2\3\4\5\6\7\x8packet"));
+  EXPECT_FALSE(TelemetryLog::begin(path));
+  EXPECT_THROW(TelemetryLog::begin(path / "under_a_file.tlog"), InputError);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(VehicleClocks, TakeTheMiddleOfTheQuickestRoundTrip) {

@@ -111,6 +111,32 @@ TEST(Session, WaitsForTheVehiclesHomeToBeThePlans) {
   EXPECT_THAT(rehearsal.session().reason(), HasSubstr("home is 22.2 m from the plan's"));
 }
 
+// The same for its height: an origin whose height is above the ellipsoid, not above the sea, say.
+TEST(Session, WaitsForTheHeightOfTheVehiclesHome) {
+  for (const double higher : {46.0, -12.5, 9.0}) {
+    Plan plan = circle_plan();
+    plan.geodetic_origin = GeodeticOrigin{-33.5, 151.2, 40, HeightOf::sea, 0};
+    plan.home = Home{{0, 0, 0}, 120, std::nullopt, {}};
+    Rehearsal rehearsal(plan, {}, {}, FlightFrameKind::global);
+    rehearsal.received = [&](mavlink::Packet& packet) {
+      if (packet.message != mavlink::kHomePosition) return true;
+      mavlink::Message<mavlink::kHomePosition> home(packet);
+      home.set<"altitude">(home.get<"altitude">() + static_cast<std::int32_t>(1000 * higher));
+      const auto moved = home.packet();
+      packet.payload = moved.payload;
+      return true;
+    };
+    rehearsal.run();
+    if (std::abs(higher) < 10) {
+      EXPECT_TRUE(followed_within(rehearsal.session(), 0.25)) << rehearsal.session().reason();
+      continue;
+    }
+    EXPECT_EQ(rehearsal.session().end(), FlightEnd::refused);
+    EXPECT_THAT(rehearsal.session().reason(),
+                HasSubstr(higher > 0 ? "home is 46 m above the plan's" : "m below the plan's"));
+  }
+}
+
 TEST(Session, TurnsTheGimbal) {
   for (const GimbalWay way : {GimbalWay::automatic, GimbalWay::manager, GimbalWay::command}) {
     SessionOptions options;

@@ -70,6 +70,10 @@ TEST_F(SlowZoneScan, WhatNoZoneAllowsToBeSeenIsSaidWithItsShare) {
   ASSERT_EQ(run("", "hidden.lua"), 0) << error();
   EXPECT_THAT(plan(), HasSubstr("of its surface that could be seen"));
   EXPECT_THAT(plan(), HasSubstr("stay unseen because of zones"));
+  const Value said = answer();
+  const Value& holes = said.at("tour").at("prediction").at("holes");
+  EXPECT_GT(holes.at("zone").as_number(), 10) << "m^2 of the north wall";
+  EXPECT_THAT(plan(), HasSubstr("m^2 because of zones or the pilot's sight"));
 }
 
 TEST_F(ZoneScan, HeightsAboveTheGroundFollowTheTerrain) {

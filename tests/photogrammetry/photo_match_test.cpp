@@ -124,5 +124,24 @@ TEST(PhotoHeights, TheCommonOffsetIsFoundAmongOthers) {
   EXPECT_EQ(common_height_offset(views, {}, 2), 0);
 }
 
+// Layers of views above each other, of which the upper ones alone were photographed: pairs of
+// different layers must not pull the offset between them.
+TEST(PhotoHeights, LayersAreNotMerged) {
+  for (const double spacing : {1.5, 4.0})
+    for (const double offset : {0.0, 0.6, -0.5}) {
+      Random random(7);
+      std::vector<WantedView> views;
+      std::vector<TakenPhoto> photos;
+      for (int k = 0; k < 30; ++k)
+        for (int layer = 0; layer < 3; ++layer) {
+          views.push_back(view_at(10 * (k % 6), 10 * (k / 6), 10 + spacing * layer));
+          if (layer == 0) continue;  // not taken
+          const Vector3d noise(0.2 * random.normal(), 0.2 * random.normal(), 0.1 * random.normal());
+          photos.push_back({"p", views.back().position + noise + Vector3d(0, 0, offset), {}});
+        }
+      EXPECT_NEAR(common_height_offset(views, photos, 3), offset, 0.1) << spacing;
+    }
+}
+
 }  // namespace
 }  // namespace lapwing

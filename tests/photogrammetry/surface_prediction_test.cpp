@@ -210,7 +210,7 @@ TEST(SurfacePrediction, HolesAreNamedWithTheirReasons) {
                      settings);
   std::vector<char> counted(surface->mesh().triangles.size(), 1);
   const auto told = predict_surface(chosen, counted, 2);
-  const auto holes = holes_of(*surface, counted, told, all, 2);
+  const auto holes = holes_of(*surface, counted, told, all, nullptr, 2);
   ASSERT_EQ(holes.size(), 4u);  // left of the images, between, the candidates' own, and the rest
   EXPECT_EQ(holes[0].reason, HoleReason::no_view);
   EXPECT_NEAR(holes[0].area, 4 * 22.5, 4);
@@ -220,9 +220,23 @@ TEST(SurfacePrediction, HolesAreNamedWithTheirReasons) {
   EXPECT_NEAR(holes[1].place.x(), 30, 1);
   EXPECT_EQ(holes[2].reason, HoleReason::no_view);
   EXPECT_NEAR(holes[2].area + holes[3].area, 4 * (5 + 2.5), 4);
+  // Forbidden views around x = 50 would locate a part of the rest.
+  const ImageSet open(surface,
+                      {along_x(10, 1), along_x(10, 3), along_x(30, 1), along_x(30, 3),
+                       along_x(50, 1), along_x(50, 3)},
+                      settings);
+  const auto ruled = holes_of(*surface, counted, told, all, &open, 1);
+  double zone = 0, unseen = 0;
+  for (const SurfaceHole& hole : ruled) {
+    zone += hole.reason == HoleReason::zone ? hole.area : 0;
+    unseen += hole.reason == HoleReason::no_view ? hole.area : 0;
+  }
+  EXPECT_NEAR(zone, 4 * 15, 4);
+  EXPECT_NEAR(unseen, 4 * (30 - 15), 4);
   // What is not counted is no hole.
   for (std::size_t t = 0; t < counted.size(); ++t) counted[t] = t % 120 < 60;  // x below 30
-  EXPECT_EQ(holes_of(*surface, counted, predict_surface(chosen, counted, 1), all, 1).size(), 3u);
+  const auto fewer = predict_surface(chosen, counted, 1);
+  EXPECT_EQ(holes_of(*surface, counted, fewer, all, nullptr, 1).size(), 3u);
   EXPECT_NEAR(quantile_by_area(surface->mesh(), told, &TrianglePrediction::pixel_size, 0.5),
               kHeight / 400, 0.2 * kHeight / 400);
   EXPECT_TRUE(std::isnan(quantile_by_area(

@@ -92,7 +92,9 @@ TEST(Continued, WhatIsHeldDoesNotChange) {
   for (int i = 0; i < kHeld; ++i) {
     EXPECT_LT((block(found, "position", i) - block(before, "position", kFrom + i)).norm(), 1e-8);
     EXPECT_LT((block(found, "velocity", i) - block(before, "velocity", kFrom + i)).norm(), 1e-8);
-    if (i + 1 < kHeld) EXPECT_EQ(block(found, "force", i), block(before, "force", kFrom + i)) << i;
+    if (i + 1 < kHeld) {
+      EXPECT_EQ(block(found, "force", i), block(before, "force", kFrom + i)) << i;
+    }
   }
   EXPECT_GT((block(found, "force", kHeld) - block(before, "force", kFrom + kHeld)).norm(), 0.1);
   EXPECT_EQ(block(guess, "position", 12), block(before, "position", 20)) << "a guess beyond it";
