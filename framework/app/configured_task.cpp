@@ -65,10 +65,13 @@ bool has_obstacle(const Value& stated, const Environment& e) {
   const bool zone = type == "no_fly_zone";
   if (zone) type = "prism";
   const std::string side = stated_text(stated, "side");
+  const Value* hides = stated.find("opaque");  // true where nothing is stated
+  const bool opaque = !hides || hides->type() != Value::Type::boolean || hides->as_boolean();
   const std::string own = stated_text(stated, "name"), file = stated_text(stated, "file");
   return std::any_of(e.obstacles.begin(), e.obstacles.end(), [&](const Obstacle& obstacle) {
     if (obstacle.type != type) return false;
     if ((obstacle.side == Side::keep_inside) != (side == "keep_inside")) return false;
+    if (!same_track(stated, obstacle) || (opaque && !obstacle.opaque)) return false;
     if (!file.empty()) return obstacle.name == (own.empty() ? file : own);
     return type == "prism" ? same_zone(stated, obstacle) : same_record(stated, obstacle);
   });
@@ -204,6 +207,7 @@ void compare_number(const std::string& what, double here, std::optional<double> 
 
 void compare_surroundings(const Plan& plan, ConfigurationComparison& found) {
   compare_obstacles(plan, found);
+  compare_ground(plan, found);
   compare_zones(plan, found);
   compare_number("the margin", plan.environment.margin, stated_number(plan.configuration, "margin"),
                  " m", Than::below, found);
@@ -217,6 +221,7 @@ ConfigurationComparison compare_with_configuration(const Plan& plan) {
   }
   compare_origin(plan, found);
   compare_home(plan, found);
+  compare_motion(plan, found);
   for (const Kind& kind : kinds()) {
     // The options tell the kind where another name was put on the plan.
     const bool by_options = has_all(plan.configuration, kind.options);

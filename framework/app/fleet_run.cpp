@@ -3,6 +3,7 @@
 
 #include <iostream>
 
+#include "framework/app/configured_fleet.h"
 #include "framework/app/fleet_words.h"
 #include "framework/app/plan_figures.h"
 #include "framework/app/provenance.h"
@@ -53,8 +54,9 @@ JudgedRun judge_run(const FleetOutcome& outcome, const Invocation& invocation) {
   for (std::size_t t = 0; t < fleet.tours.size(); ++t)
     members.push_back(
         {&fleet.tours[t].plan, &judged.certificates[t], fleet.document.tours[t].sha256});
-  judged.certificate =
-      verify_fleet(fleet.document, members, nullptr, {.folder = outcome.result.obstacle_folder});
+  const ConfigurationComparison compared = compare_fleet(fleet.document, plans_of(fleet));
+  judged.certificate = verify_fleet(fleet.document, members, nullptr,
+                                    {.folder = outcome.result.obstacle_folder}, compared.faults);
   fleet.document.certificate = judged.certificate.to_value();
   judged.status = status_of(outcome.result, judged.certificate, cancelled);
   if (judged.status == "cancelled") fleet.document.solver.set("cancelled", true);

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "framework/app/check_lines.h"
+#include "framework/app/configured_fleet.h"
 #include "framework/app/fleet_words.h"
 #include "framework/app/terminal.h"
 #include "framework/core/checksum.h"
@@ -31,6 +32,8 @@ Value json_of(const fs::path& file, const JudgedFleet& judged) {
   object.set("fleet", file.string());
   object.set("mission", judged.fleet.mission);
   object.set("certificate", judged.certificate.to_value());
+  object.set("not_compared",
+             Value(Value::List(judged.not_compared.begin(), judged.not_compared.end())));
   Value& tours = object.set("tours", Value::list());
   for (std::size_t t = 0; t < judged.plans.size(); ++t) {
     const FleetTour& tour = judged.fleet.tours[t];
@@ -78,7 +81,9 @@ JudgedFleet judge_fleet(const fs::path& file, const Judges& judges) {
     members.push_back({&judged.plans[t].plan, &judged.plans[t].certificate, checksums[t]});
     request.elsewhere = judged.plans.front().elsewhere;
   }
-  judged.certificate = verify_fleet(judged.fleet, members, &digest, request);
+  ConfigurationComparison compared = compare_fleet(judged.fleet, plans_of(judged));
+  judged.certificate = verify_fleet(judged.fleet, members, &digest, request, compared.faults);
+  judged.not_compared = std::move(compared.not_compared);
   return judged;
 }
 
@@ -99,6 +104,8 @@ ExitStatus print_fleet(const fs::path& file, const JudgedFleet& judged,
     std::printf("  %s\n", visible_line(tour_in_words(judged.fleet.tours[t], judged.plans[t].plan,
                                                      judged.plans[t].certificate.feasible()))
                               .c_str());
+  for (const std::string& left : judged.not_compared)
+    std::printf("  not compared  %s\n", visible_line(left).c_str());
   for (const Check& check : judged.certificate.checks)
     if (!check.skipped.empty() || check.pass) print_check(check);
   return feasible ? ExitStatus::done : ExitStatus::not_certified;

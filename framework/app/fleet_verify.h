@@ -15,6 +15,7 @@ struct JudgedFleet {
   Fleet fleet;
   std::vector<JudgedPlan> plans;  // one for each tour
   Certificate certificate;
+  std::vector<std::string> not_compared = {};  // with the configuration, a phrase each
 };
 
 // The fleet document that a path names: a document, or a folder that holds fleet.json; nothing

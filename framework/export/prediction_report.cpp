@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 #include "framework/core/png.h"
 #include "framework/core/units.h"
-#include "framework/export/scan_colors.h"
+#include "framework/export/prediction_mesh.h"
 #include "framework/picture/mesh_picture.h"
 
 namespace lapwing {
@@ -20,7 +19,6 @@ constexpr Pinhole kPredictionView{720, 450, 720, 720, 359.5, 224.5};
 constexpr std::size_t kMostHoles = 12;  // in the report and in --json
 constexpr double kSmallHole = 1e-3;     // of the counted surface: smaller ones are only summed up
 constexpr int kClasses = 5;             // of numbers of images: 0, 1, 2, 3 and more
-constexpr double kBest = 0.02, kWorst = 0.98;  // shares of the area, ends of the colours
 
 const char* reason_in_words(HoleReason reason) {
   switch (reason) {
@@ -38,10 +36,6 @@ const char* reason_in_words(HoleReason reason) {
 
 double counted_area(const ScanPrediction& p) {
   return area_shown(p, 0);
-}
-
-double area_quantile(const ScanPrediction& p, float TrianglePrediction::*value, double share) {
-  return quantile_by_area(p.surface->mesh(), p.triangles, value, share);
 }
 
 double area_of_holes(const ScanPrediction& p, HoleReason reason) {
@@ -118,43 +112,9 @@ Table table_of_holes(const ScanPrediction& p) {
   return table;
 }
 
-// From where to where colours of accuracies reach, m.
-struct ColorRange {
-  double best = 0, worst = 0;
-};
-
-ColorRange colors_of(const ScanPrediction& p) {
-  ColorRange range{area_quantile(p, &TrianglePrediction::accuracy, kBest),
-                   area_quantile(p, &TrianglePrediction::accuracy, kWorst)};
-  if (!(range.best > 0) || !std::isfinite(range.best)) range.best = 1e-3;
-  if (!std::isfinite(range.worst)) range.worst = 100 * range.best;
-  range.worst = std::max(range.worst, 1.01 * range.best);
-  return range;
-}
-
-// Triangles in the colours of their accuracy, on a logarithmic scale, or of why they have none.
-std::vector<Rgb> triangle_colors(const ScanPrediction& p, const ColorRange& range) {
-  std::vector<Rgb> colors(p.triangles.size(), kPlainSurface);
-  for (std::size_t t = 0; t < colors.size(); ++t) {
-    if (!p.counted[t]) continue;
-    const TrianglePrediction& told = p.triangles[t];
-    colors[t] = told.images == 0 ? kNeverSeen : kNotSeen;
-    if (told.located())
-      colors[t] = color_of_share(1 - std::log(told.accuracy / range.best) /
-                                         std::log(range.worst / range.best));
-  }
-  return colors;
-}
-
 Image picture_of(const MeshScene& scene, const Eigen::AlignedBox3d& box, double yaw,
                  const std::string& caption) {
   return {encode_png(mesh_picture(scene, overview(box, kPredictionView, yaw, -0.6), 0)), caption};
-}
-
-void append_bytes(std::string& bytes, const auto& number) {
-  char raw[sizeof number];
-  std::memcpy(raw, &number, sizeof number);
-  bytes.append(raw, sizeof number);
 }
 
 }  // namespace
@@ -243,7 +203,7 @@ Section prediction_section(const ScanPrediction& p) {
   section.blocks.push_back(table_of_images(p));
   if (area_located(p) > 0) section.blocks.push_back(table_of_figures(p));
   if (!p.holes.empty()) section.blocks.push_back(table_of_holes(p));
-  const ColorRange range = colors_of(p);
+  const PredictionColors range = prediction_colors(p);
   TriangleMesh mesh = p.surface->mesh();
   mesh.colors = triangle_colors(p, range);
   Eigen::AlignedBox3d box;
@@ -260,38 +220,6 @@ Section prediction_section(const ScanPrediction& p) {
                                           "outside the region"));
   section.blocks.push_back(picture_of(scene, box, 1.05 + 3.14159, "The same from the other side"));
   return section;
-}
-
-std::string prediction_ply(const ScanPrediction& p) {
-  const TriangleMesh& mesh = p.surface->mesh();
-  const std::vector<Rgb> colors = triangle_colors(p, colors_of(p));
-  std::string bytes =
-      "ply\nformat binary_little_endian 1.0\ncomment metres, z up\nelement vertex " +
-      std::to_string(mesh.vertices.size()) +
-      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-      std::to_string(mesh.triangles.size()) +
-      "\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n"
-      "property uchar blue\nproperty int images\nproperty float incidence_deg\n"
-      "property float mm_per_pixel\nproperty float parallax_deg\nproperty float accuracy_mm\n"
-      "end_header\n";
-  for (const Vector3d& v : mesh.vertices)
-    for (int i = 0; i < 3; ++i) append_bytes(bytes, static_cast<float>(v[i]));
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const TrianglePrediction& told = p.triangles[t];
-    bytes.push_back(3);
-    for (const std::int32_t index : mesh.triangles[t]) append_bytes(bytes, index);
-    for (const std::uint8_t part : colors[t]) bytes.push_back(static_cast<char>(part));
-    append_bytes(bytes, p.counted[t] ? std::int32_t{told.images} : std::int32_t{-1});
-    const bool one = told.images >= 1, two = told.images >= 2;
-    const auto figure = [&](bool known, double value) {
-      append_bytes(bytes, static_cast<float>(known && std::isfinite(value) ? value : -1));
-    };
-    figure(one, degrees(told.incidence));
-    figure(one, 1000.0 * told.pixel_size);
-    figure(two, degrees(told.parallax));
-    figure(two, 1000.0 * told.accuracy);
-  }
-  return bytes;
 }
 
 }  // namespace lapwing

@@ -23,9 +23,5 @@ Value prediction_as_value(const ScanPrediction& prediction);
 // The words, areas by number of images, figures of the surface, the largest holes with why, and two
 // pictures of the accuracy.
 Section prediction_section(const ScanPrediction& prediction);
-// Binary PLY of the surface, coloured by accuracy. Every face has `images`, `incidence_deg`,
-// `mm_per_pixel`, `parallax_deg` and `accuracy_mm`; -1 where there is no such figure. Outside the
-// region `images` is -1, too.
-std::string prediction_ply(const ScanPrediction& prediction);
 
 }  // namespace lapwing

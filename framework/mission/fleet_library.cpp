@@ -189,7 +189,7 @@ std::span<const Binding> fleet_methods_of_run() {
   static const std::vector<Binding> all = [] {
     std::vector<Binding> list;
     for (const std::span<const Binding> part :
-         {team_methods_of_run(), std::span<const Binding>(own)})
+         {team_methods_of_run(), accuracy_methods_of_run(), std::span<const Binding>(own)})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

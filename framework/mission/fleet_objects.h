@@ -16,6 +16,7 @@ struct TeamObject {
   std::string solver;
   TeamReport report;
   std::vector<TourObject> tours;
+  std::vector<int> reachable = {};  // views that some tour can reach within its budget, ascending
 };
 
 // Plans and who flies them; `document` has no checksums and no certificate yet. One plan for each
@@ -36,11 +37,12 @@ inline constexpr const char* kTeamType = "team";
 inline constexpr const char* kFleetType = "fleet";
 
 void open_fleet_library(lua_State* state);
-// solve_team, team_solvers, fleet.
+// solve_team, team_solvers, accurate_area, fleet.
 std::span<const Binding> fleet_methods_of_run();
 
 // The parts of that list.
 std::span<const Binding> team_methods_of_run();
+std::span<const Binding> accuracy_methods_of_run();
 void open_team_type(lua_State* state);
 
 }  // namespace lapwing

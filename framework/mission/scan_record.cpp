@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "framework/core/parallel.h"
+#include "framework/export/prediction_mesh.h"
 #include "framework/export/prediction_report.h"
 #include "framework/mission/run.h"
 #include "framework/view/true_surface.h"
@@ -164,6 +165,7 @@ void tell_scan(const ScanRecord& record, MissionRun& run, const ToldScan& result
   result.block.set("prediction", prediction_as_value(*record.prediction));
   result.notes.push_back(prediction_in_words(*record.prediction));
   run.obstacles.keep("prediction.ply", prediction_ply(*record.prediction));
+  run.obstacles.keep("prediction.glb", prediction_glb(*record.prediction));
   if (record.truth) result.told.push_back(truth_in_words(record));
 }
 

@@ -26,10 +26,19 @@ struct ToldScan {
   std::vector<std::string>& notes;  // sentences for the user
   std::vector<std::string>& told;   // likewise, that stand in no plan
 };
-// Adds what a record with a prediction says; keeps prediction.ply among the files of the run.
+// Adds what a record with a prediction says; keeps prediction.ply and prediction.glb among the
+// files of the run.
 void tell_scan(const ScanRecord& record, MissionRun& run, const ToldScan& result);
 // Of the prior's triangles that are `counted`, with images at the graph's `views`.
 ScanPrediction prediction_of_scan(const ScanWork& work, const std::vector<int>& views,
                                   std::vector<char> counted, double pixel_error, int threads);
+
+// m^2 of the prior mesh in the region, and of it what images at the graph's `views` locate with a
+// standard deviation of at most `accuracy` (m) in the worst direction.
+struct AccurateArea {
+  double known = 0, accurate = 0;
+};
+AccurateArea accurate_area(const ScanWork& work, const std::vector<int>& views, double accuracy,
+                           double pixel_error, int threads);
 
 }  // namespace lapwing

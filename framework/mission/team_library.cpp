@@ -153,6 +153,7 @@ int solve_team_of_run(lua_State* state) {
     TeamResult result = solver->solve(problem, request);
     if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     team.report = result.report;
+    team.reachable = problem.reachable();
     for (std::size_t i = 0; i < result.walks.size(); ++i) {
       const TourProblem& tour = problem.tour(static_cast<int>(i));
       TourReport report = report_of_tour(team.report, tour, result.walks[i], problem.size());

@@ -19,11 +19,14 @@ constexpr double kTimeRounding = 1e-6;        // s
 constexpr double kSeparationRounding = 1e-3;  // m
 constexpr std::size_t kProblemsListed = 5;
 
-constexpr CheckKind kFleetCheckKinds[] = {
-    {"fleet_document", CheckGroup::safety, true, ""}, {"tours", CheckGroup::safety, true, ""},
-    {"sequence", CheckGroup::safety, true, "s"},      {"homes", CheckGroup::safety, true, "m"},
-    {"reserve", CheckGroup::safety, true, "s"},       {"separation", CheckGroup::safety, true, "m"},
-    {"fleet_coverage", CheckGroup::task, true, ""}};
+constexpr CheckKind kFleetCheckKinds[] = {{"fleet_document", CheckGroup::safety, true, ""},
+                                          {"provenance", CheckGroup::safety, true, ""},
+                                          {"tours", CheckGroup::safety, true, ""},
+                                          {"sequence", CheckGroup::safety, true, "s"},
+                                          {"homes", CheckGroup::safety, true, "m"},
+                                          {"reserve", CheckGroup::safety, true, "s"},
+                                          {"separation", CheckGroup::safety, true, "m"},
+                                          {"fleet_coverage", CheckGroup::task, true, ""}};
 
 Check fleet_check(std::string_view name) {
   Check check;
@@ -34,6 +37,16 @@ Check fleet_check(std::string_view name) {
     check.required = kind.required;
     check.unit = kind.unit;
   }
+  return check;
+}
+
+// Passes where there are none; else lists the first of them.
+Check check_of_problems(std::string_view name, std::span<const std::string> problems) {
+  Check check = judged(fleet_check(name), static_cast<double>(problems.size()), 0, 0, 0);
+  for (std::size_t i = 0; i < std::min(problems.size(), kProblemsListed); ++i)
+    check.detail += (i ? "; " : "") + problems[i];
+  if (problems.size() > kProblemsListed)
+    check.detail += "; and " + std::to_string(problems.size() - kProblemsListed) + " more";
   return check;
 }
 
@@ -73,13 +86,7 @@ class FleetReader {
     if (problems_.empty())
       for (std::size_t t = 0; t < fleet_.tours.size(); ++t) tour(t);
     if (problems_.empty()) seen();
-    Check check =
-        judged(fleet_check("fleet_document"), static_cast<double>(problems_.size()), 0, 0, 0);
-    for (std::size_t i = 0; i < std::min(problems_.size(), kProblemsListed); ++i)
-      check.detail += (i ? "; " : "") + problems_[i];
-    if (problems_.size() > kProblemsListed)
-      check.detail += "; and " + std::to_string(problems_.size() - kProblemsListed) + " more";
-    return check;
+    return check_of_problems("fleet_document", problems_);
   }
 
  private:
@@ -137,12 +144,20 @@ class FleetReader {
       add(name + " has another region, camera or map than the first tour");
     if (environment_to_value(member.plan->environment) != environment_to_value(first.environment))
       add(name + " keeps another margin, or other obstacles, zones or pilots, than the first tour");
+    if (member.plan->geodetic_origin != first.geodetic_origin)
+      add(name + " has another origin on the earth than the first tour");
+    if (member.plan->home != first.home) add(name + " has another home than the first tour");
+    // A drone has one vehicle, whichever battery is in it.
+    const Value& vehicle = vehicles_.emplace(tour.drone, member.plan->vehicle).first->second;
+    if (vehicle != member.plan->vehicle)
+      add(name + " has another vehicle than the other tours of its drone");
   }
 
   const Fleet& fleet_;
   std::span<const FleetMember> members_;
   const DigestFindings* digest_;
   std::set<std::string> names_, files_;
+  std::map<std::string, Value> vehicles_;  // of each drone
   std::vector<std::string> problems_;
 };
 
@@ -313,7 +328,8 @@ void check_fleet_coverage(const FlownFleet& flown, const VerifyRequest& request,
 }  // namespace
 
 Certificate verify_fleet(const Fleet& fleet, std::span<const FleetMember> members,
-                         const DigestFindings* digest, const VerifyRequest& request) {
+                         const DigestFindings* digest, const VerifyRequest& request,
+                         std::span<const std::string> faults) {
   Certificate certificate;
   certificate.checks.push_back(FleetReader(fleet, members, digest).read());
   if (!certificate.checks.front().pass) {
@@ -322,6 +338,7 @@ Certificate verify_fleet(const Fleet& fleet, std::span<const FleetMember> member
         skip_check(kind.name, "the check 'fleet_document' failed", certificate);
     return certificate;
   }
+  certificate.checks.push_back(check_of_problems("provenance", faults));
   FlownFleet flown{fleet, members, {}, {}};
   for (std::size_t t = 0; t < members.size(); ++t) {
     flown.vehicles.push_back(vehicle_from_value(members[t].plan->vehicle));

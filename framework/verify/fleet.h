@@ -3,6 +3,7 @@
 //
 // fleet_document  contradictions of the fleet document, and between its plans; what was changed in
 //                 it after writing; a file that is not the plan named
+// provenance      where the fleet asks for less than the configuration of its plans
 // tours           tours whose own certificate fails
 // sequence        s, least time between two tours of one drone: at least the swap
 // homes           m, between the places where the tours of one drone begin and end
@@ -31,8 +32,10 @@ struct FleetMember {
 // plan, everything else is skipped. Half a swap before and after a tour its drone may be anywhere
 // on the vertical line below the tour's first and last place. Maps are read from the folder of the
 // request. `digest`: what the document's own digest says; null for one that was not written yet.
+// `faults`: where the fleet asks for less than its configuration, a sentence each.
 // Throws Cancelled when told to stop, and nothing else.
 Certificate verify_fleet(const Fleet& fleet, std::span<const FleetMember> members,
-                         const DigestFindings* digest, const VerifyRequest& request);
+                         const DigestFindings* digest, const VerifyRequest& request,
+                         std::span<const std::string> faults = {});
 
 }  // namespace lapwing

@@ -147,7 +147,7 @@ local function planned(run)
   exploration.check(run)
   fleet.check(run, vehicle, in_passing)
   local seconds = exploration.seconds(run, vehicle, tours.budget(run))
-  phases.expect(run, tours.budget(run) * o.batteries, in_passing)
+  phases.expect(run, tours.budget(run) * math.max(o.batteries, o.drones), in_passing)
   local known, poses, surface, explored =
     first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
   local starts, finish

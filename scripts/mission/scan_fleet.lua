@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Scans with several batteries and several drones: tours that share one score (the team
 -- orienteering problem), and the fleet of plans that fly them.
+local accuracy = require "mission.scan_accuracy"
 local first = require "mission.scan_first"
 local patterns = require "mission.scan_patterns"
 local space = require "mission.scan_space"
@@ -33,7 +34,11 @@ M.DECLARATIONS = {
     number("reserve", 60, "s", "flight time that is left of a battery after its tour") } },
 }
 
-function M.wanted(run) return run.options.batteries > 1 or run.options.drones > 1 end
+table.move(accuracy.DECLARATIONS, 1, #accuracy.DECLARATIONS, #M.DECLARATIONS + 1, M.DECLARATIONS)
+
+function M.wanted(run)
+  return run.options.batteries > 1 or run.options.drones > 1 or accuracy.wanted(run)
+end
 
 -- Every solver that is asked for must take teams.
 local function check_solvers(run)
@@ -54,10 +59,12 @@ end
 function M.check(run, vehicle, in_passing)
   local o = run.options
   local fleet = o.fleet
-  if o.drones > o.batteries then
+  accuracy.check(run)
+  local most = accuracy.most(run)
+  if o.drones > most then
     run:fail("drones", string.format(
       "%d drones and %d %s: every drone needs a battery, so give at least as many batteries as "
-      .. "drones", o.drones, o.batteries, o.batteries == 1 and "battery" or "batteries"))
+      .. "drones", o.drones, most, most == 1 and "battery" or "batteries"))
   end
   if not M.wanted(run) then
     for _, name in ipairs { "starts", "separation", "swap", "reserve" } do
@@ -68,8 +75,8 @@ function M.check(run, vehicle, in_passing)
     return
   end
   if in_passing then
-    run:fail("batteries", "a vehicle that takes its images in passing flies one tour: "
-                          .. "expected one battery")
+    run:fail(accuracy.wanted(run) and "accuracy" or "batteries",
+             "a vehicle that takes its images in passing flies one tour: expected one battery")
   end
   if o.exploration.images > 0 then
     run:fail("exploration", "an exploration and its tour share one battery: expected one battery")
@@ -107,9 +114,9 @@ function M.starts(run, poses)
 end
 
 -- The tours that are asked for: batteries are dealt to the drones in turn.
-local function wanted_tours(run, graph)
+local function wanted_tours(run, graph, batteries)
   local o, wanted = run.options, {}
-  for battery = 1, o.batteries do
+  for battery = 1, batteries do
     local drone = (battery - 1) % o.drones + 1
     wanted[battery] = {
       name = string.format("drone %d, battery %d", drone, (battery - 1) // o.drones + 1),
@@ -120,22 +127,23 @@ local function wanted_tours(run, graph)
 end
 
 -- What the mission was asked for, and what could have been had.
-local function refuse(run, graph, team, budget)
+local function refuse(run, graph, team, budget, batteries)
   local found = team.status == "optimal" or team.status == "feasible"
   local why = found and "no further view adds information within that time"
     or team.message ~= "" and team.message or team.status
   run:fail("tour", string.format(
     "no %d tours of %.4g s: %s. From the start (one of %d candidates) %s; %d views lie within the "
-    .. "budget", run.options.batteries, budget, why, graph.candidates, graph.reach,
+    .. "budget", batteries, budget, why, graph.candidates, graph.reach,
     team.reachable))
 end
 
--- Tours within `budget` seconds each, and the evaluations that they took.
-local function solved(run, graph, budget)
+-- Tours within `budget` seconds each, one for each battery, and the evaluations that they took.
+local function solved(run, graph, budget, batteries)
   local o = run.options.tour
+  local wanted = wanted_tours(run, graph, batteries)
   local function solve(solver, initial)
     return run:solve_team { graph = graph, solver = solver, budget = budget, images = o.images,
-                            tours = wanted_tours(run, graph), guard = o.guard, initial = initial }
+                            tours = wanted, guard = o.guard, initial = initial }
   end
   local initial, spent
   local beginner = tours.beginner(run)
@@ -146,7 +154,7 @@ local function solved(run, graph, budget)
   end
   local team = solve(tours.solver(run), initial)
   if #team.tours == 0 and initial and run:cancelled() then team = initial end
-  if team.images < 2 or #team.tours == 0 then refuse(run, graph, team, budget) end
+  if team.images < 2 or #team.tours == 0 then refuse(run, graph, team, budget, batteries) end
   return team, (spent or 0) + team.evaluations
 end
 
@@ -174,7 +182,7 @@ local function flown(run, vehicle, team, asked, begin, shared)
   return plans, drones, longest
 end
 
-local function notes_of(run, graph, known, explored, plans)
+local function notes_of(run, graph, known, explored, plans, batteries)
   local o = run.options
   local notes = words.notes(run, known, explored, string.format(
     "%d candidates, %d motions", graph.candidates, graph.motions))
@@ -187,10 +195,10 @@ local function notes_of(run, graph, known, explored, plans)
     notes[#notes + 1] = words.cut_off_start(graph, drone)
   end
   zones.add_notes(run, graph, notes)
-  if #plans < o.batteries then
+  if #plans < batteries then
     notes[#notes + 1] = string.format(
       "%d of %d batteries are flown: no view adds information to the tours of the others",
-      #plans, o.batteries)
+      #plans, batteries)
   end
   return notes
 end
@@ -208,20 +216,26 @@ function M.plan(run, graph, vehicle, known, explored, begin)
   -- Smooth legs take what was counted; the rest in the first view comes on top.
   local budget = asked - (o.flight.smooth and o.flight.pause or 0)
   local shared
+  local batteries
   for round = 1, TIGHTER do
     begin("tour")
-    local team, evaluations = solved(run, graph, budget)
+    local team, evaluations, found = accuracy.search(run, function(count)
+      return solved(run, graph, budget, count)
+    end, batteries)
+    batteries = #team.tours
     local plans, drones, longest = flown(run, vehicle, team, asked, begin, shared)
     shared = plans[1]
     -- Corners and rests may take a little more than the legs one by one.
     local over = longest - asked
     if over <= 0 or round == TIGHTER then
       local figures = words.figures(graph, team, asked, evaluations, explored)
-      figures.batteries, figures.drones, figures.tours = o.batteries, o.drones, #plans
+      figures.batteries, figures.drones, figures.tours = batteries, o.drones, #plans
+      local notes = notes_of(run, graph, known, explored, plans, batteries)
+      if found then notes[#notes + 1], figures.accuracy = accuracy.told(run, found) end
       return run:fleet {
         team = team, plans = plans, drones = drones, separation = separation(run),
         swap = o.fleet.swap, reserve = o.fleet.reserve, pixel_error = o.pixel_error,
-        notes = notes_of(run, graph, known, explored, plans), figures = figures,
+        notes = notes, figures = figures,
       }
     end
     budget = budget - 1.5 * over

@@ -150,6 +150,47 @@ TEST_F(ConfiguredTask, OfAFilmIsHeldToItsConfiguration) {
               HasSubstr("not compared  formulas, bounds and times of the script's constraints"));
 }
 
+TEST_F(ConfiguredTask, MotionGroundTracksAndOpacityAreHeldToItsConfiguration) {
+  make(
+      "local film = require 'mission.film'\n"
+      "return film.shot {\n"
+      "  subject = { position = {4, 9, 1}, height = 1.7 }, ground = 0.5,\n"
+      "  obstacles = { { type = 'sphere', name = 'kite', center = {2, -6, 4}, radius = 0.5,\n"
+      "                  track = { { time = 0, move = {0, 0, 0} },\n"
+      "                            { time = 6, move = {3, 0, 0} } } },\n"
+      "                { type = 'box', name = 'hedge', lower = {-9, -9, 0}, upper = {-8, 9, 2} },\n"
+      "                { type = 'box', name = 'glass', lower = {-12, -9, 0},\n"
+      "                  upper = {-11, 9, 2}, opaque = false } },\n"
+      "  keyframes = { { time = 0, position = {0, 0, 2} },\n"
+      "                { time = 6, position = {6, 0, 2} } } }\n");
+  const auto obstacle = [](Value& document, const std::string& name) -> Value& {
+    for (Value& one : in(document, "environment", "obstacles").as_list())
+      if (one.at("name").as_text() == name) return one;
+    throw std::runtime_error("no obstacle " + name);
+  };
+  expect_told({
+      {"obstacles[1] of its configuration (sphere 'kite')",
+       [&](Value& d) {
+         obstacle(d, "kite").find("track")->find("moves")->as_list()[1].as_list()[0] = -3.0;
+       }},
+      {"obstacles[1] of its configuration (sphere 'kite')",
+       [&](Value& d) { obstacle(d, "kite").find("track")->find("times")->as_list()[1] = 7.0; }},
+      {"obstacles[2] of its configuration (box 'hedge')",
+       [&](Value& d) { obstacle(d, "hedge").set("opaque", false); }},
+      {"the ground of its configuration, at 0.5 m, is not in the plan",
+       [&](Value& d) {
+         obstacle(d, "ground").find("parameters")->find("point")->as_list()[2] = 0.25;
+       }},
+      {"the motion is 'force' in the plan, and the model of its configuration, 'velocity', has",
+       [](Value& d) { in(d, "configuration", "model").set("type", "velocity"); }},
+  });
+  // More than is asked for: nothing to be told.
+  Value stricter = whole_;
+  obstacle(stricter, "glass").set("opaque", true);
+  obstacle(stricter, "ground").find("parameters")->find("point")->as_list()[2] = 0.6;
+  EXPECT_TRUE(provenance_of(judged(stricter)).at("pass").as_boolean());
+}
+
 TEST_F(ConfiguredTask, OfARaceIsHeldToItsConfiguration) {
   make(
       "local race = require 'mission.race'\n"

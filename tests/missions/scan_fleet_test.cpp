@@ -31,8 +31,8 @@ TEST_F(FleetScans, TwoBatteriesMakeTwoPlansAndAFleet) {
   EXPECT_EQ(said.at("tours").as_list()[0].at("tour").find("prediction"), nullptr);
   EXPECT_THAT(read_file(folder_ / "out/report.html"), HasSubstr("the 2 tours see"));
   EXPECT_FALSE(fs::exists(folder_ / "out/plan.json"));
-  for (const char* file :
-       {"report.html", "report_2.html", "trajectory_2.csv", "map.ot", "prediction.ply"})
+  for (const char* file : {"report.html", "report_2.html", "trajectory_2.csv", "map.ot",
+                           "prediction.ply", "prediction.glb"})
     EXPECT_TRUE(fs::exists(folder_ / "out" / file)) << file;
 }
 
@@ -57,6 +57,12 @@ TEST_F(FleetScans, WhatCannotBeFlownIsOneMessage) {
                             " --set batteries=2 --set drones=2 --set "
                             "'fleet.starts=[{position: [-8,-8,13]}, {position: [10,-10,13]}]'"),
               HasSubstr("fleet.starts: the start of drone 2: it lies in zone 'pond'"));
+  EXPECT_THAT(refused_fleet("--set accuracy=0"), HasSubstr("accuracy: expected above 0"));
+  EXPECT_THAT(refused_fleet("--set accuracy_share=0.5"), HasSubstr("set accuracy"));
+  EXPECT_THAT(refused_fleet("--set accuracy=0.1 --set accuracy_share=1.1"),
+              HasSubstr("accuracy_share: expected above 0 and at most 1"));
+  EXPECT_THAT(refused_fleet("--set accuracy=0.1 --set batteries=2 --set drones=3"),
+              HasSubstr("3 drones and 2 batteries"));
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ class Fleets : public testing::Test {
     std::vector<FleetMember> members;
     for (std::size_t t = 0; t < plans_.size(); ++t)
       members.push_back({&plans_[t], &own[t], std::to_string(t + 1)});
-    return verify_fleet(fleet_, members, digest, {.folder = folder_});
+    return verify_fleet(fleet_, members, digest, {.folder = folder_}, faults_);
   }
   Check check(const std::string& name) const {
     const Certificate certificate = judged();
@@ -123,6 +123,7 @@ class Fleets : public testing::Test {
   std::string sum_;
   std::vector<Plan> plans_;
   Fleet fleet_;
+  std::vector<std::string> faults_;
 };
 
 TEST_F(Fleets, AGoodOneIsCertified) {
@@ -198,6 +199,32 @@ TEST_F(Fleets, AClaimOfMoreThanTheViewsSeeIsRefused) {
   for (Sample& s : plans_[1].trajectory.samples) s.yaw = EIGEN_PI;
   EXPECT_FALSE(check("fleet_coverage").pass);
   EXPECT_THAT(check("tours").detail, HasSubstr("drone 2, battery 1"));
+}
+
+TEST_F(Fleets, WhatItsConfigurationAsksForIsRequired) {
+  EXPECT_TRUE(check("provenance").pass);
+  faults_ = {"the separation is 1 m in the plan and 8 m in its configuration"};
+  EXPECT_EQ(failure(), "provenance");
+  EXPECT_EQ(check("provenance").detail, faults_[0]);
+}
+
+TEST_F(Fleets, PlansOfOtherPlacesAndVehiclesAreRefused) {
+  const std::vector<Plan> good = plans_;
+  const auto refused = [&](const std::string& said) {
+    EXPECT_FALSE(check("fleet_document").pass) << said;
+    EXPECT_THAT(check("fleet_document").detail, HasSubstr(said));
+    plans_ = good;
+  };
+  plans_[1].geodetic_origin = GeodeticOrigin{47.4, 8.5, 450, HeightOf::ellipsoid};
+  refused("drone 2, battery 1 has another origin on the earth than the first tour");
+  plans_[1].home = Home{{1, 2, 0}, 120, std::nullopt, {}};
+  refused("drone 2, battery 1 has another home than the first tour");
+  // Two drones may be two vehicles; one drone is one.
+  plans_[1].vehicle.set("flight_time", 900.0);
+  EXPECT_TRUE(check("fleet_document").pass);
+  fleet_.tours[1].drone = "1";
+  fleet_.tours[1].battery = 2;
+  refused("drone 1, battery 2 has another vehicle than the other tours of its drone");
 }
 
 TEST_F(Fleets, ADocumentThatContradictsItselfOrItsFilesIsRefused) {

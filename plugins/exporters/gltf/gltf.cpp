@@ -8,19 +8,16 @@
 #include "framework/core/number_text.h"
 #include "framework/export/camera_track.h"
 #include "framework/export/exporter.h"
+#include "framework/export/gltf_document.h"
 #include "framework/export/surroundings.h"
 #include "framework/geometry/depth_camera.h"
 #include "framework/plugin/plugin.h"
 #include "framework/shape/surfaces.h"
 #include "framework/trajectory/interpolate.h"
-#include "plugins/exporters/gltf/document.h"
 #include "plugins/exporters/gltf/playback.h"
 
 namespace lapwing {
 namespace {
-
-using gltf_file::Document;
-using gltf_file::y_up;
 
 const Eigen::Vector4d kPath{0.05, 0.2, 0.8, 1}, kSubject{0.8, 0.2, 0.05, 1},
     kObstacle{0.4, 0.35, 0.3, 0.6}, kGate{0.9, 0.6, 0.02, 1}, kStroke{1, 0.9, 0.3, 1};
@@ -41,7 +38,7 @@ class Gltf final : public Exporter {
   bool shows_surroundings() const override { return true; }
 
   std::string write(const Plan& plan) const override {
-    Document document;
+    GltfDocument document;
     add_flight(document, plan);
     add_path(document, plan);
     add_subjects(document, plan);
@@ -85,7 +82,7 @@ class Gltf final : public Exporter {
   }
 
   // The first node: what `losses` reads back.
-  void add_flight(Document& document, const Plan& plan) const {
+  void add_flight(GltfDocument& document, const Plan& plan) const {
     const bool films = plan.trajectory.has_gimbal;
     const std::vector<double> times = key_times(plan);
     std::vector<double> seconds;
@@ -126,14 +123,14 @@ class Gltf final : public Exporter {
     return value;
   }
 
-  void add_path(Document& document, const Plan& plan) const {
+  void add_path(GltfDocument& document, const Plan& plan) const {
     std::vector<Eigen::Vector3d> path;
     for (const double time : key_times(plan))
       path.push_back(sample_at(plan.trajectory, time).position);
     if (path.size() > 1) add_mesh(document, "path", "", document.add_lines({path}, kPath));
   }
 
-  static int add_mesh(Document& document, const std::string& name, const std::string& fallback,
+  static int add_mesh(GltfDocument& document, const std::string& name, const std::string& fallback,
                       int mesh) {
     Value node = Value::map();
     node.set("mesh", mesh);
@@ -141,7 +138,7 @@ class Gltf final : public Exporter {
   }
 
   // Those without a size are drawn as persons, as in the report.
-  static void add_subjects(Document& document, const Plan& plan) {
+  static void add_subjects(GltfDocument& document, const Plan& plan) {
     int count = 0;
     for (const Subject& subject : plan.environment.subjects) {
       const double height = subject.height > 0 ? subject.height : 1.8;
@@ -160,7 +157,7 @@ class Gltf final : public Exporter {
     }
   }
 
-  static void add_obstacle(Document& document, const Plan& plan, const Obstacle& obstacle) {
+  static void add_obstacle(GltfDocument& document, const Plan& plan, const Obstacle& obstacle) {
     const TriangleMesh surface = drawn_surface(obstacle, plan, {});
     if (surface.triangles.empty()) return;
     Eigen::Vector4d color = kObstacle;
@@ -172,8 +169,8 @@ class Gltf final : public Exporter {
   }
 
   // Keys of a track, its times counted from the start of the flight; glTF has none before 0.
-  static void move(Document& document, const Plan& plan, int node, const std::vector<double>& times,
-                   const std::vector<Eigen::Vector3d>& places) {
+  static void move(GltfDocument& document, const Plan& plan, int node,
+                   const std::vector<double>& times, const std::vector<Eigen::Vector3d>& places) {
     if (times.size() < 2) return;
     const double start = plan.trajectory.samples.front().time;
     const auto at = [&](double time) { return Subject{"", times, places}.position(time); };
@@ -187,7 +184,7 @@ class Gltf final : public Exporter {
     document.animate(node, seconds, keys, {});
   }
 
-  static void add_task(Document& document, const Plan& plan) {
+  static void add_task(GltfDocument& document, const Plan& plan) {
     int count = 0;
     for (const GateTask& gate : plan.task.gates) {
       const std::string fallback = "gate " + std::to_string(++count);

@@ -206,5 +206,38 @@ TEST_F(FleetScans, PlacesAndBudgetsThatLeaveNoTourAreOneMessage) {
               HasSubstr("a budget of 2 s is too small"));
 }
 
+// As many batteries as it takes, and no fewer: judged by the prediction of the fleet itself.
+TEST_F(FleetScans, AnAccuracyTakesTheFewestBatteriesThatReachIt) {
+  const std::string asked = "--set tour.budget=40 --set accuracy=0.06 --set accuracy_share=0.9 ";
+  ASSERT_EQ(run(asked), 0) << error();
+  const Value said = answer();
+  const Value& found = said.at("tour").at("accuracy");
+  const std::int64_t batteries = found.at("batteries").as_integer();
+  EXPECT_GE(batteries, 2);
+  EXPECT_EQ(fleet().tours.size(), static_cast<std::size_t>(batteries));
+  const double area = found.at("area").as_number(), possible = found.at("possible").as_number();
+  EXPECT_GE(area, 0.9 * possible);
+  EXPECT_LE(area, possible);
+  EXPECT_LE(possible, found.at("known").as_number());
+  EXPECT_NEAR(found.at("known").as_number(),
+              said.at("tour").at("prediction").at("known").as_number(), 1e-6);
+  EXPECT_EQ(verify_again("out"), 0) << verified();
+  // One battery fewer: refused with the share that it reaches, which is then enough.
+  const std::string fewer = asked + "--set batteries=" + std::to_string(batteries - 1) + " ";
+  const std::string refusal = refused_fleet(fewer);
+  EXPECT_THAT(refusal, HasSubstr("accuracy: the images of " + std::to_string(batteries - 1)));
+  const std::string words = "Expected accuracy_share at most ";
+  ASSERT_NE(refusal.find(words), refusal.npos) << refusal;
+  const double share = std::stod(refusal.substr(refusal.find(words) + words.size()));
+  EXPECT_LT(share, 0.9);
+  EXPECT_EQ(run(fewer + "--set accuracy_share=" + std::to_string(share), "hut.lua", "fewer"), 0)
+      << error();
+  // What no number of batteries reaches is refused, soon.
+  EXPECT_THAT(refused_fleet("--set tour.budget=40 --set accuracy=0.0001"),
+              HasSubstr("no two views within reach of a tour locate any of the "));
+  EXPECT_THAT(refused_fleet(asked + "--set batteries=2"),
+              HasSubstr("and at most 2 are allowed. Expected accuracy_share at most"));
+}
+
 }  // namespace
 }  // namespace lapwing

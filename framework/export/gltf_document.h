@@ -12,14 +12,14 @@
 #include "framework/core/value.h"
 #include "framework/geometry/triangle_mesh.h"
 
-namespace lapwing::gltf_file {
+namespace lapwing {
 
 // (east, north, up) to (east, up, south); a rotation.
 Eigen::Vector3d y_up(const Eigen::Vector3d& world);
 
-class Document {
+class GltfDocument {
  public:
-  Document();
+  GltfDocument();
 
   // Each gives the place of what it added in its list of the document. Names that are no UTF-8 are
   // mended; an empty one becomes `fallback`.
@@ -30,6 +30,14 @@ class Document {
   int add_lines(const std::vector<std::vector<Eigen::Vector3d>>& lines,
                 const Eigen::Vector4d& color);
   int add_triangles(const TriangleMesh& mesh, const Eigen::Vector4d& color);
+  // Triangles with a colour each (sRGB, as in pictures) and, by name, a number each. The name of a
+  // number begins with "_" and has capital letters, digits and "_".
+  struct TriangleNumbers {
+    std::string name;
+    std::vector<float> values;
+  };
+  int add_colored_triangles(const TriangleMesh& mesh, const std::vector<Rgb>& colors,
+                            const std::vector<TriangleNumbers>& numbers);
 
   // One key a time: places (world) and, unless empty, orientations of the node (in y up).
   void animate(int node, const std::vector<double>& times,
@@ -51,4 +59,4 @@ class Document {
   std::string buffer_;
 };
 
-}  // namespace lapwing::gltf_file
+}  // namespace lapwing
