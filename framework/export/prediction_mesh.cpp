@@ -44,7 +44,7 @@ double area_quantile(const ScanPrediction& p, float TrianglePrediction::*value, 
 
 PredictionColors prediction_colors(const ScanPrediction& p) {
   PredictionColors range{area_quantile(p, &TrianglePrediction::accuracy, kBest),
-                   area_quantile(p, &TrianglePrediction::accuracy, kWorst)};
+                         area_quantile(p, &TrianglePrediction::accuracy, kWorst)};
   if (!(range.best > 0) || !std::isfinite(range.best)) range.best = 1e-3;
   if (!std::isfinite(range.worst)) range.worst = 100 * range.best;
   range.worst = std::max(range.worst, 1.01 * range.best);
@@ -102,8 +102,8 @@ std::string prediction_glb(const ScanPrediction& p) {
   }
   GltfDocument document;
   Value node = Value::map();
-  node.set("mesh", document.add_colored_triangles(
-                       mesh, triangle_colors(p, prediction_colors(p)), numbers));
+  node.set("mesh",
+           document.add_colored_triangles(mesh, triangle_colors(p, prediction_colors(p)), numbers));
   document.add_node("prediction", "", node);
   return document.binary("what the images will show");
 }

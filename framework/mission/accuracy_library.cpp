@@ -49,9 +49,9 @@ int accurate_area_of_run(lua_State* state) {
   AccurateArea area;
   {
     const Sandbox::ClockPause pause(Sandbox::of(state));
-    area = accurate_area(*team.tours.front().work,
-                         views_of_team(team, given.boolean("reachable")), given.number("accuracy"),
-                         given.number("pixel_error"), run.settings.threads);
+    area =
+        accurate_area(*team.tours.front().work, views_of_team(team, given.boolean("reachable")),
+                      given.number("accuracy"), given.number("pixel_error"), run.settings.threads);
   }
   lua_pushnumber(state, area.accurate);
   lua_pushnumber(state, area.known);

@@ -66,9 +66,11 @@ FlightController::FlightController(const Vehicle& vehicle, const ReferenceMotion
       lag_(vehicle.rotors.lag),
       inertia_(vehicle.inertia),
       gains_(gains_of(vehicle, weights)),
-      allocation_(vehicle) {}
+      allocation_(vehicle),
+      attitudes_(reference) {}
 
-RotorCommand FlightController::command(double time, const BodyState& state, double step) {
+[[gnu::flatten]] RotorCommand FlightController::command(double time, const BodyState& state,
+                                                        double step) {
   const ReferencePoint wanted = reference_.at(time);
   const Vector3d error = state.position - wanted.position;
   if (!saturated_) integral_ += step * error;
@@ -76,14 +78,13 @@ RotorCommand FlightController::command(double time, const BodyState& state, doub
                             gains_.velocity * (state.velocity - wanted.velocity);
   const Vector3d force = reference_.force(wanted) - mass_ * feedback;  // (3.14)
 
-  const AttitudeReference forward = planned_attitude(reference_, time);
-  const Vector3d ahead =
-      planned_attitude(reference_, time + lag_).accelerations;  // rotors answer that much later
+  const Vector3d forward = attitudes_.body_rates(time, step);
+  const Vector3d ahead = attitudes_.accelerations(time + lag_, step);  // rotors answer that late
   const Quaterniond target = attitude_of(force, wanted.yaw);
   const Matrix3d r = state.orientation.toRotationMatrix(), rd = target.toRotationMatrix();
   const Matrix3d skew = rd.transpose() * r - r.transpose() * rd;
   const Vector3d error_r = 0.5 * Vector3d(skew(2, 1), skew(0, 2), skew(1, 0));
-  const Vector3d carried = r.transpose() * (rd * forward.body_rates);  // wanted rates, body
+  const Vector3d carried = r.transpose() * (rd * forward);  // wanted rates, body
   const Vector3d error_rates = state.body_rates - carried;
   const Vector3d& omega = state.body_rates;
   const Vector3d moment =

@@ -48,6 +48,7 @@ class FlightController final : public ControlledFlight {
   Eigen::Vector3d inertia_;
   ControllerGains gains_;
   RotorAllocation allocation_;
+  SteppedAttitudes attitudes_;
   Eigen::Vector3d integral_ = Eigen::Vector3d::Zero();  // m s
   bool saturated_ = false;
 };

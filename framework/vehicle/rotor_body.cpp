@@ -69,20 +69,22 @@ Vector3d turn_rate(const Vector3d& turn, const Vector3d& body_rates) {
 
 }  // namespace
 
-BodyState RotorBody::after(const BodyState& state, const Vector4d& commanded, const Vector3d& wind,
-                           double step) const {
+// Flat: quaternion products and crosses are small, and calls of them would cost more than they do.
+[[gnu::flatten]] BodyState RotorBody::after(const BodyState& state, const Vector4d& commanded,
+                                            const Vector3d& wind, double step) const {
   const BodyState& from = state;
   // The lag is solved in closed form: it may be far shorter than the step.
   const auto thrusts_after = [&](double time) -> Vector4d {
     const double left = lag_ > 0 ? std::exp(-time / lag_) : 0.0;
     return commanded + left * (from.rotor_thrusts - commanded);
   };
+  const Vector4d thrusts_halfway = thrusts_after(step / 2), thrusts_at_end = thrusts_after(step);
   BodyState sum = from;
   Vector3d sum_turn = Vector3d::Zero(), turn = Vector3d::Zero();
   BodyState at = from;
   at.rotor_thrusts = lag_ > 0 ? from.rotor_thrusts : commanded;
   constexpr double kWeights[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-  constexpr double kNext[] = {0.5, 0.5, 1.0, 0.0};  // of the step, to the next stage
+  constexpr double kNext[] = {0.5, 0.5, 1.0};  // of the step, to the next stage
   for (int k = 0; k < 4; ++k) {
     Rates r = rates(at, wind);
     r.turn = turn_rate(turn, r.turn);
@@ -91,15 +93,16 @@ BodyState RotorBody::after(const BodyState& state, const Vector4d& commanded, co
     sum.velocity += share * r.velocity;
     sum.body_rates += share * r.body_rates;
     sum_turn += share * r.turn;
+    if (k == 3) break;
     const double next = kNext[k] * step;
     turn = next * r.turn;
     at.position = from.position + next * r.position;
     at.velocity = from.velocity + next * r.velocity;
     at.body_rates = from.body_rates + next * r.body_rates;
-    at.rotor_thrusts = thrusts_after(next);
+    at.rotor_thrusts = k < 2 ? thrusts_halfway : thrusts_at_end;
     at.orientation = turned(from.orientation, turn);
   }
-  sum.rotor_thrusts = thrusts_after(step);
+  sum.rotor_thrusts = thrusts_at_end;
   sum.orientation = turned(from.orientation, sum_turn);
   return sum;
 }

@@ -56,6 +56,48 @@ Vehicle real_vehicle() {
   return vehicle;
 }
 
+// Whatever the step and whoever asks in which order: the differences of planned_attitude, as far as
+// the step divides 0.01 s.
+TEST(Attitude, SteppedDerivativesAreThoseOfThePlan) {
+  const Vehicle vehicle = real_vehicle();
+  Trajectory waves;
+  waves.motion = force_motion();
+  for (int i = 0; i <= 60; ++i) {
+    Sample s;
+    s.time = 3 + 0.1 * i;
+    s.yaw = 0.05 * i;
+    s.yaw_rate = 0.5;
+    s.columns.set("force", Vector3d(4 * std::sin(0.3 * i), 3 * std::cos(0.2 * i),
+                                    vehicle.mass * (kGravity + std::sin(0.1 * i))));
+    s.columns.set("yaw_torque", 0.0);
+    waves.samples.push_back(s);
+  }
+  const ReferenceMotion reference(waves, vehicle);
+  for (const double step : {0.001, 0.002, 0.005, 0.01}) {
+    SteppedAttitudes stepped(reference);
+    const auto compare = [&](std::int64_t k) {
+      const double time = reference.start() + static_cast<double>(k) * step;
+      const AttitudeReference planned = planned_attitude(reference, time);
+      EXPECT_LT((stepped.body_rates(time, step) - planned.body_rates).norm(), 1e-8) << time;
+      EXPECT_LT((stepped.accelerations(time, step) - planned.accelerations).norm(), 1e-6) << time;
+      // Between steps: linear.
+      const Vector3d next = planned_attitude(reference, time + step).accelerations;
+      EXPECT_LT((stepped.accelerations(time + 0.3 * step, step) -
+                 (0.7 * planned.accelerations + 0.3 * next))
+                    .norm(),
+                1e-6);
+    };
+    const auto last = static_cast<std::int64_t>(6 / step);
+    for (std::int64_t k = 0; k < last; ++k) compare(k);
+    for (const std::int64_t k : {last / 2, std::int64_t{3}, last - 1, std::int64_t{0}}) compare(k);
+  }
+  // Another step is another table.
+  SteppedAttitudes stepped(reference);
+  stepped.body_rates(4, 0.002);
+  EXPECT_LT((stepped.body_rates(4, 0.005) - planned_attitude(reference, 4).body_rates).norm(),
+            1e-8);
+}
+
 TEST(ClosedLoop, AKickDiesAway) {
   // A minute of even flight with one place two centimetres off. Rotors without lag as well: their
   // attitude answers fast, but not at once.
