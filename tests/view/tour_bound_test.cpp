@@ -46,6 +46,29 @@ TEST(TourBounds, HoldForEverySetOfViews) {
   EXPECT_GT(tight, problems / 2);  // not merely the sum of everything
 }
 
+// Stated legs need not be the quickest way (rounded distances): a view too far away by its own legs
+// may be near enough past another one.
+TEST(TourBounds, HoldForLegsThatBreakTheTriangleInequality) {
+  int nearer = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    TourDefinition d = random_tour(seed, {.views = 7, .legs = true, .additive = true});
+    Random random(seed);
+    for (int a = 0; a < 7; ++a) {
+      for (int b = 0; b < a; ++b) {
+        const double longer = random.uniform() < 0.5 ? 1 : 5;
+        d.legs[a * 7 + b] = d.legs[b * 7 + a] = longer * d.legs[a * 7 + b];
+      }
+    }
+    const TourProblem problem(d);
+    const double best = best_score_by_enumeration(d);
+    EXPECT_GE(tour_upper_bound(problem, {}), best - 1e-6) << seed;
+    EXPECT_GE(problem.score_of(problem.reachable()), best - 1e-6) << seed;
+    for (const int view : problem.reachable())
+      nearer += problem.fixed_seconds() + 2 * problem.leg(0, view) > d.budget;
+  }
+  EXPECT_GT(nearer, 10);
+}
+
 TEST(TourBounds, HoldForWholeNumbersWithoutSlack) {
   // A star: three views at 1 s each from the start, budget for two of them there and back.
   TourDefinition d;

@@ -219,7 +219,9 @@ class Milp final : public TourSolver {
     say(problem, additive, rewards, team, found, best, result);
     if (left_out > 0)
       result.message += "; " + std::to_string(left_out) + " views of less reward are left out";
-    if (!team.complete())
+    if (!team.has_all_shortcuts())
+      result.message += "; views without a reward that shorten ways are left out";
+    if (!team.has_all_arcs())
       result.message +=
           "; arcs to all but the " + std::to_string(neighbours_) + " nearest views are left out";
     result.walks = std::move(best);
@@ -334,6 +336,7 @@ class Milp final : public TourSolver {
         ")";
     // The program holds every tour: then CBC's bound is one.
     if (!tours.complete() || problem.image_limit() || !std::isfinite(found.bound)) return;
+    if (!holds_shortcuts(problem, tours.chosen())) return;
     if (independent(problem.score(), problem.reachable(), rewards))
       result.upper_bound = bound_of(rewards, found);
   }
@@ -354,7 +357,8 @@ class Milp final : public TourSolver {
     bool limited = false;
     for (int t = 0; t < problem.size(); ++t)
       limited = limited || (problem.tour(t).image_limit() && !problem.tour(t).each_once());
-    if (!team.complete() || limited || !std::isfinite(found.bound)) return;
+    if (!team.has_all_arcs() || !team.has_all_shortcuts() || limited) return;
+    if (!std::isfinite(found.bound)) return;
     if (independent(problem.score(), problem.reachable(), rewards))
       result.upper_bound = bound_of(rewards, found);
   }

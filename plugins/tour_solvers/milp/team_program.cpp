@@ -19,20 +19,6 @@ namespace {
 // have as many entries as views squared.
 constexpr int kMostRanked = 60;
 
-// Whether going past a view is never quicker than leaving it out, but for rounding.
-bool keeps_triangle_inequality(const TourProblem& problem, const std::vector<int>& views) {
-  for (const int middle : views) {
-    const auto from_middle = problem.legs_from(middle);
-    for (const int a : views) {
-      const auto from_a = problem.legs_from(a);
-      for (const int b : views) {
-        if (from_a[b] > from_a[middle] + from_middle[b] + problem.tolerance() / 10) return false;
-      }
-    }
-  }
-  return true;
-}
-
 std::vector<int> within_reach(const TourProblem& problem, const std::vector<int>& chosen) {
   const std::vector<int> reachable = problem.reachable();
   std::vector<int> both;
@@ -113,9 +99,15 @@ std::int64_t TeamProgram::columns() const {
   return all;
 }
 
-bool TeamProgram::complete() const {
+bool TeamProgram::has_all_arcs() const {
   return std::all_of(parts_.begin(), parts_.end(),
                      [](const Part& part) { return part.program->complete(); });
+}
+
+bool TeamProgram::has_all_shortcuts() const {
+  return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) {
+    return holds_shortcuts(part.program->problem(), part.program->chosen());
+  });
 }
 
 void TeamProgram::write() {
@@ -224,8 +216,8 @@ std::vector<double> TeamProgram::point_of(const Walks& walks) const {
         if (!program.put(begins[t], point)) return {};
         if (!counts_once_ || visits_once_) continue;
         for (const int view : begins[t]) {
-          const bool counts = rank[view] >= 0 && std::binary_search(counted[t].begin(),
-                                                                    counted[t].end(), rank[view]);
+          const bool counts = rank[view] >= 0 &&
+                              std::binary_search(counted[t].begin(), counted[t].end(), rank[view]);
           if (rank[view] >= 0 && program.column_of(view) >= 0)
             point[program.column_of(view)] = counts ? 1 : 0;
         }
@@ -242,8 +234,7 @@ Walks TeamProgram::walks_of(const std::vector<double>& point) const {
   Walks walks(problem_.size());
   for (const Part& part : parts_) {
     std::vector<std::vector<int>> own = part.program->walks_of(point);
-    for (std::size_t k = 0; k < part.tours.size(); ++k)
-      walks[part.tours[k]] = std::move(own[k]);
+    for (std::size_t k = 0; k < part.tours.size(); ++k) walks[part.tours[k]] = std::move(own[k]);
   }
   return walks;
 }

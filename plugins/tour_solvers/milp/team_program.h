@@ -42,7 +42,8 @@ class TeamProgram {
   void write();
   const IntegerProgram& program() const { return program_; }
   // Whether every motion of the problem between chosen views is an arc.
-  bool complete() const;
+  bool has_all_arcs() const;
+  bool has_all_shortcuts() const;  // tour_program.h
   // A point for tours of the problem whose arcs are there; empty where one is not.
   std::vector<double> point_of(const Walks& walks) const;
   Walks walks_of(const std::vector<double>& point) const;

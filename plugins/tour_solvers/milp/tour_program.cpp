@@ -24,6 +24,27 @@ constexpr double kLeastSeconds = 1e-7;
 
 }  // namespace
 
+bool keeps_triangle_inequality(const TourProblem& problem, const std::vector<int>& views) {
+  if (!problem.each_once()) return true;
+  for (const int middle : views) {
+    const auto from_middle = problem.legs_from(middle);
+    for (const int a : views) {
+      const auto from_a = problem.legs_from(a);
+      for (const int b : views) {
+        if (from_a[b] > from_a[middle] + from_middle[b] + problem.tolerance() / 10) return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool holds_shortcuts(const TourProblem& problem, const std::vector<int>& chosen) {
+  if (!problem.each_once()) return true;
+  const std::vector<int> within = problem.reachable();
+  return std::includes(chosen.begin(), chosen.end(), within.begin(), within.end()) ||
+         keeps_triangle_inequality(problem, within);
+}
+
 TourProgram::TourProgram(const TourProblem& problem, std::vector<int> chosen, int neighbours,
                          const std::vector<std::vector<int>>& walks, int flights)
     : problem_(problem),
@@ -136,8 +157,8 @@ void TourProgram::write(IntegerProgram& program, const std::vector<double>* rewa
   const int arcs = static_cast<int>(arcs_.size()), n = count();
   const double room = problem_.budget() - problem_.fixed_seconds();
   const double least = kLeastSeconds * room, all = room + slack();
-  const auto out_to = problem_.legs_from(problem_.start());
-  const auto home_from = problem_.legs_from(problem_.end());
+  const std::vector<double> out_to = problem_.least_seconds_from(problem_.start());
+  const std::vector<double> home_from = problem_.least_seconds_from(problem_.end());
   const auto used = [&](int a) { return std::max(arcs_[a].seconds, least); };
   // Every flight may be the way from start to end alone; any other arc is taken once.
   const auto times = [&](int a) {

@@ -21,6 +21,13 @@
 
 namespace lapwing {
 
+// Whether going past one of the views is never quicker than leaving it out, but for rounding. So it
+// is over motions; legs are as stated.
+bool keeps_triangle_inequality(const TourProblem& problem, const std::vector<int>& views);
+// Whether no best tour goes past a view that is not chosen and brings nothing, though it could.
+// `chosen` ascending.
+bool holds_shortcuts(const TourProblem& problem, const std::vector<int>& chosen);
+
 struct TourArc {
   int from = 0, to = 0;  // positions in the list of chosen views
   double seconds = 0;
