@@ -66,7 +66,21 @@ TEST(TourBounds, HoldForLegsThatBreakTheTriangleInequality) {
     for (const int view : problem.reachable())
       nearer += problem.fixed_seconds() + 2 * problem.leg(0, view) > d.budget;
   }
-  EXPECT_GT(nearer, 10);
+  EXPECT_GT(nearer, 3);
+  // View 2 is 9 s from both ends of the tour, and 0.5 s from view 3 beside them.
+  TourDefinition d;
+  d.score = std::make_shared<const ViewScore>(additive_score(std::vector<double>{0, 5, 7, 1}));
+  d.view_seconds = {0};
+  d.legs = {0,  5,  9,  .5,  //
+            5,  0,  9,  .5,  //
+            9,  9,  0,  .5,  //
+            .5, .5, .5, 0};
+  d.end = 1;
+  d.budget = 10.5;
+  const TourProblem problem(d);
+  EXPECT_EQ(best_score_by_enumeration(d), 13);
+  EXPECT_EQ(problem.reachable(), (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_GE(tour_upper_bound(problem, {}), 13);
 }
 
 TEST(TourBounds, HoldForWholeNumbersWithoutSlack) {

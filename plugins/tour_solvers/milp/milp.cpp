@@ -218,7 +218,8 @@ class Milp final : public TourSolver {
     work.ended(result.evaluations, result.iterations);
     say(problem, additive, rewards, team, found, best, result);
     if (left_out > 0)
-      result.message += "; " + std::to_string(left_out) + " views of less reward are left out";
+      result.message += "; left out for less reward: " + std::to_string(left_out) + " of " +
+                        std::to_string(before) + " views";
     if (!team.has_all_shortcuts())
       result.message += "; views without a reward that shorten ways are left out";
     if (!team.has_all_arcs())
