@@ -18,6 +18,8 @@ namespace {
 // Rows that order two tours by their views: for the views of largest reward. Those of all would
 // have as many entries as views squared.
 constexpr int kMostRanked = 60;
+// Views in the words of the other order; with more, factors would differ too much for CBC.
+constexpr int kLetters = 10;
 
 std::vector<int> within_reach(const TourProblem& problem, const std::vector<int>& chosen) {
   const std::vector<int> reachable = problem.reachable();
@@ -141,7 +143,7 @@ void TeamProgram::write_order() {
     if (counts_once_)
       order_by_views(first, second);
     else
-      order_by_seconds(first, second);
+      order_by_words(first, second);
   }
 }
 
@@ -159,13 +161,25 @@ void TeamProgram::order_by_views(const TourProgram& first, const TourProgram& se
   }
 }
 
-void TeamProgram::order_by_seconds(const TourProgram& first, const TourProgram& second) {
+// What the first tour visits of the views of largest reward comes not after what the second one
+// does, as words do: the numbers that the visits make in base two.
+void TeamProgram::order_by_words(const TourProgram& first, const TourProgram& second) {
   std::vector<IntegerProgram::Entry> row;
-  for (std::size_t a = 0; a < first.arcs().size(); ++a)
-    row.push_back({first.column_of_arc(static_cast<int>(a)), first.arcs()[a].seconds});
-  for (std::size_t a = 0; a < second.arcs().size(); ++a)
-    row.push_back({second.column_of_arc(static_cast<int>(a)), -second.arcs()[a].seconds});
-  program_.add_row(0, row, kUnbounded);
+  double weight = std::exp2(kLetters);
+  for (const int view : letters(first)) {
+    weight /= 2;
+    row.push_back({first.column_of(view), weight});
+    row.push_back({second.column_of(view), -weight});
+  }
+  if (!row.empty()) program_.add_row(0, row, kUnbounded);
+}
+
+std::vector<int> TeamProgram::letters(const TourProgram& part) const {
+  std::vector<int> views;
+  for (const int view : by_rank_) {
+    if (part.column_of(view) >= 0 && std::ssize(views) < kLetters) views.push_back(view);
+  }
+  return views;
 }
 
 // Walks without what only costs: views that another one has, and ends of others.
@@ -201,12 +215,18 @@ std::vector<double> TeamProgram::point_of(const Walks& walks) const {
     std::vector<int> tours;
     for (std::size_t q = p; q < end; ++q)
       tours.insert(tours.end(), parts_[q].tours.begin(), parts_[q].tours.end());
-    const auto seconds = [&](int t) { return parts_[p].program->seconds_of(begins[t]); };
+    const std::vector<int> spelled = letters(*parts_[p].program);
+    const auto word = [&](int t) {
+      std::vector<char> visits;
+      for (const int view : spelled)
+        visits.push_back(std::find(begins[t].begin(), begins[t].end(), view) != begins[t].end());
+      return visits;
+    };
     const auto first_of = [&](int t) {
       return counted[t].empty() ? problem_.views() : counted[t].front();
     };
     std::stable_sort(tours.begin(), tours.end(), [&](int a, int b) {
-      return counts_once_ ? first_of(a) < first_of(b) : seconds(a) > seconds(b);
+      return counts_once_ ? first_of(a) < first_of(b) : word(a) > word(b);
     });
     std::size_t next = 0;
     for (std::size_t q = p; q < end; ++q) {

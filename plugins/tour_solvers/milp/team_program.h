@@ -58,7 +58,8 @@ class TeamProgram {
   void write_shared_score();
   void write_order();
   void order_by_views(const TourProgram& first, const TourProgram& second);
-  void order_by_seconds(const TourProgram& first, const TourProgram& second);
+  void order_by_words(const TourProgram& first, const TourProgram& second);
+  std::vector<int> letters(const TourProgram& part) const;
   Walks without_repeats(Walks walks) const;
 
   const TeamProblem& problem_;

@@ -239,14 +239,6 @@ void TourProgram::forbid_turning_back(IntegerProgram& program, int view) const {
   }
 }
 
-double TourProgram::seconds_of(const std::vector<int>& walk) const {
-  const std::vector<int> on = chosen_on(walk);
-  double seconds = 0;
-  for (std::size_t k = 1; k < on.size(); ++k)
-    seconds += problem_.leg(chosen_[on[k - 1]], chosen_[on[k]]);
-  return seconds;
-}
-
 bool TourProgram::put(const std::vector<int>& walk, std::vector<double>& point) const {
   const std::vector<int> on = chosen_on(walk);
   for (const int v : on) point[y(v)] = 1;

@@ -64,8 +64,6 @@ class TourProgram {
   int column_of(int view) const { return position_[view] < 0 ? -1 : y(position_[view]); }
   int column_of_arc(int arc) const { return x(arc); }
 
-  // s: of the arcs of a tour of the problem.
-  double seconds_of(const std::vector<int>& walk) const;
   // Adds a tour of the problem to a point of the program. False where one of its arcs is not there:
   // they are for the tours of the constructor, and ones that pass the same views.
   bool put(const std::vector<int>& walk, std::vector<double>& point) const;
