@@ -137,21 +137,22 @@ double best_score_by_enumeration(const TourDefinition& d) {
 }
 
 double best_team_score_by_enumeration(const std::vector<TourDefinition>& tours) {
-  if (tours.front().score->views() > 10) throw Error("enumeration of teams takes at most 10 views");
-  std::vector<char> unions{1};
-  unions.resize(std::size_t{1} << tours.front().score->views(), 0);
+  if (tours.front().score->views() > 13) throw Error("enumeration of teams takes at most 13 views");
+  std::vector<unsigned> unions{0};
   for (const TourDefinition& d : tours) {
-    const std::vector<char> own = sets_within(d);
-    std::vector<char> with(unions.size(), 0);
-    for (std::size_t a = 0; a < unions.size(); ++a)
-      for (std::size_t b = 0; unions[a] && b < own.size(); ++b)
-        if (own[b]) with[a | b] = 1;
-    unions = std::move(with);
+    const std::vector<char> within = sets_within(d);
+    std::vector<unsigned> own;
+    for (unsigned set = 0; set < within.size(); ++set)
+      if (within[set]) own.push_back(set);
+    std::vector<char> with(within.size(), 0);
+    for (const unsigned a : unions)
+      for (const unsigned b : own) with[a | b] = 1;
+    unions.clear();
+    for (unsigned set = 0; set < with.size(); ++set)
+      if (with[set]) unions.push_back(set);
   }
   double best = -1;
-  for (std::size_t set = 0; set < unions.size(); ++set)
-    if (unions[set])
-      best = std::max(best, score_of(*tours.front().score, static_cast<unsigned>(set)));
+  for (const unsigned set : unions) best = std::max(best, score_of(*tours.front().score, set));
   return best;
 }
 

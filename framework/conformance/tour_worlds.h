@@ -16,7 +16,7 @@ namespace lapwing {
 double best_score_by_enumeration(const TourDefinition& definition);
 
 // Likewise of a team, whose tours share a score: the best of all unions of sets that tours can see;
-// at most 10 views.
+// at most 13 views.
 double best_team_score_by_enumeration(const std::vector<TourDefinition>& tours);
 
 // What is wrong with a walk, "" when nothing is; likewise of `definition` alone: a motion for every

@@ -10,52 +10,58 @@ namespace {
 
 constexpr double kNoTime = 1e-9;  // s
 
+using ToursOfRewards = std::vector<const TourProblem*>;
+
 // Per view the lowest view at the same place.
-std::vector<int> places_of(const TourProblem& problem) {
-  std::vector<int> place(problem.views());
+std::vector<int> places_of(const ToursOfRewards& tours) {
+  std::vector<int> place(tours.front()->views());
   std::iota(place.begin(), place.end(), 0);
-  if (problem.each_once()) return place;
+  if (tours.front()->each_once()) return place;
   const auto root = [&](int v) {
     while (place[v] != v) v = place[v] = place[place[v]];
     return v;
   };
-  for (int a = 0; a < problem.views(); ++a) {
-    const auto beside = problem.neighbours_of(a);
-    for (std::size_t i = 0; i < beside.size(); ++i) {
-      const int b = beside[i];
-      const double stops = (problem.stop_seconds(a) + problem.stop_seconds(b)) / 2;
-      if (problem.neighbour_legs_of(a)[i] - stops > kNoTime) continue;
-      const int one = root(a), other = root(b);
-      place[std::max(one, other)] = std::min(one, other);
+  for (const TourProblem* tour : tours) {
+    for (int a = 0; a < tour->views(); ++a) {
+      const auto beside = tour->neighbours_of(a);
+      for (std::size_t i = 0; i < beside.size(); ++i) {
+        const int b = beside[i];
+        const double stops = (tour->stop_seconds(a) + tour->stop_seconds(b)) / 2;
+        if (tour->neighbour_legs_of(a)[i] - stops > kNoTime) continue;
+        const int one = root(a), other = root(b);
+        place[std::max(one, other)] = std::min(one, other);
+      }
     }
   }
-  for (int v = 0; v < problem.views(); ++v) place[v] = root(v);
+  for (int& of_view : place) of_view = root(of_view);
   return place;
 }
 
-}  // namespace
-
-FixedRewards fix_rewards(const TourProblem& problem, TourWork& work) {
+FixedRewards fix_rewards(const ToursOfRewards& tours, const std::vector<int>& reachable,
+                         TourWork& work) {
+  const ViewScore& score = tours.front()->score();
   FixedRewards rewards;
-  rewards.of_view.assign(problem.views(), 0);
-  const std::vector<int> place = places_of(problem);
-  std::vector<int> choices(problem.views(), 0);
+  rewards.of_view.assign(score.views(), 0);
+  const std::vector<int> place = places_of(tours);
+  std::vector<int> choices(score.views(), 0);
   for (const int p : place) ++choices[p];
   rewards.places = static_cast<int>(
       std::count_if(choices.begin(), choices.end(), [](int count) { return count > 1; }));
 
-  ScoreState state(problem.score());
-  std::vector<char> taken(problem.views(), 0);
+  ScoreState state(score);
+  std::vector<char> taken(score.views(), 0);
   const auto take = [&](int view, double gain) {
     rewards.of_view[view] = gain;
     state.add(view);
     taken[place[view]] = 1;
   };
   // Start and end are on every tour.
-  for (const int view : std::set<int>{problem.start(), problem.end()}) take(view, state.gain(view));
+  std::set<int> ends;
+  for (const TourProblem* tour : tours) ends.insert({tour->start(), tour->end()});
+  for (const int view : ends) take(view, state.gain(view));
   std::vector<std::pair<double, int>> open;  // last known gain; lower numbers first
-  for (const int view : problem.reachable()) {
-    if (!taken[place[view]]) open.push_back({problem.score().alone(view), -view});
+  for (const int view : reachable) {
+    if (!taken[place[view]]) open.push_back({score.alone(view), -view});
   }
   std::make_heap(open.begin(), open.end());
   while (!open.empty() && !work.ended(state.evaluations())) {
@@ -76,6 +82,18 @@ FixedRewards fix_rewards(const TourProblem& problem, TourWork& work) {
   }
   rewards.evaluations = state.evaluations();
   return rewards;
+}
+
+}  // namespace
+
+FixedRewards fix_rewards(const TourProblem& problem, TourWork& work) {
+  return fix_rewards({&problem}, problem.reachable(), work);
+}
+
+FixedRewards fix_rewards(const TeamProblem& problem, TourWork& work) {
+  ToursOfRewards tours;
+  for (int t = 0; t < problem.size(); ++t) tours.push_back(&problem.tour(t));
+  return fix_rewards(tours, problem.reachable(), work);
 }
 
 }  // namespace lapwing

@@ -21,5 +21,8 @@ struct FixedRewards {
 // of rewards never is more than the score of the same views. Views joined by a motion that takes
 // no time stand at one place; in a problem of legs every view is a place of its own.
 FixedRewards fix_rewards(const TourProblem& problem, TourWork& work);
+// Likewise of a team: starts and ends of all tours are taken first, and views that any tour joins
+// by a motion without time are one place.
+FixedRewards fix_rewards(const TeamProblem& problem, TourWork& work);
 
 }  // namespace lapwing

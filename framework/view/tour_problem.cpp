@@ -314,10 +314,29 @@ std::string TourProblem::problem_of(std::span<const int> walk) const {
   return "";
 }
 
+// Ways over motions are the quickest already; over stated legs they are found by Dijkstra.
+std::vector<double> TourProblem::least_seconds_from(int view) const {
+  const auto direct = legs_from(view);
+  std::vector<double> least(direct.begin(), direct.end());
+  if (!each_once()) return least;
+  least[view] = 0;
+  std::vector<char> settled(views(), 0);
+  for (int turn = 0; turn < views(); ++turn) {
+    int next = -1;
+    for (int v = 0; v < views(); ++v) {
+      if (!settled[v] && (next < 0 || least[v] < least[next])) next = v;
+    }
+    settled[next] = 1;
+    const auto legs = legs_from(next);
+    for (int v = 0; v < views(); ++v) least[v] = std::min(least[v], least[next] + legs[v]);
+  }
+  return least;
+}
+
 std::vector<int> TourProblem::reachable() const {
   std::vector<int> result;
   if (!why_infeasible().empty()) return result;
-  const auto out = legs_from(start_), home = legs_from(end_);
+  const std::vector<double> out = least_seconds_from(start_), home = least_seconds_from(end_);
   for (int v = 0; v < views(); ++v) {
     if (fixed_seconds_ + out[v] + home[v] <= budget_ + tolerance() || v == start_ || v == end_) {
       result.push_back(v);

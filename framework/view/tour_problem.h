@@ -85,6 +85,9 @@ class TourProblem {
   // From `view` to every view, infinite where there is no way. Valid as long as this object.
   std::span<const double> legs_from(int view) const;
   double leg(int a, int b) const { return legs_from(a)[b]; }
+  // s: likewise, past any views. Less than the leg where stated legs are not the quickest (rounded
+  // distances, say), and then perhaps less than a tour needs that visits each view once.
+  std::vector<double> least_seconds_from(int view) const;
   // Appends the views after `a` up to and including `b`; nothing where a is b. There is a way.
   // The same there and back.
   void append_way(int a, int b, std::vector<int>& walk) const;
@@ -99,8 +102,8 @@ class TourProblem {
   double score_of(std::span<const int> walk) const;
   static int images_of(std::span<const int> walk);
 
-  // Views from which start and end are near enough for the budget, start and end included; empty
-  // where not even the way from start to end is.
+  // Views from which start and end are near enough for the budget, start and end included, past any
+  // views: a tour takes no others. Empty where not even the way from start to end is.
   std::vector<int> reachable() const;
   // Why there is no tour at all; "" where there is one.
   std::string why_infeasible() const;

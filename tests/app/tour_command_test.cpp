@@ -37,6 +37,28 @@ TEST_F(TourCommand, SolvesAFileByEverySolver) {
   }
 }
 
+// The plain format of Chao's team instances: the limit of the file is dealt to the tours.
+TEST_F(TourCommand, ProvesTheToursOfATeam) {
+  std::string text = read_file(folder_ / "meadow13.txt");
+  write("team.txt", "30" + text.substr(text.find('\t')));
+  const Finished finished = run({"tour", "team.txt", "--team", "2", "--solver", "milp", "--solver",
+                                 "local_search", "--json"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const Value answer = from_json(finished.out, "answer");
+  const Value::List& rows = answer.at("tours").as_list();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].at("status").as_text(), "optimal") << rows[0].at("message").as_text();
+  EXPECT_EQ(rows[0].at("gap").as_number(), 0);
+  EXPECT_LE(rows[1].at("score").as_number(), rows[0].at("score").as_number());
+  const Value::List& team = rows[0].at("team").as_list();
+  ASSERT_EQ(team.size(), 2u);
+  for (const Value& tour : team) {
+    EXPECT_LE(tour.at("length").as_number(), 15);
+    EXPECT_EQ(tour.at("walk").as_list().front().as_integer(), 1);
+    EXPECT_EQ(tour.at("walk").as_list().back().as_integer(), 2);
+  }
+}
+
 TEST_F(TourCommand, PrintsATable) {
   const Finished finished =
       run({"tour", "meadow13.txt", "garden14.oplib", "--set", "iterations=50"});

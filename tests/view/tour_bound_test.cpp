@@ -46,6 +46,43 @@ TEST(TourBounds, HoldForEverySetOfViews) {
   EXPECT_GT(tight, problems / 2);  // not merely the sum of everything
 }
 
+// Stated legs need not be the quickest way (rounded distances): a view too far away by its own legs
+// may be near enough past another one.
+TEST(TourBounds, HoldForLegsThatBreakTheTriangleInequality) {
+  int nearer = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    TourDefinition d = random_tour(seed, {.views = 7, .legs = true, .additive = true});
+    Random random(seed);
+    for (int a = 0; a < 7; ++a) {
+      for (int b = 0; b < a; ++b) {
+        const double longer = random.uniform() < 0.5 ? 1 : 5;
+        d.legs[a * 7 + b] = d.legs[b * 7 + a] = longer * d.legs[a * 7 + b];
+      }
+    }
+    const TourProblem problem(d);
+    const double best = best_score_by_enumeration(d);
+    EXPECT_GE(tour_upper_bound(problem, {}), best - 1e-6) << seed;
+    EXPECT_GE(problem.score_of(problem.reachable()), best - 1e-6) << seed;
+    for (const int view : problem.reachable())
+      nearer += problem.fixed_seconds() + 2 * problem.leg(0, view) > d.budget;
+  }
+  EXPECT_GT(nearer, 3);
+  // View 2 is 9 s from both ends of the tour, and 0.5 s from view 3 beside them.
+  TourDefinition d;
+  d.score = std::make_shared<const ViewScore>(additive_score(std::vector<double>{0, 5, 7, 1}));
+  d.view_seconds = {0};
+  d.legs = {0,  5,  9,  .5,  //
+            5,  0,  9,  .5,  //
+            9,  9,  0,  .5,  //
+            .5, .5, .5, 0};
+  d.end = 1;
+  d.budget = 10.5;
+  const TourProblem problem(d);
+  EXPECT_EQ(best_score_by_enumeration(d), 13);
+  EXPECT_EQ(problem.reachable(), (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_GE(tour_upper_bound(problem, {}), 13);
+}
+
 TEST(TourBounds, HoldForWholeNumbersWithoutSlack) {
   // A star: three views at 1 s each from the start, budget for two of them there and back.
   TourDefinition d;

@@ -7,10 +7,13 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "framework/plugin/plugin.h"
 #include "framework/view/fixed_rewards.h"
 #include "framework/view/greedy_growth.h"
+#include "framework/view/working_team.h"
+#include "plugins/tour_solvers/milp/team_program.h"
 #include "plugins/tour_solvers/milp/tour_program.h"
 
 namespace lapwing {
@@ -18,12 +21,20 @@ namespace {
 
 constexpr double kSlack = 1e-6;      // of a start that CBC is to accept
 constexpr double kTolerance = 1e-4;  // of CBC's bound
+// Of a program of several tours: beyond, the first linear program alone takes hours.
+constexpr std::int64_t kMostColumns = 500'000;
+
+using SharedScore = std::shared_ptr<const ViewScore>;
+
+SharedScore sum_of(const std::vector<double>& rewards) {
+  return std::make_shared<const ViewScore>(additive_score(rewards));
+}
 
 // The same tours, but the score is the sum of rewards.
-TourProblem additive_problem(const TourProblem& problem, const std::vector<double>& rewards) {
+TourProblem additive_problem(const TourProblem& problem, SharedScore sum) {
   const int n = problem.views();
   TourDefinition d;
-  d.score = std::make_shared<const ViewScore>(additive_score(rewards));
+  d.score = std::move(sum);
   d.view_seconds.assign(n, 0);  // legs hold them
   for (int v = 0; v < n && problem.each_once(); ++v) {
     const auto legs = problem.legs_from(v);
@@ -43,6 +54,56 @@ TourProblem additive_problem(const TourProblem& problem, const std::vector<doubl
   return TourProblem(std::move(d));
 }
 
+TeamProblem additive_problem(const TeamProblem& problem, const std::vector<double>& rewards) {
+  const SharedScore sum = sum_of(rewards);
+  std::vector<TeamTour> tours;
+  for (int t = 0; t < problem.size(); ++t) {
+    const TourProblem& own = problem.tour(t);
+    // Moves between tours need to know that these have the same ways.
+    int same = 0;
+    while (same < t && !own.same_ways(problem.tour(same))) ++same;
+    const double budget = std::max(0.0, own.budget() - own.fixed_seconds());
+    tours.push_back(
+        {problem.name(t), same < t ? tours[same].problem.with_limits(budget, own.image_limit())
+                                   : additive_problem(own, sum)});
+  }
+  return TeamProblem(std::move(tours));
+}
+
+std::string size_of(const IntegerProgram& program, int nodes) {
+  return std::to_string(program.columns()) + " columns, " + std::to_string(program.rows()) +
+         " rows, " + std::to_string(nodes) + " nodes";
+}
+
+// What was found and proven: "the best tours for the sum of rewards: 18 of at most 18 (".
+std::string verdict(const char* what, double sum, const IntegerResult& found) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s for the sum of rewards: %.6g of at most %.6g (", what, sum,
+                std::max(sum, found.bound));
+  return text;
+}
+
+// No tours score more, where rewards are the score itself.
+double bound_of(const FixedRewards& rewards, const IntegerResult& found) {
+  const bool whole = std::all_of(rewards.of_view.begin(), rewards.of_view.end(),
+                                 [](double reward) { return reward == std::floor(reward); });
+  const double bound = found.bound + kTolerance * (1 + std::abs(found.bound));
+  return whole ? std::floor(bound) : bound;
+}
+
+// Whether the sum of rewards is the score of every set of views that can be reached.
+bool independent(const ViewScore& score, const std::vector<int>& within,
+                 const FixedRewards& rewards) {
+  if (rewards.places > 0) return false;
+  double alone = 0, counted = 0, reachable = 0;
+  for (int v = 0; v < score.views(); ++v) {
+    alone += score.alone(v);
+    counted += rewards.of_view[v];
+  }
+  for (const int v : within) reachable += score.alone(v);
+  return alone == score.total() && counted == reachable;
+}
+
 class Milp final : public TourSolver {
  public:
   static constexpr PluginText kText{"milp", "1.0.0",
@@ -59,6 +120,10 @@ class Milp final : public TourSolver {
                  between(1, 100'000'000))
         .boolean("start", true, "start with a greedy tour for the same rewards");
   }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kTakesTeams, nullptr}};
+    return all;
+  }
   explicit Milp(const Parameters& parameters)
       : candidates_(parameters.integer("candidates")),
         neighbours_(static_cast<int>(parameters.integer("neighbours"))),
@@ -68,12 +133,14 @@ class Milp final : public TourSolver {
  protected:
   Search search(const TourProblem& problem, TourWork& work) const override {
     FixedRewards rewards = fix_rewards(problem, work);
-    const std::vector<int> chosen = choose(problem, rewards.of_view);
-    const TourProblem additive = additive_problem(problem, rewards.of_view);
+    const std::vector<int> chosen = choose({problem.start(), problem.end()}, rewards.of_view);
+    const TourProblem additive = additive_problem(problem, sum_of(rewards.of_view));
     Search result;
     result.evaluations = rewards.evaluations;
     std::vector<int> best = begin(problem, additive, work, result.evaluations);
-    const TourProgram tours(problem, rewards.of_view, chosen, neighbours_, best);
+    TourProgram tours(problem, chosen, neighbours_, {best});
+    IntegerProgram program;
+    tours.write(program, &rewards.of_view);
     if (work.ended(result.evaluations)) {
       result.walk = std::move(best);
       result.status = *work.ending();
@@ -81,37 +148,108 @@ class Milp final : public TourSolver {
       return result;
     }
 
-    IntegerSearch how;
-    how.nodes = nodes_;
-    how.seed = static_cast<int>(work.request().seed % 1'000'000'007);
-    how.ended = [&](std::int64_t nodes) { return work.ended(result.evaluations, nodes); };
-    if (const auto& guard = work.request().wall_clock_guard) {
-      how.seconds_left = *guard - work.seconds();
+    std::vector<double> start;
+    if (!best.empty()) {
+      start.assign(program.columns(), 0);
+      if (!tours.put(best, start)) start.clear();
     }
-    if (!best.empty()) how.start = tours.point_of(best);
-    if (!how.start.empty() && tours.program().violation(how.start) > kSlack) how.start.clear();
-    const IntegerResult found = solve_program(tours.program(), how);
+    const IntegerResult found = solve(program, std::move(start), work, result.evaluations);
     result.iterations = found.nodes;
     if (!found.x.empty()) {
-      std::vector<int> walk = tours.walk_of(found.x);
+      std::vector<int> walk = std::move(tours.walks_of(found.x).front());
       // What CBC takes to be within its tolerances need not be within ours.
       const bool sound = problem.problem_of(walk).empty();
       const bool better = best.empty() || additive.score_of(walk) >= additive.score_of(best);
       if (sound && better) best = std::move(walk);
     }
     work.ended(result.evaluations, result.iterations);
-    say(problem, additive, rewards, tours, found, best, result);
+    say(problem, additive, rewards, tours, program, found, best, result);
     result.walk = std::move(best);
     if (work.ending()) result.status = *work.ending();
     return result;
   }
 
+  TeamSearch search_team(const TeamProblem& problem, TourWork& work,
+                         const Walks* initial) const override {
+    FixedRewards rewards = fix_rewards(problem, work);
+    std::set<int> ends;
+    for (int t = 0; t < problem.size(); ++t)
+      ends.insert({problem.tour(t).start(), problem.tour(t).end()});
+    const auto worth = [&] {
+      return std::count_if(rewards.of_view.begin(), rewards.of_view.end(),
+                           [](double reward) { return reward > 0; });
+    };
+    const std::ptrdiff_t before = worth();
+    const std::vector<int> chosen = choose(ends, rewards.of_view);
+    const std::ptrdiff_t left_out = before - worth();
+    const TeamProblem additive = additive_problem(problem, rewards.of_view);
+    TeamSearch result;
+    result.evaluations = rewards.evaluations;
+    Walks best = begin(problem, additive, work, initial, result.evaluations);
+    const auto ended_early = [&] {
+      result.walks = std::move(best);
+      result.status = *work.ending();
+      result.message = "ended before the integer program";
+      return result;
+    };
+    if (work.ended(result.evaluations)) return ended_early();
+    TeamProgram team(problem, rewards.of_view, chosen, neighbours_, best);
+    if (team.columns() > kMostColumns) {
+      result.status = TourStatus::unsupported;
+      result.message = "the integer program of " + std::to_string(problem.size()) + " tours and " +
+                       std::to_string(chosen.size()) + " views has " +
+                       std::to_string(team.columns()) + " columns, more than " +
+                       std::to_string(kMostColumns) +
+                       ": lower the parameters candidates or neighbours, or use local_search";
+      return result;
+    }
+    team.write();
+    if (work.ended(result.evaluations)) return ended_early();
+    std::vector<double> start;
+    if (!best.empty()) start = team.point_of(best);
+    const IntegerResult found = solve(team.program(), std::move(start), work, result.evaluations);
+    result.iterations = found.nodes;
+    if (!found.x.empty()) {
+      Walks walks = team.walks_of(found.x);
+      const bool sound = problem.problem_of(walks).empty();
+      const bool better = best.empty() || additive.score_of(walks) >= additive.score_of(best);
+      if (sound && better) best = std::move(walks);
+    }
+    work.ended(result.evaluations, result.iterations);
+    say(problem, additive, rewards, team, found, best, result);
+    if (left_out > 0)
+      result.message += "; left out for less reward: " + std::to_string(left_out) + " of " +
+                        std::to_string(before) + " views";
+    if (!team.has_all_shortcuts())
+      result.message += "; views without a reward that shorten ways are left out";
+    if (!team.has_all_arcs())
+      result.message +=
+          "; arcs to all but the " + std::to_string(neighbours_) + " nearest views are left out";
+    result.walks = std::move(best);
+    if (work.ending()) result.status = *work.ending();
+    return result;
+  }
+
  private:
-  // The views of largest reward, with start and end, ascending.
-  std::vector<int> choose(const TourProblem& problem, std::vector<double>& rewards) const {
+  IntegerResult solve(const IntegerProgram& program, std::vector<double> start, TourWork& work,
+                      std::int64_t evaluations) const {
+    IntegerSearch how;
+    how.nodes = nodes_;
+    how.seed = static_cast<int>(work.request().seed % 1'000'000'007);
+    how.ended = [&work, evaluations](std::int64_t nodes) { return work.ended(evaluations, nodes); };
+    if (const auto& guard = work.request().wall_clock_guard) {
+      how.seconds_left = *guard - work.seconds();
+    }
+    how.start = std::move(start);
+    if (!how.start.empty() && program.violation(how.start) > kSlack) how.start.clear();
+    return solve_program(program, how);
+  }
+
+  // The views of largest reward, with starts and ends, ascending.
+  std::vector<int> choose(const std::set<int>& ends, std::vector<double>& rewards) const {
     std::vector<int> order;
-    for (int v = 0; v < problem.views(); ++v) {
-      if (rewards[v] > 0 && v != problem.start() && v != problem.end()) order.push_back(v);
+    for (int v = 0; v < static_cast<int>(rewards.size()); ++v) {
+      if (rewards[v] > 0 && !ends.contains(v)) order.push_back(v);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return rewards[a] > rewards[b]; });
@@ -119,7 +257,7 @@ class Milp final : public TourSolver {
     for (std::size_t i = most; i < order.size(); ++i) rewards[order[i]] = 0;
     order.resize(most);
     std::set<int> chosen(order.begin(), order.end());
-    chosen.insert({problem.start(), problem.end()});
+    chosen.insert(ends.begin(), ends.end());
     return {chosen.begin(), chosen.end()};
   }
 
@@ -152,44 +290,78 @@ class Milp final : public TourSolver {
     return best;
   }
 
-  void say(const TourProblem& problem, const TourProblem& additive, const FixedRewards& rewards,
-           const TourProgram& tours, const IntegerResult& found, const std::vector<int>& best,
-           Search& result) const {
-    const int nodes = found.nodes;
-    const std::string size = std::to_string(tours.program().columns()) + " columns, " +
-                             std::to_string(tours.program().rows()) + " rows, " +
-                             std::to_string(nodes) + " nodes";
-    if (best.empty()) {
-      // The way from start to end alone is a tour: a program without any knows too few arcs.
-      result.status = TourStatus::iteration_limit;
-      result.message = std::string("no tour found") +
-                       (found.infeasible ? ", as the kept arcs connect none (" : " (") + size + ")";
-      return;
+  // Likewise of a team.
+  Walks begin(const TeamProblem& problem, const TeamProblem& additive, TourWork& work,
+              const Walks* initial, std::int64_t& evaluations) const {
+    Walks best;
+    double best_sum = -1;
+    const auto take = [&](Walks walks) {
+      if (!problem.problem_of(walks).empty() || additive.score_of(walks) <= best_sum) return;
+      best_sum = additive.score_of(walks);
+      best = std::move(walks);
+    };
+    if (initial) take(*initial);
+    for (const bool by_ratio : {true, false}) {
+      if (!start_) break;
+      WorkingTeam team(additive);
+      team.state().set_evaluations(evaluations);
+      std::vector<double> known = gains_alone(additive.tour(0));
+      team.grow_all(known, {.by_ratio = by_ratio}, work);
+      while (team.shorten()) {
+        const int before = team.images();
+        team.grow_all(known, {.by_ratio = by_ratio}, work);
+        if (team.images() == before) break;
+      }
+      evaluations = team.state().evaluations();
+      take(team.finished());
     }
-    const double sum = additive.score_of(best);
-    char text[160];
-    std::snprintf(text, sizeof text, "%s for the sum of rewards: %.6g of at most %.6g (",
-                  found.optimal ? "the best tour" : "a tour", sum, std::max(sum, found.bound));
-    result.message = text + size + ")";
-    if (!counts_all(problem, rewards, tours) || !std::isfinite(found.bound)) return;
-    const bool whole = std::all_of(rewards.of_view.begin(), rewards.of_view.end(),
-                                   [](double reward) { return reward == std::floor(reward); });
-    const double bound = found.bound + kTolerance * (1 + std::abs(found.bound));
-    result.upper_bound = whole ? std::floor(bound) : bound;
+    return best;
   }
 
-  // Whether rewards are the score itself, and the program holds every tour: then CBC's bound is
-  // one.
-  static bool counts_all(const TourProblem& problem, const FixedRewards& rewards,
-                         const TourProgram& tours) {
-    if (!tours.complete() || rewards.places > 0 || problem.image_limit()) return false;
-    double alone = 0, counted = 0, reachable = 0;
-    for (int v = 0; v < problem.views(); ++v) {
-      alone += problem.score().alone(v);
-      counted += rewards.of_view[v];
+  // The way from start to end alone is a tour: a program without any knows too few arcs.
+  static std::string nothing_found(const IntegerResult& found, const std::string& size) {
+    return std::string(found.infeasible ? ", as the kept arcs connect none (" : " (") + size + ")";
+  }
+
+  void say(const TourProblem& problem, const TourProblem& additive, const FixedRewards& rewards,
+           const TourProgram& tours, const IntegerProgram& program, const IntegerResult& found,
+           const std::vector<int>& best, Search& result) const {
+    const std::string size = size_of(program, found.nodes);
+    if (best.empty()) {
+      result.status = TourStatus::iteration_limit;
+      result.message = "no tour found" + nothing_found(found, size);
+      return;
     }
-    for (const int v : problem.reachable()) reachable += problem.score().alone(v);
-    return alone == problem.score().total() && counted == reachable;
+    result.message =
+        verdict(found.optimal ? "the best tour" : "a tour", additive.score_of(best), found) + size +
+        ")";
+    // The program holds every tour: then CBC's bound is one.
+    if (!tours.complete() || problem.image_limit() || !std::isfinite(found.bound)) return;
+    if (!holds_shortcuts(problem, tours.chosen())) return;
+    if (independent(problem.score(), problem.reachable(), rewards))
+      result.upper_bound = bound_of(rewards, found);
+  }
+
+  void say(const TeamProblem& problem, const TeamProblem& additive, const FixedRewards& rewards,
+           const TeamProgram& team, const IntegerResult& found, const Walks& best,
+           TeamSearch& result) const {
+    const std::string size = size_of(team.program(), found.nodes);
+    if (best.empty()) {
+      result.status = TourStatus::iteration_limit;
+      result.message = "no tours found" + nothing_found(found, size);
+      return;
+    }
+    result.message =
+        verdict(found.optimal ? "the best tours" : "tours", additive.score_of(best), found) + size +
+        ")";
+    // Views that a way passes count for a limit of images as often as they are passed.
+    bool limited = false;
+    for (int t = 0; t < problem.size(); ++t)
+      limited = limited || (problem.tour(t).image_limit() && !problem.tour(t).each_once());
+    if (!team.has_all_arcs() || !team.has_all_shortcuts() || limited) return;
+    if (!std::isfinite(found.bound)) return;
+    if (independent(problem.score(), problem.reachable(), rewards))
+      result.upper_bound = bound_of(rewards, found);
   }
 
   std::int64_t candidates_;
