@@ -10,6 +10,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kMostSystems = 6;         // until the set is given up
+constexpr double kSoft = 1e4;           // scaled: of a bound in a soft step, force per violation
 constexpr double kSystemSolved = 1e-7;  // relative residual of a linear system
 // Scaled: what a bound may be broken by, for rounding; and at a point that is worth drawing.
 constexpr double kBroken = 1e-10, kDrawable = 1e-3;
@@ -28,10 +29,12 @@ std::optional<QuadraticResult> ActiveSet::solve(const QuadraticProgram& problem,
   begin(problem, near);
   for (int k = 1; k <= kMostSystems; ++k) {
     if (options.cancellation && options.cancellation->cancelled()) return {};
-    if (!step()) return {};
+    const bool exact = step();
+    if (!exact && !soft_step()) return {};
     choose_next();
     if (k == 1 && options.early && broken_ <= kDrawable) options.early(scaling_.unscaled_x(x_));
     if (changes_ > 0) continue;
+    if (!exact) return {};
     std::optional<QuadraticResult> found = result(problem, options.tolerance);
     if (found) found->iterations = k;
     return found;
@@ -101,6 +104,46 @@ bool ActiveSet::step() {
     if (fixed_[i]) right(i) = 0.0;
   kkt_.set_up(p_, fixed_, taken_);
   if (!kkt_.factorise(VectorXd::Zero(n + m))) return false;
+  const VectorXd solution = kkt_.solve(right);
+  if (!solution.allFinite() || kkt_.error() > kSystemSolved) return false;
+  x_ += solution.head(n);
+  y_ -= solution.tail(m);
+  return true;
+}
+
+// Towards the bounds of the set, where they cannot all be met: each is pulled at in proportion to
+// what it is missed by. False where the system cannot be solved.
+bool ActiveSet::soft_step() {
+  const int n = p_.variables(), m = p_.rows();
+  fixed_ = always_fixed_;
+  taken_ = kinds_;
+  VectorXd right(n + m), diagonal = VectorXd::Zero(n + m);
+  right.tail(m) = -(p_.jacobian * x_);
+  for (int r = 0; r < m; ++r) {
+    if (kinds_[r] == RowKind::inequality && of_rows_[r] == Hold::none)
+      taken_[r] = RowKind::unbounded;
+    if (taken_[r] == RowKind::unbounded) {
+      right(n + r) = y_(r) = 0.0;
+      continue;
+    }
+    right(n + r) += of_rows_[r] == Hold::upper ? p_.row_upper(r) : p_.row_lower(r);
+    if (taken_[r] == RowKind::equation) continue;
+    diagonal(n + r) = kSoft;  // y = kSoft (bound - A x)
+    right(n + r) -= y_(r) / kSoft;
+  }
+  right.head(n) = p_.jacobian.transpose() * y_ - p_.gradient;
+  right.head(n) -= p_.hessian.selfadjointView<Eigen::Lower>() * x_;
+  for (int i = 0; i < n; ++i) {
+    if (always_fixed_[i]) {
+      right(i) = 0.0;
+    } else if (of_variables_[i] != Hold::none) {
+      const double bound = of_variables_[i] == Hold::lower ? p_.x_lower(i) : p_.x_upper(i);
+      diagonal(i) = kSoft;
+      right(i) += kSoft * (bound - x_(i));
+    }
+  }
+  kkt_.set_up(p_, fixed_, taken_);
+  if (!kkt_.factorise(diagonal)) return false;
   const VectorXd solution = kkt_.solve(right);
   if (!solution.allFinite() || kkt_.error() > kSystemSolved) return false;
   x_ += solution.head(n);

@@ -7,6 +7,10 @@
 // the set stays as it is: the point is then optimal. This is Newton's method on the conditions of
 // optimality. Near an earlier solution it takes one to three systems, where an interior point takes
 // ten or more, and far from one it may never settle: then nothing is returned.
+//
+// A set may ask for more than there are variables, when a keyframe between bounds that all pushed
+// was moved. Its bounds are then asked for softly, by a quadratic penalty: those that pull are let
+// go by their signs as before, and the next system is exact again.
 #pragma once
 
 #include <optional>
@@ -22,8 +26,7 @@ namespace lapwing {
 class ActiveSet {
  public:
   // `near` has a number for every variable and row. The result is optimal, with residuals within
-  // the tolerance of the options; nothing where the set does not settle, where its equations
-  // contradict each other, or on cancellation.
+  // the tolerance of the options; nothing where the set does not settle, or on cancellation.
   std::optional<QuadraticResult> solve(const QuadraticProgram& problem,
                                        const InteriorPointOptions& options,
                                        const QuadraticWarmStart& near);
@@ -33,6 +36,7 @@ class ActiveSet {
   void begin(const QuadraticProgram& problem, const QuadraticWarmStart& near);
   void choose_first(const Eigen::VectorXd& bound_multipliers);
   bool step();
+  bool soft_step();
   void choose_next();
   std::optional<QuadraticResult> result(const QuadraticProgram& problem, double tolerance) const;
 

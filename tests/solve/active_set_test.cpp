@@ -83,6 +83,52 @@ TEST(ActiveSet, AnswersAsTheInteriorPointDoes) {
   EXPECT_GT(held, 100);
 }
 
+// Bounds that all pushed before cannot all be met once the sum is smaller: those that must are let
+// go.
+TEST(ActiveSet, LetsGoOfBoundsThatCannotAllBeMet) {
+  const auto program = [](double sum) {
+    return dense_program(2 * MatrixXd::Identity(3, 3), numbers({-10, -9, -8}), MatrixXd::Ones(1, 3),
+                         numbers({sum}), numbers({sum}), numbers({-1, -1, -1}), numbers({1, 1, 1}));
+  };
+  const QuadraticWarmStart all_held{numbers({1, 1, 1}), numbers({0}), numbers({-8, -7, -6})};
+  ActiveSet sets;
+  const auto found = sets.solve(program(2.5), {}, all_held);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR((found->x - numbers({1, 1, 0.5})).norm(), 0, 1e-8);
+  EXPECT_NEAR(found->row_multipliers(0), -7, 1e-7) << "2 x - 8 of the one that is free";
+  EXPECT_NEAR(found->bound_multipliers(0), -1, 1e-7);
+  EXPECT_FALSE(sets.solve(program(3.5), {}, all_held)) << "more than the bounds allow";
+}
+
+// The same at random: equations move by more than the variables that are free can follow.
+TEST(ActiveSet, AnswersWhereEquationsMove) {
+  Random random(8);
+  InteriorPoint interior_point;
+  ActiveSet sets;
+  int possible = 0, answered = 0;
+  for (int round = 0; round < 200; ++round) {
+    QuadraticProgram program = random_program(random);
+    program.gradient *= 10;  // most variables are held
+    const QuadraticResult before = interior_point.solve(program);
+    if (before.status != QuadraticStatus::optimal) continue;
+    for (int r = 0; r < 3; ++r)
+      program.row_lower(r) = program.row_upper(r) = program.row_lower(r) + 0.2 * random.normal();
+    const QuadraticResult wanted = interior_point.solve(program);
+    if (wanted.status != QuadraticStatus::optimal) continue;
+    ++possible;
+    const auto found = sets.solve(program, {}, start_at(before));
+    if (!found) continue;
+    ++answered;
+    EXPECT_NEAR(program.objective(found->x), program.objective(wanted.x),
+                1e-8 * (1 + std::abs(program.objective(wanted.x))))
+        << round;
+    EXPECT_TRUE(residuals(program, found->x, found->row_multipliers, found->bound_multipliers)
+                    .within(1e-9));
+  }
+  EXPECT_GT(possible, 150);
+  EXPECT_GT(answered, 0.8 * possible) << possible;
+}
+
 // The first point is drawn at once, unless it breaks bounds that were not taken yet.
 TEST(ActiveSet, GivesAnEarlyPointOnlyWithinItsBounds) {
   const auto program = [](double along_x) {
