@@ -59,6 +59,8 @@ Value take_solve_argument(lua_State* state, int index, const TrajectoryProblem& 
     const std::string why = unlike(plan, problem, run_of(state).kind);
     if (!why.empty()) throw InputError(given.origin(), "solve: cannot begin from it: " + why);
     request.warm_start = WarmStart{problem.point_of(plan.trajectory), {}, {}};
+    // A problem that is only stated makes no plan that would tell; the digest takes milliseconds.
+    if (run_of(state).stating) return {};
     Value started_from = Value::map();
     started_from.set("mission", plan.mission);
     started_from.set("sha256", digest_of(to_value(plan)).at("sha256"));
