@@ -15,7 +15,7 @@ namespace {
 // Options of the first flight, of candidates, which the views replace, and of several batteries:
 // the rest is one tour.
 const std::set<std::string> kLeftOut{
-    "scene",      "scene_seed", "input",         "ground",  "unit",   "up",         "prior",
+    "scene",      "scene_seed", "scene_districts", "input",  "ground", "unit", "up", "prior",
     "flights",    "noise",      "exploration",   "utility", "folder", "images",     "colmap",
     "cloud",      "terrain",    "surface",       "rounds",  "start",  "candidates", "motions",
     "resolution", "passing",    "views",         "region",  "finish", "batteries",  "drones",

@@ -4,6 +4,7 @@
 
 #include <lua.hpp>
 
+#include "framework/core/log.h"
 #include "framework/core/units.h"
 #include "framework/geometry/mesh_file.h"
 #include "framework/map/map_file.h"
@@ -105,6 +106,28 @@ Pinhole pinhole_of(const Parameters& given) {
   const int height = static_cast<int>(given.integer("height"));
   const double focal = given.number("focal");
   return {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
+}
+
+void add_surface_method(ParameterTable& table) {
+  table.choice("method", "auto", {"auto", "poisson", "local"},
+               "one field through all points, or each place from the points around it; auto: "
+               "poisson for up to 250,000 points");
+}
+
+TriangleMesh surface_of(const MissionRun& run, const std::vector<FusedPoint>& points,
+                        const Parameters& given) {
+  constexpr std::size_t kMostAtOnce = 250000;
+  const std::string method = given.text("method");
+  const bool local = method == "local" || (method == "auto" && points.size() > kMostAtOnce);
+  const std::string what = "surface through " + std::to_string(points.size()) + " points";
+  logging::info(what + (local ? ", local" : ", poisson"));
+  if (run.settings.progress) run.settings.progress->report(-1, what);
+  return surface_from_points(points,
+                             {.cell = given.number("cell"),
+                              .trim = given.number("trim"),
+                              .method = local ? SurfaceMethod::local : SurfaceMethod::poisson,
+                              .threads = run.settings.threads},
+                             run.settings.cancellation);
 }
 
 namespace {
@@ -338,6 +361,7 @@ ParameterTable reconstruct_table() {
   ParameterTable table;
   table.number("cell", 0.4, "m", "edge of the cells in which triangles are made", above(0))
       .number("trim", 0.8, "m", "surface farther from every point is left out", above(0));
+  add_surface_method(table);
   return table;
 }
 
@@ -349,13 +373,9 @@ int reconstruct(lua_State* state) {
   const Sandbox::ClockPause pause(Sandbox::of(state));
   std::vector<FusedPoint> points = prior.fusion->points();
   points.insert(points.end(), prior.earlier.begin(), prior.earlier.end());
-  const MissionRun& run = run_of(state);
-  if (run.settings.progress)
-    run.settings.progress->report(-1,
-                                  "surface through " + std::to_string(points.size()) + " points");
   TriangleMesh mesh;
   try {
-    mesh = surface_from_points(points, {given.number("cell"), given.number("trim")});
+    mesh = surface_of(run_of(state), points, given);
   } catch (const InputError& error) {
     throw InputError(given.origin(), std::string("no mesh can be made of what the first flight "
                                                  "saw: ") +

@@ -122,6 +122,12 @@ void open_graph_type(lua_State* state);
 // The plugin that a field of the table names.
 PluginChoice choice_at(lua_State* state, int table, const char* key);
 
+// The parameter `method` of what makes a mesh, and the mesh through points that its `cell`, `trim`
+// and `method` describe. InputError and Cancelled as surface_from_points.
+void add_surface_method(ParameterTable& table);
+TriangleMesh surface_of(const MissionRun& run, const std::vector<FusedPoint>& points,
+                        const Parameters& given);
+
 // Arguments that several of them take: {position =, yaw =, pitch =}; {lower =, upper =};
 // {width =, height =, focal =}.
 ParameterTable viewpoint_table();

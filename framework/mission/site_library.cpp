@@ -208,13 +208,14 @@ ParameterTable add_site_table() {
               "what is free: open sky above the surface, lines from scanners to points, or both")
       .required_number("ceiling", "m", "height up to which open sky is free, world")
       .number("range", 60, "m", "longest line from a scanner", above(0));
+  add_surface_method(table);
   return table;
 }
 
-TriangleMesh mesh_of_site(const Site& site, const Parameters& given) {
+TriangleMesh mesh_of_site(const MissionRun& run, const Site& site, const Parameters& given) {
   if (site.mesh) return *site.mesh;
   try {
-    return surface_from_points(site.points, {given.number("cell"), given.number("trim")});
+    return surface_of(run, site.points, given);
   } catch (const InputError& error) {
     throw InputError(given.origin(), "no mesh can be made of '" + site.name + "': " + error.what());
   }
@@ -234,7 +235,7 @@ int add_site(lua_State* state) {
   if (run.settings.progress)
     run.settings.progress->report(
         -1, "surface through " + std::to_string(site.points.size()) + " points");
-  TriangleMesh mesh = mesh_of_site(site, given);
+  TriangleMesh mesh = mesh_of_site(run, site, given);
   const std::string& free = given.text("free");
   try {
     map_site(site, mesh,

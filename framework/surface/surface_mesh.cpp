@@ -7,6 +7,8 @@
 #include <unordered_map>
 
 #include "framework/core/error.h"
+#include "framework/core/parallel.h"
+#include "framework/surface/local_field.h"
 #include "framework/surface/poisson_field.h"
 
 namespace lapwing {
@@ -81,10 +83,21 @@ std::vector<std::int64_t> cells_near(const std::vector<FusedPoint>& points, cons
   return cells;
 }
 
+// The values of a field at the corners of cells.
+struct CornerValues {
+  std::vector<std::int64_t> corners;  // in order
+  std::vector<double> values;
+
+  double at(std::int64_t corner) const {
+    const auto found = std::lower_bound(corners.begin(), corners.end(), corner);
+    return values[static_cast<std::size_t>(found - corners.begin())];
+  }
+};
+
 // Cuts cells into six tetrahedra each and those into triangles: no case is ambiguous.
 class Cutter {
  public:
-  Cutter(const Grid& grid, const PoissonField& field) : grid_(grid), field_(field) {}
+  Cutter(const Grid& grid, const CornerValues& field) : grid_(grid), field_(field) {}
 
   void cut(std::int64_t cell) {
     // Around the diagonal from corner 0 to corner 7; the bits of a number are x, y, z.
@@ -92,11 +105,17 @@ class Cutter {
                                               {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
     const Vector3i base = grid_.place(cell);
     std::int64_t corners[8];
+    double values[8];
+    bool behind = false, before = false;
     for (int k = 0; k < 8; ++k) {
       corners[k] = grid_.number(base + Vector3i(k & 1, k >> 1 & 1, k >> 2));
+      values[k] = field_.at(corners[k]);
+      (values[k] < 0 ? behind : before) = true;
     }
+    if (!behind || !before) return;
     for (const auto& t : kTetrahedra) {
-      const std::int64_t four[4] = {corners[t[0]], corners[t[1]], corners[t[2]], corners[t[3]]};
+      Corner four[4];
+      for (int i = 0; i < 4; ++i) four[i] = {corners[t[i]], values[t[i]]};
       tetrahedron(four);
     }
   }
@@ -104,25 +123,19 @@ class Cutter {
   TriangleMesh take() { return std::move(mesh_); }
 
  private:
-  double value(std::int64_t corner) {
-    const auto [it, fresh] = values_.emplace(corner, 0.0);
-    if (fresh) {
-      const Vector3d p = grid_.corner(corner);
-      const double v = field_.value(p.x(), p.y(), p.z());
-      it->second = v == 0 ? 1e-300 : v;  // no corner lies on the surface
-    }
-    return it->second;
-  }
+  struct Corner {
+    std::int64_t number;
+    double value;
+  };
 
-  std::int32_t crossing(std::int64_t a, std::int64_t b) {
-    if (a > b) std::swap(a, b);
-    const auto [it, fresh] =
-        crossings_.emplace(std::pair{a, b}, static_cast<std::int32_t>(mesh_.vertices.size()));
-    if (fresh) {
-      const double va = value(a), vb = value(b);
-      mesh_.vertices.push_back(grid_.corner(a) +
-                               va / (va - vb) * (grid_.corner(b) - grid_.corner(a)));
-    }
+  std::int32_t crossing(Corner a, Corner b) {
+    if (a.number > b.number) std::swap(a, b);
+    const auto [it, fresh] = crossings_.emplace(std::pair{a.number, b.number},
+                                                static_cast<std::int32_t>(mesh_.vertices.size()));
+    if (fresh)
+      mesh_.vertices.push_back(grid_.corner(a.number) +
+                               a.value / (a.value - b.value) *
+                                   (grid_.corner(b.number) - grid_.corner(a.number)));
     return it->second;
   }
 
@@ -135,19 +148,19 @@ class Cutter {
     mesh_.triangles.push_back({a, b, c});
   }
 
-  void tetrahedron(const std::int64_t (&corner)[4]) {
-    std::int64_t behind[4], before[4];
+  void tetrahedron(const Corner (&corner)[4]) {
+    Corner behind[4], before[4];
     int n = 0, m = 0;
     Vector3d outwards = Vector3d::Zero();
-    for (const std::int64_t c : corner) {
-      if (value(c) < 0)
+    for (const Corner& c : corner) {
+      if (c.value < 0)
         behind[n++] = c;
       else
         before[m++] = c;
     }
     if (n == 0 || m == 0) return;
-    for (int i = 0; i < m; ++i) outwards += grid_.corner(before[i]) / m;
-    for (int i = 0; i < n; ++i) outwards -= grid_.corner(behind[i]) / n;
+    for (int i = 0; i < m; ++i) outwards += grid_.corner(before[i].number) / m;
+    for (int i = 0; i < n; ++i) outwards -= grid_.corner(behind[i].number) / n;
     if (n == 2) {
       const std::int32_t a = crossing(behind[0], before[0]), b = crossing(behind[0], before[1]);
       const std::int32_t c = crossing(behind[1], before[1]), d = crossing(behind[1], before[0]);
@@ -155,8 +168,8 @@ class Cutter {
       triangle(a, c, d, outwards);
       return;
     }
-    const std::int64_t tip = n == 1 ? behind[0] : before[0];
-    const std::int64_t* others = n == 1 ? before : behind;
+    const Corner& tip = n == 1 ? behind[0] : before[0];
+    const Corner* others = n == 1 ? before : behind;
     triangle(crossing(tip, others[0]), crossing(tip, others[1]), crossing(tip, others[2]),
              outwards);
   }
@@ -170,8 +183,7 @@ class Cutter {
   };
 
   const Grid& grid_;
-  const PoissonField& field_;
-  std::unordered_map<std::int64_t, double> values_;
+  const CornerValues& field_;
   std::unordered_map<std::pair<std::int64_t, std::int64_t>, std::int32_t, PairHash> crossings_;
   TriangleMesh mesh_;
 };
@@ -219,10 +231,68 @@ std::vector<PoissonField::Sample> samples_of(const std::vector<FusedPoint>& poin
   return samples;
 }
 
+// The corners of cells, each once.
+std::vector<std::int64_t> corners_of(const std::vector<std::int64_t>& cells, const Grid& grid) {
+  std::vector<std::int64_t> corners;
+  // Layer by layer, so that few are held twice.
+  const std::int64_t layer = grid.number({0, 0, 1});
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Vector3i base = grid.place(cells[i]);
+    for (int k = 0; k < 8; ++k)
+      corners.push_back(grid.number(base + Vector3i(k & 1, k >> 1 & 1, k >> 2)));
+    if (i + 1 < cells.size() && cells[i + 1] / layer == cells[i] / layer) continue;
+    std::sort(corners.begin() + static_cast<std::ptrdiff_t>(kept), corners.end());
+    corners.erase(
+        std::unique(corners.begin() + static_cast<std::ptrdiff_t>(kept), corners.end()),
+        corners.end());
+    // Of the next layer's corners some may be there already.
+    const std::int64_t above = cells[i] / layer * layer + layer;
+    kept = static_cast<std::size_t>(
+        std::lower_bound(corners.begin(), corners.end(), above) - corners.begin());
+  }
+  corners.shrink_to_fit();
+  return corners;
+}
+
+double off_zero(double value) {
+  return value == 0 ? 1e-300 : value;  // no corner lies on the surface
+}
+
+CornerValues field_at_corners(const std::vector<FusedPoint>& points,
+                              const std::vector<std::int64_t>& cells, const Grid& grid,
+                              const SurfaceOptions& options,
+                              const CancellationToken* cancellation) {
+  constexpr std::size_t kAtOnce = 4096;
+  constexpr double kReach = 3;  // cells; exp(-9) of the weight is left
+  CornerValues field{corners_of(cells, grid), {}};
+  field.values.resize(field.corners.size());
+  if (options.method == SurfaceMethod::poisson) {
+    const PoissonField poisson(samples_of(points));
+    for (std::size_t i = 0; i < field.corners.size(); ++i) {
+      const Vector3d p = grid.corner(field.corners[i]);
+      field.values[i] = off_zero(poisson.value(p.x(), p.y(), p.z()));
+    }
+    return field;
+  }
+  const LocalField local(points, options.cell,
+                         std::max(kReach * options.cell, options.trim + 2 * options.cell));
+  parallel_for((field.corners.size() + kAtOnce - 1) / kAtOnce, options.threads,
+               [&](std::size_t part) {
+                 if (cancellation && cancellation->cancelled()) return;
+                 const std::size_t end = std::min(field.corners.size(), (part + 1) * kAtOnce);
+                 for (std::size_t i = part * kAtOnce; i < end; ++i)
+                   field.values[i] = off_zero(local.value(grid.corner(field.corners[i])));
+               });
+  if (cancellation && cancellation->cancelled()) throw Cancelled();
+  return field;
+}
+
 }  // namespace
 
 TriangleMesh surface_from_points(const std::vector<FusedPoint>& points,
-                                 const SurfaceOptions& options) {
+                                 const SurfaceOptions& options,
+                                 const CancellationToken* cancellation) {
   check(points, options);
   if (!span_a_volume(points)) {
     throw InputError("surface from points: all points lie nearly in one plane");
@@ -234,7 +304,7 @@ TriangleMesh surface_from_points(const std::vector<FusedPoint>& points,
   box.extend(box.max() + room);
   const Grid grid(box, options.cell);
   const std::vector<std::int64_t> cells = cells_near(points, grid, options);
-  const PoissonField field(samples_of(points));
+  const CornerValues field = field_at_corners(points, cells, grid, options, cancellation);
   Cutter cutter(grid, field);
   for (const std::int64_t cell : cells) cutter.cut(cell);
   TriangleMesh mesh = cutter.take();

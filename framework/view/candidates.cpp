@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/view/candidates.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -39,36 +40,74 @@ void check(const CandidateSettings& s) {
     refuse("the largest number must be at least 1 and not below the smallest");
 }
 
-// Points by place, so that near ones are found without looking at all.
+// Points of a box by place, so that near ones are found without looking at all. The cells are one
+// array where the box has few enough of them, and a hash table otherwise.
 class Grid {
  public:
-  explicit Grid(double edge) : edge_(edge) {}
+  Grid(double edge, const Eigen::AlignedBox3d& box) : edge_(edge), low_(box.min()) {
+    double cells = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      counts_[axis] = std::floor(box.sizes()[axis] / edge) + 1;
+      cells *= counts_[axis];
+    }
+    if (cells <= kMostCells) first_.assign(static_cast<std::size_t>(cells), -1);
+  }
 
-  void add(const Vector3d& p, int index) { cells_[cell(p, 0, 0, 0)].push_back(index); }
+  void add(const Vector3d& p, int index) {
+    int& first = first_.empty() ? sparse_.try_emplace(key(cell(p)), -1).first->second
+                                : first_[place(cell(p))];
+    entries_.push_back({index, first});
+    first = static_cast<int>(entries_.size()) - 1;
+  }
 
   // Whether `holds` is true of any that may be within an edge's length.
   template <class Holds>
   bool any_near(const Vector3d& p, Holds holds) const {
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z)
-          if (const auto found = cells_.find(cell(p, x, y, z)); found != cells_.end())
-            for (const int index : found->second)
-              if (holds(index)) return true;
+    const std::array<double, 3> middle = cell(p);
+    std::array<double, 3> at;
+    for (at[2] = middle[2] - 1; at[2] <= middle[2] + 1; ++at[2])
+      for (at[1] = middle[1] - 1; at[1] <= middle[1] + 1; ++at[1])
+        for (at[0] = middle[0] - 1; at[0] <= middle[0] + 1; ++at[0])
+          for (int entry = first_in(at); entry >= 0; entry = entries_[entry].next)
+            if (holds(entries_[entry].index)) return true;
     return false;
   }
 
  private:
-  std::uint64_t cell(const Vector3d& p, int x, int y, int z) const {
-    const auto part = [&](double v, int offset) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / edge_)) + offset) &
-             0x1fffff;
+  struct Entry {
+    int index, next;
+  };
+  static constexpr double kMostCells = 1 << 24;
+
+  std::array<double, 3> cell(const Vector3d& p) const {
+    return {std::floor((p.x() - low_.x()) / edge_), std::floor((p.y() - low_.y()) / edge_),
+            std::floor((p.z() - low_.z()) / edge_)};
+  }
+  std::size_t place(const std::array<double, 3>& at) const {
+    return static_cast<std::size_t>((at[2] * counts_[1] + at[1]) * counts_[0] + at[0]);
+  }
+  static std::uint64_t key(const std::array<double, 3>& at) {
+    const auto part = [](double v) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(v)) & 0x1fffff;
     };
-    return part(p.x(), x) | part(p.y(), y) << 21 | part(p.z(), z) << 42;
+    return part(at[0]) | part(at[1]) << 21 | part(at[2]) << 42;
+  }
+  int first_in(const std::array<double, 3>& at) const {
+    if (first_.empty()) {
+      const auto found = sparse_.find(key(at));
+      return found == sparse_.end() ? -1 : found->second;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(at[axis] >= 0 && at[axis] < counts_[axis])) return -1;
+    return first_[place(at)];
   }
 
   double edge_;
-  std::unordered_map<std::uint64_t, std::vector<int>> cells_;
+  Vector3d low_;
+  double counts_[3];
+  std::vector<int> first_;  // entry of each cell, x first, then y; -1: none
+  std::unordered_map<std::uint64_t, int> sparse_;
+  std::vector<Entry> entries_;
 };
 
 class Generator {
@@ -113,7 +152,7 @@ class Generator {
   bool grow(double step) {
     places_.clear();
     made_.blocked = made_.crowded = 0;
-    Grid grid(s_.distance_apart);
+    Grid grid(s_.distance_apart, s_.allowed);
     std::vector<int> front;
     const auto keep = [&](const Vector3d& p) {
       front.push_back(static_cast<int>(places_.size()));
@@ -180,7 +219,7 @@ class Generator {
     left.clear();
     double widest = 0;
     for (const Vector3d& p : places_) widest = std::max(widest, times * step_at(p, step));
-    Grid grid(widest);
+    Grid grid(widest, s_.allowed);
     for (const int k : order) {
       const Vector3d& p = places_[static_cast<std::size_t>(k)];
       const double apart = times * step_at(p, step);

@@ -1,7 +1,8 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Makes the scene of the options `scene` and `scene_seed` (scripts/scene).
+-- Makes the scene of the options `scene`, `scene_seed` and, if the mission kind has
+-- it, `scene_districts` (scripts/scene).
 local SCENES = "arcade, church, courtyard, district, downtown, grasslands, office, street, "
-               .. "suburb or towers"
+               .. "suburb, towers or town"
 
 return function(run)
   local o = run.options
@@ -17,5 +18,8 @@ return function(run)
     run:fail("scene", string.format("'%s' is a part of scenes, not a scene: expected %s", o.scene,
                                     SCENES))
   end
-  return make { seed = o.scene_seed }
+  if o.scene_districts and o.scene ~= "town" then
+    run:fail("scene_districts", string.format("is for the scene 'town', not for '%s'", o.scene))
+  end
+  return make { seed = o.scene_seed, districts = o.scene_districts }
 end

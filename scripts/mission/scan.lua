@@ -13,6 +13,7 @@ local exploration = require "mission.scan_exploration"
 local first = require "mission.scan_first"
 local fleet = require "mission.scan_fleet"
 local images = require "mission.scan_images"
+local meshing = require "mission.scan_meshing"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
 local polygons = require "mission.scan_polygons"
@@ -175,7 +176,7 @@ local function planned(run)
       first.look(run, known, surface, plan.views)
       for _, view in ipairs(starts and plan.views or {}) do starts[#starts + 1] = view end
       begin("mesh")
-      known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
+      known:reconstruct(meshing(run))
     end
   end
   return plan

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- An exploration in place of the first flight of a scan (thesis 6.1): the drone maps an unknown
 -- place, and then scans with this map and its mesh, in one visit.
+local meshing = require "mission.scan_meshing"
 local patterns = require "mission.scan_patterns"
 
 local M = {}
@@ -123,7 +124,7 @@ function M.knowledge(run, surface, region, room, seconds, vehicle)
   known:look { surface = surface, poses = done.views, range = e.range, noise = o.noise,
                camera = { width = WIDTH, height = HEIGHT,
                           focal = WIDTH / 2 / math.tan(math.rad(VIEW_DEG) / 2) } }
-  known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
+  known:reconstruct(meshing(run))
   local poses = {}
   for k = #done.views, 1, -1 do poses[#poses + 1] = done.views[k] end
   -- The tour begins where the exploration ended, with a look at what is to be scanned.

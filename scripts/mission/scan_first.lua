@@ -3,6 +3,7 @@
 -- simulator uses the scene itself.
 local exploration = require "mission.scan_exploration"
 local images = require "mission.scan_images"
+local meshing = require "mission.scan_meshing"
 local patterns = require "mission.scan_patterns"
 local site = require "mission.scan_site"
 local space = require "mission.scan_space"
@@ -205,7 +206,7 @@ function M.knowledge(run, seconds, vehicle, air)
     open_air(run, known, surface, poses, air)
     M.look(run, known, surface, poses)
     run:phase("prior mesh")
-    known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
+    known:reconstruct(meshing(run))
   end
   return known, poses, surface
 end

@@ -1,6 +1,8 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Scans whose first flight was real: depth images with poses, or a COLMAP model, in place of a
 -- simulated flight. What they measured becomes map and mesh by the same code.
+local meshing = require "mission.scan_meshing"
+
 local M = {}
 
 local PER_VOXEL = 40          -- voxels that the median depth has, where no resolution is stated
@@ -185,7 +187,7 @@ function M.knowledge(run, known, range, allowed, open_air)
   if open_air then open_air(known) end
   known:take_images { images = M.of(run), range = range }
   run:phase("prior mesh")
-  known:reconstruct { cell = o.surface.cell, trim = o.surface.trim }
+  known:reconstruct(meshing(run))
   return starts(run, known, allowed)
 end
 

@@ -52,6 +52,8 @@ local DECLARATIONS = {
   { name = "scene", type = "text",
     summary = "scene of scripts/scene, in which the first flight takes place" },
   integer("scene_seed", 1, 0, 9007199254740991, "seed of the scene"),
+  integer("scene_districts", nil, 1, 16,
+          "districts along each side of the scene `town`, of 126 m each; absent: 2"),
   { name = "input", type = "text", summary = "mesh file, over which the first flight takes place; "
     .. "point cloud of `scan.of_cloud`, or raster of heights of `scan.of_terrain`" },
   { name = "ground", type = "boolean", default = false,
@@ -119,6 +121,9 @@ local DECLARATIONS = {
     number("spacing", 0.4, "m", "distance between fused points", POSITIVE),
     number("cell", 0.5, "m", "cell of the reconstruction", POSITIVE),
     number("trim", 1, "m", "surface farther than this from every point is left out", POSITIVE),
+    { name = "method", type = "choice", default = "auto", choices = { "auto", "poisson", "local" },
+      summary = "one field through all points, or each place from the points around it, for large "
+      .. "regions; auto: poisson for up to 250,000 points" },
     integer("stride", 2, 1, 64, "fuse every n-th pixel") } },
   { name = "candidates", type = "table", summary = "candidate views", table = {
     integer("most", 2000, 1, 100000, "largest number of candidates"),

@@ -163,7 +163,8 @@ function M.add(run, known, safe_height)
                                           .. "all air is said to be free: raise it",
                                           site.upper[3], safe_height))
   end
-  known:add_site { site = site, cell = o.surface.cell, trim = o.surface.trim, free = free_by(run),
+  known:add_site { site = site, cell = o.surface.cell, trim = o.surface.trim,
+                   method = o.surface.method, free = free_by(run),
                    ceiling = safe_height, range = LONGEST }
 end
 

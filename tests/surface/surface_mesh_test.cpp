@@ -89,9 +89,18 @@ TEST(PointFusion, RefusesWhatIsNoImage) {
   EXPECT_THROW(fusion.add(image), InputError);
 }
 
-TEST(SurfaceMesh, OfABallIsABall) {
+class SurfaceMesh : public testing::TestWithParam<SurfaceMethod> {};
+
+INSTANTIATE_TEST_SUITE_P(Methods, SurfaceMesh,
+                         testing::Values(SurfaceMethod::poisson, SurfaceMethod::local),
+                         [](const auto& entry) {
+                           return entry.param == SurfaceMethod::local ? "local" : "poisson";
+                         });
+
+TEST_P(SurfaceMesh, OfABallIsABall) {
   const auto points = fused_ball(0.2, {0.2, 0.02}).points();
-  const TriangleMesh mesh = surface_from_points(points, {.cell = 0.15, .trim = 0.5});
+  const SurfaceOptions options{.cell = 0.15, .trim = 0.5, .method = GetParam()};
+  const TriangleMesh mesh = surface_from_points(points, options);
   double area = 0, volume = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     area += mesh.area(i);
@@ -105,12 +114,14 @@ TEST(SurfaceMesh, OfABallIsABall) {
   EXPECT_NEAR(area, 4 * std::numbers::pi * 4, 3);
   // Closed, and its triangles turn outwards.
   EXPECT_NEAR(volume, 4.0 / 3 * std::numbers::pi * 8, 2);
-  const TriangleMesh again = surface_from_points(points, {.cell = 0.15, .trim = 0.5});
+  SurfaceOptions two = options;
+  two.threads = 2;
+  const TriangleMesh again = surface_from_points(points, two);
   EXPECT_EQ(again.vertices, mesh.vertices);
   EXPECT_EQ(again.triangles, mesh.triangles);
 }
 
-TEST(SurfaceMesh, OfRealPlacesIsNearThem) {
+TEST_P(SurfaceMesh, OfRealPlacesIsNearThem) {
   // A house on its ground, almost all of it flat.
   MeshBuilder builder;
   builder.quad({-12, -12, 0}, {12, -12, 0}, {12, 12, 0}, {-12, 12, 0});
@@ -123,7 +134,8 @@ TEST(SurfaceMesh, OfRealPlacesIsNearThem) {
                                   around + std::numbers::pi, -0.55);
     fusion.add({pose, render_depth(scene, pose, kMeshCamera, 30, 2)});
   }
-  const TriangleMesh mesh = surface_from_points(fusion.points(), {.cell = 0.4, .trim = 0.8});
+  const TriangleMesh mesh = surface_from_points(
+      fusion.points(), {.cell = 0.4, .trim = 0.8, .method = GetParam()});
   double off = 0, count = 0, reconstructed = 0;
   for (const Vector3d& v : mesh.vertices) {
     const double distance = scene.nearest(v, 5)->distance;
@@ -140,18 +152,19 @@ TEST(SurfaceMesh, OfRealPlacesIsNearThem) {
   EXPECT_EQ(reconstructed, 6);
 }
 
-TEST(SurfaceMesh, EndsWhereNothingWasSeen) {
+TEST_P(SurfaceMesh, EndsWhereNothingWasSeen) {
   // Half a ball: the other half is not made up.
   std::vector<FusedPoint> half;
   for (const FusedPoint& p : fused_ball(0.2, {0, 0}).points()) {
     if (p.position.z() > 3) half.push_back(p);
   }
-  const TriangleMesh mesh = surface_from_points(half, {.cell = 0.15, .trim = 0.4});
+  const TriangleMesh mesh = surface_from_points(
+      half, {.cell = 0.15, .trim = 0.4, .method = GetParam()});
   EXPECT_GT(mesh.triangles.size(), 1000u);
   EXPECT_GT(mesh.bounds().min().z(), 3 - 0.7);
 }
 
-TEST(SurfaceMesh, RefusesPointsWithoutASurface) {
+TEST_P(SurfaceMesh, RefusesPointsWithoutASurface) {
   std::vector<FusedPoint> points(5);
   EXPECT_THROW(surface_from_points(points, {}), InputError);
   points.assign(100, {});
