@@ -58,7 +58,8 @@ std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {
 
 std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun& run,
                                                 const Parameters& given,
-                                                const PluginChoice& information) {
+                                                const PluginChoice& information,
+                                                const Eigen::AlignedBox3d* within) {
   work.information = run.settings.registry->create<ViewInformation>(
       information.type, information.parameters, "information");
   SightSettings sight;
@@ -67,6 +68,7 @@ std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun
   if (given.has("usable_range")) sight.usable_range = given.number("usable_range");
   sight.usable_incidence = radians(given.number("usable_incidence_deg"));
   sight.region = region_of(given.table("region"));
+  if (within) sight.within = *within;
   work.prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
   work.visible = std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
   const TriangleMesh& known = work.prior->mesh->mesh();
@@ -81,6 +83,11 @@ std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun
 }
 
 namespace {
+
+const Vehicle& vehicle_argument(lua_State* state, int table) {
+  lua_getfield(state, table, "vehicle");
+  return object_argument<Vehicle>(state, -1, kVehicleType);
+}
 
 ParameterTable candidates_table() {
   const CandidateSettings standard;
@@ -265,11 +272,6 @@ std::vector<double> seconds_of_motions(const ScanWork& work, int threads,
   return seconds;
 }
 
-const Vehicle& vehicle_argument(lua_State* state, int table) {
-  lua_getfield(state, table, "vehicle");
-  return object_argument<Vehicle>(state, -1, kVehicleType);
-}
-
 constexpr BoundField kGraphObjects[] = {
     {"prior", "lapwing.prior", "known map and mesh"},
     {"vehicle", "lapwing.vehicle", "vehicle"},
@@ -277,58 +279,12 @@ constexpr BoundField kGraphObjects[] = {
     {"information", "lapwing.information", "information of a view about a voxel"},
     {"planner", "lapwing.path_planner", "planner of paths around obstacles"}};
 
-// run:scan_graph{prior =, vehicle =, region =, allowed =, starts =, ...}
-int scan_graph_of_run(lua_State* state) {
-  MissionRun& run = run_of(state);
-  const Parameters given = table_argument(state, 2, graph_table(), "scan_graph", kGraphObjects);
-  lua_getfield(state, 2, "prior");
-  auto work = std::make_shared<ScanWork>();
-  work->prior = object_argument<PriorObject>(state, -1, kPriorType).prior;
-  if (!work->prior->mesh) throw InputError("scan_graph: the prior has no mesh; reconstruct it");
-  work->vehicle = vehicle_argument(state, 2);
-  work->rules = rules_argument(state, 2);
-  const Registry& registry = *run.settings.registry;
-  const PluginChoice information = choice_at(state, 2, "information");
-  const PluginChoice planner = choice_at(state, 2, "planner");
-  ScanGraphSettings settings = graph_settings(given, run);
-  const auto path_planner =
-      registry.create<PathPlanner>(planner.type, planner.parameters, "planner");
-  settings.motions.planner = path_planner.get();
-  settings.motions.search_near = !work->rules->empty();
-  const Parameters& flight = given.table("flight");
-  work->flight = {.speed = flight.number("speed"),
-                  .view_speed = flight.number("view_speed"),
-                  .slow_within = flight.number("slow_within"),
-                  .lookahead = flight.number("lookahead"),
-                  .acceleration = flight.number("acceleration"),
-                  .stop = true,
-                  .pause = flight.number("pause")};
-  work->view_seconds = flight.number("view_seconds");
-  if (flight.boolean("smooth"))
-    work->smooth = {work->flight.speed, work->flight.acceleration, flight.number("stray")};
-  const Sandbox::ClockPause pause(Sandbox::of(state));
-  const auto coarser = make_sight(*work, run, given, information);
-  const double mesh_room = given.number("mesh_room");
-  const auto space =
-      ruled(space_of(*work->prior, mesh_room), *work->rules, work->prior->mapping.map);
-  const std::vector<Viewpoint> starts =
-      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
-                  given.boolean("loops"), *space, settings.candidates, *work->rules);
-  begin_planning(run);
-  work->allowed = settings.candidates.allowed;
-  work->body = settings.candidates.half;
-  make_graph(*work, *space, *coarser, starts, settings, run);
-  if (given.boolean("each"))
-    work->graph.score = std::make_shared<const ViewScore>(
-        additive_score(std::vector<double>(work->graph.candidates.viewpoints.size(), 1)));
-  if (!work->rules->empty())
-    work->hidden = hidden_parts(*work, *space_of(*work->prior, mesh_room), *coarser, starts,
-                                settings, work->forbidden, run.settings.cancellation);
-  work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
-  const ScanGraph& graph = work->graph;
-  work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);
-  if (!given.boolean("fixed")) work->home = work->islands.best_start(graph.candidates.given);
-  logging::info("candidates: " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
+constexpr BoundField kTileObjects[] = {
+    kGraphObjects[0], kGraphObjects[1], kGraphObjects[2], kGraphObjects[3], kGraphObjects[4],
+    {"solver", "lapwing.tour_solver", "solver of the tour that chooses views"}};
+
+void log_graph(const std::string& what, const ScanGraph& graph) {
+  logging::info(what + ": " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
                 std::to_string(graph.candidates.blocked) + " places blocked, " +
                 std::to_string(graph.candidates.crowded) +
                 " too near to others); motions: " + std::to_string(graph.motions.motions.size()) +
@@ -338,7 +294,165 @@ int scan_graph_of_run(lua_State* state) {
                 std::to_string(graph.motions.planned) +
                 " around obstacles); voxels: " + std::to_string(graph.voxels.size()) +
                 "; memory of the score: " + std::to_string(graph.score->bytes() >> 20) + " MiB");
-  new_object(state, kGraphType, GraphObject{std::move(work)});
+}
+
+// All that a graph is made of, as its table has it.
+struct GraphMaking {
+  std::shared_ptr<ScanWork> work;
+  ScanGraphSettings settings;
+  std::shared_ptr<PathPlanner> planner;
+  std::shared_ptr<const VisibleVoxels> sight;
+  std::unique_ptr<FreeSpace> space;
+};
+
+// `within`: of a part of the region, else null.
+GraphMaking graph_making(lua_State* state, const MissionRun& run, const Parameters& given,
+                         const Eigen::AlignedBox3d* within = nullptr) {
+  GraphMaking made;
+  lua_getfield(state, 2, "prior");
+  made.work = std::make_shared<ScanWork>();
+  ScanWork& work = *made.work;
+  work.prior = object_argument<PriorObject>(state, -1, kPriorType).prior;
+  if (!work.prior->mesh) throw InputError("scan_graph: the prior has no mesh; reconstruct it");
+  work.vehicle = vehicle_argument(state, 2);
+  work.rules = rules_argument(state, 2);
+  const PluginChoice information = choice_at(state, 2, "information");
+  const PluginChoice planner = choice_at(state, 2, "planner");
+  made.settings = graph_settings(given, run);
+  made.planner =
+      run.settings.registry->create<PathPlanner>(planner.type, planner.parameters, "planner");
+  made.settings.motions.planner = made.planner.get();
+  made.settings.motions.search_near = !work.rules->empty();
+  const Parameters& flight = given.table("flight");
+  work.flight = {.speed = flight.number("speed"),
+                 .view_speed = flight.number("view_speed"),
+                 .slow_within = flight.number("slow_within"),
+                 .lookahead = flight.number("lookahead"),
+                 .acceleration = flight.number("acceleration"),
+                 .stop = true,
+                 .pause = flight.number("pause")};
+  work.view_seconds = flight.number("view_seconds");
+  if (flight.boolean("smooth"))
+    work.smooth = {work.flight.speed, work.flight.acceleration, flight.number("stray")};
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  made.sight = make_sight(work, run, given, information, within);
+  made.space = ruled(space_of(*work.prior, given.number("mesh_room")), *work.rules,
+                     work.prior->mapping.map);
+  work.allowed = made.settings.candidates.allowed;
+  work.body = made.settings.candidates.half;
+  return made;
+}
+
+// run:scan_graph{prior =, vehicle =, region =, allowed =, starts =, ...}
+int scan_graph_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, graph_table(), "scan_graph", kGraphObjects);
+  const GraphMaking made = graph_making(state, run, given);
+  const std::shared_ptr<ScanWork>& work = made.work;
+  const ScanGraphSettings& settings = made.settings;
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  const std::vector<Viewpoint> starts = free_starts(
+      given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
+      given.boolean("loops"), *made.space, settings.candidates, *work->rules);
+  begin_planning(run);
+  make_graph(*work, *made.space, *made.sight, starts, settings, run);
+  if (given.boolean("each"))
+    work->graph.score = std::make_shared<const ViewScore>(
+        additive_score(std::vector<double>(work->graph.candidates.viewpoints.size(), 1)));
+  if (!work->rules->empty())
+    work->hidden =
+        hidden_parts(*work, *space_of(*work->prior, given.number("mesh_room")), *made.sight, starts,
+                     settings, work->forbidden, run.settings.cancellation);
+  work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
+  const ScanGraph& graph = work->graph;
+  work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);
+  if (!given.boolean("fixed")) work->home = work->islands.best_start(graph.candidates.given);
+  log_graph("candidates", graph);
+  new_object(state, kGraphType, GraphObject{made.work});
+  return 1;
+}
+
+ParameterTable tile_table() {
+  ParameterTable table = graph_table();
+  table.table("tile", box_table(), "part of the region; what is beside it counts nothing")
+      .required_number("budget", "s", "flight time of the tour that chooses views", above(0))
+      .integer("iterations", 0, "iterations of the solver; 0: its default", at_least(0));
+  return table;
+}
+
+// The views of a tour, each once, in their order.
+Value views_of(const std::vector<Viewpoint>& views, std::vector<int> walk) {
+  std::sort(walk.begin(), walk.end());
+  walk.erase(std::unique(walk.begin(), walk.end()), walk.end());
+  Value list = Value::list();
+  for (const int number : walk) {
+    const Viewpoint& view = views[static_cast<std::size_t>(number)];
+    Value entry = Value::map();
+    Value& position = entry.set("position", Value::list());
+    for (int axis = 0; axis < 3; ++axis) position.push_back(view.position[axis]);
+    entry.set("yaw", view.yaw);
+    entry.set("pitch", view.pitch);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+// Candidates of a part of a large region, of which one tour chooses; all else is given up again.
+Value chosen_views(GraphMaking& made, const Parameters& given, const TourSolver& solver,
+                   const MissionRun& run) {
+  ScanWork& work = *made.work;
+  const ScanGraphSettings& settings = made.settings;
+  std::vector<Viewpoint> starts;
+  for (const Parameters& entry : given.tables("starts")) {
+    const Viewpoint view = viewpoint_of(entry);
+    if (settings.candidates.allowed.contains(view.position) &&
+        made.space->swept_box_free(view.position, view.position, settings.candidates.half))
+      starts.push_back(view);
+  }
+  if (starts.empty()) return Value::list();
+  try {
+    work.graph = make_scan_graph(*made.space, *made.sight, *work.information, starts, settings,
+                                 run.settings.cancellation);
+  } catch (const NothingSeen&) {
+    return Value::list();
+  }
+  work.seconds = seconds_of_motions(work, settings.threads, run.settings.cancellation);
+  work.islands = ViewIslands(work.graph.candidates.viewpoints.size(), work.graph.motions.motions);
+  work.home = work.islands.best_start(work.graph.candidates.given);
+  log_graph("tile", work.graph);
+  TourDefinition definition = tour_definition(work, "tile_views");
+  definition.budget = given.number("budget");
+  TourRequest request;
+  request.seed = run.settings.seed;
+  request.bound = false;
+  if (given.integer("iterations") > 0) request.iteration_limit = given.integer("iterations");
+  request.cancellation = run.settings.cancellation;
+  const TourResult result = solver.solve(TourProblem(std::move(definition)), request);
+  if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
+  if (run.settings.cancellation && run.settings.cancellation->cancelled()) throw Cancelled();
+  return views_of(work.graph.candidates.viewpoints, result.walk);
+}
+
+// run:tile_views{tile =, budget =, solver =, ... as scan_graph}: {{position =, yaw =, pitch =}}
+int tile_views_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, tile_table(), "tile_views", kTileObjects);
+  const Eigen::AlignedBox3d tile = box_of(given.table("tile"), "the part of the region");
+  const PluginChoice chosen = choice_at(state, 2, "solver");
+  const auto solver =
+      run.settings.registry->create<TourSolver>(chosen.type, chosen.parameters, "tour.solver");
+  GraphMaking made = graph_making(state, run, given, &tile);
+  begin_planning(run);
+  CandidateSettings& candidates = made.settings.candidates;
+  const std::vector<ViewAim> aims = std::move(candidates.aims);
+  candidates.region = candidates.region.intersection(tile);
+  candidates.aims.clear();
+  for (const ViewAim& aim : aims)
+    if (const Eigen::AlignedBox3d part = aim.box.intersection(tile); !part.isEmpty())
+      candidates.aims.push_back({part, aim.share * part.volume() / aim.box.volume()});
+  const bool empty = candidates.region.isEmpty() || (!aims.empty() && candidates.aims.empty());
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  push_value(state, empty ? Value::list() : chosen_views(made, given, *solver, run));
   return 1;
 }
 
@@ -415,7 +529,11 @@ void open_graph_type(lua_State* state) {
 std::span<const Binding> graph_methods_of_run() {
   static const Binding methods[] = {
       {"scan_graph", &guarded<scan_graph_of_run>, "(settings: @): lapwing.scan_graph",
-       "candidate views of a region, and motions between them", &graph_table, kGraphObjects}};
+       "candidate views of a region, and motions between them", &graph_table, kGraphObjects},
+      {"tile_views", &guarded<tile_views_of_run>, "(settings: @): table[]",
+       "views of one tour over a part of a large region: {position, yaw, pitch}; none where "
+       "nothing is free, or nothing is seen",
+       &tile_table, kTileObjects}};
   return methods;
 }
 

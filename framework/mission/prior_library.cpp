@@ -286,6 +286,25 @@ int open_air(lua_State* state) {
   return 0;
 }
 
+// prior:simplify(): the map keeps the states of its voxels, and of their probabilities only what
+// the states say, so that equal neighbours are kept as one.
+int simplify(lua_State* state) {
+  Prior& prior = prior_argument(state);
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  Map& map = *prior.mapping.map;
+  constexpr float kSure = std::numeric_limits<float>::infinity();  // import clamps it
+  const MapSettings& settings = map.settings();
+  std::vector<VoxelLeaf> leaves;
+  map.for_each_leaf([&](VoxelLeaf leaf) {
+    leaf.log_odds = leaf.log_odds < settings.free_below       ? -kSure
+                    : leaf.log_odds > settings.occupied_above ? kSure
+                                                              : 0;
+    leaves.push_back(leaf);
+  });
+  map.import(leaves);
+  return 0;
+}
+
 ParameterTable earlier_table() {
   ParameterTable table;
   table.required_text("map", ".ot or .bt")
@@ -447,6 +466,8 @@ void open_prior_type(lua_State* state) {
        kSurfaceObject},
       {"open_air", &guarded<open_air>, "(box: @)",
        "marks a box as free; measurements in it are kept", &box_table, kFlownIn},
+      {"simplify", &guarded<simplify>, "()",
+       "the map keeps the states of its voxels, not their probabilities, and takes less memory"},
       {"load", &guarded<load_prior>, "(files: @)", "loads map and mesh of an earlier flight",
        &earlier_table},
       {"reconstruct", &guarded<reconstruct>, "(settings: @)",

@@ -170,11 +170,13 @@ Value flight_of_passes(const TourObject& tour);
 // Places that are free in the map and so far from the prior mesh, m.
 std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room);
 // What a graph's table says of its images, looked into the prior with: `visible` and `information`
-// of the work are made, and what views are weighed by is returned. InputError where the region of
+// of the work are made, and what views are weighed by is returned; with `within`, both see only
+// that part of the region. InputError where the region of
 // interest holds no surface.
 std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun& run,
                                                 const Parameters& given,
-                                                const PluginChoice& information);
+                                                const PluginChoice& information,
+                                                const Eigen::AlignedBox3d* within = nullptr);
 
 // The stops of a way from view to view: its corners, each with a heading on the way from the first
 // one's to the last one's, and with the time that the gimbal needs for its share of the tilt.

@@ -12,6 +12,8 @@
 namespace lapwing {
 namespace {
 
+constexpr std::size_t kMostPredicted = 3000000;  // triangles of files that viewers can open
+
 // What all views of a tour tell of each voxel, through every pixel of the camera; voxels that only
 // candidates see have nothing.
 std::vector<VoxelShare> coverage_of(const ScanWork& work, const std::vector<int>& views,
@@ -164,8 +166,16 @@ void tell_scan(const ScanRecord& record, MissionRun& run, const ToldScan& result
   result.notes.push_back(areas_in_words(record));
   result.block.set("prediction", prediction_as_value(*record.prediction));
   result.notes.push_back(prediction_in_words(*record.prediction));
-  run.obstacles.keep("prediction.ply", prediction_ply(*record.prediction));
-  run.obstacles.keep("prediction.glb", prediction_glb(*record.prediction));
+  if (const std::size_t triangles = record.prior->mesh().triangles.size();
+      triangles <= kMostPredicted) {
+    run.obstacles.keep("prediction.ply", prediction_ply(*record.prediction));
+    run.obstacles.keep("prediction.glb", prediction_glb(*record.prediction));
+  } else {
+    result.notes.push_back("prediction.ply and prediction.glb are left out: the prior mesh has " +
+                           std::to_string(triangles) + " triangles, and they are written for " +
+                           std::to_string(kMostPredicted) +
+                           " at most; a larger surface.cell gives fewer");
+  }
   if (record.truth) result.told.push_back(truth_in_words(record));
 }
 

@@ -38,9 +38,9 @@ double LocalField::value(const Vector3d& p) const {
     for (std::int64_t y = -1; y <= 1; ++y) {
       // The three cells above each other are one piece of the list.
       const Cell low{middle[0] + x, middle[1] + y, middle[2] - 1};
-      auto cell =
-          std::lower_bound(cells_.begin(), cells_.end(), low,
-                           [](const auto& entry, const Cell& wanted) { return entry.first < wanted; });
+      auto cell = std::lower_bound(
+          cells_.begin(), cells_.end(), low,
+          [](const auto& entry, const Cell& wanted) { return entry.first < wanted; });
       for (; cell != cells_.end() && cell->first[0] == low[0] && cell->first[1] == low[1] &&
              cell->first[2] <= middle[2] + 1;
            ++cell) {

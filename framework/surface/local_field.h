@@ -16,8 +16,8 @@ namespace lapwing {
 
 class LocalField {
  public:
-  // `width`, m: where a point's weight is 1/e of that at its place. All points within `reach`, m, of
-  // a place count there. Both above 0; few widths are enough for a reach.
+  // `width`, m: where a point's weight is 1/e of that at its place. All points within `reach`, m,
+  // of a place count there. Both above 0; few widths are enough for a reach.
   LocalField(const std::vector<FusedPoint>& points, double width, double reach);
 
   // m; above 0 on the side of the normals; 1 if no point is near. Thread-safe.
@@ -28,7 +28,7 @@ class LocalField {
   Cell cell_of(const Eigen::Vector3d& p) const;
 
   double width_, reach_;
-  std::vector<FusedPoint> points_;               // by cell
+  std::vector<FusedPoint> points_;                   // by cell
   std::vector<std::pair<Cell, std::size_t>> cells_;  // in order, with the first of their points
 };
 

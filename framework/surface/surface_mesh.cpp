@@ -243,13 +243,12 @@ std::vector<std::int64_t> corners_of(const std::vector<std::int64_t>& cells, con
       corners.push_back(grid.number(base + Vector3i(k & 1, k >> 1 & 1, k >> 2)));
     if (i + 1 < cells.size() && cells[i + 1] / layer == cells[i] / layer) continue;
     std::sort(corners.begin() + static_cast<std::ptrdiff_t>(kept), corners.end());
-    corners.erase(
-        std::unique(corners.begin() + static_cast<std::ptrdiff_t>(kept), corners.end()),
-        corners.end());
+    corners.erase(std::unique(corners.begin() + static_cast<std::ptrdiff_t>(kept), corners.end()),
+                  corners.end());
     // Of the next layer's corners some may be there already.
     const std::int64_t above = cells[i] / layer * layer + layer;
-    kept = static_cast<std::size_t>(
-        std::lower_bound(corners.begin(), corners.end(), above) - corners.begin());
+    kept = static_cast<std::size_t>(std::lower_bound(corners.begin(), corners.end(), above) -
+                                    corners.begin());
   }
   corners.shrink_to_fit();
   return corners;

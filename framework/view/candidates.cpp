@@ -118,6 +118,10 @@ class Generator {
 
   Candidates generate(const std::vector<Viewpoint>& given) {
     give(given);
+    if (full() && made_.given >= s_.least) {
+      made_.places = made_.given;
+      return std::move(made_);
+    }
     double step = s_.step;
     while (!grow(step)) step *= kWiderStep;
     made_.grown = static_cast<std::int64_t>(places_.size());

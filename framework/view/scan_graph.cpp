@@ -13,46 +13,52 @@ namespace lapwing {
 namespace {
 
 constexpr std::size_t kChunk = 64;  // views that are held unpacked
-constexpr double kMostRegionVoxels = 268435456.0;
+constexpr double kMostCubes = 268435456.0;
 constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
 
-// Numbers for the voxels of a box, given in the order in which they are first asked for.
+// Numbers for the voxels of a box, given in the order in which they are first asked for. They are
+// kept in cubes, of which only those with numbers take memory.
 class VoxelNumbers {
  public:
   VoxelNumbers(const Eigen::AlignedBox3d& region, const VoxelGrid& grid) {
     double count = 1;
     for (int axis = 0; axis < 3; ++axis) {
       low_[axis] = grid.index(region.min()[axis]);
-      size_[axis] = static_cast<std::size_t>(grid.index(region.max()[axis]) - low_[axis] + 1);
+      const int high = grid.index(region.max()[axis]);
+      size_[axis] = static_cast<std::size_t>((high - low_[axis]) >> kBits) + 1;
       count *= static_cast<double>(size_[axis]);
     }
-    if (count > kMostRegionVoxels)
+    if (count > kMostCubes)
       throw InputError(
-          "the region of interest has more than 2^28 voxels: set a larger resolution or a smaller "
+          "the region of interest has more than 2^37 voxels: set a larger resolution or a smaller "
           "region, or the unit of the mesh file");
-    numbers_.assign(static_cast<std::size_t>(count), kUnseen);
+    cubes_.resize(static_cast<std::size_t>(count));
   }
 
   std::uint32_t number(const VoxelKey& key) {
-    std::uint32_t& number = numbers_[place(key)];
-    if (number == kUnseen) {
-      number = static_cast<std::uint32_t>(voxels_.size());
+    std::size_t cube = 0, place = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+      const auto at = static_cast<std::size_t>(key[axis] - low_[axis]);
+      cube = cube * size_[axis] + (at >> kBits);
+      place = place << kBits | (at & ((1u << kBits) - 1));
+    }
+    std::vector<std::uint32_t>& numbers = cubes_[cube];
+    if (numbers.empty()) numbers.assign(std::size_t{1} << 3 * kBits, kUnseen);
+    if (numbers[place] == kUnseen) {
+      numbers[place] = static_cast<std::uint32_t>(voxels_.size());
       voxels_.push_back(key);
     }
-    return number;
+    return numbers[place];
   }
   std::size_t count() const { return voxels_.size(); }
   std::vector<VoxelKey> take() { return std::move(voxels_); }
 
  private:
-  std::size_t place(const VoxelKey& key) const {
-    const auto at = [&](int axis) { return static_cast<std::size_t>(key[axis] - low_[axis]); };
-    return (at(2) * size_[1] + at(1)) * size_[0] + at(0);
-  }
+  static constexpr int kBits = 3;  // of the edge of a cube
 
   int low_[3];
   std::size_t size_[3];
-  std::vector<std::uint32_t> numbers_;
+  std::vector<std::vector<std::uint32_t>> cubes_;
   std::vector<VoxelKey> voxels_;
 };
 

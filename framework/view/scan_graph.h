@@ -43,7 +43,7 @@ struct ScanGraph {
 
 // Views are looked from in chunks, shared among threads, and only what the score needs is kept; the
 // graph is the same for any number of threads. InputError as generate_candidates, and for a region
-// of more than 2^28 voxels or one of which no candidate sees anything; Cancelled when told to stop.
+// of more than 2^37 voxels or one of which no candidate sees anything; Cancelled when told to stop.
 ScanGraph make_scan_graph(const FreeSpace& space, const VisibleVoxels& visible,
                           const ViewInformation& information, const std::vector<Viewpoint>& given,
                           const ScanGraphSettings& settings,

@@ -41,6 +41,12 @@ VisibleVoxels::VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<con
   // Wider by a voxel: rays are only to be spared what cannot count.
   const Vector3d margin = Vector3d::Constant(map_->grid().resolution());
   reach_ = {bounds.min() - margin, bounds.max() + margin};
+  if (settings_.within) {
+    const Eigen::AlignedBox3d part = settings_.within->intersection(bounds);
+    if (part.isEmpty()) throw InputError("the part of the region of interest lies beside it");
+    within_ = VoxelBox{map_->grid().key(part.min()), map_->grid().key(part.max())};
+    reach_ = {part.min() - margin, part.max() + margin};
+  }
   const bool fewer = settings_.across > 0 && settings_.across < settings_.pinhole.width;
   rays_ =
       tiled_pixel_rays(fewer ? coarser(settings_.pinhole, settings_.across) : settings_.pinhole);
@@ -88,7 +94,7 @@ std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
     hits.resize(rays.size());
     map_->cast(rays, hits);
     for (const MapRayHit& hit : hits) {
-      if (hit.state == VoxelState::free || !region_->contains(hit.voxel)) continue;
+      if (hit.state == VoxelState::free || !counts(hit.voxel)) continue;
       if (keys.empty() || keys.back() != hit.voxel) keys.push_back(hit.voxel);
     }
   }

@@ -21,6 +21,8 @@ struct SightSettings {
   double range = 60;                                  // m, of the rays (reading 4.11)
   // Only voxels with their centre inside count (reading 4.1).
   InterestRegion region;
+  // m, world: of those only the ones in this box, if it is set. A part of a large region.
+  std::optional<Eigen::AlignedBox3d> within = std::nullopt;
   // m: where camera to surface and camera to voxel differ by as much or more, the surface that the
   // ray meets is not the voxel's, and its normal is not known (reading 4.3).
   double normal_tolerance = 0.5;
@@ -42,7 +44,7 @@ struct SeenVoxel {
 // and nobody may change them meanwhile. Thread-safe.
 class VisibleVoxels {
  public:
-  // InputError for a camera without pixels or focal length, ranges or an angle that are not above
+  // InputError for a box `within` beside the region, a camera without pixels or focal length, ranges or an angle that are not above
   // 0, what RegionVoxels refuses, or a range that reaches out of the largest map from the region.
   VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<const MeshScene> prior,
                 SightSettings settings);
@@ -50,7 +52,7 @@ class VisibleVoxels {
   const SightSettings& settings() const { return settings_; }
   const Map& map() const { return *map_; }
   // What a voxel counts; 0 outside the region.
-  double weight(const VoxelKey& voxel) const { return region_->weight(voxel); }
+  double weight(const VoxelKey& voxel) const { return counts(voxel) ? region_->weight(voxel) : 0; }
 
   // In the order of keys, each once: occupied and unknown voxels of the region that are usable.
   std::vector<SeenVoxel> seen_from(const Viewpoint& viewpoint) const;
@@ -70,7 +72,12 @@ class VisibleVoxels {
   std::shared_ptr<const Map> map_;
   std::shared_ptr<const MeshScene> prior_;
   SightSettings settings_;
+  bool counts(const VoxelKey& voxel) const {
+    return region_->contains(voxel) && (!within_ || within_->contains(voxel));
+  }
+
   std::optional<RegionVoxels> region_;  // always there once constructed
+  std::optional<VoxelBox> within_;
   Eigen::AlignedBox3d reach_;           // around it
   std::vector<Eigen::Vector3d> rays_;   // unit vectors of the camera, tile by tile
 };

@@ -10,6 +10,7 @@
 -- images match. A tour solver selects a tour within the budget, flown from view to view.
 local mission_of = require "mission.mission_of"
 local exploration = require "mission.scan_exploration"
+local few = require "mission.scan_few"
 local first = require "mission.scan_first"
 local fleet = require "mission.scan_fleet"
 local images = require "mission.scan_images"
@@ -20,6 +21,7 @@ local polygons = require "mission.scan_polygons"
 local site = require "mission.scan_site"
 local smooth = require "mission.scan_smooth"
 local space = require "mission.scan_space"
+local tiles = require "mission.scan_tiles"
 local tours = require "mission.scan_tours"
 local usable = require "mission.scan_usable"
 local views = require "mission.scan_views"
@@ -45,17 +47,11 @@ end
 
 local function graph_of(run, known, vehicle, starts, finish)
   local o = run.options
-  local region = space.region_of(run)
   local gimbal = vehicle.gimbal
   local c = o.candidates
-  local room = space.room(run, starts)
-  local most = views.wanted(run) and math.huge or c.most
-  return run:scan_graph(views.settle(run, {
-    prior = known, vehicle = vehicle, region = region, rules = zones.rules(run), allowed = room,
-    starts = first.few(starts, finish, most), loops = fleet.wanted(run),
-    needed = (o.start or o.finish or #o.fleet.starts > 0 or o.exploration.images > 0) and finish
-      or 0,
-    fixed = o.start ~= nil or #o.fleet.starts > 0 or o.exploration.images > 0,
+  local graph = {
+    prior = known, vehicle = vehicle, region = space.region_of(run), rules = zones.rules(run),
+    allowed = space.room(run, starts),
     body = zones.body(run),
     mesh_room = o.mesh_room,
     candidates = {
@@ -68,7 +64,19 @@ local function graph_of(run, known, vehicle, starts, finish)
     usable_range = usable.range(run), usable_incidence_deg = o.usable.incidence_deg,
     flight = o.flight,
     information = o.information, planner = o.planner,
-  }))
+  }
+  if tiles.wanted(run) then
+    known:simplify()
+    starts = tiles.starts(run, graph, starts, finish)
+    graph.candidates.most, graph.candidates.least = #starts, 0
+  elseif not views.wanted(run) then
+    starts = few(starts, finish, c.most)
+  end
+  graph.starts, graph.loops = starts, fleet.wanted(run)
+  graph.needed = (o.start or o.finish or #o.fleet.starts > 0 or o.exploration.images > 0) and finish
+    or 0
+  graph.fixed = o.start ~= nil or #o.fleet.starts > 0 or o.exploration.images > 0
+  return run:scan_graph(views.settle(run, graph))
 end
 
 -- What the mission was asked for, and what could have been had.
@@ -147,6 +155,7 @@ local function planned(run)
   views.check(run, in_passing)
   exploration.check(run)
   fleet.check(run, vehicle, in_passing)
+  tiles.check(run, in_passing)
   local seconds = exploration.seconds(run, vehicle, tours.budget(run))
   phases.expect(run, tours.budget(run) * math.max(o.batteries, o.drones), in_passing)
   local known, poses, surface, explored =

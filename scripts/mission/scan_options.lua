@@ -5,6 +5,7 @@ local fleet = require "mission.scan_fleet"
 local passes = require "mission.scan_passes"
 local regions = require "mission.scan_regions"
 local site = require "mission.scan_site"
+local tiles = require "mission.scan_tiles"
 local views = require "mission.scan_views"
 local zones = require "mission.scan_zones"
 
@@ -137,6 +138,7 @@ local DECLARATIONS = {
     number("angle_apart_deg", 15, "deg",
            "smallest angle of two candidates, unless their place differs",
            { minimum = 0, maximum = 180 }) } },
+  tiles.DECLARATION,
   { name = "motions", type = "table", summary = "motions between views", table = {
     integer("neighbours", 12, 1, 1000, "number of matching views to which a view is connected"),
     integer("among", 120, 1, 100000, "number of nearest views from which these are chosen"),

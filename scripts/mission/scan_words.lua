@@ -3,6 +3,7 @@
 local first = require "mission.scan_first"
 local images = require "mission.scan_images"
 local site = require "mission.scan_site"
+local tiles = require "mission.scan_tiles"
 
 local M = {}
 
@@ -27,6 +28,7 @@ function M.notes(run, known, explored, views)
   end
   notes[#notes + 1] = first.warning(run)
   notes[#notes + 1] = first.sparse(run)
+  notes[#notes + 1] = tiles.note(run)
   return notes
 end
 

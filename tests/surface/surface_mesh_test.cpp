@@ -134,8 +134,8 @@ TEST_P(SurfaceMesh, OfRealPlacesIsNearThem) {
                                   around + std::numbers::pi, -0.55);
     fusion.add({pose, render_depth(scene, pose, kMeshCamera, 30, 2)});
   }
-  const TriangleMesh mesh = surface_from_points(
-      fusion.points(), {.cell = 0.4, .trim = 0.8, .method = GetParam()});
+  const TriangleMesh mesh =
+      surface_from_points(fusion.points(), {.cell = 0.4, .trim = 0.8, .method = GetParam()});
   double off = 0, count = 0, reconstructed = 0;
   for (const Vector3d& v : mesh.vertices) {
     const double distance = scene.nearest(v, 5)->distance;
@@ -158,8 +158,8 @@ TEST_P(SurfaceMesh, EndsWhereNothingWasSeen) {
   for (const FusedPoint& p : fused_ball(0.2, {0, 0}).points()) {
     if (p.position.z() > 3) half.push_back(p);
   }
-  const TriangleMesh mesh = surface_from_points(
-      half, {.cell = 0.15, .trim = 0.4, .method = GetParam()});
+  const TriangleMesh mesh =
+      surface_from_points(half, {.cell = 0.15, .trim = 0.4, .method = GetParam()});
   EXPECT_GT(mesh.triangles.size(), 1000u);
   EXPECT_GT(mesh.bounds().min().z(), 3 - 0.7);
 }

@@ -53,6 +53,28 @@ TEST(VisibleVoxels, AngleDistanceAndSizeAreThoseOfTheGeometry) {
   }
 }
 
+TEST(VisibleVoxels, OfAPartOfTheRegionIsThatPartOfAll) {
+  const auto map = walled_room();
+  const std::vector<SeenVoxel> all =
+      VisibleVoxels(map, wall_face(), sight_settings()).seen_from(kAhead);
+  SightSettings s = sight_settings();
+  s.within = AlignedBox3d(Vector3d(-20, 0, 2), Vector3d(20, 2.1, 20));
+  const VisibleVoxels visible(map, wall_face(), s);
+  std::vector<VoxelKey> expected, found;
+  for (const SeenVoxel& seen : all) {
+    const Vector3d center = map->grid().center(seen.voxel);
+    if (center.y() > 0 && center.y() < 2.5 && center.z() > 2) expected.push_back(seen.voxel);
+  }
+  for (const SeenVoxel& seen : visible.seen_from(kAhead)) {
+    found.push_back(seen.voxel);
+    EXPECT_EQ(visible.weight(seen.voxel), 1);
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(visible.weight(all.front().voxel), 0) << "beside the part";
+  s.within = AlignedBox3d(Vector3d(30, 0, 2), Vector3d(40, 2, 20));
+  EXPECT_THROW(VisibleVoxels(map, wall_face(), s), InputError);
+}
+
 TEST(VisibleVoxels, OnlyWhatIsOfUseIsSeen) {
   const auto map = walled_room();
   const std::vector<SeenVoxel> all =
