@@ -14,7 +14,7 @@ lapwing_fuzz_packages=(clang libclang-rt-14-dev)
 lapwing_learn_packages=(libtorch-dev)
 # For coordinates, rasters and positions of photographs of surveyors; Lapwing is built with what of
 # these is installed.
-lapwing_sites_packages=(libproj-dev libgdal-dev libexif-dev)
+lapwing_sites_packages=(libproj-dev libgdal-dev libcitygml-dev libexif-dev)
 # For many processes and machines; the executor mpi is built where these are installed.
 lapwing_cluster_packages=(libopenmpi-dev openmpi-bin)
 lapwing_fresh_packages=(debootstrap)

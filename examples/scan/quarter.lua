@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- A quarter as a surveyor is given it: regions and zones in a GeoJSON file in WGS 84, heights above
 -- the ground. One house counts three times, one garden is left out, and nobody flies over the
--- school.
+-- school. Two drones share four batteries.
 local scan = require "mission.scan"
 
 local function part(name) return { file = "quarter.geojson", named = name } end
@@ -18,6 +18,8 @@ return scan.of_scene {
   gps_accuracy = 0.5,  -- m
   start = { -2, -58, 22 },
   safe_height = 18,
-  tour = { budget = 420 },  -- s
+  tour = { budget = 420 },  -- s, of each battery
+  batteries = 4,
+  drones = 2,
   candidates = { most = 3000 },
 }

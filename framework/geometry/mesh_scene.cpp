@@ -17,6 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostTrianglesWide = 3000000;
 
 RTCRay embree_ray(const MeshRay& ray) {
   RTCRay out{};
@@ -99,7 +100,10 @@ struct MeshScene::Tracer {
   explicit Tracer(TriangleMesh given, const std::string& what) : mesh(std::move(given)) {
     check_mesh(mesh, what);
     scene = rtcNewScene(tracing_device());
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    // A compact hierarchy is a little slower, and takes half the memory.
+    const bool compact = mesh.triangles.size() > kMostTrianglesWide;
+    rtcSetSceneFlags(
+        scene, compact ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(tracing_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,

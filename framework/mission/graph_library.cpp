@@ -280,8 +280,9 @@ constexpr BoundField kGraphObjects[] = {
     {"planner", "lapwing.path_planner", "planner of paths around obstacles"}};
 
 constexpr BoundField kTileObjects[] = {
-    kGraphObjects[0], kGraphObjects[1], kGraphObjects[2], kGraphObjects[3], kGraphObjects[4],
-    {"solver", "lapwing.tour_solver", "solver of the tour that chooses views"}};
+    kGraphObjects[0], kGraphObjects[1],
+    kGraphObjects[2], kGraphObjects[3],
+    kGraphObjects[4], {"solver", "lapwing.tour_solver", "solver of the tour that chooses views"}};
 
 void log_graph(const std::string& what, const ScanGraph& graph) {
   logging::info(what + ": " + std::to_string(graph.candidates.viewpoints.size()) + " (" +
@@ -336,8 +337,8 @@ GraphMaking graph_making(lua_State* state, const MissionRun& run, const Paramete
     work.smooth = {work.flight.speed, work.flight.acceleration, flight.number("stray")};
   const Sandbox::ClockPause pause(Sandbox::of(state));
   made.sight = make_sight(work, run, given, information, within);
-  made.space = ruled(space_of(*work.prior, given.number("mesh_room")), *work.rules,
-                     work.prior->mapping.map);
+  made.space =
+      ruled(space_of(*work.prior, given.number("mesh_room")), *work.rules, work.prior->mapping.map);
   work.allowed = made.settings.candidates.allowed;
   work.body = made.settings.candidates.half;
   return made;
@@ -351,9 +352,9 @@ int scan_graph_of_run(lua_State* state) {
   const std::shared_ptr<ScanWork>& work = made.work;
   const ScanGraphSettings& settings = made.settings;
   const Sandbox::ClockPause pause(Sandbox::of(state));
-  const std::vector<Viewpoint> starts = free_starts(
-      given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
-      given.boolean("loops"), *made.space, settings.candidates, *work->rules);
+  const std::vector<Viewpoint> starts =
+      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
+                  given.boolean("loops"), *made.space, settings.candidates, *work->rules);
   begin_planning(run);
   make_graph(*work, *made.space, *made.sight, starts, settings, run);
   if (given.boolean("each"))

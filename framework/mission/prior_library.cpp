@@ -286,22 +286,32 @@ int open_air(lua_State* state) {
   return 0;
 }
 
-// prior:simplify(): the map keeps the states of its voxels, and of their probabilities only what
-// the states say, so that equal neighbours are kept as one.
+// prior:simplify(): nothing more is to be measured. The map keeps the states of its voxels, and of
+// their probabilities only what the states say, so that equal neighbours are kept as one; points
+// are given up, as the mesh is made.
 int simplify(lua_State* state) {
-  Prior& prior = prior_argument(state);
-  const Sandbox::ClockPause pause(Sandbox::of(state));
-  Map& map = *prior.mapping.map;
   constexpr float kSure = std::numeric_limits<float>::infinity();  // import clamps it
+  constexpr int kSlabs = 16;  // one after the other, so that few leaves are held twice
+  Prior& prior = prior_argument(state);
+  if (!prior.mesh) throw InputError("simplify: the prior has no mesh; reconstruct it");
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  prior.fusion.emplace(prior.fusion_options);
+  Map& map = *prior.mapping.map;
   const MapSettings& settings = map.settings();
-  std::vector<VoxelLeaf> leaves;
-  map.for_each_leaf([&](VoxelLeaf leaf) {
-    leaf.log_odds = leaf.log_odds < settings.free_below       ? -kSure
-                    : leaf.log_odds > settings.occupied_above ? kSure
-                                                              : 0;
-    leaves.push_back(leaf);
-  });
-  map.import(leaves);
+  const auto known = map.bounds();
+  if (!known) return 0;
+  const int first = known->lower.x, across = (known->upper.x - first) / kSlabs + 1;
+  for (int slab = 0; slab < kSlabs; ++slab) {
+    std::vector<VoxelLeaf> leaves;
+    map.for_each_leaf([&](VoxelLeaf leaf) {
+      if ((std::max<int>(leaf.key.x, first) - first) / across != slab) return;
+      leaf.log_odds = leaf.log_odds < settings.free_below       ? -kSure
+                      : leaf.log_odds > settings.occupied_above ? kSure
+                                                                : 0;
+      leaves.push_back(leaf);
+    });
+    map.import(leaves);
+  }
   return 0;
 }
 

@@ -149,7 +149,7 @@ BindingLists all_methods() {
   return {problem_methods_of_run(), solving_methods_of_run(), planning_methods_of_run(),
           told_methods(),           place_methods_of_run(),   flight_methods_of_run(),
           map_methods_of_run(),     scan_methods_of_run(),    site_methods_of_run(),
-          photo_methods_of_run(),   fleet_methods_of_run()};
+          photo_methods_of_run(),   fleet_methods_of_run(),   city_methods_of_run()};
 }
 
 int run_field(lua_State* state) {

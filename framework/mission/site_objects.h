@@ -21,6 +21,7 @@ inline constexpr const char* kSiteType = "site";
 void open_site_library(lua_State* state);
 std::span<const Binding> site_methods_of_run();    // read_cloud, read_terrain
 std::span<const Binding> site_methods_of_prior();  // add_site
+std::span<const Binding> city_methods_of_run();    // read_city
 
 // What every reader of a site takes.
 ParameterTable site_reference_table();

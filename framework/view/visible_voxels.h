@@ -44,8 +44,9 @@ struct SeenVoxel {
 // and nobody may change them meanwhile. Thread-safe.
 class VisibleVoxels {
  public:
-  // InputError for a box `within` beside the region, a camera without pixels or focal length, ranges or an angle that are not above
-  // 0, what RegionVoxels refuses, or a range that reaches out of the largest map from the region.
+  // InputError for a box `within` beside the region, a camera without pixels or focal length,
+  // ranges or an angle that are not above 0, what RegionVoxels refuses, or a range that reaches out
+  // of the largest map from the region.
   VisibleVoxels(std::shared_ptr<const Map> map, std::shared_ptr<const MeshScene> prior,
                 SightSettings settings);
 
@@ -78,8 +79,8 @@ class VisibleVoxels {
 
   std::optional<RegionVoxels> region_;  // always there once constructed
   std::optional<VoxelBox> within_;
-  Eigen::AlignedBox3d reach_;           // around it
-  std::vector<Eigen::Vector3d> rays_;   // unit vectors of the camera, tile by tile
+  Eigen::AlignedBox3d reach_;          // around it
+  std::vector<Eigen::Vector3d> rays_;  // unit vectors of the camera, tile by tile
 };
 
 // Whether two views can be matched: they share at least `alpha` of the mean of what they see (4.8).

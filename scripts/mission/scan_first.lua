@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- The first flight of a scan and its results (thesis 4.3): a map, a mesh, free places. Only the
 -- simulator uses the scene itself.
+local city = require "mission.scan_city"
 local exploration = require "mission.scan_exploration"
 local images = require "mission.scan_images"
 local meshing = require "mission.scan_meshing"
@@ -44,6 +45,7 @@ function M.check(run)
                                     o.scene))
   end
   site.check(run)
+  city.check(run)
   images.check(run)
   if not o.input and (o.ground or o.unit or o.up ~= "file") then
     run:fail(o.ground and "ground" or o.unit and "unit" or "up",

@@ -1,5 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- The options of scans. Readings 4.3, 4.6 and 4.11 explain defaults that the thesis does not give.
+local city = require "mission.scan_city"
 local exploration = require "mission.scan_exploration"
 local fleet = require "mission.scan_fleet"
 local passes = require "mission.scan_passes"
@@ -67,7 +68,7 @@ local DECLARATIONS = {
     summary = "map and mesh of an earlier flight; they need start and region", table = {
     { name = "map", type = "text", summary = "map file, .ot or .bt" },
     { name = "mesh", type = "text", summary = "mesh file, in the frame of the map" } } },
-  site.DECLARATIONS[1], site.DECLARATIONS[2],
+  site.DECLARATIONS[1], site.DECLARATIONS[2], city.DECLARATION,
   { name = "region", type = "table", summary = "region of interest; absent: "
     .. "that of the scene, the bounding box of the mesh and a distance around it, or that of the "
     .. "surveyor's data", table = {

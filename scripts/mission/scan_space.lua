@@ -1,5 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- The space of a scan: surface, region of interest, heights and places of its first flights.
+local city = require "mission.scan_city"
 local exploration = require "mission.scan_exploration"
 local images = require "mission.scan_images"
 local named_scene = require "mission.named_scene"
@@ -27,7 +28,8 @@ function M.surface_of(run)
   local o = run.options
   local surface
   if o.input and not site.wanted(run) then
-    surface = run:read_surface { file = o.input, unit = o.unit, up = o.up }
+    surface = city.wanted(run) and city.read(run)
+      or run:read_surface { file = o.input, unit = o.unit, up = o.up }
     if o.ground then surface:add_ground() end
   elseif o.scene then
     surface = run:surface(named_scene(run))

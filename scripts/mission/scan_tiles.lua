@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: Apache-2.0
--- Large regions, square by square. The candidates of a square are evaluated with few pixels, and one
--- tour over it chooses those that are worth flying to, with more time than the batteries have for
--- the square. Only these, from all squares, are evaluated with all pixels and joined by motions.
--- The tours are then planned among all of them at once.
+-- Large regions, square by square. The candidates of a square are evaluated with few pixels, and
+-- one tour over it chooses those that are worth flying to, with more time than the batteries have
+-- for the square. Only these, from all squares, are evaluated with all pixels and joined by
+-- motions. The tours are then planned among all of them at once.
 local few = require "mission.scan_few"
 local patterns = require "mission.scan_patterns"
 local space = require "mission.scan_space"
@@ -121,8 +121,8 @@ local function chosen_in_squares(run, graph, poses, seconds)
   return chosen
 end
 
--- The views of the whole region's graph: the first `needed` of `starts`, some of the others, so that
--- squares are joined, and those that are chosen in the squares.
+-- The views of the graph of the whole region: the first `needed` of `starts`, some of the others,
+-- so that squares are joined, and those that are chosen in the squares.
 function M.starts(run, graph, starts, needed)
   local o = run.options
   local seconds = tours.budget(run) * math.max(o.batteries, o.drones)

@@ -135,13 +135,14 @@ constexpr Containment kContained[] = {
     {"gdal", "framework/survey/", true},
     {"cpl_", "framework/survey/", true},
     {"ogr_", "framework/survey/", true},
+    {"citygml/", "framework/survey/", true},
     {"mpi.h", "plugins/executors/mpi/", true},
     {"libexif/", "framework/photogrammetry/", true},
 };
 // Of these, one source file of the framework alone.
 constexpr const char* kSingleSource[] = {"GeographicLib/", "assimp/", "png.h",     "octomap/",
                                          "opencv2/",       "CGAL/",   "nanoflann", "torch/",
-                                         "boost/math/",    "proj.h",  "gdal.h"};
+                                         "boost/math/",    "proj.h",  "gdal.h",    "citygml/"};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans over surveyors' data end to end: a house on a slope as a point cloud and as a raster.
 #include "framework/map/map_file.h"
+#include "framework/survey/city_model.h"
 #include "framework/survey/height_raster.h"
 #include "framework/survey/reference_system.h"
 #include "tests/missions/scan_hut.h"
+#include "tests/survey/made_cities.h"
 #include "tests/survey/made_rasters.h"
 
 namespace lapwing {
@@ -204,6 +206,55 @@ TEST_F(SiteScan, AReferenceSystemLeadsToTheMissionsOrigin) {
   expect_certified();
   EXPECT_EQ(state_at({0.2, 0.2, 5}), VoxelState::occupied) << "the roof";
   EXPECT_THAT(plan(), HasSubstr("Amersfoort / RD New"));
+}
+
+// Of a house in national coordinates, above whose middle the world's origin is.
+class CityScan : public SiteScan {
+ protected:
+  void SetUp() override {
+    if (!city_models_available()) GTEST_SKIP() << "Lapwing was built without libcitygml-dev";
+    SiteScan::SetUp();
+    write_file_atomically(folder_ / "mesh.lua",
+                          std::string("return require('mission.scan').of_mesh { name = 'city', "
+                                      "ground = true, flights = { { pattern = 'ellipse', views = "
+                                      "8, reach = 3, pitch_deg = -40, height = 14 }, { pattern = "
+                                      "'meander', views = 12, reach = 1, height = 13 } },") +
+                              kSmall);
+  }
+  void write_city(const std::string& system, const Eigen::Vector3d& middle) {
+    write_file_atomically(
+        folder_ / "town.gml",
+        city_gml(gml_building(gml_solid(1, gml_box(middle - Eigen::Vector3d(4, 3, 0),
+                                                   middle + Eigen::Vector3d(4, 3, 5)))),
+                 system));
+  }
+};
+
+TEST_F(CityScan, AHouseInNationalCoordinatesIsScanned) {
+  if (!ReferenceSystem::available()) GTEST_SKIP() << "Lapwing was built without libproj-dev";
+  write_city("urn:ogc:def:crs:EPSG::28992", {84800.5, 447500.25, 0});
+  ASSERT_EQ(run_on("town.gml", "mesh"), 0) << error();
+  EXPECT_EQ(answer().at("status").as_text(), "ok");
+  const Value region = from_json(plan(), "plan").at("task").at("scan").at("region");
+  // 6 m around it: see the README.
+  EXPECT_NEAR(region.at("lower").as_list()[0].as_number(), -10, 0.8);
+  EXPECT_NEAR(region.at("upper").as_list()[1].as_number(), 9, 0.8);
+  EXPECT_THAT(read_file(folder_ / "out/run.log"), HasSubstr("CityGML, 1 object of level 1, 12"));
+}
+
+TEST_F(CityScan, BadModelsAreOneMessage) {
+  write_city("", {84800.5, 447500.25, 0});
+  EXPECT_THAT(refusal("town.gml", "mesh"), HasSubstr("city.zero"));
+  EXPECT_THAT(refusal("town.gml", "mesh", "--set up=y"),
+              HasSubstr("up: is for a mesh file; heights of a city model point up"));
+  write_city("EPSG:999999", {84800.5, 447500.25, 0});
+  EXPECT_THAT(refusal("town.gml", "mesh"), HasSubstr("999999"));
+  EXPECT_THAT(refusal("town.gml", "mesh", "--set city.zero=[1,2,3]"), HasSubstr("city.zero"));
+  write_file_atomically(folder_ / "town.gml", "<half");
+  EXPECT_THAT(refusal("town.gml", "mesh"), HasSubstr("its XML is damaged or cut short"));
+  write_file_atomically(folder_ / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THAT(refusal("a.obj", "mesh", "--set city.system=EPSG:28992"),
+              HasSubstr("city.system: is for a city model"));
 }
 
 }  // namespace

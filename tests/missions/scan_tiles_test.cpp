@@ -12,8 +12,9 @@ TEST_F(TiledScans, SquaresChooseAsGoodViewsAsTheWhole) {
   const std::string many = "--set candidates.most=240 --set tour.iterations=300 ";
   ASSERT_EQ(run(many, "hut.lua", "whole"), 0) << error();
   const double whole = answer().at("tour").at("score").as_number();
-  const std::string few = "--set candidates.most=60 --set tour.iterations=300 --set tiles.edge=6 "
-                          "--set tiles.halo=4 --set tiles.pixels=40 ";
+  const std::string few =
+      "--set candidates.most=60 --set tour.iterations=300 --set tiles.edge=6 "
+      "--set tiles.halo=4 --set tiles.pixels=40 ";
   ASSERT_EQ(run(few), 0) << error();
   const Value said = answer();
   EXPECT_EQ(said.at("status").as_text(), "ok");
