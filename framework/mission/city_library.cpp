@@ -84,8 +84,7 @@ int read_city(lua_State* state) {
 }  // namespace
 
 std::span<const Binding> city_methods_of_run() {
-  static const Binding methods[] = {{"read_city", &guarded<read_city>,
-                                     "(city: @): lapwing.surface",
+  static const Binding methods[] = {{"read_city", &guarded<read_city>, "(city: @): lapwing.surface",
                                      "reads a surface from a city model in CityGML", &city_table}};
   return methods;
 }

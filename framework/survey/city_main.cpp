@@ -170,9 +170,10 @@ int main(int count, char** words) {
   Collector collector;
   for (const citygml::CityObject* object : model->getRootCityObjects()) collector.add(*object);
   if (collector.empty())
-    refuse("it has no surface: expected buildings or other objects with polygons, in CityGML 1.0 "
-           "or 2.0" +
-           std::string(collector.prototypes() > 0 ? "; prototypes of objects are not read" : ""));
+    refuse(
+        "it has no surface: expected buildings or other objects with polygons, in CityGML 1.0 "
+        "or 2.0" +
+        std::string(collector.prototypes() > 0 ? "; prototypes of objects are not read" : ""));
   std::string system = model->getSRSName();
   if (system.empty()) system = model->getEnvelope().srsName();
   collector.tell(system);

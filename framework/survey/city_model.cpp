@@ -14,8 +14,7 @@ namespace lapwing {
 namespace {
 
 const ReaderProgram& city_reader() {
-  static const ReaderProgram program{"lapwing_city", "libcitygml", "city models",
-                                     "libcitygml-dev"};
+  static const ReaderProgram program{"lapwing_city", "libcitygml", "city models", "libcitygml-dev"};
   return program;
 }
 

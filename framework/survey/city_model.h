@@ -18,8 +18,8 @@ struct CityModel {
   TriangleMesh mesh;
   std::string system;                  // reference system, as the file writes it; "" without
   std::map<int, std::size_t> objects;  // number of objects by their level of detail
-  std::size_t prototypes = 0;  // implicit geometries, as of trees, which are left out
-  std::size_t flat = 0;        // polygons without area, which are left out
+  std::size_t prototypes = 0;          // implicit geometries, as of trees, which are left out
+  std::size_t flat = 0;                // polygons without area, which are left out
 };
 
 // Whether libcitygml is built in.

@@ -19,6 +19,7 @@ struct TimedPath {
   std::vector<double> times;            // s, increasing
   std::vector<Eigen::Vector3d> places;  // as many
   double bulge = 0;                     // m, farthest that the motion leaves that line at any time
+  double step = 0;                      // m, longest between two neighbouring places
   double climb = 0;                     // s before and after it, on the line below its ends
 
   double first() const { return times.front() - climb; }

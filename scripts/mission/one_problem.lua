@@ -51,6 +51,8 @@ local function finishing(solver)
   local copy = {}
   for name, value in pairs(solver) do copy[name] = value end
   copy.first_barrier = math.min(copy.first_barrier, NEARLY)
+  -- The adaptive strategy of ipopt chooses its first barrier itself, and leaves a good start.
+  copy.mu_strategy = copy.mu_strategy and "monotone"
   return copy
 end
 

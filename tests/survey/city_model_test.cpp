@@ -83,8 +83,8 @@ TEST_F(CityModels, OfAnObjectTheFinestLevelCounts) {
   // Level 1: a box. Level 2: a wall with a hole, as boundary surface.
   const CityRing wall{{0, 0, 0}, {10, 0, 0}, {10, 0, 6}, {0, 0, 6}};
   const CityRing hole{{2, 0, 2}, {2, 0, 4}, {5, 0, 4}, {5, 0, 2}};
-  const std::string both = gml_solid(1, gml_box(kLow, kHigh)) +
-                           gml_boundary("WallSurface", gml_surface({wall, hole}));
+  const std::string both =
+      gml_solid(1, gml_box(kLow, kHigh)) + gml_boundary("WallSurface", gml_surface({wall, hole}));
   const CityModel model = read(city_gml(gml_building(both)));
   EXPECT_NEAR(area(model), 10 * 6 - 3 * 2, 1e-9);
   EXPECT_EQ(model.objects, (std::map<int, std::size_t>{{2, 1}}));
@@ -100,16 +100,16 @@ TEST_F(CityModels, PartsHaveTheirOwnLevels) {
                            gml_solid(1, gml_box(kLow, kHigh)) +
                            "</bldg:BuildingPart></bldg:consistsOfBuildingPart>";
   const CityRing roof{{0, 0, 6}, {10, 0, 6}, {10, 10, 6}, {0, 10, 6}};
-  const CityModel model = read(
-      city_gml(gml_building(gml_boundary("RoofSurface", gml_surface({roof})) + part)));
+  const CityModel model =
+      read(city_gml(gml_building(gml_boundary("RoofSurface", gml_surface({roof})) + part)));
   EXPECT_NEAR(area(model), 100 + 128, 1e-9);
 }
 
 TEST_F(CityModels, SurfaceThatIsNotThereIsLeftOut) {
   const CityRing wall{{0, 0, 0}, {10, 0, 0}, {10, 0, 6}, {0, 0, 6}};
-  const CityModel model = read(city_gml(
-      gml_building(gml_boundary("WallSurface", gml_surface({wall})) +
-                   gml_boundary("ClosureSurface", gml_surface({wall})))));
+  const CityModel model =
+      read(city_gml(gml_building(gml_boundary("WallSurface", gml_surface({wall})) +
+                                 gml_boundary("ClosureSurface", gml_surface({wall})))));
   EXPECT_NEAR(area(model), 60, 1e-9);
 }
 

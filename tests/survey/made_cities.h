@@ -24,8 +24,8 @@ inline std::string gml_ring(const CityRing& ring) {
 
 // A polygon with holes.
 inline std::string gml_surface(const std::vector<CityRing>& rings) {
-  std::string text = "<gml:surfaceMember><gml:Polygon><gml:exterior>" + gml_ring(rings[0]) +
-                     "</gml:exterior>";
+  std::string text =
+      "<gml:surfaceMember><gml:Polygon><gml:exterior>" + gml_ring(rings[0]) + "</gml:exterior>";
   for (std::size_t i = 1; i < rings.size(); ++i)
     text += "<gml:interior>" + gml_ring(rings[i]) + "</gml:interior>";
   return text + "</gml:Polygon></gml:surfaceMember>";
@@ -49,8 +49,7 @@ inline std::string gml_box(const Eigen::Vector3d& low, const Eigen::Vector3d& hi
 
 inline std::string gml_solid(int level, const std::string& surfaces) {
   const std::string lod = "bldg:lod" + std::to_string(level) + "Solid";
-  return "<" + lod +
-         "><gml:Solid><gml:exterior><gml:CompositeSurface>" + surfaces +
+  return "<" + lod + "><gml:Solid><gml:exterior><gml:CompositeSurface>" + surfaces +
          "</gml:CompositeSurface></gml:exterior></gml:Solid></" + lod + ">";
 }
 
@@ -66,8 +65,7 @@ inline std::string gml_building(const std::string& content) {
 }
 
 inline std::string city_gml(const std::string& members, const std::string& system = "") {
-  const std::string srs =
-      system.empty() ? "" : " srsName=\"" + system + "\" srsDimension=\"3\"";
+  const std::string srs = system.empty() ? "" : " srsName=\"" + system + "\" srsDimension=\"3\"";
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<core:CityModel "
          "xmlns:core=\"http://www.opengis.net/citygml/2.0\" "
          "xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\" "
