@@ -27,6 +27,7 @@ constexpr std::size_t kChunk = 256;  // triangles that a thread takes at once
 constexpr double kBeside = 0.1;      // of a triangle's edge that rays end before its middle
 // Of the largest eigenvalue of the information, below which rays count as parallel.
 constexpr double kParallel = 1e-12;
+constexpr double kLargestCube = 1e5;  // m, where images have no range
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
 Vector3d middle_of(const TriangleMesh& mesh, std::size_t t) {
@@ -127,8 +128,28 @@ ImageSet::ImageSet(std::shared_ptr<const MeshScene> surface, std::vector<Pose> c
   if (!(settings_.pixel_error > 0 && std::isfinite(settings_.pixel_error)))
     throw InputError("the error of a point in an image must be above 0 pixels");
   if (!(settings_.incidence > 0)) throw InputError("the usable angle of an image must be above 0");
-  for (const Pose& camera : cameras)
+  for (const Pose& camera : cameras) {
+    const auto number = static_cast<std::uint32_t>(cameras_.size());
     cameras_.push_back({camera.position, camera.orientation.toRotationMatrix().transpose()});
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -1; z <= 1; ++z) near_[cell_of(camera.position, x, y, z)].push_back(number);
+  }
+}
+
+std::uint64_t ImageSet::cell_of(const Vector3d& place, int x, int y, int z) const {
+  const double edge = std::min(settings_.range, kLargestCube);
+  const auto part = [&](double v, int offset) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / edge)) + offset) &
+           0x1fffff;
+  };
+  return part(place.x(), x) | part(place.y(), y) << 21 | part(place.z(), z) << 42;
+}
+
+std::span<const std::uint32_t> ImageSet::near(const Vector3d& place) const {
+  const auto found = near_.find(cell_of(place, 0, 0, 0));
+  if (found == near_.end()) return {};
+  return found->second;
 }
 
 bool ImageSet::shows(std::size_t camera, std::size_t triangle) const {
@@ -153,7 +174,7 @@ bool ImageSet::shows(std::size_t camera, std::size_t triangle) const {
 bool ImageSet::locates(std::size_t triangle) const {
   const Vector3d middle = middle_of(surface_->mesh(), triangle);
   std::vector<Vector3d> rays;
-  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+  for (const std::uint32_t k : near(middle)) {
     if (!shows(k, triangle)) continue;
     const Vector3d way = middle - cameras_[k].position;
     for (const Vector3d& other : rays)
@@ -170,7 +191,7 @@ TrianglePrediction ImageSet::predict(std::size_t triangle) const {
   told.accuracy = kUnknown;
   Matrix3d information = Matrix3d::Zero();
   std::vector<Vector3d> rays;
-  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+  for (const std::uint32_t k : near(middle)) {
     if (!shows(k, triangle)) continue;
     const Camera& c = cameras_[k];
     const Vector3d way = middle - c.position;

@@ -3,8 +3,10 @@
 // angle, how finely, and how accurately its middle can be triangulated from them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "framework/core/progress.h"
@@ -59,9 +61,15 @@ class ImageSet {
     Eigen::Vector3d position;
     Eigen::Matrix3d to_camera;
   };
+  // Of the cameras that may be within range of a place, their numbers, ascending.
+  std::span<const std::uint32_t> near(const Eigen::Vector3d& place) const;
+  std::uint64_t cell_of(const Eigen::Vector3d& place, int x, int y, int z) const;
+
   std::shared_ptr<const MeshScene> surface_;
   std::vector<Camera> cameras_;
   ImagingSettings settings_;
+  // By cubes with the range as edge: the cameras in them and in those around.
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> near_;
 };
 
 // Of the triangles that `counted` names, by their place in the mesh; the others have 0 images. The
