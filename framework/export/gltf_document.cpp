@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "buffers of glTF are little endian");
 
-constexpr int kFloat = 5126, kUnsigned = 5125;                     // component types
+constexpr int kFloat = 5126, kUnsigned = 5125, kByte = 5121;       // component types
 constexpr int kVertices = 34962, kIndices = 34963, kNoTarget = 0;  // targets of buffer views
 constexpr int kLineStrip = 3;
 
@@ -41,6 +41,7 @@ void put_chunk(std::string& out, const char* type, std::string bytes, char fille
 
 std::vector<float> flat(const std::vector<Eigen::Vector3d>& points) {
   std::vector<float> numbers;
+  numbers.reserve(3 * points.size());
   for (const Eigen::Vector3d& world : points) {
     const Eigen::Vector3d p = y_up(world);
     for (int axis = 0; axis < 3; ++axis) numbers.push_back(static_cast<float>(p[axis] + 0.0));
@@ -48,11 +49,11 @@ std::vector<float> flat(const std::vector<Eigen::Vector3d>& points) {
   return numbers;
 }
 
-// Of an sRGB colour's part (IEC 61966-2-1).
-float linear_shade(std::uint8_t part) {
+// The linear part of a colour, from its sRGB part (IEC 61966-2-1); both of 255.
+std::uint8_t linear_shade(std::uint8_t part) {
   const double shade = part / 255.0;
-  return static_cast<float>(shade <= 0.04045 ? shade / 12.92
-                                             : std::pow((shade + 0.055) / 1.055, 2.4));
+  const double linear = shade <= 0.04045 ? shade / 12.92 : std::pow((shade + 0.055) / 1.055, 2.4);
+  return static_cast<std::uint8_t>(std::lround(255 * linear));
 }
 
 }  // namespace
@@ -96,6 +97,15 @@ int GltfDocument::add_accessor(const std::vector<float>& numbers, int width, boo
     accessor.set("max", highest);
   }
   return last_of(accessors_, accessor);
+}
+
+int GltfDocument::add_colors(const std::vector<std::uint8_t>& colors) {
+  return last_of(accessors_,
+                 json_map({{"bufferView", add_view(colors.data(), colors.size(), kVertices)},
+                           {"componentType", kByte},
+                           {"normalized", true},
+                           {"count", static_cast<std::int64_t>(colors.size() / 4)},
+                           {"type", "VEC4"}}));
 }
 
 int GltfDocument::add_indices(const std::vector<std::uint32_t>& numbers) {
@@ -156,16 +166,20 @@ int GltfDocument::add_colored_triangles(const TriangleMesh& mesh, const std::vec
                                         const std::vector<TriangleNumbers>& numbers) {
   // Corners are not shared: they have the colour and the numbers of their triangle.
   std::vector<Eigen::Vector3d> corners;
-  std::vector<float> shades;
+  std::vector<std::uint8_t> shades;  // four a corner, so that each begins at a multiple of 4 bytes
+  corners.reserve(3 * mesh.triangles.size());
+  shades.reserve(12 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int corner = 0; corner < 3; ++corner) {
       corners.push_back(mesh.corner(t, corner));
       for (const std::uint8_t part : colors[t]) shades.push_back(linear_shade(part));
+      shades.push_back(255);
     }
   Value attributes = json_map({{"POSITION", add_accessor(flat(corners), 3, true, kVertices)},
-                               {"COLOR_0", add_accessor(shades, 3, false, kVertices)}});
+                               {"COLOR_0", add_colors(shades)}});
   for (const TriangleNumbers& one : numbers) {
     std::vector<float> repeated;
+    repeated.reserve(3 * one.values.size());
     for (const float value : one.values) repeated.insert(repeated.end(), 3, value);
     attributes.set(one.name, add_accessor(repeated, 1, false, kVertices));
   }

@@ -49,6 +49,7 @@ class GltfDocument {
 
  private:
   int add_accessor(const std::vector<float>& numbers, int width, bool bounds, int target);
+  int add_colors(const std::vector<std::uint8_t>& colors);  // four parts a vertex, of 255
   int add_indices(const std::vector<std::uint32_t>& numbers);
   int add_material(const Eigen::Vector4d& color);
   int add_view(const void* bytes, std::size_t size, int target);

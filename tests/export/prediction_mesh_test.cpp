@@ -52,18 +52,19 @@ struct Glb {
     return number;
   }
 
-  std::vector<float> attribute(const char* name, std::size_t width) const {
+  template <typename Number = float>
+  std::vector<Number> attribute(const char* name, std::size_t width) const {
     const auto entry = [&](const char* list, const Value& index) -> const Value& {
       return document.at(list).as_list()[static_cast<std::size_t>(index.as_integer())];
     };
     const Value& primitive = document.at("meshes").as_list()[0].at("primitives").as_list()[0];
     const Value& accessor = entry("accessors", primitive.at("attributes").at(name));
-    EXPECT_EQ(accessor.at("componentType").as_integer(), 5126);
+    EXPECT_EQ(accessor.at("componentType").as_integer(), sizeof(Number) == 4 ? 5126 : 5121);
     EXPECT_EQ(accessor.at("count").as_integer(), 9) << name << ": three corners of each triangle";
     const Value& view = entry("bufferViews", accessor.at("bufferView"));
-    std::vector<float> numbers(9 * width);
+    std::vector<Number> numbers(9 * width);
     std::memcpy(numbers.data(), buffer.data() + view.at("byteOffset").as_integer(),
-                sizeof(float) * numbers.size());
+                sizeof(Number) * numbers.size());
     return numbers;
   }
 };
@@ -84,13 +85,15 @@ TEST(PredictionMesh, TheGlbHoldsColoursAndFigures) {
   EXPECT_NEAR(glb.attribute("_PARALLAX_DEG", 1)[5], 0.5 * 180 / M_PI, 1e-4);
   // Colours are linear: those of the picture brought from sRGB.
   const std::vector<Rgb> colors = triangle_colors(p, prediction_colors(p));
-  const std::vector<float> shades = glb.attribute("COLOR_0", 3);
-  for (std::size_t t = 0; t < 3; ++t)
+  const std::vector<std::uint8_t> shades = glb.attribute<std::uint8_t>("COLOR_0", 4);
+  for (std::size_t t = 0; t < 3; ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double linear = std::pow((colors[t][c] / 255.0 + 0.055) / 1.055, 2.4);
-      EXPECT_NEAR(shades[9 * t + c], colors[t][c] > 10 ? linear : colors[t][c] / 255.0 / 12.92,
-                  1e-6);
+      EXPECT_NEAR(shades[12 * t + c],
+                  255 * (colors[t][c] > 10 ? linear : colors[t][c] / 255.0 / 12.92), 0.5 + 1e-6);
     }
+    EXPECT_EQ(shades[12 * t + 3], 255) << "opaque";
+  }
   EXPECT_NE(colors[0], colors[1]);
 }
 
