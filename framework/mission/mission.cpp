@@ -268,6 +268,7 @@ MissionResult result_of(Sandbox& sandbox, const PlanObject& planned) {
   result.block_name = planned.block_name;
   result.told = planned.told;
   result.sections = planned.sections;
+  result.scan = planned.scan;
   if (planned.late_sections) {
     const Sandbox::ClockPause pause(sandbox);
     for (Section& section : planned.late_sections(result.plan))

@@ -23,6 +23,7 @@
 namespace lapwing {
 
 struct FleetResult;
+struct ScanRecord;  // export/scan_report.h
 
 struct MissionResult {
   // Of a mapping mission, which returns a map and has no plan; else null.
@@ -32,14 +33,15 @@ struct MissionResult {
   Plan plan;  // without certificate
   SolveReport report;
   std::string solver;
-  double solve_seconds = 0;               // wall clock, all solves together
-  std::vector<std::string> notes;         // sentences for the user
-  std::vector<std::string> details = {};  // likewise, of what was tried and came to nothing
-  Value block;                            // the kind's own figures, null or a map
-  std::string block_name = {};            // of them in the answer; "": the kind
-  std::vector<Pilot> pilots;              // who fly it by hand, in simulation
-  std::vector<std::string> told = {};     // likewise, that stand in no plan
-  std::vector<Section> sections = {};     // of the report, beside those of every flight
+  double solve_seconds = 0;                     // wall clock, all solves together
+  std::vector<std::string> notes;               // sentences for the user
+  std::vector<std::string> details = {};        // likewise, of what was tried and came to nothing
+  Value block;                                  // the kind's own figures, null or a map
+  std::string block_name = {};                  // of them in the answer; "": the kind
+  std::vector<Pilot> pilots;                    // who fly it by hand, in simulation
+  std::vector<std::string> told = {};           // likewise, that stand in no plan
+  std::vector<Section> sections = {};           // of the report, beside those of every flight
+  std::shared_ptr<const ScanRecord> scan = {};  // of a scan of one battery: what it was planned on
   // Where the files lie that the plan's environment names, as long as the mission lives; and their
   // names.
   std::filesystem::path obstacle_folder = {};

@@ -34,6 +34,7 @@ struct EditedPlan {
   std::optional<Certificate> certificate;
   // Where the files lie that the plan's environment names, until the next edit.
   std::filesystem::path folder = {};
+  std::shared_ptr<const ScanRecord> scan = {};  // as of MissionResult
 };
 
 class MissionEditor {

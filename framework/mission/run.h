@@ -30,7 +30,8 @@ namespace lapwing {
 
 struct ScriptTerm;  // script_terms.h
 
-struct ScanWork;  // scan_objects.h
+struct ScanRecord;  // export/scan_report.h
+struct ScanWork;    // scan_objects.h
 struct TourDefinition;
 class MeshScene;
 
@@ -104,6 +105,7 @@ struct PlanObject {
   // drawn once the mission has ended; null where there are none of these.
   std::vector<Section> sections = {};
   std::function<std::vector<Section>(const Plan&)> late_sections = {};
+  std::shared_ptr<const ScanRecord> scan = {};  // of a scan: what it was planned on
 };
 
 struct MissionRun {

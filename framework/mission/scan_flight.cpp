@@ -351,6 +351,7 @@ int scan_plan_of_run(lua_State* state) {
       const auto record = record_of_scan(*told, given.number("pixel_error"), run.settings.threads);
       tell_scan(*record, run, {made.block, made.notes, made.told});
       made.late_sections = [record](const Plan& of) { return scan_sections(of, *record); };
+      made.scan = record;
     }
     const std::string small = warning_of_small_camera(plan.task.scan->camera);
     if (!small.empty()) made.notes.push_back(small);

@@ -134,6 +134,7 @@ class StudioSession {
     std::string document;  // plan.json
     Value layer;
     std::uint64_t revision = 0;
+    std::string folder = {};  // of the files that planning wrote and the plan names; or none
   };
 
   // session.cpp: pages

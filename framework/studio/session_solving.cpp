@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Solves, their answers, and errands.
 #include <cmath>
+#include <filesystem>
 
 #include "framework/core/json.h"
 #include "framework/studio/layer_file.h"
@@ -16,6 +17,19 @@ constexpr std::size_t kMostRemembered = 64, kMostRememberedBytes = std::size_t{1
 
 int rank_of(const std::string& grade) {
   return grade == "step" ? 0 : grade == "converged" ? 1 : 2;
+}
+
+// Of the files that planning wrote and the plan of this answer names; empty where there are none.
+std::string folder_of(const Frame& answer) {
+  const Value* folder = answer.header.find("folder");
+  return folder ? folder->as_text() : "";
+}
+
+// The folder goes with the mission that planned, which the solving process keeps for a while.
+bool has_its_files(const Frame& answer) {
+  const std::string folder = folder_of(answer);
+  std::error_code ignored;
+  return folder.empty() || std::filesystem::is_directory(folder, ignored);
 }
 
 }  // namespace
@@ -117,13 +131,14 @@ void StudioSession::solve_document(bool anew) {
 
 const StudioSession::Remembered* StudioSession::remembered(const std::string& layer) const {
   for (const Remembered& shown : remembered_)
-    if (shown.layer == layer) return &shown;
+    if (shown.layer == layer) return has_its_files(shown.answer) ? &shown : nullptr;
   return nullptr;
 }
 
 // What the document ended with. Only what was judged: the same options may be refused for a crash.
 void StudioSession::remember(const Frame& frame) {
   if (frame.header.at("grade") == Value("refused") || remembered(solve_->layer)) return;
+  std::erase_if(remembered_, [&](const Remembered& one) { return one.layer == solve_->layer; });
   Remembered shown{solve_->layer, frame, world_};
   for (const std::string& part : frame.parts) shown.bytes += part.size();
   shown.bytes += shown.world.size() + shown.layer.size();
@@ -219,7 +234,7 @@ void StudioSession::deliver(const Frame& frame) {
 void StudioSession::settle(const Frame& frame) {
   if (frame.parts.size() < 3 || frame.parts[2].empty()) return;
   Settled settled{frame.parts[2], solve_->frame.header.at("layer"),
-                  solve_->revision.value_or(solve_->base)};
+                  solve_->revision.value_or(solve_->base), folder_of(frame)};
   if (solve_->revision) {
     settled_ = settled;
     if (frame.header.at("grade") == Value("certified")) certified_ = settled;
@@ -272,6 +287,7 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
   const auto use = [&](const std::optional<Settled>& settled, const char* lacking) {
     if (!settled) throw InputError(lacking);
     frame.header.set("layer", settled->layer);
+    frame.header.set("folder", settled->folder);
     frame.parts = {settled->document};
   };
   switch (message.type) {

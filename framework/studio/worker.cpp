@@ -29,6 +29,9 @@ constexpr auto kBetweenSteps = std::chrono::milliseconds(40);
 // A film of more stages is dragged with fewer, so that a move is drawn in time.
 constexpr std::size_t kMostDragged = 800, kDraggedStages = 600;
 
+// Missions whose plans a page may still want a picture of: the last, and those that undo comes to.
+constexpr std::size_t kMostKept = 4;
+
 std::string all_failures(const Certificate& certificate) {
   std::string all;
   for (const Check& check : certificate.failures())
@@ -220,7 +223,7 @@ class StudioWorker {
     settings.cancellation = whole_.get();
     WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
     settings.progress = &progress;
-    const std::unique_ptr<Mission> mission = configured_mission(script_, settings, layer);
+    const std::shared_ptr<Mission> mission = configured_mission(script_, settings, layer);
     MissionResult result = mission->plan();
     if (whole_->cancelled()) return;
     if (result.mapping)
@@ -234,10 +237,11 @@ class StudioWorker {
     edited.answer.grade = AnswerGrade::converged;
     edited.answer.result.report = result.report;
     edited.folder = result.obstacle_folder;
-    result.plan.solver = to_value(result.report, result.solver);
+    edited.scan = result.scan;
     edited.plan = std::make_shared<const Plan>(result.plan);
     for (const std::string& note : result.notes)
       edited.answer.message += (edited.answer.message.empty() ? "" : "; ") + note;
+    if (kind_ != "film") keep(mission);
     if (!before) tell(edited);
     edited.certificate = judge_(*edited.plan, edited.folder, *whole_);
     if (whole_->cancelled()) return;
@@ -255,6 +259,12 @@ class StudioWorker {
     if (!before || moved > kSameWay) editor_.begin_at(edited.plan->trajectory);
     drawn_last_.reset();
     tell(edited);
+  }
+
+  // Its folder has files that its plan names and that planning wrote, and goes with it.
+  void keep(std::shared_ptr<Mission> mission) {
+    planned_.push_back(std::move(mission));
+    if (planned_.size() > kMostKept) planned_.pop_front();
   }
 
   void hear(const EditedPlan& edited) {
@@ -281,6 +291,7 @@ class StudioWorker {
     frame.header.set("said", "answer");
     frame.header.set("grade", to_string(grade));
     frame.header.set("message", as_utf8(edited.answer.message));
+    frame.header.set("folder", kind_ == "film" ? "" : edited.folder.string());
     frame.header.set("seconds", std::chrono::duration<double>(Clock::now() - began_).count());
     const bool ended = grade != AnswerGrade::step;
     if (edited.certificate) set_reads(frame);
@@ -294,7 +305,7 @@ class StudioWorker {
 
   // Once for every change of it.
   void tell_world(const EditedPlan& edited) {
-    WorldMessage world = world_message(*edited.plan, edited.folder, drawn_);
+    WorldMessage world = world_message(*edited.plan, edited.folder, edited.scan.get(), drawn_);
     if (world.text == told_world_) return;
     told_world_ = world.text;
     Frame frame;
@@ -320,6 +331,7 @@ class StudioWorker {
   std::string drawn_layer_;
   double dragged_step_ = 0;  // s between stages while a long film is dragged; 0: as the film says
   DrawnSurfaces drawn_;
+  std::deque<std::shared_ptr<Mission>> planned_;  // of other kinds than films, the newest last
   std::string told_world_;
   std::set<std::string> reads_;  // of the mission planned last
 

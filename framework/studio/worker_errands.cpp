@@ -191,12 +191,14 @@ Frame WorkerErrands::fly(const Frame& asked) const {
 Plan WorkerErrands::with_shapes(const Frame& asked) {
   Plan plan = plan_in(asked);
   const Value& layer = asked.header.at("layer");
-  const std::string stated = to_json(layer, -1) + read_file(script_);
-  if (stated != stated_layer_ || !stated_mission_ || looks_of(stated_reads_) != stated_looks_) {
+  const std::string& folder = asked.header.at("folder").as_text();
+  const std::string stated = to_json(layer, -1) + folder + read_file(script_);
+  if (stated != stated_layer_ || looks_of(stated_reads_) != stated_looks_) {
+    stated_layer_.clear();
     stated_mission_.reset();
     stated_reads_.clear();
     const ReadListener listener([this](const fs::path& file) { stated_reads_.insert(file); });
-    state_environment(plan, layer);
+    state_environment(plan, layer, folder);
     stated_layer_ = stated;
     stated_looks_ = looks_of(stated_reads_);
   }
@@ -205,8 +207,15 @@ Plan WorkerErrands::with_shapes(const Frame& asked) {
 }
 
 // As the script states it; of a mission of several problems what the plan records, with the files
-// that the script named before planning began.
-void WorkerErrands::state_environment(const Plan& plan, const Value& layer) {
+// of the folder that planning left, or those that the script named before planning began.
+void WorkerErrands::state_environment(const Plan& plan, const Value& layer,
+                                      const fs::path& planned) {
+  if (!planned.empty()) {
+    stated_environment_ = plan.environment;
+    open_recorded_shapes(stated_environment_, *settings_.registry, planned);
+    stated_folder_ = planned;
+    return;
+  }
   auto mission = configured_mission(script_, settings_, layer);
   try {
     MissionStatement statement = mission->state();

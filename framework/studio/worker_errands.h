@@ -48,7 +48,8 @@ class WorkerErrands {
   Frame save_report(const Frame& asked) const;
   // With the shapes of its obstacles open.
   Plan with_shapes(const Frame& asked);
-  void state_environment(const Plan& plan, const Value& layer);
+  void state_environment(const Plan& plan, const Value& layer,
+                         const std::filesystem::path& planned);
 
   std::filesystem::path script_;
   const MissionSettings& settings_;

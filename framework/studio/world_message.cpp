@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/core/checksum.h"
 #include "framework/core/json.h"
+#include "framework/export/prediction_mesh.h"
+#include "framework/export/prediction_report.h"
+#include "framework/export/scan_report.h"
 #include "framework/export/surroundings.h"
 #include "framework/studio/blob_store.h"
 #include "framework/studio/plan_message.h"
@@ -52,10 +55,83 @@ Value bounds_of(const Plan& plan) {
   return bounds;
 }
 
+Value places_of(const std::vector<Eigen::Vector3d>& places) {
+  Value list = Value::list();
+  for (const Eigen::Vector3d& p : places) list.push_back(place_of(p));
+  return list;
+}
+
+Value polygon_of(const GroundPolygon& polygon) {
+  Value list = Value::list();
+  for (const Eigen::Vector2d& p : polygon) list.push_back(Value(Value::List{p.x(), p.y()}));
+  return list;
+}
+
+Value prism_of(const RegionPrism& prism) {
+  Value value = Value::map();
+  value.set("name", as_utf8(prism.name));
+  value.set("corners", polygon_of(prism.outline));
+  Value& holes = value.set("holes", Value::list());
+  for (const GroundPolygon& hole : prism.holes) holes.push_back(polygon_of(hole));
+  value.set("low", prism.low);
+  value.set("high", prism.high);
+  value.set("weight", prism.weight);
+  return value;
+}
+
+Value region_of(const InterestRegion& region) {
+  Value list = Value::list();
+  for (const RegionPrism& prism : region.prisms()) list.push_back(prism_of(prism));
+  if (!region.is_box() || region.is_empty()) return list;
+  const Eigen::Vector3d &a = region.bounds().min(), &b = region.bounds().max();
+  RegionPrism box;
+  box.outline = {{a.x(), a.y()}, {b.x(), a.y()}, {b.x(), b.y()}, {a.x(), b.y()}};
+  box.low = a.z();
+  box.high = b.z();
+  list.push_back(prism_of(box));
+  return list;
+}
+
+Value views_of(const ScanTask& task) {
+  Value list = Value::list();
+  for (const PlannedView& view : task.views) {
+    Value one = Value::map();
+    one.set("time", view.time);
+    one.set("position", place_of(view.position));
+    one.set("yaw", view.yaw);
+    one.set("pitch", view.pitch);
+    one.set("matching", view.kind == ViewKind::matching);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+// What a scan was planned on, and what its images will show: the figures of `lapwing run --json`.
+Value scan_of(const Plan& plan, const ScanRecord& record) {
+  const ScanTask& task = *plan.task.scan;
+  Value value = Value::map();
+  value.set("region", region_of(task.region));
+  value.set("views", views_of(task));
+  value.set("image",
+            Value(Value::List{std::int64_t{task.camera.width}, std::int64_t{task.camera.height},
+                              task.camera.focal_x, task.camera.focal_y, task.camera.principal_x,
+                              task.camera.principal_y}));
+  value.set("first_views", places_of(record.first_views));
+  value.set("candidates", places_of(record.candidates));
+  value.set("seconds", Value(Value::List(record.seconds.begin(), record.seconds.end())));
+  value.set("score", Value(Value::List(record.score.begin(), record.score.end())));
+  value.set("areas", areas_as_value(record));
+  value.set("words", areas_in_words(record));
+  if (!record.prediction) return value;
+  value.set("prediction", prediction_as_value(*record.prediction));
+  value.set("prediction_words", prediction_in_words(*record.prediction));
+  return value;
+}
+
 }  // namespace
 
 WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder,
-                           DrawnSurfaces& drawn) {
+                           const ScanRecord* scan, DrawnSurfaces& drawn) {
   WorldMessage message;
   Value world = Value::map();
   world.set("type", "world");
@@ -77,6 +153,15 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
   }
   world.set("margin", plan.environment.margin);
   world.set("bounds", bounds_of(plan));
+  if (scan && plan.task.scan) {
+    Value& told = world.set("scan", scan_of(plan, *scan));
+    if (scan->prediction) {
+      std::string surface = prediction_ply(*scan->prediction);
+      const std::string name = sha256(surface);
+      told.set("surface", name);
+      message.blobs.emplace(name, std::move(surface));
+    }
+  }
   message.text = to_json(world, -1);
   return message;
 }

@@ -25,12 +25,12 @@ function program() {
 export const hasStudio = () => program() !== null;
 
 // In a folder of its own: journal, layer and what is written stay there.
-export async function startStudio(example, folder = null) {
+export async function startStudio(example, folder = null, options = []) {
   const words = program();
   const dir = folder ?? mkdtempSync(join(tmpdir(), "lapwing-studio-"));
   if (!folder) copyFileSync(join(root, example), join(dir, "film.lua"));
   // The address of a studio that was killed is kept there, for the next one.
-  const child = spawn(words[0], [...words.slice(1), "film.lua", "--no-open", "--assets", dist],
+  const child = spawn(words[0], [...words.slice(1), "film.lua", "--no-open", "--assets", dist, ...options],
                       { cwd: dir, env: { ...process.env, XDG_RUNTIME_DIR: dir } });
   let said = "";
   const address = await new Promise((found, failed) => {

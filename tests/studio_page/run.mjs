@@ -9,6 +9,7 @@ import { edits } from "./cases_edit.mjs";
 import { film } from "./cases_film.mjs";
 import { links } from "./cases_link.mjs";
 import { race } from "./cases_race.mjs";
+import { scan } from "./cases_scan.mjs";
 import { views } from "./cases_view.mjs";
 import { worlds } from "./cases_world.mjs";
 import { figures } from "./figures.mjs";
@@ -86,6 +87,11 @@ try {
   }
   if (!only || only === "race") {
     failed += await race(browsers[0], async (page, file) => {
+      if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
+    });
+  }
+  if (!only || only === "scan") {
+    failed += await scan(browsers[0], async (page, file) => {
       if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
     });
   }

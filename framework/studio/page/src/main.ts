@@ -9,6 +9,7 @@ import { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
 import { Feel } from "./panel/feel";
 import { FilmList } from "./panel/film_list";
 import { Hints, Notices, recall } from "./panel/notices";
+import { ScanPanel } from "./panel/scan_panel";
 import { Selected } from "./panel/selected";
 import { Setup } from "./panel/setup";
 import { showTab, wireTabs } from "./panel/tabs";
@@ -20,6 +21,7 @@ import { GestureQueue } from "./state/queue";
 import { pathOf, positionAt } from "./state/samples";
 import { Session, type Socket } from "./state/session";
 import { labelOf } from "./state/schema";
+import { prismOf, siteLists } from "./state/site";
 import { trianglesOf } from "./state/shapes";
 import type { JsonObject, Vec3 } from "./state/types";
 import { Studio } from "./studio";
@@ -35,6 +37,7 @@ import { Paths } from "./view/paths";
 import { Pick } from "./view/pick";
 import { Pins } from "./view/pins";
 import { Preview, previewControls } from "./view/preview";
+import { ScanView } from "./view/scan_view";
 import { Solids } from "./view/solids";
 import { Stage } from "./view/stage";
 import { Walk } from "./view/walk";
@@ -96,6 +99,7 @@ gizmo.controls.addEventListener("dragging-changed", () => {
 });
 new Paths(studio, stage);
 new Gates(studio, stage);
+const scanned = new ScanView(studio, stage);
 new Pins(studio, stage, byId("pins"));
 const pick = new Pick(studio, stage, solids, gizmo);
 new Walk(studio, stage, pick);
@@ -117,6 +121,7 @@ function bounds(): THREE.Box3 {
   for (const p of pathOf(studio.plan.columns)) box.expandByPoint(new THREE.Vector3(...p));
   for (const k of studio.film.keyframes) box.expandByPoint(new THREE.Vector3(...k.position));
   for (const g of studio.course?.gates ?? []) box.expandByPoint(new THREE.Vector3(...g.position));
+  box.union(scanned.bounds());
   const things = solids.bounds();
   // A large map must not make the film small.
   if (box.isEmpty() || things.getSize(new THREE.Vector3()).length() <
@@ -136,6 +141,12 @@ navigation.onButton = (button) => {
   else studio.setMode("orbit");
 };
 pick.onGate = (at) => list.addGate(at);
+const scan = new ScanPanel(studio, centre);
+scan.onPlace = (place) => navigation.lookAt(place);
+pick.onNothing = (ray) => {
+  const words = scanned.wordsAt(ray);
+  if (words) notices.say(words);
+};
 const selected = new Selected(studio);
 new Actions({
   studio, selected, list, notices, exports: new ExportDialog(studio),
@@ -150,18 +161,26 @@ new Actions({
 
 let framed = false;
 // The document's obstacles, and what only the server knows: flight zones, the walls of a race.
+function zonesOf(kind: "closed" | "zone"): JsonObject[] {
+  const side = kind === "zone" ? "keep_inside" : "keep_out";
+  return entries(studio.document, siteLists[kind]).map((zone, index): JsonObject =>
+    ({ ...prismOf(studio.document, kind, index) ?? zone, side, opaque: false }));
+}
+
 function obstacles(): JsonObject[] {
   const own = entries(studio.document, "obstacles");
-  const zones = entries(studio.document, "flight_zones").map((zone): JsonObject =>
-    ({ ...zone, type: "prism", side: "keep_inside", opaque: false }));
+  const closed = zonesOf("closed"), open = zonesOf("zone");
   const more = (session.world.obstacles ?? []).slice(own.length);
-  let known = 0;
   const told = more.map((one) => {
-    const zone = one.shape === "prism" && one.side === "keep_inside" ? zones[known++] : undefined;
-    return zone ?? { ...one, type: one.shape } as unknown as JsonObject;
+    const zones = one.shape !== "prism" ? [] : one.side === "keep_inside" ? open : closed;
+    const zone = zones.shift();
+    if (zone && trianglesOf(zone)) return zone;
+    // What is scanned is drawn by its surface.
+    const hidden = one.shape === "map" && scanned.covers;
+    return { ...one, type: hidden ? "hidden" : one.shape, hidden } as unknown as JsonObject;
   });
   // One that the server has not heard of yet is drawn all the same.
-  return [...own, ...told, ...zones.slice(known)];
+  return [...own, ...told, ...closed, ...open];
 }
 
 studio.on(["document"], () => {
@@ -169,7 +188,7 @@ studio.on(["document"], () => {
   if (document.body.dataset.kind === kind) return;
   document.body.dataset.kind = kind;
   // Missions of other kinds are edited by their options alone.
-  const listed = kind === "film" || kind === "race";
+  const listed = kind === "film" || kind === "race" || kind === "scan";
   byId("tab-film").textContent = labelOf(kind || "film");
   byId("tab-film").hidden = !listed;
   byId("tab-feel").hidden = !session.schema.some((option) => option.name === "weights");
@@ -187,6 +206,8 @@ studio.on(["document", "world", "standing"], () => {
   }
   stage.invalidate();
 });
+// The surface with its predictions says more than the map beneath it.
+scanned.onSurface = () => solids.set(obstacles());
 studio.on(["time"], () => solids.moveTo(studio.time));
 studio.on(["selection"], () => {
   solids.choose(studio.selection?.kind === "obstacle" ? studio.selection.index : null);
@@ -195,6 +216,7 @@ studio.on(["selection"], () => {
 });
 // After the surfaces that it is drawn around.
 new Hulls(studio, stage, solids);
+studio.on(["look"], () => byId("map").setAttribute("aria-pressed", String(studio.map)));
 studio.on(["look"], () => byId("margins").setAttribute("aria-pressed", String(studio.margins)));
 studio.on(["mode"], () => {
   document.body.dataset.mode = studio.mode;
@@ -278,6 +300,7 @@ Object.defineProperty(window, "lapwing", {
     // Where the curve of speed is at a time, on the page; where the eye is, and how far it sees, m.
     onCurve: (time: number) => timeline.curvePlace(time),
     get eye() { return stage.worldCamera.position.toArray(); },
+    get surface() { return scanned.triangles; },
     get farthest() { return stage.worldCamera.far; },
     measure(on: boolean) { stage.measuring = on; },
     get edit() { return session.dragging ? session.edit : null; },

@@ -3,6 +3,8 @@
 // mode, view. Parts listen; nobody calls another part.
 import { filmOf, type Film } from "./state/film";
 import { courseGuess, courseOf, isCourse, type Course } from "./state/course";
+import type { Figure } from "./state/prediction";
+import type { PolygonKind } from "./state/site";
 import { guessOf } from "./state/spline";
 import { passagesOf } from "./state/failures";
 import type { Edit, Item } from "./state/edits";
@@ -15,7 +17,7 @@ import { clamp } from "./state/vector";
 
 export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
   "flown" | "look" | "playing" | "kept";
-export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk";
+export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk" | "outline";
 export type Rate = 0.5 | 1 | 2;
 
 export class Studio {
@@ -28,6 +30,11 @@ export class Studio {
   rendered = true;             // a picture by the server while paused
   framing = false;             // clicks in the picture place the subject
   margins = false;             // hulls around obstacles
+  map = false;                 // the world from straight above
+  outlined: PolygonKind = "region";    // what a drag draws in the mode `outline`
+  // Of a scan: what is drawn, and the figure whose colours the surface has.
+  readonly look: { figure: Figure; views: boolean; candidates: boolean; first: boolean } =
+    { figure: "accuracy_mm", views: true, candidates: false, first: false };
   flown: Flown | null = null;
   kept: (Version & { grade: Grade }) | null = null;   // to be compared with
   private readonly listeners: { topics: Topic[]; then: (topic: Topic) => void }[] = [];

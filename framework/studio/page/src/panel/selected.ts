@@ -4,6 +4,7 @@ import { addedCorner, corneredItem, entryOf, nameOf, pathOfItem, retimed, timeRa
          moved, placeOfItem, slowed, type Item } from "../state/edits";
 import { entries } from "../state/film";
 import { copiedGate, reorderedGate, reshapedGate, turnedGate } from "../state/course";
+import { siteLists, type PolygonKind } from "../state/site";
 import { labelOf, type Field } from "../state/schema";
 import { isObject } from "../state/document";
 import { vec } from "../state/vector";
@@ -63,7 +64,9 @@ export class Selected {
   private fields(item: Item, entry: JsonObject): Field[] {
     const { document, session } = this.studio;
     if (item.kind === "obstacle") return obstacleFields(`obstacles[${item.index + 1}]`, entry);
-    if (item.kind === "zone") return obstacleFields(`flight_zones[${item.index + 1}]`, entry);
+    if (item.kind === "zone" || item.kind === "closed" || item.kind === "region") {
+      return this.polygonFields(item.kind, item.index);
+    }
     if (item.kind === "corner") {
       const corner = placeOfItem(document, item);
       return corner ? placeFields("corner", corner).slice(0, 2) : [];
@@ -107,6 +110,23 @@ export class Selected {
       }
     }
     return fields;
+  }
+
+  // What a polygon states, and both ends of its heights; of a region its weight.
+  private polygonFields(kind: PolygonKind, index: number): Field[] {
+    const list = siteLists[kind];
+    const entry = entries(this.studio.document, list)[index];
+    const declared = this.studio.session.schema.find((o) => o.name === list)?.table ?? [];
+    if (!entry) return [];
+    return declared.flatMap((option): Field[] => {
+      // Files are the script's; a page names none.
+      const asked = option.type === "number" || option.name === "name" ||
+        (option.type === "text" && Boolean(entry[option.name]));
+      if (!asked) return [];
+      return [{ path: `${list}[${index + 1}].${option.name}`, label: labelOf(option.name), option,
+                value: entry[option.name] ?? option.default,
+                stated: entry[option.name] !== undefined }];
+    });
   }
 
   private lookField(base: string, entry: JsonObject): Field {
@@ -296,6 +316,8 @@ export function remove(studio: Studio): string | null {
     return item.kind === "corner" ? "A zone needs at least three corners."
       : item.kind === "track" ? "Walk the way of the subject anew to change its places."
         : item.kind === "gate" ? "A course needs at least one gate."
+          : item.kind === "place" || item.kind === "extent"
+            ? "The scan begins here, or is as large; move it."
           : item.kind === "end" ? "A course that begins or ends here keeps the place; move it."
             : "A film needs at least two keyframes.";
   }

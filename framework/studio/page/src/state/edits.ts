@@ -4,6 +4,7 @@
 import { entries, filmOf } from "./film";
 import { endNames, isCourse } from "./course";
 import { freeGround, lifted } from "./room";
+import { levelsOf, placeNames, placeOf, placePaths, polygonNames, prismOf, siteLists, isSite, boxOf, type PolygonKind } from "./site";
 import { cornersOf, flatCorners, handleOf, movedObstacle } from "./shapes";
 import type { Json, JsonObject, Patch, Vec3 } from "./types";
 import { add, minus, mix, rounded, vec } from "./vector";
@@ -14,10 +15,12 @@ export interface Edit {
 }
 
 export type Item =
-  | { kind: "keyframe" | "look" | "subject" | "obstacle" | "zone" | "gate"; index: number }
+  | { kind: "keyframe" | "look" | "subject" | "obstacle" | PolygonKind | "gate"; index: number }
   | { kind: "end"; index: 0 | 1 }                 // where a race starts and finishes
+  | { kind: "place"; index: number }              // where the flights of a scan begin, home
+  | { kind: "extent"; index: 0 | 1 }              // the ends of the box that is scanned
   | { kind: "track"; index: number; point: number }
-  | { kind: "corner"; of: "obstacle" | "zone"; index: number; point: number };
+  | { kind: "corner"; of: "obstacle" | PolygonKind; index: number; point: number };
 
 const pointOf = (item: Item): string =>
   item.kind === "track" ? `${item.point}` : item.kind === "corner" ? `${item.of}${item.point}` : "";
@@ -25,30 +28,45 @@ const pointOf = (item: Item): string =>
 export const sameItem = (a: Item | null, b: Item | null): boolean =>
   a !== null && b !== null && a.kind === b.kind && a.index === b.index && pointOf(a) === pointOf(b);
 
-const listNames: Record<Exclude<Item["kind"], "corner" | "end">, string> = {
+type Single = "end" | "place" | "extent";
+const isSingle = (item: Item): item is Extract<Item, { kind: Single }> =>
+  item.kind === "end" || item.kind === "place" || item.kind === "extent";
+const extentNames = ["lower", "upper"] as const;
+const isPolygon = (kind: string): kind is PolygonKind => kind in siteLists;
+
+const listNames: Record<Exclude<Item["kind"], "corner" | Single>, string> = {
   keyframe: "keyframes", look: "keyframes", subject: "subjects", obstacle: "obstacles",
-  track: "subjects", zone: "flight_zones", gate: "gates",
+  track: "subjects", gate: "gates", ...siteLists,
 };
 
-const listOf = (item: Exclude<Item, { kind: "end" }>): string =>
+const listOf = (item: Exclude<Item, { kind: Single }>): string =>
   listNames[item.kind === "corner" ? item.of : item.kind];
 
-// A flight zone is a prism that says nothing of its type.
+// Zones and regions are prisms that say nothing of their type.
 export function entryOf(document: JsonObject, item: Item): JsonObject | null {
   if (item.kind === "end") {
     const position = isCourse(document) ? vec(document[endNames[item.index]]) : null;
     return position && { position };
   }
+  if (item.kind === "place") {
+    const position = isSite(document) ? placeOf(document, item.index) : null;
+    return position && { position };
+  }
+  if (item.kind === "extent") {
+    const position = boxOf(document)?.[extentNames[item.index]];
+    return position ? { position } : null;
+  }
   const entry = entries(document, listOf(item))[item.index];
   if (!entry) return null;
-  const shaped = listOf(item) === "flight_zones" ? { ...entry, type: "prism" } : entry;
+  const of = item.kind === "corner" ? item.of : item.kind;
+  const shaped = isPolygon(of) ? prismOf(document, of, item.index) ?? entry : entry;
   return item.kind === "corner" && !cornersOf(shaped.corners)[item.point] ? null : shaped;
 }
 
 // The item whose corners are shown: the one that is selected, or that a selected corner is of.
 export function corneredItem(document: JsonObject, item: Item | null): Item | null {
   const owner = item?.kind === "corner" ? { kind: item.of, index: item.index } as Item : item;
-  if (!owner || (owner.kind !== "obstacle" && owner.kind !== "zone")) return null;
+  if (!owner || (owner.kind !== "obstacle" && !isPolygon(owner.kind))) return null;
   return cornersOf(entryOf(document, owner)?.corners).length > 2 ? owner : null;
 }
 
@@ -58,20 +76,29 @@ export function nameOf(document: JsonObject, item: Item): string {
   const n = item.index + 1;
   switch (item.kind) {
     case "end": return endNames[item.index];
+    case "place": return placeNames[item.index] ?? "place";
+    case "extent": return `${extentNames[item.index]} end of the region`;
     case "gate": return name ? `gate ${name}` : `gate ${n}`;
     case "keyframe": return `keyframe ${n}`;
     case "look": return `look-at point of keyframe ${n}`;
     case "subject": return name ? `subject ${name}` : `subject ${n}`;
     case "track": return `place ${item.point + 1} of ${name || `subject ${n}`}`;
     case "obstacle": return name ? `obstacle ${name}` : `obstacle ${n}`;
-    case "zone": return name ? `flight zone ${name}` : `flight zone ${n}`;
-    case "corner": return `corner ${item.point + 1} of ${name || `${item.of === "zone"
-      ? "flight zone" : "obstacle"} ${n}`}`;
+    case "zone":
+    case "closed":
+    case "region": {
+      const word = polygonNames[item.kind];
+      return name ? (name.startsWith(word) ? name : `${word} ${name}`) : `${word} ${n}`;
+    }
+    case "corner": return `corner ${item.point + 1} of ${name || `${item.of === "obstacle"
+      ? "obstacle" : polygonNames[item.of]} ${n}`}`;
   }
 }
 
 export function pathOfItem(document: JsonObject, item: Item): string | null {
   if (item.kind === "end") return endNames[item.index];
+  if (item.kind === "place") return placePaths[item.index] ?? null;
+  if (item.kind === "extent") return `region.${extentNames[item.index]}`;
   const list = `${listOf(item)}[${item.index + 1}]`;
   if (item.kind === "keyframe" || item.kind === "gate") return `${list}.position`;
   if (item.kind === "look") return `${list}.look_at`;
@@ -85,11 +112,11 @@ export function pathOfItem(document: JsonObject, item: Item): string | null {
 export function placeOfItem(document: JsonObject, item: Item): Vec3 | null {
   const entry = entryOf(document, item);
   if (!entry) return null;
-  if (item.kind === "keyframe" || item.kind === "gate" || item.kind === "end") {
+  if (item.kind === "keyframe" || item.kind === "gate" || isSingle(item)) {
     return vec(entry.position);
   }
   if (item.kind === "look") return vec(entry.look_at);
-  if (item.kind === "obstacle" || item.kind === "zone") return handleOf(entry);
+  if (item.kind === "obstacle" || isPolygon(item.kind)) return handleOf(entry);
   if (item.kind === "corner") {
     const corner = cornersOf(entry.corners)[item.point];
     return corner ? [...corner, handleOf(entry)?.[2] ?? 0] : null;
@@ -105,10 +132,15 @@ export function moved(document: JsonObject, item: Item, to: Vec3): Edit | null {
   if (!from || !entry) return null;
   const label = `Move ${nameOf(document, item)}`;
   const path = pathOfItem(document, item);
-  if (path || item.kind === "end") return path ? { label, patch: [{ path, value: rounded(to) }] } : null;
+  if (path || isSingle(item)) return path ? { label, patch: [{ path, value: rounded(to) }] } : null;
   const list = `${listOf(item)}[${item.index + 1}]`;
-  if (item.kind === "obstacle" || item.kind === "zone") {
+  if (item.kind === "obstacle" || isPolygon(item.kind)) {
     const patch = movedObstacle(entry, list, minus(to, from));
+    // Regions name their ends otherwise.
+    const [low, high] = item.kind === "region" ? levelsOf("region") : ["floor", "ceiling"];
+    for (const change of patch) {
+      change.path = change.path.replace(/\.floor$/, `.${low}`).replace(/\.ceiling$/, `.${high}`);
+    }
     return patch.length > 0 ? { label, patch } : null;
   }
   if (item.kind === "corner") {
@@ -208,7 +240,7 @@ export function duplicated(document: JsonObject, index: number): (Edit & { index
 export function addedCorner(document: JsonObject, item: Item): (Edit & { point: number }) | null {
   const owner = corneredItem(document, item);
   const corners = cornersOf(owner && entryOf(document, owner)?.corners);
-  if (!owner || owner.kind === "end" || corners.length < 3) return null;
+  if (!owner || isSingle(owner) || corners.length < 3) return null;
   const point = item.kind === "corner" ? item.point : corners.length - 1;
   const [ax, ay] = corners[point] as [number, number];
   const [bx, by] = corners[(point + 1) % corners.length] as [number, number];
@@ -229,7 +261,7 @@ export function without(document: JsonObject, label: string, index: number, key:
 }
 
 export function deleted(document: JsonObject, item: Item): Edit | null {
-  if (item.kind === "end") return null;
+  if (isSingle(item)) return null;
   const label = `Delete ${nameOf(document, item)}`;
   if (item.kind === "look") return without(document, label, item.index, "look_at");
   const name = listOf(item);

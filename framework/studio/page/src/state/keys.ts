@@ -46,6 +46,7 @@ export const bindings: Binding[] = [
     text: "Fly the virtual camera (W A S D, Q E, mouse or arrows)" },
   { group: "View", keys: ["K"], action: "keyframe-here", text: "Keyframe of what you see" },
   { group: "View", keys: ["Z"], action: "frame", text: "Show everything" },
+  { group: "View", keys: ["E"], action: "map", text: "The world from straight above, as a map; back" },
   { group: "View", keys: ["G"], action: "guides", text: "Guides in the picture on, off" },
   { group: "View", keys: ["M"], action: "framing",
     text: "Place the subject in the picture by clicking there" },

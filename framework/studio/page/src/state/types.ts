@@ -126,7 +126,40 @@ export interface WorldObstacle {
   blob?: string;
 }
 
+// A region, or part of one, above a polygon with holes; m.
+export interface SitePrism {
+  name: string;
+  corners: [number, number][];
+  holes: [number, number][][];
+  low: number;
+  high: number;
+  weight: number;
+}
+
+export interface SurfaceHole {
+  area: number;
+  position: Vec3;
+  why: "not_chosen" | "zone" | "no_view";
+}
+
+// What a scan was planned on, and what its images will show.
+export interface ScanWorld {
+  region: SitePrism[];
+  views: { time: number; position: Vec3; yaw: number; pitch: number; matching: boolean }[];
+  image: number[];             // width, height, focal lengths and principal point, pixels
+  first_views: Vec3[];
+  candidates: Vec3[];
+  seconds: number[];
+  score: number[];
+  areas: JsonObject;
+  words: string;
+  prediction?: JsonObject;
+  prediction_words?: string;
+  surface?: string;            // blob, as prediction.ts reads it
+}
+
 export interface World {
+  scan?: ScanWorld;
   obstacles?: WorldObstacle[];
   subjects?: SubjectTrack[];
   margin?: number;

@@ -16,6 +16,9 @@ const STICK = 1.4;        // rad/s by a stick of a gamepad
 const SLACK = 0.15;       // of a stick, that counts as its middle
 const FILLED = 0.85;      // of the view by a film that is shown whole
 const OUTGROWN = 3;       // of the film's extent against what is shown, to show it whole again
+const DEFAULT_FOV = 55;   // degrees, as stage.ts begins
+const MAP_FOV = 4;        // degrees
+const NEARBY = 25;        // m
 const held = ["w", "a", "s", "d", "q", "e", "arrowleft", "arrowright", "arrowup", "arrowdown"];
 
 export class Navigation {
@@ -31,6 +34,8 @@ export class Navigation {
   private whole = 0;      // m, the extent of what was shown whole last
   private before: { position: THREE.Vector3; fov: number } | null = null;
 
+  private above: { position: THREE.Vector3 } | null = null;   // while the map is shown
+
   constructor(private readonly studio: Studio, private readonly stage: Stage) {
     this.orbit = new OrbitControls(stage.worldCamera, stage.world);
     this.orbit.enableDamping = false;
@@ -40,6 +45,7 @@ export class Navigation {
     this.orbit.maxDistance = 1500;       // more where the film is larger
     this.orbit.addEventListener("change", () => stage.invalidate());
     studio.on(["mode"], () => this.switch());
+    studio.on(["look"], () => this.map(studio.map));
     window.addEventListener("gamepadconnected", () => {
       if (studio.mode === "camera") this.run();
       else studio.session.note("A gamepad: press V, and fly the camera with it.");
@@ -66,6 +72,13 @@ export class Navigation {
 
   // Everything of the film in the view, seen from the south-west and above.
   frame(box: THREE.Box3): void {
+    const above = this.above !== null;
+    if (above) this.map(false);
+    this.showWhole(box);
+    if (above) this.map(true);
+  }
+
+  private showWhole(box: THREE.Box3): void {
     const shown = box.isEmpty()
       ? new THREE.Box3(new THREE.Vector3(-10, -10, 0), new THREE.Vector3(10, 10, 5))
       : box.clone().expandByScalar(0.5);
@@ -89,6 +102,47 @@ export class Navigation {
     this.stage.reach(3 * distance + shown.getSize(new THREE.Vector3()).length());
     camera.position.copy(center).addScaledVector(away, distance);
     this.orbit.target.copy(center);
+    this.orbit.update();
+    this.stage.invalidate();
+  }
+
+  // The same place from straight above, north up, through a long lens: nearly without perspective,
+  // and a drag moves. Or back to where it was.
+  map(on: boolean): void {
+    const camera = this.stage.worldCamera;
+    if (on === (this.above !== null)) return;
+    const { target } = this.orbit;
+    const wide = Math.tan((DEFAULT_FOV * Math.PI) / 360), far = Math.tan((MAP_FOV * Math.PI) / 360);
+    if (on) {
+      this.above = { position: camera.position.clone().sub(target) };
+      const away = Math.max(camera.position.distanceTo(target), 10) * (wide / far);
+      camera.fov = MAP_FOV;
+      camera.position.set(target.x, target.y - 1e-4 * away, target.z + away);
+      this.orbit.maxDistance *= wide / far;
+      this.stage.reach(2 * away);
+    } else if (this.above) {
+      const away = camera.position.distanceTo(target) * (far / wide);
+      camera.fov = DEFAULT_FOV;
+      camera.position.copy(target).addScaledVector(this.above.position.normalize(), away);
+      this.orbit.maxDistance *= far / wide;
+      this.stage.reach(Math.max(4000, 4 * away));
+      this.above = null;
+    }
+    this.orbit.enableRotate = !on;
+    this.orbit.mouseButtons.LEFT = on ? THREE.MOUSE.PAN : THREE.MOUSE.ROTATE;
+    this.orbit.screenSpacePanning = true;
+    camera.updateProjectionMatrix();
+    this.orbit.update();
+    this.stage.invalidate();
+  }
+
+  // A place in the middle of the view, from nearby.
+  lookAt(place: Vec3): void {
+    const camera = this.stage.worldCamera;
+    const away = camera.position.clone().sub(this.orbit.target);
+    if (!this.above) away.setLength(Math.min(away.length(), NEARBY));
+    this.orbit.target.set(...place);
+    camera.position.copy(this.orbit.target).add(away);
     this.orbit.update();
     this.stage.invalidate();
   }

@@ -2,6 +2,8 @@
 // Clicks in the world: on the path, on an obstacle, on the ground, by the mode of the page.
 import * as THREE from "three";
 import { appended, inserted, lookedAt } from "../state/edits";
+import { entries } from "../state/film";
+import { addedPolygon, rectangle } from "../state/site";
 import { withStroke } from "../state/shots";
 import { pathOf, positionAt } from "../state/samples";
 import type { Vec3 } from "../state/types";
@@ -16,6 +18,7 @@ const STILL = 4;         // px that a click may move
 const AHEAD = 20;        // m, where the sky is looked at
 const HEIGHT = 3;        // m above the ground, of a first keyframe
 const FARTHEST = 30000;  // m
+const LEAST = 0.5;       // m, of the sides of a polygon that is drawn
 
 export class Pick {
   private down: PointerEvent | null = null;
@@ -30,6 +33,7 @@ export class Pick {
       if (event.button !== 0 || gizmo.busy || event.target !== stage.world) return;
       this.down = event;
       if (studio.mode === "draw") return this.draw(event);
+      if (studio.mode === "outline") return this.outline(event);
       const time = studio.mode === "orbit" ? this.pathTime(event) : null;
       if (time !== null) this.alongPath(event, time);
     }, { capture: true });
@@ -102,6 +106,28 @@ export class Pick {
     });
   }
 
+  // A rectangle on the ground, from where the drag begins to where it ends.
+  private outline(event: PointerEvent): void {
+    const { studio } = this;
+    event.stopImmediatePropagation();
+    this.down = null;
+    const level = studio.session.world.scan?.region[0]?.low ?? 0;
+    const from = this.onLevel(event, level);
+    if (!from) return;
+    const base = studio.session.settled(), kind = studio.outlined;
+    let made: ReturnType<typeof addedPolygon> | null = null;
+    this.follow(event, (e) => {
+      const to = this.onLevel(e, level);
+      if (!to || Math.min(Math.abs(to[0] - from[0]), Math.abs(to[1] - from[1])) < LEAST) return;
+      made = addedPolygon(base, kind, rectangle(from, to), studio.session.world.scan);
+      studio.drag(made);
+    }, (kept) => {
+      studio.setMode("orbit");
+      if (!kept || !made) studio.session.rest();
+      else if (studio.edit(made)) studio.select({ kind, index: made.index });
+    });
+  }
+
   private follow(
     event: PointerEvent, move: (e: PointerEvent) => void, end: (kept: boolean) => void,
   ): void {
@@ -134,6 +160,8 @@ export class Pick {
     return hit && hit.distanceTo(ray.origin) < FARTHEST ? [hit.x, hit.y, height] : null;
   }
 
+  // A click on nothing that can be selected.
+  onNothing: (ray: THREE.Ray) => void = () => undefined;
   // A click of a race places a gate.
   onGate: ((at: Vec3) => void) | null = null;
 
@@ -143,7 +171,10 @@ export class Pick {
     if (studio.mode === "aim") return this.aim(event);
     if (studio.mode !== "orbit") return;
     const solid = this.solidAt(event);
-    studio.select(solid ? { kind: "obstacle", index: solid.index } : null);
+    // Only what the document has can be selected.
+    const listed = solid !== null && solid.index < entries(studio.document, "obstacles").length;
+    studio.select(listed ? { kind: "obstacle", index: solid.index } : null);
+    if (!listed) this.onNothing(this.stage.rayAt(event.clientX, event.clientY));
   }
 
   // The same without a mouse: the middle of the view is meant.

@@ -6,6 +6,7 @@ import { corneredItem, entryOf, moved, nameOf, placeOfItem, sameItem, type Item 
   "../state/edits";
 import { isObject } from "../state/document";
 import { entries } from "../state/film";
+import { isSite, siteLists, type PolygonKind } from "../state/site";
 import { cornersOf } from "../state/shapes";
 import type { JsonObject, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
@@ -33,9 +34,18 @@ export function itemsOf(document: JsonObject, selection: Item | null): Item[] {
         sameItem(item, cornered)) items.push(item);
   });
   entries(document, "flight_zones").forEach((_, index) => items.push({ kind: "zone", index }));
-  if (cornered?.kind === "obstacle" || cornered?.kind === "zone") {
+  for (const kind of ["region", "closed"] as const) {
+    entries(document, siteLists[kind]).forEach((_, index) => items.push({ kind, index }));
+  }
+  if (isSite(document)) {
+    for (const index of [0, 1] as const) {
+      items.push({ kind: "place", index });
+      if (entries(document, "regions").length === 0) items.push({ kind: "extent", index });
+    }
+  }
+  if (cornered && (cornered.kind === "obstacle" || cornered.kind in siteLists)) {
     cornersOf(entryOf(document, cornered)?.corners).forEach((_, point) =>
-      items.push({ kind: "corner", of: cornered.kind as "obstacle" | "zone",
+      items.push({ kind: "corner", of: cornered.kind as "obstacle" | PolygonKind,
                    index: cornered.index, point }));
   }
   entries(document, "subjects").forEach((entry, index) => {
@@ -58,12 +68,13 @@ const keyOfItem = (item: Item): string => `${item.kind}-${item.index}${
   item.kind === "track" || item.kind === "corner" ? `-${item.point}` : ""}`;
 const glyphs: Record<Item["kind"], string> = {
   keyframe: "", look: "\u25ce", subject: "\u25b2", obstacle: "\u25a0", track: "\u2022",
-  zone: "\u25a1", corner: "\u25c6", gate: "", end: "",
+  zone: "\u25a1", corner: "\u25c6", gate: "", end: "", region: "\u25a3", closed: "\u2298",
+  place: "", extent: "\u25c7",
 };
 
 const textOf = (item: Item): string =>
   item.kind === "keyframe" || item.kind === "gate" ? String(item.index + 1)
-    : item.kind === "end" ? "SF"[item.index] as string : glyphs[item.kind];
+    : item.kind === "place" ? "SH"[item.index] as string : item.kind === "end" ? "SF"[item.index] as string : glyphs[item.kind];
 
 export class Pins {
   private pins: Pin[] = [];

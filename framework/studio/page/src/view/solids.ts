@@ -120,7 +120,7 @@ export class Solids {
       if (had?.key === key) return had;
       changed = true;
       const own = trianglesOf(obstacle);
-      const shape = own ? baked(own) : this.blobs.get(i);
+      const shape = obstacle.hidden === true ? undefined : own ? baked(own) : this.blobs.get(i);
       const seeThrough = obstacle.opaque === false || obstacle.side === "keep_inside" ||
         obstacle.type === "no_fly_zone";
       return shape ? { key, baked: shape, seeThrough, track: trackOf(obstacle), source: obstacle }

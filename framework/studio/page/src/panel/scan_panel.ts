@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scan as a list: regions, zones, where flights begin; and what its images will show, in the
+// figures of `lapwing run --json`.
+import { nameOf, corneredItem, sameItem, type Item } from "../state/edits";
+import { isObject } from "../state/document";
+import { entries } from "../state/film";
+import { figureNames, type Figure } from "../state/prediction";
+import { pathOf } from "../state/samples";
+import { addedPolygon, aroundSite, boxOf, isSite, placeNames, placeOf, siteLists,
+         type PolygonKind } from "../state/site";
+import { show } from "../state/units";
+import type { Json, ScanWorld, SurfaceHole, Vec3 } from "../state/types";
+import type { Studio } from "../studio";
+import { byId, el, refill } from "../view/dom";
+
+const whys: Record<SurfaceHole["why"], string> = {
+  not_chosen: "not chosen: no time left", zone: "only views that zones forbid",
+  no_view: "no free place sees it",
+};
+const layers = ["views", "candidates", "first"] as const;
+
+export class ScanPanel {
+  private shown = "";
+  // Where to look at, from the list of holes.
+  onPlace: (place: Vec3) => void = () => undefined;
+
+  constructor(private readonly studio: Studio, private readonly centre: () => Vec3) {
+    for (const kind of Object.keys(siteLists) as PolygonKind[]) {
+      byId(`add-${kind}`).addEventListener("click", () => this.add(kind));
+      byId(`draw-${kind}`).addEventListener("click", () => this.draw(kind));
+    }
+    const figure = byId<HTMLSelectElement>("scan-figure");
+    figure.append(...(Object.keys(figureNames) as Figure[]).map((name) =>
+      el("option", { value: name }, figureNames[name].text)));
+    figure.addEventListener("change", () => {
+      studio.look.figure = figure.value as Figure;
+      studio.tell("look");
+    });
+    for (const layer of layers) {
+      const box = byId<HTMLInputElement>(`scan-${layer}`);
+      box.checked = studio.look[layer];
+      box.addEventListener("change", () => {
+        studio.look[layer] = box.checked;
+        studio.tell("look");
+      });
+    }
+    studio.on(["document", "selection", "world", "mode", "look"], () => this.show());
+  }
+
+  private get scan(): ScanWorld | undefined {
+    return this.studio.session.world.scan;
+  }
+
+  // A square in the middle of the view; a flight zone encloses the site.
+  add(kind: PolygonKind): void {
+    const { studio } = this;
+    const at = kind === "zone" ? aroundSite(this.scan, pathOf(studio.plan.columns)) : this.centre();
+    const made = addedPolygon(studio.document, kind, at, this.scan);
+    if (studio.edit(made)) studio.select({ kind, index: made.index });
+  }
+
+  // From now on a drag on the ground draws a rectangle.
+  draw(kind: PolygonKind): void {
+    const { studio } = this;
+    const again = studio.mode === "outline" && studio.outlined === kind;
+    studio.outlined = kind;
+    studio.setMode("orbit");
+    if (!again) studio.setMode("outline");
+  }
+
+  private show(): void {
+    const { studio } = this;
+    const { document } = studio;
+    if (!isSite(document)) return;
+    for (const kind of Object.keys(siteLists) as PolygonKind[]) {
+      byId(`draw-${kind}`).setAttribute("aria-pressed",
+                                        String(studio.mode === "outline" && studio.outlined === kind));
+    }
+    const text = JSON.stringify([studio.selection, document.regions, document.region,
+      document.no_fly_zones, document.flight_zones, document.start ?? null, document.home ?? null,
+      this.scan?.prediction, this.scan?.areas, studio.look.figure]);
+    if (text === this.shown) return;
+    this.shown = text;
+    refill(byId("site-list"), ...this.rows());
+    this.showFigures();
+  }
+
+  private rows(): HTMLElement[] {
+    const { document } = this.studio;
+    const rows: HTMLElement[] = [];
+    const list = (kind: PolygonKind, mark: string): void => entries(document, siteLists[kind])
+      .forEach((entry, index) => rows.push(this.row({ kind, index }, mark,
+        entry.file ? String(entry.file)
+          : kind === "region" && typeof entry.weight === "number" ? `weight ${show(entry.weight)}` : "")));
+    list("region", "\u25a3");
+    if (boxOf(document) && entries(document, "regions").length === 0) {
+      rows.push(this.row({ kind: "extent", index: 0 }, "\u25c7", ""),
+                this.row({ kind: "extent", index: 1 }, "\u25c7", ""));
+    }
+    list("closed", "\u2298");
+    list("zone", "\u25a1");
+    placeNames.forEach((name, index) => {
+      const place = placeOf(document, index);
+      if (place) {
+        rows.push(this.row({ kind: "place", index }, (name[0] as string).toUpperCase(),
+                           place.map((v) => show(v)).join(", ")));
+      }
+    });
+    return rows;
+  }
+
+  private row(item: Item, mark: string, more: string): HTMLElement {
+    const { studio } = this;
+    const name = nameOf(studio.document, item);
+    const chosen = sameItem(item, studio.selection) ||
+      (studio.selection?.kind === "corner" &&
+       sameItem(item, corneredItem(studio.document, studio.selection)));
+    return el("li", {}, el("button", {
+      type: "button", class: `item ${item.kind}`, "aria-pressed": String(chosen),
+      "data-key": `${item.kind}-${item.index}`, "aria-label": `${name} ${more}`,
+      onclick: () => studio.select(item),
+    }, el("span", { class: "badge" }, mark), el("span", { class: "what" }, name),
+    el("span", { class: "when" }, more)));
+  }
+
+  private showFigures(): void {
+    const prediction = this.scan?.prediction;
+    byId("scan-figures").hidden = !this.scan;
+    if (!this.scan) return;
+    byId("scan-words").textContent = this.scan.prediction_words ?? this.scan.words;
+    const name = byId<HTMLSelectElement>("scan-figure").value as Figure;
+    const { low, high, unit } = figureNames[name];
+    byId("scan-scale").textContent = `${low} to ${high} ${unit}`.trim();
+    byId("scan-scale").classList.toggle("more", name === "images" || name === "parallax_deg");
+    const holes = isObject(prediction?.holes) ? prediction.holes.largest : undefined;
+    refill(byId("hole-list"), ...(Array.isArray(holes) ? holes : []).map((hole: Json) =>
+      this.hole(hole as unknown as SurfaceHole)));
+  }
+
+  private hole({ area, position, why }: SurfaceHole): HTMLElement {
+    return el("li", {}, el("button", {
+      type: "button", class: "item hole", title: "Look at it",
+      "aria-label": `hole of ${show(area)} square metres: ${whys[why]}`,
+      onclick: () => this.onPlace(position),
+    }, el("span", { class: "badge" }, "\u25cb"), el("span", { class: "what" }, whys[why]),
+    el("span", { class: "when" }, `${show(area)} m\u00b2`)));
+  }
+}

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scan was planned on and what it will show: region, views, candidates, first flight, and the
+// surface in the colours of what the images will show of it.
+import * as THREE from "three";
+import { figuresInWords, predictionIn, shadeOf, type Prediction } from "../state/prediction";
+import { baked } from "./solids";
+import { frustum, isSite, prismLines, regionsOf } from "../state/site";
+import type { ScanWorld, Vec3 } from "../state/types";
+import type { Studio } from "../studio";
+import { Ribbon } from "./ribbon";
+import { WORLD } from "./solids";
+import type { Stage } from "./stage";
+
+const DEEP = 0.04;         // of the region's extent, of a view's frustum
+const POINT = 3;           // px
+
+export class ScanView {
+  private readonly region = new Ribbon("solid", 2);
+  private readonly views = new Ribbon("thin", 3);
+  private readonly first = new Ribbon("dotted", 2);
+  private readonly candidates = new THREE.Points(
+    new THREE.BufferGeometry(),
+    new THREE.PointsMaterial({ size: POINT, sizeAttenuation: false, transparent: true, opacity: 0.7 }));
+  private readonly surface = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({
+    vertexColors: true, side: THREE.DoubleSide }));
+  private light: Float32Array = new Float32Array();
+  private prediction: Prediction | null = null;
+  private fetched = "";
+  private pointsOf: Vec3[] | null = null;
+  // The surface has come, or is gone.
+  onSurface: () => void = () => undefined;
+
+  constructor(private readonly studio: Studio, private readonly stage: Stage) {
+    for (const ribbon of [this.region, this.views, this.first]) {
+      stage.tools.add(ribbon.mesh);
+      stage.onResize((width, height) => ribbon.resize(width, height));
+    }
+    this.candidates.frustumCulled = this.surface.frustumCulled = false;
+    this.candidates.visible = this.surface.visible = false;
+    stage.tools.add(this.candidates);
+    this.surface.layers.set(WORLD);
+    stage.scene.add(this.surface);
+    studio.on(["document", "world", "look"], () => this.draw());
+    studio.on(["look"], () => this.paint());
+    this.paint();
+  }
+
+  // Whether the surface is drawn, which hides what else is known of it.
+  get covers(): boolean {
+    return this.surface.visible;
+  }
+
+  get triangles(): number {
+    return this.prediction ? this.prediction.triangles.length / 3 : 0;
+  }
+
+  bounds(): THREE.Box3 {
+    const box = new THREE.Box3();
+    for (const prism of this.scan?.region ?? []) {
+      for (const [x, y] of prism.corners) {
+        box.expandByPoint(new THREE.Vector3(x, y, prism.low));
+        box.expandByPoint(new THREE.Vector3(x, y, prism.high));
+      }
+    }
+    return box;
+  }
+
+  // The nearest triangle of the surface on a ray, in words.
+  wordsAt(ray: THREE.Ray): string | null {
+    if (!this.prediction || !this.surface.visible) return null;
+    const caster = new THREE.Raycaster(ray.origin, ray.direction);
+    caster.layers.set(WORLD);
+    const [hit] = caster.intersectObject(this.surface);
+    return hit?.faceIndex == null ? null : figuresInWords(this.prediction, hit.faceIndex);
+  }
+
+  private get scan(): ScanWorld | undefined {
+    return this.studio.session.world.scan;
+  }
+
+  private paint(): void {
+    const { palette } = this.stage;
+    this.region.paint(palette.chosen);
+    this.views.paint(palette.ink, 0.8);
+    this.first.paint(palette.step);
+    this.candidates.material.color.set(palette.guess);
+    this.tint();
+    this.stage.invalidate();
+  }
+
+  private draw(): void {
+    const { scan, studio } = this;
+    const site = isSite(studio.document);
+    this.region.setRuns(site ? regionsOf(studio.document, scan).flatMap(prismLines) : [], 1);
+    const { look } = studio;
+    const size = this.bounds().getSize(new THREE.Vector3()).length();
+    this.views.setRuns(scan && look.views ? scan.views.flatMap((view) =>
+      frustum(view.position, view.yaw, view.pitch, scan.image, DEEP * size)) : [], 1);
+    this.first.setRuns(scan && look.first && scan.first_views.length > 1 ? [scan.first_views] : [], 1);
+    this.candidates.visible = look.candidates && (scan?.candidates.length ?? 0) > 0;
+    if (scan && this.candidates.visible && this.pointsOf !== scan.candidates) {
+      this.pointsOf = scan.candidates;
+      this.candidates.geometry.dispose();
+      this.candidates.geometry = new THREE.BufferGeometry();
+      this.candidates.geometry.setAttribute("position", new THREE.BufferAttribute(
+        Float32Array.from(scan.candidates.flat()), 3));
+    }
+    this.fetch(scan?.surface ?? "");
+    this.stage.invalidate();
+  }
+
+  private fetch(name: string): void {
+    if (name === this.fetched) return;
+    this.fetched = name;
+    if (!name) {
+      this.prediction = null;
+      this.surface.visible = false;
+      this.onSurface();
+      return;
+    }
+    fetch(`/blob/${name}`).then((response) => {
+      if (!response.ok) throw new Error(`answer ${response.status}`);
+      return response.arrayBuffer();
+    }).then((buffer) => {
+      if (this.fetched === name) this.take(predictionIn(buffer));
+    }).catch((error: Error) => {
+      if (this.fetched !== name) return;
+      this.fetched = "";
+      this.studio.session.note(`The surface cannot be shown: ${error.message}`);
+    });
+  }
+
+  private take(prediction: Prediction): void {
+    this.prediction = prediction;
+    const { place, shade } = baked(prediction);
+    this.light = shade;
+    this.surface.geometry.dispose();
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(place, 3));
+    geometry.setAttribute("color",
+                          new THREE.BufferAttribute(new Uint8Array(place.length), 3, true));
+    this.surface.geometry = geometry;
+    this.surface.visible = true;
+    this.tint();
+    this.onSurface();
+    this.stage.invalidate();
+  }
+
+  private tint(): void {
+    const { prediction } = this;
+    const color = this.surface.geometry.getAttribute("color") as THREE.BufferAttribute | undefined;
+    if (!prediction || !color) return;
+    const tint = color.array as Uint8Array;
+    for (let t = 0; t < this.light.length; ++t) {
+      const shade = shadeOf(prediction, this.studio.look.figure, t);
+      const light = Math.min(1, 0.35 + 0.65 * (this.light[t] as number));
+      for (let c = 0; c < 9; ++c) tint[9 * t + c] = (shade[c % 3] as number) * light;
+    }
+    color.needsUpdate = true;
+  }
+}
