@@ -108,7 +108,9 @@ export const links = [
     mock.state.deaf = true;
     const before = (await studioState(page)).document;
     await drag(page, '[data-pin="keyframe-1"]', 30, 0);
-    const { id } = mock.state.received.filter((m) => m.type === "gesture").pop();
+    const gestures = () => mock.state.received.filter((m) => m.type === "gesture");
+    while (gestures().length === 0) await wait(10);
+    const { id } = gestures().pop();
     mock.tell({ type: "refused", id, why: "keyframes[2].position: inside the castle" });
     await page.waitForFunction("document.querySelector('#notes').textContent.includes('castle')");
     assert.deepEqual((await studioState(page)).document, before);

@@ -8,7 +8,7 @@ import { centreOf, drag, openPage, studioState, type, waitGrade, waitRevision } 
 import { hasStudio, startStudio } from "./cases_film.mjs";
 
 const PLANNED = 120000;   // ms at most
-const options = ["--config", "scan/small", "--set", "tour.budget=120"];
+const options = ["--config", "scan/small", "--set", "resolution=1", "--set", "tour.budget=90"];
 
 // What the page says must be what the run says.
 const words = (page) => page.$eval("#scan-words", (e) => e.textContent);
