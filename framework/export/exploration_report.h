@@ -2,6 +2,7 @@
 // What the report of an exploration shows beside its flight.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,20 @@ struct ExplorationCandidate {
   double value = 0;
 };
 
+struct ExplorationImage {
+  double time = 0;                                     // s
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, world
+  double yaw = 0, pitch = 0;                           // rad
+  double value = 0;                                    // of the utility, when it was chosen
+  int scored = 0;                                      // views that were scored for it
+};
+
+// A voxel of the map at the end that is occupied, and the image after which it was so first.
+struct GrownVoxel {
+  Eigen::Vector3f middle;   // m, world
+  std::uint32_t image = 0;  // from 1 on
+};
+
 struct ExplorationRecord {
   std::string utility;
   std::string end;                         // a sentence
@@ -37,6 +52,9 @@ struct ExplorationRecord {
   std::vector<ExplorationMoment> moments;  // in time
   std::optional<double> cut;               // m, height above which they leave all out
   std::vector<ExplorationCandidate> candidates;  // at the end
+  std::vector<ExplorationImage> images;
+  std::vector<GrownVoxel> growth;  // by image; empty where it was not asked for
+  double resolution = 0;           // m, of the map
 };
 
 // Summary, growth of the map, path, observed surface over images, candidates.

@@ -34,6 +34,20 @@ void record_path(Exploration& e) {
     record.candidates.push_back({view.view.position, view.view.direction(), view.value});
 }
 
+template <class Visit>
+void for_each_occupied(const Map& map, Visit visit) {
+  map.for_each_leaf([&](const VoxelLeaf& leaf) {
+    if (map.settings().state(leaf.log_odds) != VoxelState::occupied) return;
+    const int edge = 1 << leaf.level;
+    for (int z = 0; z < edge; ++z)
+      for (int y = 0; y < edge; ++y)
+        for (int x = 0; x < edge; ++x)
+          visit(VoxelKey{static_cast<std::uint16_t>(leaf.key.x + x),
+                         static_cast<std::uint16_t>(leaf.key.y + y),
+                         static_cast<std::uint16_t>(leaf.key.z + z)});
+  });
+}
+
 }  // namespace
 
 void Moments::look(int images, const Map& map) {
@@ -57,6 +71,23 @@ std::vector<ExplorationMoment> Moments::shown(int images, const Map& map) && {
     drawn.push_back({moment.images, std::move(made.picture), made.lowest, made.highest});
   }
   return drawn;
+}
+
+void Growth::look(int images, const Map& map) {
+  for_each_occupied(map, [&](const VoxelKey& key) {
+    first_.try_emplace(key.morton(), static_cast<std::uint32_t>(images));
+  });
+}
+
+std::vector<GrownVoxel> Growth::grown(const Map& map) && {
+  std::vector<GrownVoxel> voxels;
+  for_each_occupied(map, [&](const VoxelKey& key) {
+    if (const auto found = first_.find(key.morton()); found != first_.end())
+      voxels.push_back({map.grid().center(key).cast<float>(), found->second});
+  });
+  std::stable_sort(voxels.begin(), voxels.end(),
+                   [](const GrownVoxel& a, const GrownVoxel& b) { return a.image < b.image; });
+  return voxels;
 }
 
 std::optional<double> cut_height(const MeshScene& scene, const Viewpoint& start) {
@@ -124,12 +155,15 @@ void record_flight(Exploration& e) {
   ExplorationRecord& record = e.record;
   for (const EpisodeStep& step : e.result.steps) {
     record.observed.push_back(step.observed);
+    record.images.push_back(
+        {step.time, step.view.position, step.view.yaw, step.view.pitch, step.value, step.scored});
     e.seconds += step.seconds;
   }
   record.end = explain(e.result.end);
   record.surface = e.result.surface;
   record.length = e.result.length();
   record.efficiency = e.result.efficiency(e.settings.steps);
+  record.resolution = e.map->grid().resolution();
   record_path(e);
 }
 

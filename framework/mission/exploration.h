@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "framework/explore/episode.h"
@@ -41,6 +42,17 @@ class Moments {
   int steps_;
   double below_;
   std::vector<Moment> all_;
+};
+
+// After which image each voxel became occupied.
+class Growth {
+ public:
+  void look(int images, const Map& map);
+  // Those that are occupied at the end, by image.
+  std::vector<GrownVoxel> grown(const Map& map) &&;
+
+ private:
+  std::unordered_map<std::uint64_t, std::uint32_t> first_;  // by morton code
 };
 
 // Under a roof the picture from above is of what lies below the start: a room without its ceiling.

@@ -117,8 +117,9 @@ ParameterTable explored_plan_table() {
 
 int plan_exploration(lua_State* state) {
   MissionRun& run = run_of(state);
-  const Exploration& e =
-      *object_argument<ExplorationObject>(state, 1, kExplorationType).exploration;
+  const std::shared_ptr<Exploration> flown =
+      object_argument<ExplorationObject>(state, 1, kExplorationType).exploration;
+  const Exploration& e = *flown;
   const Parameters given = table_argument(state, 2, explored_plan_table(), "plan", kVehicleObject);
   // A ball within the box that was kept free.
   if (given.number("margin") > e.settings.body / 2)
@@ -148,6 +149,7 @@ int plan_exploration(lua_State* state) {
   if (e.record.oracle_efficiency > 0)
     made.block.set("relative_efficiency", e.record.efficiency / e.record.oracle_efficiency);
   made.sections = exploration_sections(e.record);
+  made.exploration = std::shared_ptr<const ExplorationRecord>(flown, &e.record);
 
   Plan& document = made.plan;
   document.mission = run.name;
@@ -291,8 +293,14 @@ int explore_surface(lua_State* state) try {
   e->record.utility = chosen.type;
   e->record.cut = cut_height(truth.scene(), e->start);
   Moments moments(e->settings.steps, e->record.cut.value_or(HUGE_VAL));
+  std::optional<Growth> growth;
+  if (run.settings.record_growth) growth.emplace();
   e->result = explore(e->settings, e->start, truth, observed, *utility, *e->map,
-                      [&](const EpisodeMoment& moment) { moments.look(moment.step + 1, *e->map); });
+                      [&](const EpisodeMoment& moment) {
+                        moments.look(moment.step + 1, *e->map);
+                        if (growth) growth->look(moment.step + 1, *e->map);
+                      });
+  if (growth) e->record.growth = std::move(*growth).grown(*e->map);
   observe_truly(e->result, e->settings, truth, new_map);
   e->record.moments = std::move(moments).shown(static_cast<int>(e->result.steps.size()), *e->map);
   record_flight(*e);

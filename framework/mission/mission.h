@@ -23,7 +23,8 @@
 namespace lapwing {
 
 struct FleetResult;
-struct ScanRecord;  // export/scan_report.h
+struct ExplorationRecord;  // export/exploration_report.h
+struct ScanRecord;         // export/scan_report.h
 
 struct MissionResult {
   // Of a mapping mission, which returns a map and has no plan; else null.
@@ -42,6 +43,7 @@ struct MissionResult {
   std::vector<std::string> told = {};           // likewise, that stand in no plan
   std::vector<Section> sections = {};           // of the report, beside those of every flight
   std::shared_ptr<const ScanRecord> scan = {};  // of a scan of one battery: what it was planned on
+  std::shared_ptr<const ExplorationRecord> exploration = {};  // of an exploration: how it went
   // Where the files lie that the plan's environment names, as long as the mission lives; and their
   // names.
   std::filesystem::path obstacle_folder = {};

@@ -34,7 +34,9 @@ struct EditedPlan {
   std::optional<Certificate> certificate;
   // Where the files lie that the plan's environment names, until the next edit.
   std::filesystem::path folder = {};
-  std::shared_ptr<const ScanRecord> scan = {};  // as of MissionResult
+  // As of MissionResult.
+  std::shared_ptr<const ScanRecord> scan = {};
+  std::shared_ptr<const ExplorationRecord> exploration = {};
 };
 
 class MissionEditor {

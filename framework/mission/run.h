@@ -30,8 +30,9 @@ namespace lapwing {
 
 struct ScriptTerm;  // script_terms.h
 
-struct ScanRecord;  // export/scan_report.h
-struct ScanWork;    // scan_objects.h
+struct ExplorationRecord;  // export/exploration_report.h
+struct ScanRecord;         // export/scan_report.h
+struct ScanWork;           // scan_objects.h
 struct TourDefinition;
 class MeshScene;
 
@@ -45,6 +46,7 @@ struct MissionSettings {
   const Registry* registry = nullptr;       // outlives the mission
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
+  bool record_growth = false;  // of explorations: when each voxel became occupied, for a viewer
   std::function<void(const std::string&)> print = [](const std::string&) {};
   // Hears of the script and of every module that it requires before they are read; may be null.
   std::function<void(const std::filesystem::path&)> observe_script;
@@ -105,7 +107,8 @@ struct PlanObject {
   // drawn once the mission has ended; null where there are none of these.
   std::vector<Section> sections = {};
   std::function<std::vector<Section>(const Plan&)> late_sections = {};
-  std::shared_ptr<const ScanRecord> scan = {};  // of a scan: what it was planned on
+  std::shared_ptr<const ScanRecord> scan = {};                // of a scan: what it was planned on
+  std::shared_ptr<const ExplorationRecord> exploration = {};  // of an exploration: how it went
 };
 
 struct MissionRun {

@@ -219,6 +219,14 @@ Value around_columns(const Plan& plan, const SolveReport& report) {
   value.set("gates", gates_value(plan));
   Value& cuts = value.set("cuts", Value::list());
   for (const TimeSpan& cut : plan.cuts) cuts.push_back(span_value(cut));
+  Value& lights = value.set("lights", Value::list());
+  for (const TimeSpan& light : plan.lights) lights.push_back(span_value(light));
+  Value& strokes = value.set("strokes", Value::list());
+  for (const Points& stroke : plan.task.strokes) {
+    Value points = Value::list();
+    for (const Eigen::Vector3d& p : stroke) points.push_back(vector_of(p));
+    strokes.push_back(std::move(points));
+  }
   value.set("margin", plan.environment.margin);
   if (const std::optional<Vehicle> vehicle = vehicle_of(plan)) {
     value.set("camera", camera_value(vehicle->camera));

@@ -13,7 +13,8 @@
 
 namespace lapwing {
 
-struct ScanRecord;  // export/scan_report.h
+struct ExplorationRecord;  // export/exploration_report.h
+struct ScanRecord;         // export/scan_report.h
 
 // `plan` of an answer. `distances`: with the distance to the nearest obstacle, whose shapes are
 // then open. Numbers have 7 digits, times 9. A plan whose vehicle cannot be read has no camera and
@@ -26,14 +27,20 @@ std::string certificate_message(const Certificate& certificate);
 // `samples` of a flight: the columns time, x, y, z, qw to qz of the camera, position_error.
 std::string flown_message(const FlownPath& flown, const Trajectory& planned);
 
-// The message `world`, and the blobs that it names: of a scan with what it was planned on, which
-// may be null. Surfaces that were drawn before are taken from `drawn`, by what states them.
+// What a mission was planned on beside its plan, each null where there is none.
+struct PlannedOn {
+  const ScanRecord* scan = nullptr;
+  const ExplorationRecord* exploration = nullptr;
+};
+
+// The message `world`, and the blobs that it names. Surfaces that were drawn before are taken from
+// `drawn`, by what states them.
 struct WorldMessage {
   std::string text;
   std::map<std::string, std::string> blobs;  // by name
 };
 using DrawnSurfaces = std::map<std::string, std::string>;  // what states it, and its blob
 WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder,
-                           const ScanRecord* scan, DrawnSurfaces& drawn);
+                           const PlannedOn& on, DrawnSurfaces& drawn);
 
 }  // namespace lapwing

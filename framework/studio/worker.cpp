@@ -13,6 +13,7 @@
 
 #include "framework/config/read_note.h"
 #include "framework/core/json.h"
+#include "framework/mission/environment_source.h"
 #include "framework/studio/plan_message.h"
 #include "framework/studio/worker_errands.h"
 #include "framework/studio/worker_link.h"
@@ -223,6 +224,7 @@ class StudioWorker {
     settings.cancellation = whole_.get();
     WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
     settings.progress = &progress;
+    settings.record_growth = true;
     const std::shared_ptr<Mission> mission = configured_mission(script_, settings, layer);
     MissionResult result = mission->plan();
     if (whole_->cancelled()) return;
@@ -238,6 +240,9 @@ class StudioWorker {
     edited.answer.result.report = result.report;
     edited.folder = result.obstacle_folder;
     edited.scan = result.scan;
+    edited.exploration = result.exploration;
+    if (edited.exploration)  // for distances: planning kept the map in its own form
+      open_recorded_shapes(result.plan.environment, *settings_.registry, edited.folder);
     edited.plan = std::make_shared<const Plan>(result.plan);
     for (const std::string& note : result.notes)
       edited.answer.message += (edited.answer.message.empty() ? "" : "; ") + note;
@@ -305,7 +310,8 @@ class StudioWorker {
 
   // Once for every change of it.
   void tell_world(const EditedPlan& edited) {
-    WorldMessage world = world_message(*edited.plan, edited.folder, edited.scan.get(), drawn_);
+    WorldMessage world = world_message(*edited.plan, edited.folder,
+                                       {edited.scan.get(), edited.exploration.get()}, drawn_);
     if (world.text == told_world_) return;
     told_world_ = world.text;
     Frame frame;

@@ -15,9 +15,11 @@
 #include "framework/config/read_note.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
+#include "framework/core/png.h"
 #include "framework/export/exporter.h"
 #include "framework/export/film_strip.h"
 #include "framework/export/flight_judgement.h"
+#include "framework/export/light_painting.h"
 #include "framework/export/run_folder.h"
 #include "framework/mission/controller_source.h"
 #include "framework/mission/environment_source.h"
@@ -232,7 +234,31 @@ void WorkerErrands::state_environment(const Plan& plan, const Value& layer,
   stated_mission_ = std::move(mission);
 }
 
+// As the drawing comes out, its shutter open up to a time: at the beginning, for all of it.
+std::string WorkerErrands::exposure(const Plan& plan, double time, int width, int height) {
+  const std::string stated = trajectory_text(plan);
+  if (stated != drawn_trajectory_) {
+    const Vehicle vehicle = vehicle_from_value(plan.vehicle);
+    drawn_ = plan_as_named(plan.trajectory, vehicle, *settings_.registry)->fly({});
+    drawn_trajectory_ = stated;
+  }
+  FlownPath until = drawn_;
+  if (time > plan.trajectory.samples.front().time)
+    std::erase_if(until.samples, [&](const FlownSample& s) { return s.time > time; });
+  Picture picture = long_exposure(plan, until, width);
+  if (picture.height > height)
+    picture = long_exposure(plan, until, std::max(1, width * height / picture.height));
+  return encode_png(picture);
+}
+
 Frame WorkerErrands::picture(const Frame& asked) {
+  if (const Plan drawing = plan_in(asked); !drawing.task.strokes.empty()) {
+    Frame frame = done();
+    frame.parts.push_back(exposure(drawing, asked.header.at("time").as_number(),
+                                   static_cast<int>(asked.header.at("width").as_integer()),
+                                   static_cast<int>(asked.header.at("height").as_integer())));
+    return frame;
+  }
   const Plan plan = with_shapes(asked);
   Frame frame = done();
   frame.parts.push_back(film_frame(plan, vehicle_from_value(plan.vehicle),

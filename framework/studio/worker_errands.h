@@ -9,6 +9,7 @@
 
 #include "framework/mission/mission.h"
 #include "framework/studio/frames.h"
+#include "framework/vehicle/closed_loop.h"
 
 namespace lapwing {
 
@@ -43,6 +44,7 @@ class WorkerErrands {
   Frame describe() const;
   Frame fly(const Frame& asked) const;
   Frame picture(const Frame& asked);
+  std::string exposure(const Plan& plan, double time, int width, int height);
   Frame export_plan(const Frame& asked);
   Frame export_lua(const Frame& asked) const;
   Frame save_report(const Frame& asked) const;
@@ -58,6 +60,8 @@ class WorkerErrands {
   std::unique_ptr<Mission> stated_mission_;
   Environment stated_environment_;
   std::filesystem::path stated_folder_;  // of the files that it names
+  std::string drawn_trajectory_;         // whose simulated flight is kept, of light paintings
+  FlownPath drawn_;
   std::set<std::filesystem::path> stated_reads_;
   std::string stated_looks_;  // of those files, when they were read
 };

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+
 #include "framework/core/checksum.h"
 #include "framework/core/json.h"
+#include "framework/export/exploration_report.h"
 #include "framework/export/prediction_mesh.h"
 #include "framework/export/prediction_report.h"
 #include "framework/export/scan_report.h"
@@ -128,10 +131,58 @@ Value scan_of(const Plan& plan, const ScanRecord& record) {
   return value;
 }
 
+Value exploration_of(const ExplorationRecord& record) {
+  Value value = Value::map();
+  value.set("utility", record.utility);
+  value.set("end", record.end);
+  value.set("surface", record.surface);
+  value.set("efficiency", record.efficiency);
+  value.set("resolution", record.resolution);
+  Value& images = value.set("images", Value::list());
+  for (std::size_t k = 0; k < record.images.size(); ++k) {
+    const ExplorationImage& image = record.images[k];
+    Value one = Value::map();
+    one.set("time", image.time);
+    one.set("position", place_of(image.position));
+    one.set("yaw", image.yaw);
+    one.set("pitch", image.pitch);
+    one.set("value", image.value);
+    one.set("scored", std::int64_t{image.scored});
+    one.set("observed", record.observed[k]);
+    images.push_back(std::move(one));
+  }
+  value.set("oracle", Value(Value::List(record.oracle.begin(), record.oracle.end())));
+  Value& candidates = value.set("candidates", Value::list());
+  for (const ExplorationCandidate& candidate : record.candidates) {
+    Value one = Value::map();
+    one.set("position", place_of(candidate.position));
+    one.set("direction", place_of(candidate.direction));
+    one.set("value", candidate.value);
+    candidates.push_back(std::move(one));
+  }
+  return value;
+}
+
+// The text "WLG1", then as 32-bit little-endian numbers the count of voxels, their edge (m), and
+// for each its middle (three floats, m) and its image.
+std::string growth_blob(const ExplorationRecord& record) {
+  static_assert(sizeof(GrownVoxel) == 16 && std::endian::native == std::endian::little);
+  std::string bytes = "WLG1";
+  const auto add = [&bytes](const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  };
+  const auto count = static_cast<std::uint32_t>(record.growth.size());
+  const auto edge = static_cast<float>(record.resolution);
+  add(&count, sizeof count);
+  add(&edge, sizeof edge);
+  add(record.growth.data(), record.growth.size() * sizeof(GrownVoxel));
+  return bytes;
+}
+
 }  // namespace
 
 WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder,
-                           const ScanRecord* scan, DrawnSurfaces& drawn) {
+                           const PlannedOn& on, DrawnSurfaces& drawn) {
   WorldMessage message;
   Value world = Value::map();
   world.set("type", "world");
@@ -143,7 +194,9 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
     one.set("side", obstacle.side == Side::keep_inside ? "keep_inside" : "keep_out");
     one.set("opaque", obstacle.opaque);
     if (!obstacle.still()) one.set("track", track_of(obstacle));
-    std::string blob = blob_of(obstacle, plan, folder, drawn);
+    // What was explored is drawn by its growth.
+    const bool grown = on.exploration && obstacle.type == "map";
+    std::string blob = grown ? "" : blob_of(obstacle, plan, folder, drawn);
     if (!blob.empty()) {
       const std::string name = sha256(blob);
       one.set("blob", name);
@@ -153,14 +206,18 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
   }
   world.set("margin", plan.environment.margin);
   world.set("bounds", bounds_of(plan));
-  if (scan && plan.task.scan) {
-    Value& told = world.set("scan", scan_of(plan, *scan));
-    if (scan->prediction) {
-      std::string surface = prediction_ply(*scan->prediction);
-      const std::string name = sha256(surface);
-      told.set("surface", name);
-      message.blobs.emplace(name, std::move(surface));
-    }
+  const auto put = [&](std::string bytes) {
+    const std::string name = sha256(bytes);
+    message.blobs.emplace(name, std::move(bytes));
+    return name;
+  };
+  if (on.scan && plan.task.scan) {
+    Value& told = world.set("scan", scan_of(plan, *on.scan));
+    if (on.scan->prediction) told.set("surface", put(prediction_ply(*on.scan->prediction)));
+  }
+  if (on.exploration) {
+    Value& told = world.set("exploration", exploration_of(*on.exploration));
+    if (!on.exploration->growth.empty()) told.set("growth", put(growth_blob(*on.exploration)));
   }
   message.text = to_json(world, -1);
   return message;

@@ -38,7 +38,7 @@ function M.read(run)
   if given ~= 1 then
     lapwing.fail("give one of text, svg, strokes and --set input=PICTURE.svg")
   end
-  if o.text then
+  if o.text and #o.text > 0 then
     local strokes, missing
     if o.font then
       strokes, missing = fonts.hershey_strokes(o.text, lapwing.read_text(o.font, "strokes/hershey"))
@@ -66,7 +66,7 @@ function M.read(run)
     end
     return strokes
   end
-  local strokes, notes = picture(run, o.svg and "svg" or "input")
+  local strokes, notes = picture(run, o.svg and #o.svg > 0 and "svg" or "input")
   return strokes, nil, notes
 end
 

@@ -4,8 +4,8 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
-import { centreOf, drag, openPage, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
-import { hasStudio, startStudio } from "./cases_film.mjs";
+import { centreOf, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
+import { served } from "./served.mjs";
 
 const PLANNED = 120000;   // ms at most
 const options = ["--config", "scan/small", "--set", "resolution=1", "--set", "tour.budget=90"];
@@ -13,97 +13,76 @@ const options = ["--config", "scan/small", "--set", "resolution=1", "--set", "to
 // What the page says must be what the run says.
 const words = (page) => page.$eval("#scan-words", (e) => e.textContent);
 
-export async function scan(browser, shot) {
-  if (!hasStudio()) {
-    console.log("skipped          a scan with the studio's own server: no lapwing studio");
-    return 0;
-  }
-  const begun = Date.now();
-  const studio = await startStudio("examples/scan/church.lua", null, options);
-  let page = null;
-  try {
-    page = await openPage(browser, studio.address, { wait: false });
-    await page.evaluate(() => localStorage.setItem("lapwing-hints", "off"));
-    await waitGrade(page, "certified", PLANNED);
-    await page.waitForFunction("!document.querySelector('#scan-figures').hidden && window.lapwing.surface > 0");
-    await shot(page, "scan_01_opened");
-    const first = await words(page);
-    assert.match(first, /will show/);
-    assert.ok((await page.$$("#hole-list .hole")).length > 0);
-    // From above, as a map; a region by mouse.
-    await page.click("#map");
-    await shot(page, "scan_02_map");
-    const { revision } = await studioState(page);
-    await page.click("#draw-region");
-    const { x, y } = await centreOf(page, "#world");
-    await page.mouse.move(x - 60, y - 50);
-    await page.mouse.down();
-    for (let i = 1; i <= 8; ++i) await page.mouse.move(x - 60 + 12 * i, y - 50 + 11 * i);
-    await page.mouse.up();
-    await waitRevision(page, revision + 1);
-    const regions = async () => (await studioState(page)).document.regions;
-    assert.equal((await regions()).length, 1);
-    const [drawn] = await regions();
-    assert.equal(drawn.corners.length, 8);
-    await waitGrade(page, "certified", PLANNED);
-    await shot(page, "scan_03_region");
-    assert.notEqual(await words(page), first);
-    // A corner by keyboard, and what the region counts by typing.
-    await page.click('[data-key="region-0"]');
-    await page.focus('[data-pin="corner-0-2"]');
-    await page.keyboard.press("ArrowRight");
-    await page.keyboard.press("ArrowRight");
-    await waitRevision(page, revision + 2);
-    assert.ok(Math.abs((await regions())[0].corners[4] - drawn.corners[4] - 1) < 1e-9);
-    await page.click('[data-key="region-0"]');
-    await type(page, '#selected-form [data-key$="weight"]', "2");
-    await waitRevision(page, revision + 3);
-    assert.equal((await regions())[0].weight, 2);
-    // A zone beside it, by keyboard: planned anew, and kept.
-    await page.focus("#add-closed");
-    await page.keyboard.press("Enter");
-    await waitRevision(page, revision + 4);
-    assert.equal((await studioState(page)).document.no_fly_zones.length, 1);
-    await page.keyboard.press("Escape");
-    await page.click("#undo");
-    await waitRevision(page, revision + 5);
-    await waitGrade(page, "certified", PLANNED);
-    // The world again; candidates; another figure; the surface under a click.
-    await page.click("#map");
-    await page.click("#scan-candidates");
-    await page.select("#scan-figure", "images");
-    await shot(page, "scan_04_candidates");
-    await page.click("#hole-list .hole");
-    await shot(page, "scan_05_hole");
-    const world = await centreOf(page, "#world");
-    await page.mouse.click(world.x, world.y);
-    await page.waitForFunction(() => /image|region/.test(document.querySelector("#notes").textContent));
-    // The report is the run's, to the digit.
-    await page.click("#report");
-    await page.waitForFunction(() => /Written/.test(document.querySelector("#notes").textContent),
-                               { timeout: PLANNED });
-    const run = join(studio.dir, "out", "church", "report.html");
-    assert.ok(existsSync(run), run);
-    const told = await words(page);
-    assert.ok(readFileSync(run, "utf8").includes(told.slice(0, 60)), told);
-    await page.click("#export");
-    await page.select("#export-format", "csv");
-    await page.click("#export-go");
-    await page.waitForSelector("#export-result .written");
-    const files = await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent));
-    for (const file of files) assert.ok(statSync(file).size > 1000, file);
-    assert.deepEqual(page.faults, []);
-    assert.deepEqual(page.foreign, []);
-    console.log(`ok      ${String(Date.now() - begun).padStart(5)} ms  a scan with the studio's own server`);
-    return 0;
-  } catch (error) {
-    if (page) await shot(page, "scan_failed");
-    for (const fault of page?.faults ?? []) console.log(`        fault of the page: ${fault}`);
-    console.log(`FAILED           a scan with the studio's own server\n        ${
-      String(error.stack ?? error).split("\n").slice(0, 6).join("\n        ")}`);
-    return 1;
-  } finally {
-    await page?.close({ runBeforeUnload: false }).catch(() => {});
-    await studio.stop();
-  }
-}
+export const scan = (browser, shot) => served(browser, shot, {
+  name: "a scan with the studio's own server", picture: "scan",
+  script: "examples/scan/church.lua", options,
+}, async (page, studio, picture) => {
+  await waitGrade(page, "certified", PLANNED);
+  await page.waitForFunction("!document.querySelector('#scan-figures').hidden && window.lapwing.surface > 0");
+  await picture("scan_01_opened");
+  const first = await words(page);
+  assert.match(first, /will show/);
+  assert.ok((await page.$$("#hole-list .hole")).length > 0);
+  // From above, as a map; a region by mouse.
+  await page.click("#map");
+  await picture("scan_02_map");
+  const { revision } = await studioState(page);
+  await page.click("#draw-region");
+  const { x, y } = await centreOf(page, "#world");
+  await page.mouse.move(x - 60, y - 50);
+  await page.mouse.down();
+  for (let i = 1; i <= 8; ++i) await page.mouse.move(x - 60 + 12 * i, y - 50 + 11 * i);
+  await page.mouse.up();
+  await waitRevision(page, revision + 1);
+  const regions = async () => (await studioState(page)).document.regions;
+  assert.equal((await regions()).length, 1);
+  const [drawn] = await regions();
+  assert.equal(drawn.corners.length, 8);
+  await waitGrade(page, "certified", PLANNED);
+  await picture("scan_03_region");
+  assert.notEqual(await words(page), first);
+  // A corner by keyboard, and what the region counts by typing.
+  await page.click('[data-key="region-0"]');
+  await page.focus('[data-pin="corner-0-2"]');
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  await waitRevision(page, revision + 2);
+  assert.ok(Math.abs((await regions())[0].corners[4] - drawn.corners[4] - 1) < 1e-9);
+  await page.click('[data-key="region-0"]');
+  await type(page, '#selected-form [data-key$="weight"]', "2");
+  await waitRevision(page, revision + 3);
+  assert.equal((await regions())[0].weight, 2);
+  // A zone beside it, by keyboard: planned anew, and kept.
+  await page.focus("#add-closed");
+  await page.keyboard.press("Enter");
+  await waitRevision(page, revision + 4);
+  assert.equal((await studioState(page)).document.no_fly_zones.length, 1);
+  await page.keyboard.press("Escape");
+  await page.click("#undo");
+  await waitRevision(page, revision + 5);
+  await waitGrade(page, "certified", PLANNED);
+  // The world again; candidates; another figure; the surface under a click.
+  await page.click("#map");
+  await page.click("#scan-candidates");
+  await page.select("#scan-figure", "images");
+  await picture("scan_04_candidates");
+  await page.click("#hole-list .hole");
+  await picture("scan_05_hole");
+  const world = await centreOf(page, "#world");
+  await page.mouse.click(world.x, world.y);
+  await page.waitForFunction(() => /image|region/.test(document.querySelector("#notes").textContent));
+  // The report is the run's, to the digit.
+  await page.click("#report");
+  await page.waitForFunction(() => /Written/.test(document.querySelector("#notes").textContent),
+                             { timeout: PLANNED });
+  const run = join(studio.dir, "out", "church", "report.html");
+  assert.ok(existsSync(run), run);
+  const told = await words(page);
+  assert.ok(readFileSync(run, "utf8").includes(told.slice(0, 60)), told);
+  await page.click("#export");
+  await page.select("#export-format", "csv");
+  await page.click("#export-go");
+  await page.waitForSelector("#export-result .written");
+  const files = await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent));
+  for (const file of files) assert.ok(statSync(file).size > 1000, file);
+});

@@ -6,8 +6,10 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium, openPage, startBrowser, waitGrade } from "./browser.mjs";
 import { edits } from "./cases_edit.mjs";
+import { explore } from "./cases_explore.mjs";
 import { film } from "./cases_film.mjs";
 import { links } from "./cases_link.mjs";
+import { painting } from "./cases_painting.mjs";
 import { race } from "./cases_race.mjs";
 import { scan } from "./cases_scan.mjs";
 import { views } from "./cases_view.mjs";
@@ -83,9 +85,14 @@ try {
     if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
   };
   // With servers of their own; that of the film measures times.
-  const served = Object.entries({ race, scan }).filter(([name]) => !only || only === name);
-  const failures = await Promise.all(served.map(([, then], i) => then(browsers[i], shot)));
-  failed += failures.reduce((sum, one) => sum + one, 0);
+  const served = Object.entries({ scan, race, painting, explore })
+    .filter(([name]) => !only || only === name);
+  await Promise.all(browsers.map(async (browser) => {
+    for (let next = served.shift(); next; next = served.shift()) {
+      const failures = await next[1](browser, shot);
+      failed += failures;
+    }
+  }));
   await Promise.all(browsers.slice(1).map((browser) => browser.close()));
   if (!only || only === "film") failed += await film(browsers[0], shot);
   if (!only || only === "figures") failed += await figures(browsers[0]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What buttons and keys do: one place for both.
+import { isPainting } from "./state/painting";
 import { cutAt, moved, placeOfItem, retimed } from "./state/edits";
 import { actionOf } from "./state/keys";
 import type { Vec3 } from "./state/types";
@@ -8,11 +9,15 @@ import { byId, forgetColours, typing } from "./view/dom";
 import { duplicate, order, pace, remove, TURN, turn, type Selected } from "./panel/selected";
 import type { CompareDialog } from "./panel/compare";
 import type { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
+import type { ExplorationPanel } from "./panel/exploration_panel";
 import type { FilmList } from "./panel/film_list";
 import type { Notices } from "./panel/notices";
 import { remember } from "./panel/notices";
+import type { PaintingPanel } from "./panel/painting_panel";
 
 export interface Parts {
+  exploration: ExplorationPanel;
+  painting: PaintingPanel;
   studio: Studio;
   selected: Selected;
   list: FilmList;
@@ -128,7 +133,9 @@ export class Actions {
         return true;
       case "ends": studio.seek(key === "Home" ? 0 : studio.duration); return true;
       case "speed": studio.setRate({ 1: 0.5, 2: 1, 3: 2 }[key] as Rate); return true;
-      case "choose": this.choose(key === "[" ? -1 : 1); return true;
+      case "choose":
+        if (!parts.exploration.step(key === "[" ? -1 : 1)) this.choose(key === "[" ? -1 : 1);
+        return true;
       case "move": return this.arrow(key, size, shift);
       case "lift": return this.moveSelected([0, 0, key === "PageUp" ? size : -size]);
       case "retime": return this.retime(key === "Alt+ArrowLeft" ? -0.1 : 0.1);
@@ -140,10 +147,14 @@ export class Actions {
       case "order": order(studio, key === "Alt+ArrowUp" ? -1 : 1); return true;
       case "insert":
         if (studio.course) parts.list.addGate();
+        else if (isPainting(studio.document)) parts.painting.add();
         else parts.list.insertAtHead();
         return true;
       case "place": studio.setMode(studio.mode === "place" ? "orbit" : "place"); return true;
-      case "draw": studio.setMode(studio.mode === "draw" ? "orbit" : "draw"); return true;
+      case "draw":
+        if (isPainting(studio.document)) parts.painting.draw();
+        else studio.setMode(studio.mode === "draw" ? "orbit" : "draw");
+        return true;
       case "shot":
         parts.showFilmTab();
         byId("shot").focus();

@@ -9,6 +9,8 @@ import { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
 import { Feel } from "./panel/feel";
 import { FilmList } from "./panel/film_list";
 import { Hints, Notices, recall } from "./panel/notices";
+import { ExplorationPanel } from "./panel/exploration_panel";
+import { PaintingPanel } from "./panel/painting_panel";
 import { ScanPanel } from "./panel/scan_panel";
 import { Selected } from "./panel/selected";
 import { Setup } from "./panel/setup";
@@ -37,6 +39,8 @@ import { Paths } from "./view/paths";
 import { Pick } from "./view/pick";
 import { Pins } from "./view/pins";
 import { Preview, previewControls } from "./view/preview";
+import { ExplorationView } from "./view/exploration_view";
+import { PaintingView } from "./view/painting_view";
 import { ScanView } from "./view/scan_view";
 import { Solids } from "./view/solids";
 import { Stage } from "./view/stage";
@@ -100,6 +104,8 @@ gizmo.controls.addEventListener("dragging-changed", () => {
 new Paths(studio, stage);
 new Gates(studio, stage);
 const scanned = new ScanView(studio, stage);
+const explored = new ExplorationView(studio, stage);
+new PaintingView(studio, stage);
 new Pins(studio, stage, byId("pins"));
 const pick = new Pick(studio, stage, solids, gizmo);
 new Walk(studio, stage, pick);
@@ -121,7 +127,7 @@ function bounds(): THREE.Box3 {
   for (const p of pathOf(studio.plan.columns)) box.expandByPoint(new THREE.Vector3(...p));
   for (const k of studio.film.keyframes) box.expandByPoint(new THREE.Vector3(...k.position));
   for (const g of studio.course?.gates ?? []) box.expandByPoint(new THREE.Vector3(...g.position));
-  box.union(scanned.bounds());
+  box.union(scanned.bounds()).union(explored.bounds());
   const things = solids.bounds();
   // A large map must not make the film small.
   if (box.isEmpty() || things.getSize(new THREE.Vector3()).length() <
@@ -147,9 +153,11 @@ pick.onNothing = (ray) => {
   const words = scanned.wordsAt(ray);
   if (words) notices.say(words);
 };
+const exploration = new ExplorationPanel(studio);
+const painting = new PaintingPanel(studio);
 const selected = new Selected(studio);
 new Actions({
-  studio, selected, list, notices, exports: new ExportDialog(studio),
+  studio, selected, list, notices, exploration, painting, exports: new ExportDialog(studio),
   flying: new FlyDialog(studio), help: new HelpDialog(), compare: new CompareDialog(studio),
   frame: () => navigation.frame(bounds()),
   keyframeHere: () => keyframeHere(studio, stage, pick),
@@ -188,7 +196,7 @@ studio.on(["document"], () => {
   if (document.body.dataset.kind === kind) return;
   document.body.dataset.kind = kind;
   // Missions of other kinds are edited by their options alone.
-  const listed = kind === "film" || kind === "race" || kind === "scan";
+  const listed = ["film", "race", "scan", "explore", "light_painting"].includes(kind);
   byId("tab-film").textContent = labelOf(kind || "film");
   byId("tab-film").hidden = !listed;
   byId("tab-feel").hidden = !session.schema.some((option) => option.name === "weights");
@@ -301,6 +309,7 @@ Object.defineProperty(window, "lapwing", {
     onCurve: (time: number) => timeline.curvePlace(time),
     get eye() { return stage.worldCamera.position.toArray(); },
     get surface() { return scanned.triangles; },
+    get grown() { return explored.count; },
     get farthest() { return stage.worldCamera.far; },
     measure(on: boolean) { stage.measuring = on; },
     get edit() { return session.dragging ? session.edit : null; },

@@ -17,7 +17,7 @@ import { clamp } from "./state/vector";
 
 export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
   "flown" | "look" | "playing" | "kept";
-export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk" | "outline";
+export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk" | "outline" | "stroke";
 export type Rate = 0.5 | 1 | 2;
 
 export class Studio {

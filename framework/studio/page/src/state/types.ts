@@ -96,6 +96,8 @@ export interface Plan {
   looks?: { time?: number; position: Vec3 }[];
   subjects?: SubjectTrack[];
   camera?: CameraOptics;
+  lights?: { start: number; finish: number }[];
+  strokes?: Vec3[][];          // of a light painting, as they were asked for
   passages?: Passage[];
   objective?: { term: string; cost: number }[];
   limits?: Record<string, number | [number, number]>;
@@ -158,8 +160,23 @@ export interface ScanWorld {
   surface?: string;            // blob, as prediction.ts reads it
 }
 
+// How an exploration went.
+export interface ExplorationWorld {
+  utility: string;
+  end: string;
+  surface: number;             // voxels there were to find; 0: nobody knows
+  efficiency: number;
+  resolution: number;          // m
+  images: { time: number; position: Vec3; yaw: number; pitch: number; value: number;
+            scored: number; observed: number }[];
+  oracle: number[];            // observed by its images; empty where not compared
+  candidates: { position: Vec3; direction: Vec3; value: number }[];   // at the end
+  growth?: string;             // blob, as exploration.ts reads it
+}
+
 export interface World {
   scan?: ScanWorld;
+  exploration?: ExplorationWorld;
   obstacles?: WorldObstacle[];
   subjects?: SubjectTrack[];
   margin?: number;

@@ -51,6 +51,8 @@ export class Preview {
     window.clearTimeout(this.timer);
     const { studio } = this;
     if (studio.playing || !studio.rendered || !studio.session.welcomed) return;
+    // What was explored is drawn here, as far as it had grown.
+    if (studio.session.world.exploration) return;
     // The server draws what has converged.
     const { grade } = studio.standing;
     if (studio.session.dragging || grade === "guess" || grade === "step" || grade === "refused") {

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program with missions of other kinds than films: what a page is told of them beside the plan.
+#include "tests/studio/program_fixture.h"
+
+namespace lapwing {
+namespace {
+
+class StudioKinds : public StudioProgram {
+ protected:
+  // The message `world`, and the judged answer of the first revision.
+  std::pair<Value, Value> told(PageClient& page) {
+    Value world;
+    const Value answer = page.until([&](const Value& m) {
+      if (m.at("type") == Value("world")) world = m;
+      return m.at("type") == Value("answer") &&
+             (m.at("grade") == Value("certified") || m.at("grade") == Value("rejected") ||
+              m.at("grade") == Value("refused"));
+    });
+    EXPECT_EQ(answer.at("grade"), Value("certified")) << to_json(answer.at("message"));
+    return {world, answer};
+  }
+  static std::string blob(const StudioAddress& address, const Value& name) {
+    const std::string got = answer_to(address.port, "GET /blob/" + name.as_text() +
+                                                        " HTTP/1.1\r\nHost: " + address.host() +
+                                                        "\r\n\r\n");
+    return got.substr(got.find("\r\n\r\n") + 4);
+  }
+  static Value picture(PageClient& page, double time) {
+    page.send_text(R"({"type": "picture", "edit": 1, "time": )" + std::to_string(time) +
+                   R"(, "width": 64, "height": 36})");
+    return page.until([](const Value& m) {
+      return m.at("type") == Value("picture") || m.at("type") == Value("failed");
+    });
+  }
+};
+
+// What the page shows of a scan is what the run writes, to the byte.
+TEST_F(StudioKinds, AScanTellsWhatItsRunWrites) {
+  use("scan/church.lua");
+  const std::vector<std::string> options{"--config", "scan/small",     "--set",
+                                         "resolution=1", "--set", "tour.budget=90"};
+  const StudioAddress address = serve(options);
+  PageClient page(address, "a");
+  const auto [world, answer] = told(page);
+  const Value& scan = world.at("scan");
+  EXPECT_EQ(scan.at("candidates").as_list().size(), 150u);
+  EXPECT_EQ(scan.at("first_views").as_list().size(), 40u);
+  EXPECT_EQ(scan.at("region").as_list().size(), 1u);
+  EXPECT_GT(scan.at("score").as_list().back().as_number(), 0);
+  // Each view is a place of the flight.
+  const Value& columns = answer.at("plan").at("columns");
+  const double duration = answer.at("plan").at("duration").as_number();
+  ASSERT_GT(scan.at("views").as_list().size(), 2u);
+  for (const Value& view : scan.at("views").as_list())
+    EXPECT_LE(view.at("time").as_number(), duration);
+  EXPECT_EQ(columns.at("time").as_list().size(), columns.at("x").as_list().size());
+  // The picture needs the surface that planning made.
+  EXPECT_EQ(picture(page, 10).at("type"), Value("picture"));
+  std::vector<std::string> words{"run", script_.string(), "-o", "flown", "--json"};
+  words.insert(words.end(), options.begin(), options.end());
+  EXPECT_EQ(run(words), 0) << errors_;
+  EXPECT_EQ(blob(address, scan.at("surface")), read_file(folder_ / "flown/prediction.ply"));
+  EXPECT_NE(read_file(folder_ / "flown/report.html").find(scan.at("prediction_words").as_text()),
+            std::string::npos);
+  EXPECT_NE(read_file(folder_ / "flown/report.html").find(scan.at("words").as_text()),
+            std::string::npos);
+}
+
+TEST_F(StudioKinds, AnExplorationTellsHowItsMapGrew) {
+  use("explore/city.lua");
+  const StudioAddress address = serve({"--set", "steps=6"});
+  PageClient page(address, "a");
+  const auto [world, answer] = told(page);
+  const Value& told = world.at("exploration");
+  const Value::List& images = told.at("images").as_list();
+  ASSERT_EQ(images.size(), 6u);
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    EXPECT_GT(images[i].at("time").as_number(), images[i - 1].at("time").as_number());
+    EXPECT_GE(images[i].at("observed").as_number(), images[i - 1].at("observed").as_number());
+  }
+  EXPECT_FALSE(told.at("candidates").as_list().empty());
+  const std::string bytes = blob(address, told.at("growth"));
+  ASSERT_EQ(bytes.substr(0, 4), "WLG1");
+  std::uint32_t count = 0, before = 1;
+  float edge = 0;
+  std::memcpy(&count, bytes.data() + 4, sizeof count);
+  std::memcpy(&edge, bytes.data() + 8, sizeof edge);
+  EXPECT_FLOAT_EQ(edge, static_cast<float>(told.at("resolution").as_number()));
+  ASSERT_EQ(bytes.size(), 12 + 16 * std::size_t{count});
+  // By image, each in the middle of a voxel; the last image found some.
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint32_t image = 0;
+    float middle[3];
+    std::memcpy(middle, bytes.data() + 12 + 16 * i, sizeof middle);
+    std::memcpy(&image, bytes.data() + 24 + 16 * i, sizeof image);
+    ASSERT_GE(image, before);
+    ASSERT_LE(image, images.size());
+    for (const float m : middle) {
+      const float at = m / edge - 0.5f;
+      ASSERT_NEAR(at, std::round(at), 1e-2);
+    }
+    before = image;
+  }
+  EXPECT_EQ(before, images.size());
+  EXPECT_EQ(picture(page, 1).at("type"), Value("picture"));
+  // As many as the map of the run has.
+  EXPECT_EQ(run({"run", script_.string(), "-o", "flown", "--set", "steps=6"}), 0) << errors_;
+  const Started info(folder_, {"map", "info", "flown/map.ot", "--json"});
+  std::string text;
+  for (std::string line = info.line(); !line.empty(); line = info.line()) text += line;
+  EXPECT_EQ(from_json(text, "map info").at("occupied"), Value(std::int64_t{count}));
+}
+
+TEST_F(StudioKinds, ALightPaintingTellsStrokesAndLightsAndIsExposed) {
+  use("light_painting/hello.lua");
+  const StudioAddress address = serve();
+  PageClient page(address, "a");
+  const Value plan = told(page).second.at("plan");
+  EXPECT_GT(plan.at("strokes").as_list().size(), 5u);  // of five letters
+  double end = 0;
+  for (const Value& light : plan.at("lights").as_list()) {
+    EXPECT_GE(light.at("start").as_number(), end);
+    end = light.at("finish").as_number();
+    EXPECT_GT(end, light.at("start").as_number());
+  }
+  // The exposure grows.
+  const Value whole = picture(page, 0), half = picture(page, end / 2), all = picture(page, end);
+  EXPECT_EQ(whole.at("type"), Value("picture")) << to_json(whole);
+  EXPECT_NE(half.at("blob"), all.at("blob"));
+  EXPECT_EQ(blob(address, whole.at("blob")).substr(1, 3), "PNG");
+}
+
+}  // namespace
+}  // namespace lapwing

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// An exploration with the studio's own server: stepped through by mouse and by keyboard, the map as
+// it grows; changed by keyboard, flown anew, certified and exported.
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { studioState, type, waitGrade, waitRevision } from "./browser.mjs";
+import { served } from "./served.mjs";
+
+const PLANNED = 60000;   // ms at most
+
+const figures = (page) => page.$eval("#step-figures", (e) => e.textContent);
+const grown = (page) => page.evaluate("window.lapwing.grown");
+
+export const explore = (browser, shot) => served(browser, shot, {
+  name: "an exploration with the studio's own server", picture: "explore",
+  script: "examples/explore/city.lua", options: ["--set", "steps=20"],
+}, async (page, studio, picture) => {
+  await waitGrade(page, "certified", PLANNED);
+  await page.waitForFunction("!document.querySelector('#exploration').hidden");
+  await page.keyboard.press("End");
+  await page.waitForFunction("window.lapwing.grown > 0");
+  const all = await grown(page);
+  assert.match(await figures(page), /20 of 20/);
+  await page.keyboard.press("Home");
+  for (let i = 0; i < 5; ++i) await page.click("#step-on");
+  const { time } = await studioState(page);
+  for (let i = 0; i < 3; ++i) await page.keyboard.press("]");
+  assert.match(await figures(page), /8 of 20/);
+  assert.ok((await studioState(page)).time > time);
+  const some = await grown(page);
+  assert.ok(some > 0 && some < all, `${some} of ${all} voxels`);
+  await picture("explore_01_step");
+  await page.click("#step-back");
+  assert.ok(await grown(page) < some);
+  await page.click("#explore-candidates");
+  await picture("explore_02_candidates");
+  // Another start by typing: flown anew.
+  const { revision } = await studioState(page);
+  await page.click("#tab-setup");
+  await type(page, '[data-key="steps"]', "10");
+  await waitRevision(page, revision + 1);
+  await waitGrade(page, "certified", PLANNED);
+  await page.click("#tab-film");
+  await page.waitForFunction("/of 10/.test(document.querySelector('#step-figures').textContent)");
+  await page.click("#export");
+  await page.select("#export-format", "csv");
+  await page.click("#export-go");
+  await page.waitForSelector("#export-result .written");
+  for (const file of await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent))) {
+    assert.ok(statSync(file).size > 1000, file);
+  }
+});

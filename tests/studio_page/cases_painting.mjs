@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// A light painting with the studio's own server: a stroke by mouse in place of a text, another by
+// keyboard, planned, certified and exported; the long exposure as it grows.
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { centreOf, studioState, waitGrade, waitRevision } from "./browser.mjs";
+import { served } from "./served.mjs";
+
+const PLANNED = 60000;   // ms at most
+
+const exposure = async (page) => {
+  await page.waitForFunction("document.querySelector('#photo').hidden === false", { timeout: PLANNED });
+  return page.$eval("#photo", (image) => image.src);
+};
+
+export const painting = (browser, shot) => served(browser, shot, {
+  name: "a light painting with the studio's own server", picture: "painting",
+  script: "examples/light_painting/hello.lua",
+}, async (page, studio, picture) => {
+  await waitGrade(page, "certified", PLANNED);
+  const whole = await exposure(page);
+  await picture("painting_01_opened");
+  const { revision } = await studioState(page);
+  await page.click("#draw-stroke");
+  const { x, y } = await centreOf(page, "#world");
+  await page.mouse.move(x - 60, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 30; ++i) await page.mouse.move(x - 60 + 5 * i, y - 50 * Math.sin(i / 5));
+  await page.mouse.up();
+  await waitRevision(page, revision + 1);
+  const drawn = (await studioState(page)).document;
+  assert.equal(drawn.text, "");
+  assert.equal(drawn.strokes.length, 1);
+  const count = drawn.strokes[0].points.length / 2;
+  assert.ok(count > 5 && count <= 31, String(count));
+  await waitGrade(page, "certified", PLANNED);
+  // One more by keyboard.
+  await page.keyboard.press("Escape");
+  await page.focus("#add-stroke");
+  await page.keyboard.press("Enter");
+  await waitRevision(page, revision + 2);
+  assert.equal((await studioState(page)).document.strokes.length, 2);
+  await waitGrade(page, "certified", PLANNED);
+  const strokes = await exposure(page);
+  assert.notEqual(strokes, whole);
+  await picture("painting_02_strokes");
+  // Half of it, half of the light.
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("End");
+  for (let i = 0; i < 40; ++i) await page.keyboard.press(",");
+  assert.notEqual(await exposure(page), strokes);
+  await picture("painting_03_half");
+  await page.click('[data-key="stroke-1"] button[aria-label^="Delete"]');
+  await waitRevision(page, revision + 3);
+  await page.click("#undo");
+  await waitRevision(page, revision + 4);
+  await waitGrade(page, "certified", PLANNED);
+  await page.click("#export");
+  await page.select("#export-format", "csv");
+  await page.click("#export-go");
+  await page.waitForSelector("#export-result .written");
+  for (const file of await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent))) {
+    assert.ok(statSync(file).size > 1000, file);
+  }
+});
