@@ -12,6 +12,7 @@ namespace lapwing {
 namespace {
 
 constexpr std::size_t kListed = 15;  // candidates in the table
+constexpr int kSlicePixels = 128;    // across, of a slice of a grid
 constexpr double kTick = 1.2;        // m, of the line that shows where a candidate looks
 
 std::vector<double> from_zero(const std::vector<double>& observed) {
@@ -117,6 +118,44 @@ Section candidates(const ExplorationRecord& record) {
   return section;
 }
 
+// As many pixels for every grid, so that they can be compared.
+Picture enlarged(const Picture& small, int width) {
+  const int times = std::max(1, width / small.width);
+  Picture large{small.width * times, small.height * times, {}};
+  large.rgb.reserve(small.rgb.size() * static_cast<std::size_t>(times) * times);
+  for (int y = 0; y < large.height; ++y)
+    for (int x = 0; x < large.width; ++x) {
+      const auto at = 3 * (static_cast<std::size_t>(y / times) * small.width + x / times);
+      large.rgb.insert(large.rgb.end(), {small.rgb[at], small.rgb[at + 1], small.rgb[at + 2]});
+    }
+  return large;
+}
+
+Section grids(const ExplorationRecord& record) {
+  Section section{"What a learned utility is shown at the last view", {}};
+  for (const GridSlices& grid : record.grids) {
+    const auto add = [&](const std::vector<Picture>& pictures, const char* what) {
+      FilmStrip strip;
+      strip.title = std::string(what) + ", " + std::to_string(grid.points) +
+                    " points along an edge: a slice at the height of the camera, which looks up; "
+                    "black is 0, white is 1";
+      for (std::size_t level = 0; level < pictures.size(); ++level) {
+        const Picture picture = enlarged(pictures[level], kSlicePixels);
+        strip.frames.push_back({encode_png(picture),
+                                picture.width,
+                                picture.height,
+                                "level " + std::to_string(level + 1) + ", " +
+                                    number_text(grid.edges[level], 3) + " m across",
+                                {}});
+      }
+      section.blocks.push_back(std::move(strip));
+    };
+    add(grid.occupancy, "Occupancy");
+    add(grid.certainty, "Certainty");
+  }
+  return section;
+}
+
 }  // namespace
 
 std::vector<Section> exploration_sections(const ExplorationRecord& record) {
@@ -131,6 +170,7 @@ std::vector<Section> exploration_sections(const ExplorationRecord& record) {
   if (!record.moments.empty()) sections.push_back(growth(record));
   if (record.path.size() > 1) sections.push_back(path(record));
   if (!record.candidates.empty()) sections.push_back(candidates(record));
+  if (!record.grids.empty()) sections.push_back(grids(record));
   return sections;
 }
 

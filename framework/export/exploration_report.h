@@ -37,6 +37,14 @@ struct GrownVoxel {
   std::uint32_t image = 0;  // from 1 on
 };
 
+// A slice at the camera's height of what a learned utility is shown around a view, as figures 5.4
+// to 5.7 of the thesis have them: one grid of so many points along its edges, at several scales.
+struct GridSlices {
+  int points = 0;
+  std::vector<Picture> occupancy, certainty;  // by level, the finest first; white is 1; ahead is up
+  std::vector<double> edges;                  // m, of the grid at each level
+};
+
 struct ExplorationRecord {
   std::string utility;
   std::string end;                         // a sentence
@@ -55,6 +63,7 @@ struct ExplorationRecord {
   std::vector<ExplorationImage> images;
   std::vector<GrownVoxel> growth;  // by image; empty where it was not asked for
   double resolution = 0;           // m, of the map
+  std::vector<GridSlices> grids;   // around the last view
 };
 
 // Summary, growth of the map, path, observed surface over images, candidates.

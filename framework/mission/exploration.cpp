@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/core/phases.h"
+#include "framework/explore/view_grid.h"
 
 namespace lapwing {
 
@@ -32,6 +33,20 @@ void record_path(Exploration& e) {
     }
   for (const ScoredView& view : e.result.candidates)
     record.candidates.push_back({view.view.position, view.view.direction(), view.value});
+}
+
+// The slice in the middle of a grid's height, or one minus it, as a grey picture.
+Picture slice_of(const std::vector<float>& grid, const GridShape& shape, int channel,
+                 bool inverse) {
+  Picture picture{shape.across, shape.ahead, {}};
+  for (int y = 0; y < shape.ahead; ++y)
+    for (int x = 0; x < shape.across; ++x) {
+      const int point = (shape.up / 2 * shape.ahead + (shape.ahead - 1 - y)) * shape.across + x;
+      const float value = grid[static_cast<std::size_t>(point) * shape.channels() + channel];
+      const float shown = std::clamp(inverse ? 1 - value : value, 0.0f, 1.0f);
+      picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(std::lround(255 * shown)));
+    }
+  return picture;
 }
 
 template <class Visit>
@@ -149,6 +164,33 @@ void compare_with_oracle(Exploration& e, const GroundTruth& truth,
   e.record.oracle_efficiency = best.efficiency(settings.steps);
   if (best.end != EpisodeEnd::steps) e.record.oracle_end = explain(best.end);
   for (const EpisodeStep& step : best.steps) e.record.oracle.push_back(step.observed);
+}
+
+void record_grids(Exploration& e) {
+  const auto bounds = e.map->bounds();
+  if (e.result.steps.empty() || !bounds) return;
+  MapMeans means(*e.map);
+  means.touch(*bounds);
+  EpisodeView known;
+  known.map = e.map.get();
+  known.means = &means;
+  known.pinhole = e.settings.sensor.pinhole;
+  known.range = e.settings.sensor.range;
+  known.pitch = e.start.pitch;
+  for (const auto& [points, levels] : {std::pair{8, 5}, {16, 4}, {32, 3}, {64, 2}}) {
+    const GridShape shape{points, points, points / 2, levels};
+    means.refresh(levels);
+    std::vector<float> grid(shape.size());
+    sample_grid(known, e.result.steps.back().view, shape, grid);
+    GridSlices slices;
+    slices.points = points;
+    for (int level = 0; level < levels; ++level) {
+      slices.occupancy.push_back(slice_of(grid, shape, 2 * level, false));
+      slices.certainty.push_back(slice_of(grid, shape, 2 * level + 1, true));
+      slices.edges.push_back(points * std::ldexp(e.map->grid().resolution(), level + 1));
+    }
+    e.record.grids.push_back(std::move(slices));
+  }
 }
 
 void record_flight(Exploration& e) {

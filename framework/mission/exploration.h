@@ -65,6 +65,9 @@ Trajectory trajectory_of(const Exploration& exploration, bool gimbal);
 // taken for surface.
 void observe_truly(EpisodeResult& flown, const EpisodeSettings& settings, const GroundTruth& truth,
                    const ObservedSurface::NewMap& new_map);
+// What a learned utility is shown at the last view of the flight, in the sizes of figures 5.4
+// to 5.7.
+void record_grids(Exploration& exploration);
 // What an oracle would have seen from the same start.
 void compare_with_oracle(Exploration& exploration, const GroundTruth& truth,
                          const ObservedSurface::NewMap& new_map, const Registry& registry);

@@ -304,6 +304,7 @@ int explore_surface(lua_State* state) try {
   observe_truly(e->result, e->settings, truth, new_map);
   e->record.moments = std::move(moments).shown(static_cast<int>(e->result.steps.size()), *e->map);
   record_flight(*e);
+  record_grids(*e);
   run.solve_seconds += e->seconds;
   const bool stopped = e->result.end == EpisodeEnd::cancelled || e->result.end == EpisodeEnd::time;
   if (given.boolean("compare") && !stopped) compare_with_oracle(*e, truth, new_map, registry);

@@ -19,8 +19,8 @@ TEST_F(Exploring, AMeshIsExploredTheSameByAnyNumberOfThreads) {
   EXPECT_EQ(read_file(one.folder / "plan.json"), read_file(two.folder / "plan.json"));
   EXPECT_EQ(read_file(one.folder / "map.ot"), read_file(two.folder / "map.ot"));
   const std::string report = read_file(one.folder / "report.html");
-  for (const char* section :
-       {"Growth of the map", "Candidates at the last step", "relative to the oracle"})
+  for (const char* section : {"Growth of the map", "Candidates at the last step",
+                              "relative to the oracle", "Certainty, 64 points along an edge"})
     EXPECT_NE(report.find(section), std::string::npos) << section;
 }
 

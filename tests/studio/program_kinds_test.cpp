@@ -20,9 +20,9 @@ class StudioKinds : public StudioProgram {
     return {world, answer};
   }
   static std::string blob(const StudioAddress& address, const Value& name) {
-    const std::string got = answer_to(address.port, "GET /blob/" + name.as_text() +
-                                                        " HTTP/1.1\r\nHost: " + address.host() +
-                                                        "\r\n\r\n");
+    const std::string got =
+        answer_to(address.port, "GET /blob/" + name.as_text() +
+                                    " HTTP/1.1\r\nHost: " + address.host() + "\r\n\r\n");
     return got.substr(got.find("\r\n\r\n") + 4);
   }
   static Value picture(PageClient& page, double time) {
@@ -37,8 +37,8 @@ class StudioKinds : public StudioProgram {
 // What the page shows of a scan is what the run writes, to the byte.
 TEST_F(StudioKinds, AScanTellsWhatItsRunWrites) {
   use("scan/church.lua");
-  const std::vector<std::string> options{"--config", "scan/small",     "--set",
-                                         "resolution=1", "--set", "tour.budget=90"};
+  const std::vector<std::string> options{"--config",     "scan/small", "--set",
+                                         "resolution=1", "--set",      "tour.budget=90"};
   const StudioAddress address = serve(options);
   PageClient page(address, "a");
   const auto [world, answer] = told(page);

@@ -3,9 +3,12 @@
 // keyboard, planned, certified and exported; the long exposure as it grows.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { centreOf, studioState, waitGrade, waitRevision } from "./browser.mjs";
 import { served } from "./served.mjs";
 
+const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const PLANNED = 60000;   // ms at most
 
 const exposure = async (page) => {
@@ -55,6 +58,12 @@ export const painting = (browser, shot) => served(browser, shot, {
   await page.click("#undo");
   await waitRevision(page, revision + 4);
   await waitGrade(page, "certified", PLANNED);
+  // A picture of lines.
+  await (await page.$("#svg-file")).uploadFile(join(root, "examples/light_painting/heart.svg"));
+  await waitRevision(page, revision + 5);
+  assert.ok((await studioState(page)).document.strokes.length > 0);
+  await waitGrade(page, "certified", PLANNED);
+  await picture("painting_04_svg");
   await page.click("#export");
   await page.select("#export-format", "csv");
   await page.click("#export-go");

@@ -2,13 +2,15 @@
 // A scan with the studio's own server: a region drawn on the map, a zone moved by keyboard, planned
 // and certified; its figures, its holes, the surface under a click; exported.
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, statSync } from "node:fs";
+import { existsSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { centreOf, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
 import { served } from "./served.mjs";
 
 const PLANNED = 120000;   // ms at most
-const options = ["--config", "scan/small", "--set", "resolution=1", "--set", "tour.budget=90"];
+const options = ["--config", "scan/small", "--set", "resolution=1", "--set", "tour.budget=90",
+                 "--set", "origin={latitude_deg: 52, longitude_deg: 4, height: 0, height_of: ellipsoid}",
+                 "--set", "heights=world"];
 
 // What the page says must be what the run says.
 const words = (page) => page.$eval("#scan-words", (e) => e.textContent);
@@ -60,6 +62,22 @@ export const scan = (browser, shot) => served(browser, shot, {
   await page.keyboard.press("Escape");
   await page.click("#undo");
   await waitRevision(page, revision + 5);
+  await waitGrade(page, "certified", PLANNED);
+  // Polygons of a file: one of another reference system is refused, one on the earth is taken.
+  const dropped = { crs: '{"type":"Polygon","coordinates":[[[84900,447500],[84910,447500],[84910,447510]]]}',
+                  zone: '{"type":"Feature","properties":{"name":"pylon","ceiling":30},"geometry":{"type":' +
+                    '"Polygon","coordinates":[[[4.0006,52.0003],[4.0007,52.0003],[4.0007,52.0004]]]}}' };
+  const upload = async (name) => {
+    const file = join(studio.dir, `${name}.geojson`);
+    writeFileSync(file, dropped[name]);
+    await (await page.$("#site-file")).uploadFile(file);
+  };
+  await page.select("#site-file-kind", "closed");
+  await upload("crs");
+  await page.waitForFunction(() => /EPSG:4326/.test(document.querySelector("#notes").textContent));
+  await upload("zone");
+  await waitRevision(page, revision + 6);
+  assert.equal((await studioState(page)).document.no_fly_zones[0].name, "pylon");
   await waitGrade(page, "certified", PLANNED);
   // The world again; candidates; another figure; the surface under a click.
   await page.click("#map");

@@ -9,6 +9,7 @@ import { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
 import { Feel } from "./panel/feel";
 import { FilmList } from "./panel/film_list";
 import { Hints, Notices, recall } from "./panel/notices";
+import { takeDropped } from "./panel/dropped";
 import { ExplorationPanel } from "./panel/exploration_panel";
 import { PaintingPanel } from "./panel/painting_panel";
 import { ScanPanel } from "./panel/scan_panel";
@@ -119,6 +120,7 @@ new CertificateList(studio);
 new Feel(studio);
 new Setup(studio);
 const notices = new Notices(studio);
+takeDropped(studio, notices);
 new Hints(studio);
 wireTabs();
 

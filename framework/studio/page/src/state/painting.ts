@@ -129,6 +129,20 @@ export function addedStroke(document: JsonObject, drawn: Vec3[]): Edit | null {
   return withStrokes(document, "Draw a stroke", [...drawnStrokes(document), stroke]);
 }
 
+// The lines of a picture (y up, in its units), as high as the drawing was and where it stood; in
+// place of what was drawn.
+export function addedStrokes(document: JsonObject, label: string, lines: Point[][]): Edit | null {
+  const plane = planeOf(document);
+  const box = boxOf(lines);
+  const size = extent(box);
+  if (!plane || !(size > 0)) return null;
+  const scale = Number(document.height) / size;
+  const strokes = lines.map((points) => simplified(without(points.map(([x, y]): Point =>
+    [scale * (x - (box.left + box.right) / 2), scale * (y - box.low)]))))
+    .filter((points) => points.length > 1);
+  return withStrokes(document, label, strokes);
+}
+
 export function withoutStroke(document: JsonObject, index: number): Edit | null {
   return withStrokes(document, `Delete stroke ${index + 1}`,
                      drawnStrokes(document).filter((_, i) => i !== index));
