@@ -3,9 +3,11 @@
 // shares nothing with the reader.
 #include "framework/view/orienteering_file.h"
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <set>
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
@@ -67,6 +69,66 @@ TEST(Orienteering, RoutesOfPublishedInstancesComeNearTheOptimum) {
   }
   if (whole) std::printf("%.3f %% below the optimum on average\n", 100 * gaps / 16);
   EXPECT_LE(gaps / 16, whole ? 0.01 : 0.02);
+}
+
+// The 64 points of Chao, Golden and Wasil (EJOR 1996) for teams, whose cost limit each shares
+// evenly, with the best scores known since (Archetti, Hertz and Speranza, J. Heuristics 2007, p6.2
+// to p6.4). Left out is 65 for four, whose share of 16.25 was rounded to 16.2 there.
+struct KnownTeam {
+  int team = 0, limit = 0;
+  double best = 0;
+};
+constexpr KnownTeam kTeams[] = {
+    {2, 30, 192},  {2, 35, 360},  {2, 40, 588},  {2, 45, 660},  {2, 50, 780},  {2, 55, 888},
+    {2, 60, 948},  {2, 65, 1032}, {2, 70, 1116}, {2, 75, 1188}, {2, 80, 1260}, {3, 45, 282},
+    {3, 50, 444},  {3, 55, 642},  {3, 60, 828},  {3, 65, 894},  {3, 70, 1002}, {3, 75, 1080},
+    {3, 80, 1170}, {4, 60, 366},  {4, 70, 696},  {4, 75, 912},  {4, 80, 1068}};
+
+TEST(Orienteering, TeamsOfPublishedInstancesComeNearTheBestKnown) {
+  const char* data = std::getenv("LAPWING_DATA");
+  if (!data) GTEST_SKIP() << "LAPWING_DATA is not set";
+  const fs::path folder = fs::path(data) / "orienteering" / "chao64";
+  const auto solver = tour_plugins().create<TourSolver>("local_search", Value());
+  double gaps = 0, slowest = 0;
+  for (const KnownTeam& known : kTeams) {
+    const std::string name = "set_64_1_" + std::to_string(known.limit) + ".txt";
+    SCOPED_TRACE(name + " for a team of " + std::to_string(known.team));
+    TourDefinition definition = read_orienteering_file(folder / name).definition;
+    definition.budget = static_cast<double>(known.limit) / known.team;
+    std::vector<TeamTour> tours;
+    for (int t = 0; t < known.team; ++t)
+      tours.push_back({std::to_string(t), TourProblem(definition)});
+    const std::clock_t began = std::clock();
+    const TeamResult result = solver->solve(TeamProblem(std::move(tours)), {});
+    slowest = std::max(slowest, static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
+    // Collected once each, by tours that keep their limit: read and summed without the solver.
+    std::istringstream lines(read_file(folder / name));
+    std::string head;
+    std::getline(lines, head);
+    std::vector<std::array<double, 3>> points;
+    for (std::array<double, 3> p; lines >> p[0] >> p[1] >> p[2];) points.push_back(p);
+    std::set<int> seen;
+    for (const std::vector<int>& walk : result.walks) {
+      double length = 0;
+      for (std::size_t i = 1; i < walk.size(); ++i)
+        length += std::hypot(points[walk[i]][0] - points[walk[i - 1]][0],
+                             points[walk[i]][1] - points[walk[i - 1]][1]);
+      EXPECT_LE(length, definition.budget + 1e-9);
+      EXPECT_EQ(walk.front(), 0);
+      EXPECT_EQ(walk.back(), 1);
+      seen.insert(walk.begin(), walk.end());
+    }
+    double collected = 0;
+    for (const int view : seen) collected += points[view][2];
+    EXPECT_EQ(collected, result.report.score);
+    EXPECT_LE(collected, known.best);
+    gaps += (known.best - collected) / known.best;
+  }
+  const double mean = gaps / std::size(kTeams);
+  std::printf("%.3f %% below the best known on average, at most %.2f s each\n", 100 * mean,
+              slowest);
+  EXPECT_LE(mean, 0.005);
+  EXPECT_LE(slowest, 10);
 }
 
 TEST(Orienteering, PlainFilesGoFromTheFirstPointToTheSecond) {
