@@ -24,6 +24,7 @@ class BlobStore {
   void put(const std::string& name, std::string bytes);
   // Null where there is none.
   std::shared_ptr<const std::string> find(std::string_view name);
+  bool holds(std::string_view name) const { return blobs_.find(name) != blobs_.end(); }
   std::size_t bytes() const { return total_; }
 
  private:

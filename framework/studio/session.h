@@ -127,6 +127,7 @@ class StudioSession {
     std::string layer;  // as JSON
     Frame answer = {};
     std::string world;
+    std::vector<std::string> blobs = {};  // that it names
     std::size_t bytes = 0;
   };
   // What a page may fly, draw and export.
@@ -192,6 +193,7 @@ class StudioSession {
   void answered(Frame frame);
   void deliver(const Frame& frame);
   const Remembered* remembered(const std::string& layer) const;
+  bool is_whole(const Remembered& shown) const;
   void remember(const Frame& frame);
   void show_again(const Remembered& shown);
   void settle(const Frame& frame);
@@ -225,7 +227,8 @@ class StudioSession {
   std::optional<Settled> certified_, settled_, displayed_;
   std::string document_answer_;  // the last one of the document as it is
   int document_rank_ = -1;
-  std::string world_;  // the last one told
+  std::string world_;                     // the last one told
+  std::vector<std::string> world_blobs_;  // that it names
   BlobStore surfaces_{std::size_t{512} << 20}, pictures_{std::size_t{64} << 20};
   std::deque<Errand> errand_queue_;
   bool errand_under_way_ = false;

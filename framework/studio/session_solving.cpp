@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Solves, their answers, and errands.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -131,15 +132,22 @@ void StudioSession::solve_document(bool anew) {
 
 const StudioSession::Remembered* StudioSession::remembered(const std::string& layer) const {
   for (const Remembered& shown : remembered_)
-    if (shown.layer == layer) return has_its_files(shown.answer) ? &shown : nullptr;
+    if (shown.layer == layer) return is_whole(shown) ? &shown : nullptr;
   return nullptr;
+}
+
+// Whether all that the page will ask for is still there.
+bool StudioSession::is_whole(const Remembered& shown) const {
+  return has_its_files(shown.answer) &&
+         std::all_of(shown.blobs.begin(), shown.blobs.end(),
+                     [&](const std::string& name) { return surfaces_.holds(name); });
 }
 
 // What the document ended with. Only what was judged: the same options may be refused for a crash.
 void StudioSession::remember(const Frame& frame) {
   if (frame.header.at("grade") == Value("refused") || remembered(solve_->layer)) return;
   std::erase_if(remembered_, [&](const Remembered& one) { return one.layer == solve_->layer; });
-  Remembered shown{solve_->layer, frame, world_};
+  Remembered shown{solve_->layer, frame, world_, world_blobs_};
   for (const std::string& part : frame.parts) shown.bytes += part.size();
   shown.bytes += shown.world.size() + shown.layer.size();
   remembered_.push_front(std::move(shown));
@@ -174,6 +182,7 @@ void StudioSession::show_again(const Remembered& shown) {
   solver_->send(std::move(begin));
   if (shown.world != world_ && !shown.world.empty()) {
     world_ = shown.world;
+    world_blobs_ = shown.blobs;
     tell_all(world_);
   }
   deliver(answer);
@@ -244,8 +253,11 @@ void StudioSession::settle(const Frame& frame) {
 
 void StudioSession::world(const Frame& frame) {
   const Value::List& names = frame.header.at("blobs").as_list();
-  for (std::size_t i = 0; i < names.size() && i + 1 < frame.parts.size(); ++i)
+  world_blobs_.clear();
+  for (std::size_t i = 0; i < names.size() && i + 1 < frame.parts.size(); ++i) {
+    world_blobs_.push_back(names[i].as_text());
     surfaces_.put(names[i].as_text(), frame.parts[i + 1]);
+  }
   world_ = frame.parts.at(0);
   tell_all(world_);
 }
