@@ -57,6 +57,13 @@ std::string lua_key(const std::string& key) {
   return plain ? key : "[" + quoted_lua(key) + "]";
 }
 
+// A pilot without a place is none: what is left of the table are defaults.
+bool is_no_pilot(const std::string& key, const Value& value) {
+  if (key != "pilot" || !value.is_map()) return false;
+  const Value* position = value.find("position");
+  return !position || position->is_null() || (position->is_list() && position->as_list().empty());
+}
+
 // Whether a table holds nothing: as if it were absent.
 bool says_nothing(const Value& value) {
   if (value.is_null()) return true;
@@ -113,7 +120,7 @@ std::string rest_mission(const Plan& plan, const std::vector<std::size_t>& missi
     text += "  ceiling = " + lua_number(highest + kHeadroom) + ",\n";
   if (plan.configuration.is_map())
     for (const auto& [key, value] : plan.configuration.as_map())
-      if (!kLeftOut.contains(key) && !says_nothing(value))
+      if (!kLeftOut.contains(key) && !says_nothing(value) && !is_no_pilot(key, value))
         text += "  " + lua_key(key) + " = " + lua_value(value) + ",\n";
   text += "  views = {\n";
   for (const std::size_t k : missing) {
