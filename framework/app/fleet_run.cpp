@@ -20,31 +20,21 @@
 namespace lapwing {
 namespace {
 
-// The tours, judged one by one and together.
-struct JudgedRun {
-  std::vector<Certificate> certificates;  // of the plans
-  std::vector<std::string> statuses;      // likewise
-  std::vector<std::string> texts;         // the bytes of their files
-  Certificate certificate;                // of the fleet
-  std::string status;
-};
-
 std::vector<const Plan*> plans_of(const FleetResult& fleet) {
   std::vector<const Plan*> plans;
   for (const MissionResult& tour : fleet.tours) plans.push_back(&tour.plan);
   return plans;
 }
 
-JudgedRun judge_run(const FleetOutcome& outcome, const Invocation& invocation) {
+}  // namespace
+
+JudgedRun judge_run(MissionResult& result, bool cancelled, const Judges& judges) {
   JudgedRun judged;
-  FleetResult& fleet = *outcome.result.fleet;
-  const bool cancelled = outcome.cancellation.cancelled();
+  FleetResult& fleet = *result.fleet;
   std::vector<FleetMember> members;
   for (std::size_t t = 0; t < fleet.tours.size(); ++t) {
     MissionResult& tour = fleet.tours[t];
-    JudgedPlan one =
-        judge(tour.plan, tour.obstacle_folder, nullptr,
-              {.progress = &outcome.progress, .controllers = controllers_of(invocation)});
+    JudgedPlan one = judge(tour.plan, tour.obstacle_folder, nullptr, judges);
     judged.certificates.push_back(std::move(one.certificate));
     judged.statuses.push_back(status_of(tour, judged.certificates.back(), cancelled));
     complete_plan(tour, judged.certificates.back(), judged.statuses.back());
@@ -56,12 +46,16 @@ JudgedRun judge_run(const FleetOutcome& outcome, const Invocation& invocation) {
         {&fleet.tours[t].plan, &judged.certificates[t], fleet.document.tours[t].sha256});
   const ConfigurationComparison compared = compare_fleet(fleet.document, plans_of(fleet));
   judged.certificate = verify_fleet(fleet.document, members, nullptr,
-                                    {.folder = outcome.result.obstacle_folder}, compared.faults);
+                                    {.folder = result.obstacle_folder,
+                                     .cancellation = judges.cancellation},
+                                    compared.faults);
   fleet.document.certificate = judged.certificate.to_value();
-  judged.status = status_of(outcome.result, judged.certificate, cancelled);
+  judged.status = status_of(result, judged.certificate, cancelled);
   if (judged.status == "cancelled") fleet.document.solver.set("cancelled", true);
   return judged;
 }
+
+namespace {
 
 std::string fleet_page(const FleetOutcome& outcome, const JudgedRun& judged) {
   const FleetResult& fleet = *outcome.result.fleet;
@@ -183,7 +177,9 @@ void print_summary(const FleetOutcome& outcome, const JudgedRun& judged) {
 ExitStatus finish_fleet(const FleetOutcome& outcome, const Invocation& invocation,
                         const Registry& registry, const logging::Capture& capture) {
   outcome.progress.begin("certificate");
-  const JudgedRun judged = judge_run(outcome, invocation);
+  const JudgedRun judged =
+      judge_run(outcome.result, outcome.cancellation.cancelled(),
+                  {.progress = &outcome.progress, .controllers = controllers_of(invocation)});
   outcome.progress.begin("files");
   outcome.progress.report(-1, "");
   write_files(outcome, judged, registry, capture);

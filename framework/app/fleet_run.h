@@ -4,6 +4,7 @@
 
 #include "framework/app/command_line.h"
 #include "framework/app/progress_line.h"
+#include "framework/app/provenance.h"
 #include "framework/app/run_target.h"
 #include "framework/core/log.h"
 #include "framework/mission/mission.h"
@@ -17,6 +18,19 @@ struct FleetOutcome {
   ProgressLine& progress;
   double begin = 0;  // s, when the run began, by steady_seconds
 };
+
+// The tours of a fleet, judged one by one and together.
+struct JudgedRun {
+  std::vector<Certificate> certificates;  // of the plans
+  std::vector<std::string> statuses;      // likewise
+  std::vector<std::string> texts;         // the bytes of their files
+  Certificate certificate;                // of the fleet
+  std::string status;
+};
+
+// Completes the plans and the fleet document with what was judged. Cancelled when the judges are
+// told to stop; `cancelled`: planning was.
+JudgedRun judge_run(MissionResult& result, bool cancelled, const Judges& judges);
 
 // Judges every plan and the fleet, writes plan_N.json, report_N.html and trajectory_N.csv of each
 // tour, fleet.json, report.html and run.log, and prints the summary or the JSON object.

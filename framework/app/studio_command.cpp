@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "framework/app/fleet_run.h"
 #include "framework/app/interruption.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/provenance.h"
@@ -92,7 +93,13 @@ ExitStatus work_for_studio(const StudioRequest& asked, const Invocation& invocat
                  {.cancellation = &token, .controllers = controllers_of(invocation)})
         .certificate;
   };
-  run_studio_worker(asked.script, settings, judged);
+  const auto fleet_judged = [&](MissionResult& result, const CancellationToken& token) {
+    JudgedRun fleet = judge_run(
+        result, false, {.cancellation = &token, .controllers = controllers_of(invocation)});
+    return FleetVerdict{std::move(fleet.certificates), std::move(fleet.texts),
+                        std::move(fleet.certificate)};
+  };
+  run_studio_worker(asked.script, settings, judged, fleet_judged);
   return ExitStatus::done;
 }
 

@@ -8,12 +8,6 @@
 
 namespace lapwing {
 
-struct RacedPilot {
-  Pilot pilot;
-  RaceFlight flight;
-  RaceScore score;
-};
-
 // The place in `pilots` of who wins: the lowest score of those who finished; -1 for nobody.
 int winner_of(const std::vector<RacedPilot>& pilots);
 

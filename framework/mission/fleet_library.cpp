@@ -105,6 +105,7 @@ void tell_fleet(const TeamObject& team, double pixel_error, MissionRun& run, Fle
   const auto record = record_of_fleet(flown, pixel_error, run.settings.threads);
   tell_scan(*record, run, {made.block, made.notes, made.told});
   const auto plan = std::make_shared<const Plan>(made.plans.front().plan);
+  made.scan = record;
   made.late_sections = [record, plan] { return fleet_sections(*plan, *record); };
 }
 

@@ -292,6 +292,7 @@ MissionResult result_of(Sandbox& sandbox, const FleetObject& made, const Mission
   result.told = made.told;
   result.block = made.block;
   result.block_name = "tour";
+  result.scan = made.scan;
   const Sandbox::ClockPause pause(sandbox);
   result.sections = made.late_sections();
   return result;

@@ -42,7 +42,7 @@ struct MissionResult {
   std::vector<Pilot> pilots;                    // who fly it by hand, in simulation
   std::vector<std::string> told = {};           // likewise, that stand in no plan
   std::vector<Section> sections = {};           // of the report, beside those of every flight
-  std::shared_ptr<const ScanRecord> scan = {};  // of a scan of one battery: what it was planned on
+  std::shared_ptr<const ScanRecord> scan = {};  // of a scan: what all its tours were planned on
   std::shared_ptr<const ExplorationRecord> exploration = {};  // of an exploration: how it went
   // Where the files lie that the plan's environment names, as long as the mission lives; and their
   // names.

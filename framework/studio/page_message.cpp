@@ -14,12 +14,14 @@ using Type = PageMessageType;
 constexpr std::size_t kLongestName = 128;  // bytes, of ids, tabs and formats
 constexpr std::size_t kLongestLabel = 400;
 constexpr std::size_t kMostAfter = 64;  // as many as may wait
+constexpr std::size_t kMostPlayers = 8;
 constexpr std::int64_t kLargestNumber = (std::int64_t{1} << 53) - 1;
 
 constexpr std::array kTypes{Type::hello,          Type::preview,     Type::gesture,
                             Type::undo,           Type::redo,        Type::rest,
                             Type::resolve_script, Type::fly,         Type::picture,
-                            Type::export_plan,    Type::save_report, Type::export_lua};
+                            Type::export_plan,    Type::save_report, Type::export_lua,
+                            Type::race,           Type::stick};
 
 Type type_named(const std::string& name) {
   for (const Type type : kTypes)
@@ -112,6 +114,14 @@ StudioDocument::Take take_named(const std::string& name) {
   throw InputError("take: expected mine, theirs or both");
 }
 
+void read_tour(MessageFields& fields, PageMessage& message) {
+  const Value* tour = fields.find("tour");
+  if (!tour) return;
+  const double number = MessageFields::checked(*tour, "tour", 0, 999);
+  if (number != std::floor(number)) throw InputError("tour: expected a whole number");
+  message.tour = static_cast<std::size_t>(number);
+}
+
 void read_flight(MessageFields& fields, PageMessage& message) {
   constexpr double kStrongest = 100;  // m/s
   read_edit(fields, message);
@@ -124,6 +134,7 @@ void read_flight(MessageFields& fields, PageMessage& message) {
   if (const Value* gust = fields.find("gust"))
     message.gust = MessageFields::checked(*gust, "gust", 0, kStrongest);
   message.seed = static_cast<std::uint64_t>(fields.count("seed", 0, kLargestNumber));
+  read_tour(fields, message);
 }
 
 void read_picture(MessageFields& fields, PageMessage& message) {
@@ -131,6 +142,7 @@ void read_picture(MessageFields& fields, PageMessage& message) {
   message.time = fields.number("time", 0, 1e6);
   message.width = static_cast<int>(fields.count("width", 1, kLargestPicture));
   message.height = static_cast<int>(fields.count("height", 1, kLargestPicture));
+  read_tour(fields, message);
 }
 
 void read_export(MessageFields& fields, PageMessage& message) {
@@ -144,6 +156,33 @@ void read_export(MessageFields& fields, PageMessage& message) {
     if (uncertified->type() != Value::Type::boolean)
       throw InputError("uncertified: expected true or false");
     message.uncertified = uncertified->as_boolean();
+  }
+  read_tour(fields, message);
+}
+
+const Value::List& list_of_players(MessageFields& fields, const char* name) {
+  const Value& value = fields.at(name);
+  if (!value.is_list() || value.as_list().empty() || value.as_list().size() > kMostPlayers)
+    throw InputError(std::string(name) + ": expected a list of 1 to " +
+                     std::to_string(kMostPlayers));
+  return value.as_list();
+}
+
+void read_race(MessageFields& fields, PageMessage& message) {
+  read_id(fields, message);
+  for (const Value& player : list_of_players(fields, "players"))
+    if (!player.is_map()) throw InputError("players: expected objects");
+  message.players = fields.at("players");
+}
+
+void read_sticks(MessageFields& fields, PageMessage& message) {
+  read_id(fields, message);
+  message.time = fields.number("time", 0, 1e5);
+  for (const Value& stick : list_of_players(fields, "sticks")) {
+    if (!stick.is_list() || stick.as_list().size() != 2)
+      throw InputError("sticks: expected forward and left of each player");
+    message.sticks.push_back({MessageFields::checked(stick.as_list()[0], "sticks", -1, 1),
+                              MessageFields::checked(stick.as_list()[1], "sticks", -1, 1)});
   }
 }
 
@@ -184,6 +223,10 @@ void read_fields(MessageFields& fields, PageMessage& message) {
     case Type::save_report:
     case Type::export_lua:
       return read_id(fields, message);
+    case Type::race:
+      return read_race(fields, message);
+    case Type::stick:
+      return read_sticks(fields, message);
   }
 }
 
@@ -215,6 +258,10 @@ const char* to_string(PageMessageType type) {
       return "save_report";
     case Type::export_lua:
       return "export_lua";
+    case Type::race:
+      return "race";
+    case Type::stick:
+      return "stick";
   }
   return "";
 }

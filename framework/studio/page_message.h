@@ -24,6 +24,8 @@ enum class PageMessageType {
   export_plan,  // "export"
   save_report,
   export_lua,
+  race,
+  stick,
 };
 const char* to_string(PageMessageType type);
 
@@ -31,7 +33,8 @@ struct PageMessage {
   PageMessageType type = PageMessageType::hello;
   std::string token, tab;               // hello
   std::uint64_t seen = 0;               // hello
-  std::string id, label;                // gesture and what follows it; one id each
+  // Of gesture and what follows it one each; of `stick` that of its `race`.
+  std::string id, label;
   std::uint64_t base = 0;               // revision
   std::uint64_t edit = 0;               // preview, fly, picture
   Patch patch;                          // preview, gesture
@@ -40,11 +43,14 @@ struct PageMessage {
   std::array<double, 3> wind{};  // m/s
   double gust = 0;               // m/s
   std::uint64_t seed = 1;
-  double time = 0;                  // s
+  double time = 0;                  // s; of stick, from the start of the race
   int width = 0, height = 0;        // pixels
+  std::size_t tour = 0;             // fly, picture, export: of several batteries, from 0
   std::string format;               // of export
   Value parameters = Value::map();  // of the exporter
   bool uncertified = false;
+  Value players = Value::list();                   // race: names and numbers of each
+  std::vector<std::array<double, 2>> sticks = {};  // of stick: forward and left, -1 to 1
   std::size_t bytes = 0;  // of its text
 };
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "framework/solve/trajectory_solver.h"
 #include "framework/trajectory/plan.h"
@@ -31,6 +32,7 @@ std::string flown_message(const FlownPath& flown, const Trajectory& planned);
 struct PlannedOn {
   const ScanRecord* scan = nullptr;
   const ExplorationRecord* exploration = nullptr;
+  std::vector<const Plan*> tours = {};  // of several batteries: all of them
 };
 
 // The message `world`, and the blobs that it names. Surfaces that were drawn before are taken from

@@ -136,6 +136,7 @@ class StudioSession {
     Value layer;
     std::uint64_t revision = 0;
     std::string folder = {};  // of the files that planning wrote and the plan names; or none
+    std::vector<std::string> further = {};  // documents of the tours after the first one
   };
 
   // session.cpp: pages

@@ -229,7 +229,16 @@ void StudioSession::deliver(const Frame& frame) {
   };
   std::string text = to_json(head, -1);
   text.pop_back();
-  text += ",\"plan\":" + part(0) + ",\"certificate\":" + part(1) + "}";
+  text += ",\"plan\":" + part(0) + ",\"certificate\":" + part(1);
+  // The plan of the first tour is `plan`.
+  const Value* tours = frame.header.find("tours");
+  for (std::size_t t = 0; tours && t < tours->as_list().size(); ++t) {
+    std::string one = to_json(tours->as_list()[t], -1);
+    one.pop_back();
+    text += (t == 0 ? ",\"tours\":[" : ",") + one + ",\"plan\":" + part(3 + 3 * t) +
+            ",\"certificate\":" + part(4 + 3 * t) + "}";
+  }
+  text += tours && !tours->as_list().empty() ? "]}" : "}";
   if (solve.revision && rank_of(grade) >= document_rank_) {
     document_answer_ = text;
     document_rank_ = rank_of(grade);
@@ -243,7 +252,8 @@ void StudioSession::deliver(const Frame& frame) {
 void StudioSession::settle(const Frame& frame) {
   if (frame.parts.size() < 3 || frame.parts[2].empty()) return;
   Settled settled{frame.parts[2], solve_->frame.header.at("layer"),
-                  solve_->revision.value_or(solve_->base), folder_of(frame)};
+                  solve_->revision.value_or(solve_->base), folder_of(frame), {}};
+  for (std::size_t i = 8; i < frame.parts.size(); i += 3) settled.further.push_back(frame.parts[i]);
   if (solve_->revision) {
     settled_ = settled;
     if (frame.header.at("grade") == Value("certified")) certified_ = settled;
@@ -300,7 +310,11 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
     if (!settled) throw InputError(lacking);
     frame.header.set("layer", settled->layer);
     frame.header.set("folder", settled->folder);
-    frame.parts = {settled->document};
+    if (message.tour > settled->further.size())
+      throw InputError("tour: there is no tour " + std::to_string(message.tour));
+    if (!settled->further.empty())
+      frame.header.set("number", static_cast<std::int64_t>(message.tour + 1));
+    frame.parts = {message.tour == 0 ? settled->document : settled->further[message.tour - 1]};
   };
   switch (message.type) {
     case Type::fly:
@@ -336,6 +350,19 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
       }
       frame.header.set("words", std::move(words));
       if (settled_) frame.parts = {settled_->document};
+      break;
+    }
+    case Type::race:
+      use(settled_, "there is no plan to race on yet");
+      frame.header.set("id", message.id);
+      frame.header.set("players", message.players);
+      break;
+    case Type::stick: {
+      frame.header.set("id", message.id);
+      frame.header.set("time", message.time);
+      Value& sticks = frame.header.set("sticks", Value::list());
+      for (const auto& [forward, left] : message.sticks)
+        sticks.push_back(Value(Value::List{forward, left}));
       break;
     }
     default:
@@ -384,6 +411,11 @@ void StudioSession::errand_done(Frame frame) {
     message.set("edit", static_cast<std::int64_t>(errand.message.edit));
     message.set("time", errand.message.time);
     message.set("blob", pictures_.put(std::move(frame.parts.at(0))));
+  } else if (errand.type == Type::race || errand.type == Type::stick) {
+    message.set("type", "raced");
+    message.set("id", errand.message.id);
+    if (const Value* files = frame.header.find("files")) message.set("files", *files);
+    raw = "," + frame.parts.at(0).substr(1, frame.parts.at(0).size() - 2);
   } else {
     message.set("type", "wrote");
     message.set("id", errand.message.id);

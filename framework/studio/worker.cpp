@@ -57,10 +57,11 @@ double apart(const Trajectory& a, const Trajectory& b) {
 class StudioWorker {
  public:
   StudioWorker(const std::filesystem::path& script, const MissionSettings& settings,
-               MissionEditor::Judge judge)
+               MissionEditor::Judge judge, JudgeFleet judge_fleet)
       : script_(script),
         settings_(settings),
         judge_(std::move(judge)),
+        judge_fleet_(std::move(judge_fleet)),
         errands_(script, settings_),
         editor_(
             script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_) {}
@@ -231,10 +232,10 @@ class StudioWorker {
     if (result.mapping)
       throw InputError("a mission of kind '" + mission->kind() +
                        "' makes a map and no flight that could be drawn; lapwing run plans it");
-    if (result.fleet)
-      throw InputError(
-          "a mission with several batteries makes several flights, and one flight can "
-          "be drawn: set batteries to 1, or plan it by lapwing run");
+    if (result.fleet) {
+      keep(mission);
+      return judge_tours(result);
+    }
     EditedPlan edited;
     edited.answer.grade = AnswerGrade::converged;
     edited.answer.result.report = result.report;
@@ -266,6 +267,67 @@ class StudioWorker {
     tell(edited);
   }
 
+  // Several batteries: told as they are planned, then with what was judged.
+  void judge_tours(MissionResult& result) {
+    std::string notes;
+    for (const std::string& note : result.notes) notes += (notes.empty() ? "" : "; ") + note;
+    tell_tours(result, nullptr, AnswerGrade::converged, notes);
+    const FleetVerdict verdict = judge_fleet_(result, *whole_);
+    if (whole_->cancelled()) return;
+    std::string failures = all_failures(verdict.all);
+    for (std::size_t t = 0; t < verdict.tours.size(); ++t)
+      if (const std::string own = all_failures(verdict.tours[t]); !own.empty())
+        failures += (failures.empty() ? "" : "; ") + name_of_tour(result.fleet->document.tours[t]) +
+                    ": " + own;
+    tell_tours(result, &verdict,
+               failures.empty() ? AnswerGrade::certified : AnswerGrade::rejected,
+               failures.empty() ? notes : failures);
+  }
+
+  void tell_tours(const MissionResult& result, const FleetVerdict* verdict, AnswerGrade grade,
+                  const std::string& message) {
+    const FleetResult& fleet = *result.fleet;
+    PlannedOn on{result.scan.get(), nullptr, {}};
+    for (const MissionResult& tour : fleet.tours) on.tours.push_back(&tour.plan);
+    tell_world(fleet.tours.front().plan, result.obstacle_folder, on);
+    Frame frame = answer_frame(grade, message, result.obstacle_folder);
+    if (verdict) set_reads(frame);
+    Value& tours = frame.header.set("tours", Value::list());
+    frame.parts = {"", verdict ? certificate_message(verdict->all) : "", ""};
+    for (std::size_t t = 0; t < fleet.tours.size(); ++t) {
+      const Plan& plan = fleet.tours[t].plan;
+      const FleetTour& about = fleet.document.tours[t];
+      Value one = Value::map();
+      one.set("name", as_utf8(name_of_tour(about)));
+      one.set("drone", as_utf8(about.drone));
+      one.set("battery", std::int64_t{about.battery});
+      one.set("start", about.start);
+      tours.push_back(std::move(one));
+      std::string drawn = plan_message(plan, fleet.tours[t].report, false);
+      std::string document = verdict ? verdict->texts[t] : plan_text(plan);
+      if (t == 0) {
+        frame.parts[0] = std::move(drawn);
+        frame.parts[2] = std::move(document);
+        drawn = document = "";
+      }
+      frame.parts.push_back(std::move(drawn));
+      frame.parts.push_back(verdict ? certificate_message(verdict->tours[t]) : "");
+      frame.parts.push_back(std::move(document));
+    }
+    send(std::move(frame), serial_);
+  }
+
+  Frame answer_frame(AnswerGrade grade, const std::string& message,
+                     const std::filesystem::path& folder) const {
+    Frame frame;
+    frame.header.set("said", "answer");
+    frame.header.set("grade", to_string(grade));
+    frame.header.set("message", as_utf8(message));
+    frame.header.set("folder", folder.string());
+    frame.header.set("seconds", std::chrono::duration<double>(Clock::now() - began_).count());
+    return frame;
+  }
+
   // Its folder has files that its plan names and that planning wrote, and goes with it.
   void keep(std::shared_ptr<Mission> mission) {
     planned_.push_back(std::move(mission));
@@ -291,13 +353,9 @@ class StudioWorker {
 
   void tell(const EditedPlan& edited) {
     const AnswerGrade grade = edited.answer.grade;
-    tell_world(edited);
-    Frame frame;
-    frame.header.set("said", "answer");
-    frame.header.set("grade", to_string(grade));
-    frame.header.set("message", as_utf8(edited.answer.message));
-    frame.header.set("folder", kind_ == "film" ? "" : edited.folder.string());
-    frame.header.set("seconds", std::chrono::duration<double>(Clock::now() - began_).count());
+    tell_world(*edited.plan, edited.folder, {edited.scan.get(), edited.exploration.get(), {}});
+    Frame frame = answer_frame(grade, edited.answer.message,
+                               kind_ == "film" ? std::filesystem::path() : edited.folder);
     const bool ended = grade != AnswerGrade::step;
     if (edited.certificate) set_reads(frame);
     frame.parts.push_back(plan_message(*edited.plan, edited.answer.result.report, ended));
@@ -309,9 +367,8 @@ class StudioWorker {
   }
 
   // Once for every change of it.
-  void tell_world(const EditedPlan& edited) {
-    WorldMessage world = world_message(*edited.plan, edited.folder,
-                                       {edited.scan.get(), edited.exploration.get()}, drawn_);
+  void tell_world(const Plan& plan, const std::filesystem::path& folder, const PlannedOn& on) {
+    WorldMessage world = world_message(plan, folder, on, drawn_);
     if (world.text == told_world_) return;
     told_world_ = world.text;
     Frame frame;
@@ -328,6 +385,7 @@ class StudioWorker {
   std::filesystem::path script_;
   MissionSettings settings_;
   MissionEditor::Judge judge_;
+  JudgeFleet judge_fleet_;
   WorkerErrands errands_;
   MissionEditor editor_;
   std::string kind_;  // of the mission, once it is known
@@ -353,9 +411,9 @@ class StudioWorker {
 }  // namespace
 
 void run_studio_worker(const std::filesystem::path& script, const MissionSettings& settings,
-                       MissionEditor::Judge judge) {
+                       MissionEditor::Judge judge, JudgeFleet judge_fleet) {
   std::signal(SIGINT, SIG_IGN);  // the server ends it
-  StudioWorker(script, settings, std::move(judge)).run();
+  StudioWorker(script, settings, std::move(judge), std::move(judge_fleet)).run();
 }
 
 }  // namespace lapwing

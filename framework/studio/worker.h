@@ -5,20 +5,35 @@
 // for errands, so that none waits for another. Frames (frames.h) come on standard input, answers
 // leave on descriptor 3. Every request has `do` and a `serial`, every answer `said` and the serial:
 //
-//   solve {layer, settled}   answer {grade, message, seconds} [plan, certificate, document], world
+//   solve {layer, settled}   answer {grade, message, seconds} [plan, certificate, document], world;
+//                            of several batteries also {tours}, and of each of them three parts more
+//                            (its plan and document empty where they are those of the first)
 //   drop                     the solve under way ends
 //   begin_at                 the next solve begins at the flight of the plan in the first part
 //   check {layer, judge}     checked {document, mission, files} or refused {why, line, files}
 //   describe                 described {schema, choices}
 //   fly {conditions}         done {...} [samples]        of the plan document in the first part
 //   picture, export, export_lua, save_report             done {...}, or failed {why}
+//   race, stick              done {files} [state]        a race that is flown by hand
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "framework/mission/mission_editor.h"
 
 namespace lapwing {
+
+// What was judged of a fleet.
+struct FleetVerdict {
+  std::vector<Certificate> tours;  // of each plan
+  std::vector<std::string> texts;  // the bytes of their documents
+  Certificate all;                 // of the fleet
+};
+using JudgeFleet =
+    std::function<FleetVerdict(MissionResult& result, const CancellationToken& cancellation)>;
 
 // Returns when standard input ends. `judge` makes the certificate of a plan, as `lapwing run` does.
 //
@@ -26,6 +41,6 @@ namespace lapwing {
 // is then planned by its script from the beginning: that plan alone is judged, so that it is the
 // flight of `lapwing run`, whatever was drawn before.
 void run_studio_worker(const std::filesystem::path& script, const MissionSettings& settings,
-                       MissionEditor::Judge judge);
+                       MissionEditor::Judge judge, JudgeFleet judge_fleet);
 
 }  // namespace lapwing

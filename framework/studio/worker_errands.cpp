@@ -25,6 +25,7 @@
 #include "framework/mission/environment_source.h"
 #include "framework/studio/file_look.h"
 #include "framework/studio/plan_message.h"
+#include "framework/trajectory/fleet.h"
 #include "framework/verify/certificate.h"
 #include "framework/verify/tolerances.h"
 
@@ -124,6 +125,8 @@ Frame WorkerErrands::answer(const Frame& asked) {
   if (what == "export") return export_plan(asked);
   if (what == "export_lua") return export_lua(asked);
   if (what == "save_report") return save_report(asked);
+  if (what == "race") return games_.begin(asked, plan_in(asked));
+  if (what == "stick") return games_.stick(asked);
   throw Error("a working process does not know '" + what + "'");
 }
 
@@ -287,7 +290,9 @@ Frame WorkerErrands::export_plan(const Frame& asked) {
   if (surroundings) plan = with_shapes(asked);
   plan.certificate = certificate;
   const std::string extension = exporter->file_extension();
-  const std::string name = run_folder_name(plan.mission);
+  std::string name = run_folder_name(plan.mission);
+  if (const Value* number = asked.header.find("number"))  // of a tour, as plan_2.json
+    name += "_" + std::to_string(number->as_integer());
   // Whole: whoever reads the answer is in no folder.
   const fs::path target =
       fs::absolute(run_folder(plan.mission) /
@@ -331,17 +336,20 @@ Frame WorkerErrands::save_report(const Frame& asked) const {
       from_json(answer_of_program(asked.header.at("words").as_list()), "the run's answer");
   if (const Value* error = answer.find("error")) throw InputError(error->as_text());
   Frame frame = done();
-  const fs::path folder = fs::absolute(answer.at("plan").as_text()).parent_path();
+  const Value* fleet = answer.find("fleet");
+  const fs::path folder =
+      fs::absolute((fleet ? *fleet : answer.at("plan")).as_text()).parent_path();
+  const fs::path first = folder / (fleet ? fleet_plan_name(0) : "plan.json");
   Value files = Value::list(), loss = Value::list();
   // Both were planned by the same script from the beginning.
   if (!asked.parts.empty() &&
-      trajectory_text(plan_in(asked)) != trajectory_text(read_plan(folder / "plan.json")))
+      trajectory_text(plan_in(asked)) != trajectory_text(read_plan(first)))
     loss.push_back(
         "the flight that was saved is another than the one on display: the script or a file that "
         "it "
         "reads has changed; reload the studio");
-  for (const char* name : {"report.html", "plan.json", "trajectory.csv", "run.log"})
-    files.push_back((folder / name).string());
+  for (const char* name : {"report.html", "plan.json", "trajectory.csv", "fleet.json", "run.log"})
+    if (fs::exists(folder / name)) files.push_back((folder / name).string());
   frame.header.set("files", std::move(files));
   frame.header.set("loss", std::move(loss));
   frame.header.set("status", answer.at("status"));

@@ -9,6 +9,7 @@
 
 #include "framework/mission/mission.h"
 #include "framework/studio/frames.h"
+#include "framework/studio/worker_games.h"
 #include "framework/vehicle/closed_loop.h"
 
 namespace lapwing {
@@ -62,6 +63,7 @@ class WorkerErrands {
   std::filesystem::path stated_folder_;  // of the files that it names
   std::string drawn_trajectory_;         // whose simulated flight is kept, of light paintings
   FlownPath drawn_;
+  WorkerGames games_;
   std::set<std::filesystem::path> stated_reads_;
   std::string stated_looks_;  // of those files, when they were read
 };

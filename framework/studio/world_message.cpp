@@ -95,10 +95,11 @@ Value region_of(const InterestRegion& region) {
   return list;
 }
 
-Value views_of(const ScanTask& task) {
-  Value list = Value::list();
+// Of the tour of this number, from 0; none is told of a single one.
+void add_views(const ScanTask& task, std::optional<std::size_t> tour, Value& list) {
   for (const PlannedView& view : task.views) {
     Value one = Value::map();
+    if (tour) one.set("tour", static_cast<std::int64_t>(*tour));
     one.set("time", view.time);
     one.set("position", place_of(view.position));
     one.set("yaw", view.yaw);
@@ -106,15 +107,17 @@ Value views_of(const ScanTask& task) {
     one.set("matching", view.kind == ViewKind::matching);
     list.push_back(std::move(one));
   }
-  return list;
 }
 
 // What a scan was planned on, and what its images will show: the figures of `lapwing run --json`.
-Value scan_of(const Plan& plan, const ScanRecord& record) {
+Value scan_of(const Plan& plan, const ScanRecord& record, const std::vector<const Plan*>& tours) {
   const ScanTask& task = *plan.task.scan;
   Value value = Value::map();
   value.set("region", region_of(task.region));
-  value.set("views", views_of(task));
+  Value& views = value.set("views", Value::list());
+  if (tours.empty()) add_views(task, std::nullopt, views);
+  for (std::size_t t = 0; t < tours.size(); ++t)
+    if (tours[t]->task.scan) add_views(*tours[t]->task.scan, t, views);
   value.set("image",
             Value(Value::List{std::int64_t{task.camera.width}, std::int64_t{task.camera.height},
                               task.camera.focal_x, task.camera.focal_y, task.camera.principal_x,
@@ -212,7 +215,7 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
     return name;
   };
   if (on.scan && plan.task.scan) {
-    Value& told = world.set("scan", scan_of(plan, *on.scan));
+    Value& told = world.set("scan", scan_of(plan, *on.scan, on.tours));
     if (on.scan->prediction) told.set("surface", put(prediction_ply(*on.scan->prediction)));
   }
   if (on.exploration) {

@@ -164,60 +164,138 @@ RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilo
   return fly_race(course, vehicle, pilot, logged, limits, cancellation);
 }
 
+struct RaceInProgress::Inside {
+  Inside(const Trajectory& course_given, const Vehicle& vehicle, const Pilot& pilot_given,
+         const RaceFlightLimits& limits_given)
+      : course(course_given),
+        pilot(pilot_given),
+        limits(limits_given),
+        reference(course, vehicle),
+        controller(vehicle, reference, pilot),
+        body(vehicle),
+        state(starting_state(reference, vehicle, pilot.speed)),
+        finish(end_of(reference)),
+        onward(limits.finish_direction.value_or(finish.velocity)),
+        most(limits.time_factor * (reference.finish() - reference.start()) / pilot.speed),
+        every(std::max<std::int64_t>(1, std::llround(limits.sample_step / limits.step))),
+        progress(reference.start()) {}
+
+  // Past the end of the course, or, where it ends at rest, as good as there.
+  bool there() const {
+    const Vector3d beyond = state.position - finish.position;
+    const bool past = progress >= reference.finish() && beyond.dot(onward) >= 0;
+    const bool near = finish.velocity.norm() < kAtRest &&
+                      progress >= reference.finish() - kLastLeg &&
+                      beyond.norm() <= limits.finish_radius;
+    return past || near;
+  }
+  double time() const { return static_cast<double>(k) * limits.step; }
+  void step(const StickSource& source);
+
+  Trajectory course;
+  Pilot pilot;
+  RaceFlightLimits limits;
+  ReferenceMotion reference;
+  RaceController controller;
+  RotorBody body;
+  BodyState state;
+  ReferencePoint finish;
+  Vector3d onward;
+  double most;  // s
+  std::int64_t every;
+  double progress, deviation = 0;
+  RaceFlight flight;
+  double sum = 0;  // of deviations, m
+  std::int64_t k = 0, saturated = 0;
+  bool ended = false;
+};
+
+void RaceInProgress::Inside::step(const StickSource& source) {
+  controller.advance(state.position, limits.step);
+  progress = controller.progress();
+  const Vector3d place = reference.at(progress).position;
+  deviation = (state.position - place).norm();
+  const Eigen::Vector2d stick = source(time(), state, progress);
+  const bool arrived = there();
+  const bool over = (state.orientation * Vector3d::UnitZ()).z() < 0;
+  const bool lost = !(deviation <= limits.off_course);
+  ended = arrived || over || lost || time() >= most;
+  if (ended)
+    flight.end = arrived ? RaceEnd::finished
+                 : lost  ? RaceEnd::off_course
+                 : over  ? RaceEnd::turned_over
+                         : RaceEnd::time_up;
+  if (!(deviation <= flight.deviation_worst))
+    flight.deviation_worst = deviation, flight.deviation_at = time();
+  sum += deviation;
+  flight.time = time();
+  flight.deviation_mean = sum / static_cast<double>(k + 1);
+  if (k % every == 0 || ended)
+    flight.samples.push_back({time(), state, place, progress, deviation, stick});
+  if (ended) {
+    flight.saturated_share =
+        static_cast<double>(saturated) / static_cast<double>(std::max<std::int64_t>(1, k));
+    return;
+  }
+  const RotorCommand command = controller.command(state, stick, limits.step);
+  saturated += command.saturated;
+  state = body.after(state, command.thrusts, Vector3d::Zero(), limits.step);
+  ++k;
+}
+
+namespace {
+
+const Pilot& checked(const Pilot& pilot) {
+  check(pilot);
+  return pilot;
+}
+
+}  // namespace
+
+RaceInProgress::RaceInProgress(const Trajectory& course, const Vehicle& vehicle,
+                               const Pilot& pilot, const RaceFlightLimits& limits)
+    : inside_(std::make_unique<Inside>(course, vehicle, checked(pilot), limits)) {}
+RaceInProgress::~RaceInProgress() = default;
+RaceInProgress::RaceInProgress(RaceInProgress&&) noexcept = default;
+RaceInProgress& RaceInProgress::operator=(RaceInProgress&&) noexcept = default;
+
+bool RaceInProgress::ended() const {
+  return inside_->ended;
+}
+
+double RaceInProgress::time() const {
+  return inside_->time();
+}
+
+const BodyState& RaceInProgress::state() const {
+  return inside_->state;
+}
+
+double RaceInProgress::progress() const {
+  return inside_->progress;
+}
+
+double RaceInProgress::deviation() const {
+  return inside_->deviation;
+}
+
+const RaceFlight& RaceInProgress::flight() const {
+  return inside_->flight;
+}
+
+void RaceInProgress::step(const StickSource& stick) {
+  if (!inside_->ended) inside_->step(stick);
+}
+
 RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilot& pilot,
                     const StickSource& source, const RaceFlightLimits& limits,
                     const CancellationToken* cancellation) {
-  check(pilot);
-  const ReferenceMotion reference(course, vehicle);
-  RaceController controller(vehicle, reference, pilot);
-  const RotorBody body(vehicle);
-  BodyState state = starting_state(reference, vehicle, pilot.speed);
-  const ReferencePoint finish = end_of(reference);
-  const Vector3d onward = limits.finish_direction.value_or(finish.velocity);
-  const double most = limits.time_factor * (reference.finish() - reference.start()) / pilot.speed;
-  const auto every = std::max<std::int64_t>(1, std::llround(limits.sample_step / limits.step));
-
-  RaceFlight flight;
-  double sum = 0;
-  std::int64_t saturated = 0, flown = 0;
-  for (std::int64_t k = 0;; ++k) {
-    if (cancellation && k % 1024 == 0 && cancellation->cancelled()) throw Cancelled();
-    const double time = static_cast<double>(k) * limits.step;
-    controller.advance(state.position, limits.step);
-    const Vector3d place = reference.at(controller.progress()).position;
-    const double deviation = (state.position - place).norm();
-    const Eigen::Vector2d stick = source(time, state, controller.progress());
-    // Past the end of the course, or, where it ends at rest, as good as there.
-    const Vector3d beyond = state.position - finish.position;
-    const bool past = controller.progress() >= reference.finish() && beyond.dot(onward) >= 0;
-    const bool near = finish.velocity.norm() < kAtRest &&
-                      controller.progress() >= reference.finish() - kLastLeg &&
-                      beyond.norm() <= limits.finish_radius;
-    const bool there = past || near;
-    const bool over = (state.orientation * Vector3d::UnitZ()).z() < 0;
-    const bool lost = !(deviation <= limits.off_course);
-    const bool ended = there || over || lost || time >= most;
-    if (ended)
-      flight.end = there  ? RaceEnd::finished
-                   : lost ? RaceEnd::off_course
-                   : over ? RaceEnd::turned_over
-                          : RaceEnd::time_up;
-    if (!(deviation <= flight.deviation_worst))
-      flight.deviation_worst = deviation, flight.deviation_at = time;
-    sum += deviation;
-    ++flown;
-    flight.time = time;
-    if (k % every == 0 || ended)
-      flight.samples.push_back({time, state, place, controller.progress(), deviation, stick});
-    if (ended) break;
-    const RotorCommand command = controller.command(state, stick, limits.step);
-    saturated += command.saturated;
-    state = body.after(state, command.thrusts, Vector3d::Zero(), limits.step);
+  RaceInProgress race(course, vehicle, pilot, limits);
+  for (int k = 0; !race.ended(); k = (k + 1) % 1024) {
+    if (cancellation && k == 0 && cancellation->cancelled()) throw Cancelled();
+    race.step(source);
   }
-  flight.deviation_mean = sum / static_cast<double>(flown);
-  flight.saturated_share =
-      static_cast<double>(saturated) / static_cast<double>(std::max<std::int64_t>(1, flown - 1));
-  return flight;
+  return race.flight();
 }
 
 }  // namespace lapwing

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +77,31 @@ RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilo
 // Where the stick is, for a pilot who sees the time, the vehicle and the plan's time of its place.
 using StickSource =
     std::function<Eigen::Vector2d(double time, const BodyState& state, double progress)>;
+
+// The same flight, one step of the limits after the other.
+class RaceInProgress {
+ public:
+  // Throws as fly_race does. The course and the vehicle are needed no longer afterwards.
+  RaceInProgress(const Trajectory& course, const Vehicle& vehicle, const Pilot& pilot,
+                 const RaceFlightLimits& limits = {});
+  ~RaceInProgress();
+  RaceInProgress(RaceInProgress&&) noexcept;
+  RaceInProgress& operator=(RaceInProgress&&) noexcept;
+
+  bool ended() const;
+  double time() const;            // s, of the step that comes next
+  const BodyState& state() const;  // at that time
+  double progress() const;        // s, the plan's time of the place that was reached
+  double deviation() const;       // m, from it
+  // Flies one step with the stick as it is at its beginning; after the end nothing.
+  void step(const StickSource& stick);
+  // What was flown so far, the share of saturated time left out before the end.
+  const RaceFlight& flight() const;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
 
 // The same with a stick that answers to the flight, in place of the pilot's log.
 RaceFlight fly_race(const Trajectory& course, const Vehicle& vehicle, const Pilot& pilot,

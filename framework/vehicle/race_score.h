@@ -27,6 +27,12 @@ struct RaceScore {
   double total() const { return time + straying + gates + handicap; }
 };
 
+struct RacedPilot {
+  Pilot pilot;
+  RaceFlight flight;
+  RaceScore score;
+};
+
 // As usual, but that a course which ends in a gate ends in that gate's plane.
 RaceFlightLimits race_limits(const Trajectory& course, const std::vector<GateTask>& gates);
 

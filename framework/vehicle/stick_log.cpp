@@ -72,9 +72,12 @@ Eigen::Vector2d StickLog::at(double time) const {
       std::upper_bound(samples_.begin(), samples_.end(), time,
                        [](double t, const StickSample& sample) { return t < sample.time; });
   if (next == samples_.begin()) return next->stick;
-  const StickSample& from = *(next - 1);
-  const double share = (time - from.time) / (next->time - from.time);
-  return (1 - share) * from.stick + share * next->stick;
+  return between(*(next - 1), *next, time);
+}
+
+Eigen::Vector2d StickLog::between(const StickSample& from, const StickSample& to, double time) {
+  const double share = (time - from.time) / (to.time - from.time);
+  return (1 - share) * from.stick + share * to.stick;
 }
 
 StickLog parse_stick_log(std::string_view text, const std::string& name) {
@@ -98,6 +101,17 @@ StickLog parse_stick_log(std::string_view text, const std::string& name) {
     samples.push_back({numbers[0], {numbers[1], numbers[2]}});
   }
   return StickLog(std::move(samples), name);
+}
+
+std::string stick_log_text(const StickLog& log) {
+  std::string text = std::string(kHeading) + "\n";
+  for (const StickSample& sample : log.samples()) {
+    char line[96];
+    std::snprintf(line, sizeof line, "%.17g,%.17g,%.17g\n", sample.time, sample.stick.x(),
+                  sample.stick.y());
+    text += line;
+  }
+  return text;
 }
 
 StickLog read_stick_log(const std::filesystem::path& path) {

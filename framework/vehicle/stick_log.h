@@ -27,6 +27,8 @@ class StickLog {
 
   // Linear between samples; before the first as there; centred after the last.
   Eigen::Vector2d at(double time) const;
+  // Between two samples of a log, as `at` has it there.
+  static Eigen::Vector2d between(const StickSample& from, const StickSample& to, double time);
   double end() const { return samples_.back().time; }  // s
   const std::vector<StickSample>& samples() const { return samples_; }
 
@@ -37,5 +39,7 @@ class StickLog {
 // Throws InputError naming the line as well: another heading, a line that is not three numbers.
 StickLog parse_stick_log(std::string_view text, const std::string& name);
 StickLog read_stick_log(const std::filesystem::path& path);
+// The file of a log, from which the same log is read.
+std::string stick_log_text(const StickLog& log);
 
 }  // namespace lapwing

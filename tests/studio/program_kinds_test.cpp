@@ -111,6 +111,70 @@ TEST_F(StudioKinds, AnExplorationTellsHowItsMapGrew) {
   EXPECT_EQ(from_json(text, "map info").at("occupied"), Value(std::int64_t{count}));
 }
 
+// Two players fly it, one on the straight way and one aside; of the logs that are left `lapwing race`
+// says the same.
+TEST_F(StudioKinds, ARaceIsFlownByHandAndAgainFromItsLogs) {
+  use("racing/round_course.lua");
+  const StudioAddress address = serve();
+  PageClient page(address, "a");
+  told(page);
+  const auto raced = [&](const std::string& text) {
+    page.send_text(text);
+    return page.until([](const Value& m) {
+      return m.at("type") == Value("raced") || m.at("type") == Value("failed");
+    });
+  };
+  const std::string players =
+      R"({"type": "race", "id": "g", "players": [{"name": "Anna", "weight": 0.3},
+          {"name": "Ben", "speed": 0.8}, {"name": "Plan", "weight": 0, "by_hand": false}]})";
+  EXPECT_EQ(raced(R"({"type": "race", "id": "x", "players": [{"name": "A", "speed": 9}]})")
+                .at("type"),
+            Value("failed"));
+  EXPECT_EQ(raced(R"({"type": "stick", "id": "x", "time": 0.1, "sticks": [[0, 0]]})").at("type"),
+            Value("failed"));
+  Value state = raced(players);
+  ASSERT_EQ(state.at("type"), Value("raced")) << to_json(state);
+  EXPECT_EQ(state.at("players").as_list().size(), 3u);
+  EXPECT_EQ(state.at("time"), Value(0.0));
+  // A stick that comes too late flies nothing.
+  EXPECT_EQ(raced(R"({"type": "stick", "id": "g", "time": 9, "sticks": [[0, 0], [0, 0]]})")
+                .at("type"),
+            Value("failed"));
+  for (int k = 1; !state.find("result"); ++k) {
+    ASSERT_LT(k, 2000);
+    state = raced(R"({"type": "stick", "id": "g", "sticks": [[0.2, 0.05], [-0.1, 0]], "time": )" +
+                  std::to_string(0.1 * k) + "}");
+    ASSERT_EQ(state.at("type"), Value("raced")) << to_json(state);
+  }
+  const std::string result = state.at("result").as_text();
+  EXPECT_NE(result.find("Anna finished"), std::string::npos) << result;
+  EXPECT_NE(result.find("Plan finished"), std::string::npos) << result;
+  const fs::path plan = state.at("files").as_list().at(0).as_text();
+  const std::string words = read_file(plan.parent_path() / "again.sh");
+  const std::string command = words.substr(words.find("lapwing race"));
+  const std::string again = "cd '" + plan.parent_path().string() + "' && '" + kProgram + "'" +
+                            command.substr(7, command.find(" \"$@\"") - 7) +
+                            " --json > '" + (folder_ / "again.json").string() + "'";
+  EXPECT_LE(WEXITSTATUS(std::system(again.c_str())), 1);
+  const Value game = from_json(read_file(folder_ / "again.json"), "again").at("game");
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Value& flown = game.at("pilots").as_list()[k];
+    const std::string name = state.at("players").as_list()[k].at("name").as_text();
+    const std::size_t line = result.find(name + " ");
+    const std::string score = result.substr(line, result.find('\n', line) - line);
+    if (!flown.find("score")) continue;
+    const double said = std::stod(score.substr(score.find("score ") + 6));
+    EXPECT_NEAR(flown.at("score").as_number(), said, 0.005 * said) << score;
+  }
+  // The last state's figures are the flight's.
+  const Value& last = state.at("players").as_list()[0];
+  EXPECT_EQ(last.at("end"), Value("finished"));
+  // It is over.
+  EXPECT_EQ(raced(R"({"type": "stick", "id": "g", "time": 300, "sticks": [[0, 0], [0, 0]]})")
+                .at("type"),
+            Value("failed"));
+}
+
 TEST_F(StudioKinds, ALightPaintingTellsStrokesAndLightsAndIsExposed) {
   use("light_painting/hello.lua");
   const StudioAddress address = serve();

@@ -22,6 +22,8 @@ function program() {
   return asked.status === 0 ? words : null;
 }
 
+// The program itself, for other commands.
+export const lapwing = () => program()[0];
 export const hasStudio = () => program() !== null;
 
 // In a folder of its own: journal, layer and what is written stay there.

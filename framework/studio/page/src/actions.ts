@@ -14,10 +14,12 @@ import type { FilmList } from "./panel/film_list";
 import type { Notices } from "./panel/notices";
 import { remember } from "./panel/notices";
 import type { PaintingPanel } from "./panel/painting_panel";
+import type { RaceGamePanel } from "./panel/race_game";
 
 export interface Parts {
   exploration: ExplorationPanel;
   painting: PaintingPanel;
+  game: RaceGamePanel;
   studio: Studio;
   selected: Selected;
   list: FilmList;
@@ -86,7 +88,7 @@ export class Actions {
       undo: "undo", redo: "redo", fly: "fly", export: "export", report: "report", theme: "theme",
       help: "help", place: "place", insert: "insert", "add-subject": "subject", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
       frame: "frame", play: "play", cut: "cut", draw: "draw", margins: "margins", compare: "compare",
-      "map": "map", "place-gate": "place", "add-gate": "insert",
+      "map": "map", "place-gate": "place", "add-gate": "insert", "race-it": "race",
     };
     for (const [id, action] of Object.entries(simple)) {
       byId(id).addEventListener("click", () => this.run(action, ""));
@@ -194,6 +196,7 @@ export class Actions {
       case "framing": studio.framing = !studio.framing; studio.tell("look"); return true;
       case "theme": this.theme(); return true;
       case "fly": parts.flying.open(); return true;
+      case "race": parts.game.open(); return studio.course !== null;
       case "export": parts.exports.open(); return true;
       case "report":
         studio.session.ask({ type: "save_report", id: "" });

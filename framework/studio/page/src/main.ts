@@ -12,6 +12,7 @@ import { Hints, Notices, recall } from "./panel/notices";
 import { takeDropped } from "./panel/dropped";
 import { ExplorationPanel } from "./panel/exploration_panel";
 import { PaintingPanel } from "./panel/painting_panel";
+import { RaceGamePanel } from "./panel/race_game";
 import { ScanPanel } from "./panel/scan_panel";
 import { Selected } from "./panel/selected";
 import { Setup } from "./panel/setup";
@@ -42,6 +43,7 @@ import { Pins } from "./view/pins";
 import { Preview, previewControls } from "./view/preview";
 import { ExplorationView } from "./view/exploration_view";
 import { PaintingView } from "./view/painting_view";
+import { RaceView } from "./view/race_view";
 import { ScanView } from "./view/scan_view";
 import { Solids } from "./view/solids";
 import { Stage } from "./view/stage";
@@ -157,9 +159,10 @@ pick.onNothing = (ray) => {
 };
 const exploration = new ExplorationPanel(studio);
 const painting = new PaintingPanel(studio);
+const game = new RaceGamePanel(studio, new RaceView(studio, stage));
 const selected = new Selected(studio);
 new Actions({
-  studio, selected, list, notices, exploration, painting, exports: new ExportDialog(studio),
+  studio, selected, list, notices, exploration, painting, game, exports: new ExportDialog(studio),
   flying: new FlyDialog(studio), help: new HelpDialog(), compare: new CompareDialog(studio),
   frame: () => navigation.frame(bounds()),
   keyframeHere: () => keyframeHere(studio, stage, pick),
@@ -312,6 +315,7 @@ Object.defineProperty(window, "lapwing", {
     get eye() { return stage.worldCamera.position.toArray(); },
     get surface() { return scanned.triangles; },
     get grown() { return explored.count; },
+    get game() { return game.figures; },
     get farthest() { return stage.worldCamera.far; },
     measure(on: boolean) { stage.measuring = on; },
     get edit() { return session.dragging ? session.edit : null; },

@@ -10,19 +10,20 @@ import { passagesOf } from "./state/failures";
 import type { Edit, Item } from "./state/edits";
 import { entryOf, sameItem } from "./state/edits";
 import type { Session } from "./state/session";
-import type { Flown, JsonObject, Passage, Plan } from "./state/types";
+import type { FleetTour, Flown, JsonObject, Passage, Plan } from "./state/types";
 import type { Version } from "./state/compare";
-import type { Grade, Standing } from "./state/grades";
+import { standingOf, type Grade, type Standing } from "./state/grades";
 import { clamp } from "./state/vector";
 
 export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
   "flown" | "look" | "playing" | "kept";
-export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk" | "outline" | "stroke";
+export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk" | "outline" | "stroke" | "race";
 export type Rate = 0.5 | 1 | 2;
 
 export class Studio {
   selection: Item | null = null;
   time = 0;
+  tour = 0;                    // of several batteries, the one that is shown
   playing = false;
   rate: Rate = 1;
   mode: Mode = "orbit";
@@ -40,6 +41,7 @@ export class Studio {
   private readonly listeners: { topics: Topic[]; then: (topic: Topic) => void }[] = [];
   private cached: { document: JsonObject; film: Film; guess: Plan } | null = null;
   private lastFrame = 0;
+  private fleet: { tours: FleetTour[]; tour: number; shown: Standing } | null = null;
 
   constructor(readonly session: Session) {
     session.on((event) => {
@@ -109,8 +111,30 @@ export class Studio {
     return this.state.guess;
   }
 
+  // Of the tour that is shown, where there are several.
   get standing(): Standing {
-    return this.session.standing();
+    const standing = this.session.standing();
+    const { tours } = standing;
+    if (tours.length === 0) return standing;
+    const tour = Math.min(this.tour, tours.length - 1);
+    if (this.fleet?.tours !== tours || this.fleet.tour !== tour) {
+      this.fleet = { tours, tour, shown: standingOf(standing, tour) };
+    }
+    const { plan, certificate } = this.fleet.shown;
+    return { ...standing, plan, certificate };
+  }
+
+  // Whose plan the server is asked about.
+  get which(): { tour?: number } {
+    const { tours } = this.session.standing();
+    return tours.length > 0 ? { tour: Math.min(this.tour, tours.length - 1) } : {};
+  }
+
+  showTour(tour: number): void {
+    if (tour === this.tour) return;
+    this.tour = tour;
+    this.time = clamp(this.time, 0, this.duration);
+    this.tell("standing");
   }
 
   // The best curve for the document as it is now.

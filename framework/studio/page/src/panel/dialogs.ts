@@ -9,7 +9,7 @@ import type { Studio } from "../studio";
 import { byId, el } from "../view/dom";
 import { Form } from "./form";
 
-function dialog(id: string): HTMLDialogElement {
+export function dialog(id: string): HTMLDialogElement {
   const box = byId<HTMLDialogElement>(id);
   box.querySelector(".close")?.addEventListener("click", () => box.close());
   return box;
@@ -89,7 +89,7 @@ export class ExportDialog {
     const uncertified = this.studio.standing.grade !== "certified" && this.uncertified.checked;
     const id = name === LUA ? session.ask({ type: "export_lua", id: "" })
       : name === REPORT ? session.ask({ type: "save_report", id: "" })
-        : session.ask({ type: "export", id: "", format: name, parameters: this.parameters,
+        : session.ask({ type: "export", id: "", format: name, ...this.studio.which, parameters: this.parameters,
                         uncertified });
     this.waiting.add(id);
     this.result.replaceChildren(el("p", { role: "status" }, "Writing\u2026"));
@@ -160,7 +160,7 @@ export class FlyDialog {
     this.seed += 1;
     this.waiting = true;
     this.result.textContent = "Flying\u2026";
-    this.studio.session.ask({ type: "fly", edit: this.studio.session.edit, wind,
+    this.studio.session.ask({ type: "fly", edit: this.studio.session.edit, ...this.studio.which, wind,
                               gust: Number(this.gust.value), seed: this.seed });
   }
 

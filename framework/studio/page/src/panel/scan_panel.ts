@@ -9,7 +9,7 @@ import { pathOf } from "../state/samples";
 import { addedPolygon, aroundSite, boxOf, isSite, placeNames, placeOf, siteLists,
          type PolygonKind } from "../state/site";
 import { show } from "../state/units";
-import type { Json, ScanWorld, SurfaceHole, Vec3 } from "../state/types";
+import type { FleetTour, Json, ScanWorld, SurfaceHole, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import { byId, el, refill } from "../view/dom";
 
@@ -21,6 +21,8 @@ const layers = ["views", "candidates", "first"] as const;
 
 export class ScanPanel {
   private shown = "";
+  private tours: FleetTour[] = [];
+  private tour = 0;
   // Where to look at, from the list of holes.
   onPlace: (place: Vec3) => void = () => undefined;
 
@@ -45,6 +47,7 @@ export class ScanPanel {
       });
     }
     studio.on(["document", "selection", "world", "mode", "look"], () => this.show());
+    studio.on(["document", "standing"], () => this.showTours());
   }
 
   private get scan(): ScanWorld | undefined {
@@ -135,6 +138,29 @@ export class ScanPanel {
     const holes = isObject(prediction?.holes) ? prediction.holes.largest : undefined;
     refill(byId("hole-list"), ...(Array.isArray(holes) ? holes : []).map((hole: Json) =>
       this.hole(hole as unknown as SurfaceHole)));
+  }
+
+  private showTours(): void {
+    const { studio } = this;
+    const { tours } = studio.session.standing();
+    byId("tours").hidden = tours.length === 0;
+    if (tours === this.tours && studio.tour === this.tour) return;
+    this.tours = tours;
+    this.tour = studio.tour;
+    refill(byId("tour-list"), ...tours.map((tour, k) => this.tourRow(tour, k)));
+  }
+
+  private tourRow({ name, start, plan }: FleetTour, k: number): HTMLElement {
+    const { studio } = this;
+    const views = (this.scan?.views ?? []).filter((view) => view.tour === k).length;
+    const more = `${views} images, ${show(start / 60)}\u2013${
+      show((start + (plan?.duration ?? 0)) / 60)} min`;
+    return el("li", {}, el("button", {
+      type: "button", class: "item tour", "aria-pressed": String(k === studio.which.tour),
+      "data-key": `tour-${k}`, "aria-label": `${name}: ${more}`, title: "Show this tour",
+      onclick: () => studio.showTour(k),
+    }, el("span", { class: "badge" }, String(k + 1)), el("span", { class: "what" }, name),
+    el("span", { class: "when" }, more)));
   }
 
   private hole({ area, position, why }: SurfaceHole): HTMLElement {

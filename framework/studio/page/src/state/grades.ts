@@ -2,7 +2,7 @@
 // How good the curve on display is. An answer counts for the one state of the document that it was
 // made for: a revision, and where a drag is under way, an edit of this tab. Anything else is a
 // guess, whatever was certified before.
-import type { Answer, Certificate, Plan } from "./types";
+import type { Answer, Certificate, FleetTour, Plan } from "./types";
 
 export type Grade = "guess" | "step" | "converged" | "certified" | "rejected" | "refused";
 
@@ -20,6 +20,7 @@ export interface Standing {
   certificate: Certificate | null;
   message: string;
   ms: number | null;
+  tours: FleetTour[];         // of several batteries; else none
 }
 
 const order: Grade[] = ["guess", "step", "converged", "rejected", "refused", "certified"];
@@ -39,6 +40,26 @@ function trusted(answer: Answer): Grade {
   return answer.grade;
 }
 
+const NONE: FleetTour[] = [];
+
+// Each tour with its plan.
+function whole(answer: Answer): Answer {
+  const { tours, plan } = answer;
+  return tours ? { ...answer, tours: tours.map((tour) => ({ ...tour, plan: tour.plan ?? plan ?? null })) }
+    : answer;
+}
+
+// What is shown of one tour: its plan, and the checks of the fleet before its own.
+export function standingOf(standing: Standing, tour: number): Standing {
+  const one = standing.tours[tour];
+  if (!one) return standing;
+  const fleet = standing.certificate, own = one.certificate;
+  return {
+    ...standing, plan: one.plan,
+    certificate: fleet && own ? { ...fleet, checks: [...fleet.checks, ...own.checks] } : fleet,
+  };
+}
+
 export class Grades {
   private now: Moment = { revision: 0, edit: null, pending: 0 };
   private answer: Answer | null = null;
@@ -53,7 +74,8 @@ export class Grades {
 
   // Whether the answer is for what is on display. An older or a worse one for the same state, come
   // late, does not replace a better one.
-  take(answer: Answer): boolean {
+  take(told: Answer): boolean {
+    const answer = whole(told);
     if (answer.plan && this.isLater(answer)) this.shown = answer;
     if (!answersMoment(answer, this.now, this.tab)) return false;
     const had = this.answer;
@@ -65,13 +87,16 @@ export class Grades {
 
   standing(): Standing {
     const answer = this.answer;
-    if (!answer) return { grade: "guess", plan: null, certificate: null, message: "", ms: null };
+    if (!answer) {
+      return { grade: "guess", plan: null, certificate: null, message: "", ms: null, tours: NONE };
+    }
     return {
       grade: trusted(answer),
       plan: answer.plan ?? null,
       certificate: answer.certificate ?? null,
       message: answer.message ?? "",
       ms: answer.ms ?? null,
+      tours: answer.tours ?? NONE,
     };
   }
 

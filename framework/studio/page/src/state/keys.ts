@@ -52,6 +52,8 @@ export const bindings: Binding[] = [
     text: "Place the subject in the picture by clicking there" },
   { group: "View", keys: ["T"], action: "theme", text: "Light or dark" },
   { group: "Film", keys: ["F"], action: "fly", text: "Fly it with wind" },
+  { group: "Film", keys: ["Q"], action: "race",
+    text: "Race it: fly the course by hand (arrows or a gamepad; Space pauses, Escape gives up)" },
   { group: "Film", keys: ["Y"], action: "compare", text: "Keep this version and compare with it" },
   { group: "Film", keys: ["X"], action: "export", text: "Export" },
   { group: "Film", keys: ["R"], action: "report", text: "Write the report" },

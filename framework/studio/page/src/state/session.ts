@@ -202,6 +202,11 @@ export class Session {
     return id;
   }
 
+  // Sticks of a game, at a time of it. Whether they were sent.
+  stick(id: string, time: number, sticks: [number, number][]): boolean {
+    return this.send({ type: "stick", id, time, sticks });
+  }
+
   private send(message: JsonObject | Gesture): boolean {
     if (this.link !== "open" || !this.socket) return false;
     this.socket.send(JSON.stringify(message));
@@ -298,6 +303,7 @@ export class Session {
       case "flown": return this.tell({ what: "flown", message });
       case "picture": return this.tell({ what: "picture", message });
       case "wrote": return this.tell({ what: "wrote", message });
+      case "raced": return this.tell({ what: "raced", message });
       case "worker": return this.tell({ what: "worker", message });
       case "remark": return this.tell({ what: "note", text: message.message });
       case "script_changed":

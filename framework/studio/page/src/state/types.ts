@@ -107,6 +107,16 @@ export interface Plan {
 
 export type AnswerGrade = "step" | "converged" | "certified" | "rejected" | "refused";
 
+// One of several batteries. The plan of the first one is the answer's.
+export interface FleetTour {
+  name: string;                // "drone 1, battery 2"
+  drone: string;
+  battery: number;
+  start: number;               // s, after the fleet begins
+  plan: Plan | null;
+  certificate: Certificate | null;
+}
+
 export interface Answer {
   type: "answer";
   revision: number;
@@ -117,6 +127,7 @@ export interface Answer {
   certificate?: Certificate | null;
   message?: string;
   ms?: number;
+  tours?: FleetTour[];
 }
 
 export interface WorldObstacle {
@@ -147,7 +158,8 @@ export interface SurfaceHole {
 // What a scan was planned on, and what its images will show.
 export interface ScanWorld {
   region: SitePrism[];
-  views: { time: number; position: Vec3; yaw: number; pitch: number; matching: boolean }[];
+  views: { time: number; position: Vec3; yaw: number; pitch: number; matching: boolean;
+           tour?: number }[];    // of several batteries: whose, from 0
   image: number[];             // width, height, focal lengths and principal point, pixels
   first_views: Vec3[];
   candidates: Vec3[];
@@ -229,6 +241,19 @@ export interface Flown {
   worst?: { position_error: number; time?: number; limit?: number; mean?: number } | null;
 }
 
+// Of a race that is flown by hand.
+export interface Raced {
+  type: "raced";
+  id: string;
+  time: number;              // s, from the start
+  over: boolean;
+  players: { name: string; by_hand: boolean; position: Vec3;
+             orientation: [number, number, number, number];   // w, x, y, z; body to world
+             speed: number; progress: number; deviation: number; score: number; end?: string }[];
+  result?: string;           // lines, of a game that is over
+  files?: string[];
+}
+
 export interface PlanningProgress {
   type: "progress";
   revision: number;
@@ -243,6 +268,7 @@ export type ServerMessage =
   | DocumentMessage
   | Answer
   | Flown
+  | Raced
   | ({ type: "world" } & World)
   | { type: "refused"; id?: string; edit?: number; why: string }
   | { type: "failed"; id?: string; edit?: number; why: string }

@@ -162,7 +162,7 @@ export class Navigation {
   private switch(): void {
     const camera = this.stage.worldCamera;
     const flying = this.studio.mode === "camera";
-    this.orbit.enabled = !flying;
+    this.orbit.enabled = !flying && this.studio.mode !== "race";
     this.keys.clear();
     if (flying && !this.before) {
       this.before = { position: camera.position.clone(), fov: camera.fov };

@@ -63,7 +63,7 @@ export class Preview {
       const height = Math.round((width * this.optics.height) / this.optics.width);
       this.asked = { time: studio.time, edit: studio.session.edit };
       if (studio.session.link === "open") {
-        studio.session.ask({ type: "picture", edit: studio.session.edit, time: studio.time, width,
+        studio.session.ask({ type: "picture", edit: studio.session.edit, time: studio.time, ...studio.which, width,
                              height });
       }
     }, STILL);

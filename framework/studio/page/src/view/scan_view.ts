@@ -4,6 +4,7 @@
 import * as THREE from "three";
 import { figuresInWords, predictionIn, shadeOf, type Prediction } from "../state/prediction";
 import { baked } from "./solids";
+import { pathOf } from "../state/samples";
 import { frustum, isSite, prismLines, regionsOf } from "../state/site";
 import type { ScanWorld, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
@@ -18,6 +19,7 @@ export class ScanView {
   private readonly region = new Ribbon("solid", 2);
   private readonly views = new Ribbon("thin", 3);
   private readonly first = new Ribbon("dotted", 2);
+  private readonly others = new Ribbon("thin", 2);   // tours beside the one that is shown
   private readonly candidates = new THREE.Points(
     new THREE.BufferGeometry(),
     new THREE.PointsMaterial({ size: POINT, sizeAttenuation: false, transparent: true, opacity: 0.7 }));
@@ -31,7 +33,7 @@ export class ScanView {
   onSurface: () => void = () => undefined;
 
   constructor(private readonly studio: Studio, private readonly stage: Stage) {
-    for (const ribbon of [this.region, this.views, this.first]) {
+    for (const ribbon of [this.region, this.views, this.first, this.others]) {
       stage.tools.add(ribbon.mesh);
       stage.onResize((width, height) => ribbon.resize(width, height));
     }
@@ -42,6 +44,7 @@ export class ScanView {
     stage.scene.add(this.surface);
     studio.on(["document", "world", "look"], () => this.draw());
     studio.on(["look"], () => this.paint());
+    studio.on(["standing"], () => this.drawTours());
     this.paint();
   }
 
@@ -83,6 +86,7 @@ export class ScanView {
     this.region.paint(palette.chosen);
     this.views.paint(palette.ink, 0.8);
     this.first.paint(palette.step);
+    this.others.paint(palette.converged, 0.7);
     this.candidates.material.color.set(palette.guess);
     this.tint();
     this.stage.invalidate();
@@ -106,6 +110,14 @@ export class ScanView {
         Float32Array.from(scan.candidates.flat()), 3));
     }
     this.fetch(scan?.surface ?? "");
+    this.stage.invalidate();
+  }
+
+  private drawTours(): void {
+    const { tours } = this.studio.session.standing();
+    const shown = this.studio.which.tour;
+    this.others.setRuns(tours.flatMap(({ plan }, k) =>
+      (plan && k !== shown ? [pathOf(plan.columns)] : [])), 1);
     this.stage.invalidate();
   }
 

@@ -40,6 +40,7 @@ export class Stage {
   private afterFrame: (() => void)[] = [];
   private resized: ((width: number, height: number) => void)[] = [];
   measuring = false;
+  private beside: THREE.PerspectiveCamera | null = null;
 
   constructor(
     canvas: HTMLCanvasElement, readonly world: HTMLElement, readonly picture: HTMLElement,
@@ -102,8 +103,11 @@ export class Stage {
     style.width = `${this.whole.width}px`;
     style.height = `${this.whole.height}px`;
     const { width, height } = world;
-    this.worldCamera.aspect = width / Math.max(height, 1);
-    this.worldCamera.updateProjectionMatrix();
+    for (const camera of [this.worldCamera, this.beside]) {
+      if (!camera) continue;
+      camera.aspect = (this.beside ? width / 2 : width) / Math.max(height, 1);
+      camera.updateProjectionMatrix();
+    }
     for (const then of this.resized) then(width, height);
     this.invalidate();
   }
@@ -117,12 +121,21 @@ export class Stage {
     });
   }
 
+  // The world in two halves, the right one through this camera; null: whole again.
+  split(camera: THREE.PerspectiveCamera | null): void {
+    if (camera === this.beside) return;
+    this.beside = camera;
+    this.resize();
+  }
+
   private draw(): void {
     const start = performance.now();
     for (const then of this.beforeFrame) then();
     this.renderer.setClearColor(this.palette.sky);
     this.tools.visible = true;
-    this.through(this.rects[0], this.worldCamera);
+    const [left, right] = this.halves();
+    this.through(left, this.worldCamera);
+    if (this.beside) this.through(right, this.beside);
     this.tools.visible = false;
     this.through(this.rects[1], this.filmCamera);
     this.tools.visible = true;
@@ -134,6 +147,14 @@ export class Stage {
     this.frameMs = performance.now() - start;
     this.frames += 1;
     for (const then of this.afterFrame.splice(0)) then();
+  }
+
+  private halves(): [DOMRect, DOMRect] {
+    const [rect] = this.rects;
+    if (!this.beside) return [rect, rect];
+    const half = rect.width / 2;
+    return [new DOMRect(rect.left, rect.top, half, rect.height),
+            new DOMRect(rect.left + half, rect.top, half, rect.height)];
   }
 
   private through(rect: DOMRect, camera: THREE.PerspectiveCamera): void {
