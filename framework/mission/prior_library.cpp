@@ -402,6 +402,13 @@ int reconstruct(lua_State* state) {
   const Sandbox::ClockPause pause(Sandbox::of(state));
   std::vector<FusedPoint> points = prior.fusion->points();
   points.insert(points.end(), prior.earlier.begin(), prior.earlier.end());
+  if (points.empty()) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "the first flight saw no surface within range = %.4g m: raise range, or fly lower",
+                  prior.fusion_options.range);
+    throw InputError(given.origin(), text);
+  }
   TriangleMesh mesh;
   try {
     mesh = surface_of(run_of(state), points, given);

@@ -130,10 +130,15 @@ std::shared_ptr<const ViewScore> score_views(const VisibleVoxels& visible,
   };
   in_chunks(views.size(), threads, cancellation, share, "view", look, keep);
   graph.voxels = numbers.take();
-  if (graph.voxels.empty())
-    throw NothingSeen("none of " + std::to_string(views.size()) +
-                      " candidates sees the region of interest: it has no surface, or "
-                      "lies beyond the range of the rays");
+  if (graph.voxels.empty()) {
+    const SightSettings& sight = visible.settings();
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "none of %zu candidates sees the region of interest: it has no surface within "
+                  "the usable range of %.4g m of them",
+                  views.size(), std::min(sight.range, sight.usable_range));
+    throw NothingSeen(text);
+  }
   return std::make_shared<const ViewScore>(std::move(builder).take());
 }
 

@@ -23,7 +23,7 @@ class LargeScans : public Scanning {
     write_file_atomically(folder_ / "field.lua", R"(
 return require("mission.scan").of_mesh {
   name = "field", resolution = 2, tour = { budget = 120, iterations = 20 },
-  camera = { width = 40, height = 30, focal = 23 },
+  camera = { width = 40, height = 30, focal = 23 }, usable = { range = 60 },
   surface = { spacing = 4, cell = 6, trim = 12 },
   candidates = { most = 90, step = 8, distance_apart = 6 },
   motions = { alpha = 0.2, coarse = 20 },
@@ -49,6 +49,13 @@ TEST_F(LargeScans, TheDefaultFirstFlightIsBoundedAndSaysSo) {
   EXPECT_GE(std::stoi(notes()), 400);
   EXPECT_THAT(notes(), HasSubstr("the region is large: the crosshatch has"));
   EXPECT_THAT(notes(), HasSubstr("times as far apart as overlap needs; 200 images look down"));
+}
+
+// So few pixels show nothing of use farther than 2 m away.
+TEST_F(LargeScans, WhatIsTooFarToBeOfUseIsSaidWithTheDistance) {
+  write_field(100);
+  EXPECT_EQ(fly("--set usable.range=2"), 2);
+  EXPECT_THAT(error(), HasSubstr("no surface within the usable range of 2 m"));
 }
 
 // Its images begin the tour's views, and leave most of them to be grown.
