@@ -170,9 +170,10 @@ const Value::List& list_of_players(MessageFields& fields, const char* name) {
 
 void read_race(MessageFields& fields, PageMessage& message) {
   read_id(fields, message);
-  for (const Value& player : list_of_players(fields, "players"))
+  const Value::List& players = list_of_players(fields, "players");
+  for (const Value& player : players)
     if (!player.is_map()) throw InputError("players: expected objects");
-  message.players = fields.at("players");
+  message.players = Value(players);
 }
 
 void read_sticks(MessageFields& fields, PageMessage& message) {

@@ -87,7 +87,7 @@ TEST_F(LiveRaceTest, ItIsOverWhenAllWhoFlyByHandHaveEnded) {
   bool waited = false;
   while (!live.over()) {
     time += 0.1;
-    live.advance(time, {{1, 0}, {-0.2, 0}});
+    live.advance(time, {{1, 0}, {-1, 0}});
     waited = waited || (live.race(0).ended() && !live.race(1).ended());
     ASSERT_LT(time, 100);
   }
