@@ -55,16 +55,11 @@ double LiveRace::score(std::size_t k) const {
   return score_over_time(flight, course_, gates_, players_[k].player.pilot.handicap, rules_).back();
 }
 
-StickLog LiveRace::log_of(const Player& player) const {
-  return StickLog(player.player.by_hand ? player.sticks : std::vector<StickSample>{StickSample{}},
-                  player.player.pilot.name);
-}
-
 std::vector<RacedPilot> LiveRace::finish() {
   std::vector<RacedPilot> all;
   for (Player& player : players_) {
     RacedPilot raced{player.player.pilot, {}, {}};
-    raced.pilot.log = log_of(player);
+    raced.pilot.log = StickLog(player.sticks, raced.pilot.name);
     const auto logged = [&](double time, const BodyState&, double) {
       return raced.pilot.log.at(time);
     };

@@ -44,7 +44,6 @@ class LiveRace {
     RaceInProgress race;
     std::vector<StickSample> sticks;
   };
-  StickLog log_of(const Player& player) const;
 
   Trajectory course_;
   std::vector<GateTask> gates_;

@@ -19,6 +19,7 @@ constexpr double kBehind = 0.3, kAhead = 0.6;  // s of the plan, where progress 
 constexpr double kProgressStep = 0.005;        // s of the plan
 constexpr double kFollow = 5;                  // 1/s, of the reference after the pilot's progress
 constexpr double kAtRest = 0.5;                // m/s
+constexpr double kTumbling = 0.25;             // s, as in closed_loop.cpp
 constexpr double kLastLeg = 1;                 // s of the plan, in which the finish counts
 
 void check(const Pilot& pilot) {
@@ -59,6 +60,8 @@ class RaceController {
         clock_(reference.start()) {}
 
   double progress() const { return progress_; }
+  // Where the vehicle's z axis was to point, after the last command.
+  const Vector3d& wanted_up() const { return wanted_up_; }
 
   // Moves the place on the course that is nearest, and the reference that follows it.
   void advance(const Vector3d& position, double step) {
@@ -97,6 +100,7 @@ class RaceController {
     const Matrix3d r = state.orientation.toRotationMatrix();
     const Matrix3d rd = attitude_of(force, wanted.yaw).toRotationMatrix();
     const Matrix3d skew = rd.transpose() * r - r.transpose() * rd;
+    wanted_up_ = rd.col(2);
     const Vector3d error_r = 0.5 * Vector3d(skew(2, 1), skew(0, 2), skew(1, 0));
     // Rates of the planned attitude, as far as the stick leaves the plan its feed-forward.
     const Vector3d rates =
@@ -122,6 +126,7 @@ class RaceController {
   double lead_;              // s
   double progress_, clock_;  // s of the plan: of the pilot, and of the reference that follows
   double integral_ = 0;      // m s, of the height
+  Vector3d wanted_up_ = Vector3d::UnitZ();
   bool saturated_ = false;
 };
 
@@ -204,6 +209,7 @@ struct RaceInProgress::Inside {
   double most;  // s
   std::int64_t every;
   double progress, deviation = 0;
+  double tumbling = 0;  // s
   RaceFlight flight;
   double sum = 0;  // of deviations, m
   std::int64_t k = 0, saturated = 0;
@@ -217,7 +223,10 @@ void RaceInProgress::Inside::step(const StickSource& source) {
   deviation = (state.position - place).norm();
   const Eigen::Vector2d stick = source(time(), state, progress);
   const bool arrived = there();
-  const bool over = (state.orientation * Vector3d::UnitZ()).z() < 0;
+  // Tumbling, as the simulation of plans has it: a course may lead upside down.
+  const Vector3d up = state.orientation * Vector3d::UnitZ();
+  tumbling = up.z() < 0 && up.dot(controller.wanted_up()) < 0 ? tumbling + limits.step : 0;
+  const bool over = tumbling > kTumbling;
   const bool lost = !(deviation <= limits.off_course);
   ended = arrived || over || lost || time() >= most;
   if (ended)

@@ -66,6 +66,59 @@ TEST_F(StudioKinds, AScanTellsWhatItsRunWrites) {
             std::string::npos);
 }
 
+// Two batteries: two tours, each with its certificate, and the fleet's over both; each can be flown
+// and exported, and the report is that of the fleet.
+TEST_F(StudioKinds, AScanOfTwoBatteriesTellsBothTours) {
+  use("scan/church.lua");
+  const std::vector<std::string> options{"--config", "scan/small",     "--set", "resolution=1",
+                                         "--set",    "tour.budget=90", "--set", "batteries=2"};
+  const StudioAddress address = serve(options);
+  PageClient page(address, "a");
+  const auto [world, answer] = told(page);
+  const Value::List& tours = answer.at("tours").as_list();
+  ASSERT_EQ(tours.size(), 2u);
+  EXPECT_EQ(tours[0].at("name"), Value("drone 1, battery 1"));
+  EXPECT_TRUE(tours[0].at("plan").is_null());  // it is the answer's
+  const double first = answer.at("plan").at("duration").as_number();
+  EXPECT_GE(tours[1].at("start").as_number(), first);  // one drone
+  EXPECT_GT(tours[1].at("plan").at("duration").as_number(), 0);
+  for (const Value& tour : tours)
+    EXPECT_EQ(tour.at("certificate").at("passed"), Value(true));
+  const auto has_check = [](const Value& certificate, const char* name) {
+    for (const Value& check : certificate.at("checks").as_list())
+      if (check.at("name") == Value(name)) return true;
+    return false;
+  };
+  EXPECT_TRUE(has_check(answer.at("certificate"), "sequence"));
+  EXPECT_FALSE(has_check(tours[1].at("certificate"), "sequence"));
+  std::set<std::int64_t> of;
+  for (const Value& view : world.at("scan").at("views").as_list())
+    of.insert(view.at("tour").as_integer());
+  EXPECT_EQ(of, (std::set<std::int64_t>{0, 1}));
+  const auto asked = [&](const std::string& text) {
+    page.send_text(text);
+    return page.until([](const Value& m) {
+      return m.at("type") == Value("wrote") || m.at("type") == Value("failed") ||
+             m.at("type") == Value("picture");
+    });
+  };
+  const std::string picture =
+      R"({"type": "picture", "edit": 1, "time": 10, "width": 64, "height": 36)";
+  const Value one = asked(picture + "}"), two = asked(picture + R"(, "tour": 1})"),
+              none = asked(picture + R"(, "tour": 2})");
+  EXPECT_NE(one.at("blob"), two.at("blob"));
+  EXPECT_EQ(none.at("type"), Value("failed"));
+  const Value csv = asked(R"({"type": "export", "id": "x", "format": "csv", "tour": 1})");
+  ASSERT_EQ(csv.at("type"), Value("wrote")) << to_json(csv);
+  const Value report = asked(R"({"type": "save_report", "id": "r"})");
+  ASSERT_EQ(report.at("type"), Value("wrote")) << to_json(report);
+  EXPECT_TRUE(report.at("loss").as_list().empty()) << to_json(report);
+  const fs::path folder = fs::path(report.at("files").as_list().at(0).as_text()).parent_path();
+  EXPECT_TRUE(fs::exists(folder / "fleet.json"));
+  EXPECT_EQ(read_file(csv.at("files").as_list().at(0).as_text()),
+            read_file(folder / "trajectory_2.csv"));
+}
+
 TEST_F(StudioKinds, AnExplorationTellsHowItsMapGrew) {
   use("explore/city.lua");
   const StudioAddress address = serve({"--set", "steps=6"});

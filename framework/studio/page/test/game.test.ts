@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Game, KeyStick, padStick, placeOf, type Stick } from "../src/state/game";
+import { roomier, strengthFor, Game, KeyStick, padStick, placeOf, type Stick } from "../src/state/game";
+import { applied } from "../src/state/document";
 import type { Raced } from "../src/state/types";
 
 const raced = (time: number, more: Partial<Raced> = {}): Raced => ({
@@ -30,6 +31,21 @@ test("a key moves the stick in a moment, and lets it back", () => {
   held.clear();
   assert.deepEqual(stick.move(held, 1), [0, 0]);
   assert.deepEqual(new KeyStick("letters").move(new Set(["s", "d"]), 1), [-1, -1]);
+});
+
+test("a stick is as strong as the course asks for", () => {
+  assert.deepEqual(strengthFor({ time: [0, 1], ax: [3, -12], ay: [4, 16] }), { strength: 20, reach: 8 });
+  assert.deepEqual(strengthFor({ time: [0] }), { strength: 4, reach: 1.6 });
+});
+
+test("a course to the rims of its gates is made roomier, once", () => {
+  const course = { margin: 0.02, thrust: 1, gates: [] };
+  const edit = roomier(course);
+  assert.ok(edit);
+  const wider = applied(course, edit.patch);
+  assert.deepEqual([wider.margin, wider.thrust], [0.3, 0.6]);
+  assert.equal(roomier(wider), null);
+  assert.equal(roomier({ margin: 0.5, thrust: 0.9 }), null);
 });
 
 test("a gamepad's axes point right and back; their middle is wide", () => {

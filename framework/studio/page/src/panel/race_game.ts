@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // "Race it": who flies, with what, against whom; the game itself, and what it came to.
-import { devices, Game, gameKeys, KeyStick, padStick, type Device, type Entrant, type Stick,
+import { devices, Game, gameKeys, KeyStick, padStick, rival, roomier, strengthFor, type Device, type Entrant, type Stick,
          type Track } from "../state/game";
 import type { Raced } from "../state/types";
 import { show } from "../state/units";
@@ -31,6 +31,7 @@ export class RaceGamePanel {
     }
     byId<HTMLSelectElement>("racer-device-2").value = "letters";
     byId("race-go").addEventListener("click", () => this.start());
+    byId("race-widen").addEventListener("click", () => studio.edit(roomier(studio.document)));
     window.addEventListener("keydown", (event) => this.key(event), { capture: true });
     window.addEventListener("keyup", (event) => this.held.delete(event.key.toLowerCase()));
     window.addEventListener("blur", () => {
@@ -74,6 +75,7 @@ export class RaceGamePanel {
     const { grade } = this.studio.standing;
     byId<HTMLButtonElement>("race-go").disabled = grade !== "certified" && grade !== "rejected";
     byId("race-warning").hidden = grade === "certified" || grade === "rejected";
+    byId("race-room").hidden = !roomier(this.studio.document);
   }
 
   private entrant(k: 1 | 2): Entrant | null {
@@ -84,7 +86,7 @@ export class RaceGamePanel {
     };
     return { name: byId<HTMLInputElement>(`racer-name-${k}`).value.trim() || `Player ${k}`,
              device: byId<HTMLSelectElement>(`racer-device-${k}`).value as Device,
-             weight: number("racer-weight", 0.5), speed: 1, handicap: number("racer-handicap", 0) };
+             ...strengthFor(this.studio.plan.columns), weight: number("racer-weight", 0.5), speed: 1, handicap: number("racer-handicap", 0) };
   }
 
   private start(): void {
@@ -97,15 +99,14 @@ export class RaceGamePanel {
       return;
     }
     const pace = byId<HTMLSelectElement>("race-rival").value;
-    if (pace) this.entrants.push({ name: "Computed", device: null, weight: 0, speed: Number(pace),
-                                   handicap: 0 });
+    if (pace) this.entrants.push(rival(Number(pace)));
     this.keySticks = new Map(this.entrants.flatMap(({ device }) =>
       (device === "arrows" || device === "letters" ? [[device, new KeyStick(device)]] : [])));
     this.game = new Game((id, time, sticks) => studio.session.stick(id, time, sticks));
     this.asked = studio.session.ask({
       type: "race", id: "",
-      players: this.entrants.map(({ name, device, weight, speed, handicap }) =>
-        ({ name, by_hand: device !== null, weight, speed, handicap })),
+      players: this.entrants.map(({ device, ...numbers }) =>
+        ({ by_hand: device !== null, ...numbers })),
     });
     this.game.begun(this.asked);
     said.textContent = "";

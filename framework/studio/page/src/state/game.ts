@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A race that is flown by hand: sticks from keys and gamepads, and a game whose clock goes on only
 // while it is flown. The server flies; of each answer the page shows where everybody is.
-import type { Raced } from "./types";
+import type { Edit } from "./edits";
+import type { Columns, JsonObject, Raced } from "./types";
 import { clamp } from "./vector";
 
 export type Device = "arrows" | "letters" | "pad1" | "pad2";
@@ -18,8 +19,36 @@ export interface Entrant {
   name: string;
   device: Device | null;       // null: computed
   weight: number;
+  strength: number;            // m/s^2, of a full stick
+  reach: number;               // m, that a full stick held across leads aside
   speed: number;
   handicap: number;            // s
+}
+
+// A stick is as strong as the course asks for; one that is held ends so many m aside.
+const WEAKEST = 4, STRONGEST = 40;   // m/s^2
+const PULL = 2.5;                    // 1/s^2, back to the course
+const RIVAL = { weight: 0, strength: 10, reach: 1 };
+export const ROOM = 0.3, THRUST = 0.6;   // m and share, with which a course can be flown by hand
+
+export function strengthFor(columns: Columns): { strength: number; reach: number } {
+  const { ax = [], ay = [] } = columns;
+  const most = ax.reduce((worst, a, i) => Math.max(worst, Math.hypot(a, ay[i] ?? 0)), 0);
+  const strength = Math.round(clamp(most, WEAKEST, STRONGEST));
+  return { strength, reach: Math.round((10 * strength) / PULL) / 10 };
+}
+
+export function rival(speed: number): Entrant {
+  return { name: "Computed", device: null, speed, handicap: 0, ...RIVAL };
+}
+
+// A course that leaves hands no room at its rims, made wider and slower; null where it has room.
+export function roomier(document: JsonObject): Edit | null {
+  const number = (name: string): number => Number(document[name] ?? 0);
+  const patch: Edit["patch"] = [];
+  if (number("margin") < ROOM) patch.push({ path: "margin", value: ROOM });
+  if (number("thrust") > THRUST) patch.push({ path: "thrust", value: THRUST });
+  return number("margin") < ROOM ? { label: "Make room for hands", patch } : null;
 }
 
 const RISE = 6;                // 1/s, of a stick that a key holds
