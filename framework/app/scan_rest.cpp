@@ -19,7 +19,8 @@ const std::set<std::string> kLeftOut{
     "prior",   "flights",    "noise",           "exploration",    "utility", "folder", "images",
     "colmap",  "cloud",      "terrain",         "surface",        "rounds",  "start",  "candidates",
     "motions", "resolution", "passing",         "views",          "region",  "finish", "batteries",
-    "drones",  "fleet",      "accuracy",        "accuracy_share", "city",    "tiles"};
+    "drones",  "fleet",      "accuracy",        "accuracy_share", "city",    "tiles",
+    "pinned",  "forbidden"};
 const std::set<std::string> kKeywords{"and",   "break", "do",       "else", "elseif", "end",
                                       "false", "for",   "function", "goto", "if",     "in",
                                       "local", "nil",   "not",      "or",   "repeat", "return",

@@ -143,10 +143,19 @@ ParameterTable flight_table() {
   return table;
 }
 
+ParameterTable ball_table() {
+  ParameterTable table;
+  table.required_numbers("position", 3, "m", "middle, world").number("within", 1, "m", "radius",
+                                                                      above(0));
+  return table;
+}
+
 ParameterTable graph_table() {
   ParameterTable table;
   table.table("region", region_table(), "region of interest")
       .table("allowed", box_table(), "box for the centre of the vehicle")
+      .tables("pinned", viewpoint_table(), "views that every tour is to take; each must be free")
+      .tables("viewless", ball_table(), "balls where no view is taken; the needed starts may lie there")
       .tables("starts", viewpoint_table(), "places from which candidates grow, if they are free",
               true)
       .boolean("fixed", true,
@@ -195,6 +204,8 @@ ScanGraphSettings graph_settings(const Parameters& given, const MissionRun& run)
   s.candidates.pitch_max = radians(candidates.number("pitch_max_deg"));
   s.candidates.most = static_cast<int>(candidates.integer("most"));
   s.candidates.least = static_cast<int>(candidates.integer("least"));
+  for (const Parameters& ball : given.tables("viewless"))
+    s.candidates.viewless.push_back({vector3_of(ball.numbers("position")), ball.number("within")});
   s.candidates.directions = static_cast<int>(candidates.integer("directions"));
   const Parameters& motions = given.table("motions");
   s.motions.allowed = s.candidates.allowed;
@@ -217,8 +228,9 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
   for (const Parameters& entry : given) {
     const Viewpoint view = viewpoint_of(entry);
     const Eigen::Vector3d& p = view.position;
+    const bool needed_here = starts.size() < needed;
     const bool free = settings.allowed.contains(p) && space.swept_box_free(p, p, settings.half);
-    if (free) starts.push_back(view);
+    if (free && (needed_here || !is_viewless(settings.viewless, p))) starts.push_back(view);
     if (free || starts.size() >= needed) continue;
     char text[300];
     std::snprintf(
@@ -239,6 +251,29 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
     throw InputError("no free start: none of " + std::to_string(given.size()) + " places is free" +
                      (rules.empty() ? "" : " and allowed by the zones and the pilot's sight"));
   return starts;
+}
+
+// Adds the pinned views behind the starts; every one must be free.
+void add_pinned(const std::vector<Parameters>& given, const FreeSpace& space,
+                const CandidateSettings& settings, const FlightRules& rules,
+                std::vector<Viewpoint>& starts, std::vector<int>& pinned) {
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const Viewpoint view = viewpoint_of(given[k]);
+    const Eigen::Vector3d& p = view.position;
+    std::string why = is_viewless(settings.viewless, p) ? "it lies where views are forbidden"
+                                                        : forbidden_by(rules, p, settings.half);
+    if (why.empty() && !settings.allowed.contains(p)) why = "it lies outside the space of the tour";
+    if (why.empty() && !space.swept_box_free(p, p, settings.half))
+      why = "map and mesh leave the vehicle no room there";
+    if (!why.empty()) {
+      char place[120];
+      std::snprintf(place, sizeof place, "pinned view %zu at (%.4g, %.4g, %.4g): ", k + 1, p.x(),
+                    p.y(), p.z());
+      throw InputError(given[k].origin(), place + why);
+    }
+    pinned.push_back(static_cast<int>(starts.size()));
+    starts.push_back(view);
+  }
 }
 
 // The graph, into the work. What sees nothing says what the rules have to do with it.
@@ -352,14 +387,19 @@ int scan_graph_of_run(lua_State* state) {
   const std::shared_ptr<ScanWork>& work = made.work;
   const ScanGraphSettings& settings = made.settings;
   const Sandbox::ClockPause pause(Sandbox::of(state));
-  const std::vector<Viewpoint> starts =
+  std::vector<Viewpoint> starts =
       free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
                   given.boolean("loops"), *made.space, settings.candidates, *work->rules);
+  add_pinned(given.tables("pinned"), *made.space, settings.candidates, *work->rules, starts,
+             work->pinned);
   begin_planning(run);
   make_graph(*work, *made.space, *made.sight, starts, settings, run);
   if (given.boolean("each"))
     work->graph.score = std::make_shared<const ViewScore>(
         additive_score(std::vector<double>(work->graph.candidates.viewpoints.size(), 1)));
+  if (!work->pinned.empty())
+    work->pinned_score =
+        std::make_shared<const ViewScore>(with_bonus(*work->graph.score, work->pinned));
   if (!work->rules->empty())
     work->hidden =
         hidden_parts(*work, *space_of(*work->prior, given.number("mesh_room")), *made.sight, starts,
@@ -367,7 +407,9 @@ int scan_graph_of_run(lua_State* state) {
   work->seconds = seconds_of_motions(*work, settings.threads, run.settings.cancellation);
   const ScanGraph& graph = work->graph;
   work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);
-  if (!given.boolean("fixed")) work->home = work->islands.best_start(graph.candidates.given);
+  if (!given.boolean("fixed"))
+    work->home = work->islands.best_start(graph.candidates.given -
+                                          static_cast<int>(work->pinned.size()));
   log_graph("candidates", graph);
   new_object(state, kGraphType, GraphObject{made.work});
   return 1;

@@ -20,7 +20,7 @@ TourDefinition tour_definition(const ScanWork& work, const std::string& function
   if (!work.passes.empty())
     throw InputError(function + ": the graph is of passes, which run:pass_tour orders");
   TourDefinition definition;
-  definition.score = work.graph.score;
+  definition.score = work.pinned.empty() ? work.graph.score : work.pinned_score;
   definition.view_seconds = {work.view_seconds};
   for (std::size_t k = 0; k < work.seconds.size(); ++k) {
     const ViewMotion& m = work.graph.motions.motions[k];
@@ -28,6 +28,36 @@ TourDefinition tour_definition(const ScanWork& work, const std::string& function
   }
   definition.start = definition.end = work.home;
   return definition;
+}
+
+std::vector<int> pinned_views_missed(const ScanWork& work,
+                                     const std::vector<std::vector<int>>& walks) {
+  std::vector<int> missed;
+  for (std::size_t k = 0; k < work.pinned.size(); ++k) {
+    const bool taken = std::any_of(walks.begin(), walks.end(), [&](const std::vector<int>& walk) {
+      return std::find(walk.begin(), walk.end(), work.pinned[k]) != walk.end();
+    });
+    if (!taken) missed.push_back(static_cast<int>(k) + 1);
+  }
+  return missed;
+}
+
+void take_out_pinned(const ScanWork& work, const std::vector<std::vector<int>>& walks,
+                     const std::vector<int>& reachable, TourReport& report) {
+  if (work.pinned.empty()) return;
+  const double bonus = bonus_over(*work.graph.score);
+  const auto all = static_cast<double>(work.pinned.size());
+  const auto missed = static_cast<double>(pinned_views_missed(work, walks).size());
+  const auto far = static_cast<double>(pinned_views_missed(work, {reachable}).size());
+  report.score = std::max(0.0, report.score - (all - missed) * bonus);
+  report.reachable_score = std::max(0.0, report.reachable_score - (all - far) * bonus);
+  // Tours that leave out a pinned view are none: of those that take all, this many are counted.
+  if (std::isfinite(report.upper_bound))
+    report.upper_bound = std::max(report.score, std::min(report.upper_bound - (all - far) * bonus,
+                                                         report.reachable_score));
+  report.gap = report.upper_bound > 0 && std::isfinite(report.upper_bound)
+                   ? (report.upper_bound - report.score) / report.upper_bound
+                   : 0;
 }
 
 namespace {
@@ -47,6 +77,7 @@ constexpr BoundField kTourFields[] = {
     {"reachable_score", "number", "score of all reachable views"},
     {"evaluations", "integer", "evaluations of the score"},
     {"iterations", "integer", "iterations of the solver"},
+    {"missed", "integer[]", "pinned views that are not on it, by their numbers"},
     {"legs", "table[]",
      "legs from view to view: {points, yaw_from, yaw_to, seconds}, m, rad, s without the pause"},
     {"flight", "table?",
@@ -61,6 +92,9 @@ int tour_field(lua_State* state) {
   fields.set("upper_bound",
              std::isfinite(tour.report.upper_bound) ? Value(tour.report.upper_bound) : Value());
   fields.set("gap", tour.report.gap);
+  Value& missed = fields.set("missed", Value::list());
+  for (const int number : pinned_views_missed(*tour.work, {tour.walk}))
+    missed.push_back(std::int64_t{number});
   const std::string field = text_argument(state, 2, "tour");
   fields.set("legs", field == "legs" && !tour.passing ? legs_of(tour) : Value());
   fields.set("flight", field == "flight" && tour.passing ? flight_of_passes(tour) : Value());
@@ -125,6 +159,7 @@ int solve_tour_of_run(lua_State* state) {
     if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     tour.report = result.report;
     tour.walk = std::move(result.walk);
+    take_out_pinned(work, {tour.walk}, problem.reachable(), tour.report);
   }
   run.solve_seconds += tour.report.wall_seconds;
   logging::info(

@@ -69,6 +69,10 @@ struct ScanWork : LegFlight {
   std::vector<double> seconds;  // of each motion, a view's own included
   ViewIslands islands{0, {}};   // of the views that are joined by motions
   int home = 0;                 // of the views, where tours begin
+  // Views that every tour is to take, ascending, and the score in which they count more than all
+  // else; null where there are none.
+  std::vector<int> pinned;
+  std::shared_ptr<const ViewScore> pinned_score;
   Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
   Eigen::Vector3d body;         // half edges of the vehicle's box, m
   std::shared_ptr<const FlightRules> rules = std::make_shared<const FlightRules>();
@@ -92,6 +96,12 @@ struct SolveReport;
 struct GraphObject {
   std::shared_ptr<const ScanWork> work;
 };
+
+// Of the pinned views those that no walk takes, by their numbers in `pinned`, from 1.
+std::vector<int> pinned_views_missed(const ScanWork& work, const std::vector<std::vector<int>>& walks);
+// Takes what pinned views count more out of a report about these walks.
+void take_out_pinned(const ScanWork& work, const std::vector<std::vector<int>>& walks,
+                     const std::vector<int>& reachable, TourReport& report);
 
 struct TourObject {
   std::shared_ptr<const ScanWork> work;

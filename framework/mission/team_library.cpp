@@ -26,6 +26,7 @@ constexpr BoundField kTeamFields[] = {
     {"reachable_score", "number", "score of all reachable views"},
     {"evaluations", "integer", "evaluations of the score"},
     {"iterations", "integer", "iterations of the solver"},
+    {"missed", "integer[]", "pinned views that are on none of the tours, by their numbers"},
     {"tours", "lapwing.tour[]", "one for each that was asked for; none if nothing was found"}};
 
 int team_field(lua_State* state) {
@@ -43,6 +44,12 @@ int team_field(lua_State* state) {
   fields.set("upper_bound",
              std::isfinite(team.report.upper_bound) ? Value(team.report.upper_bound) : Value());
   fields.set("gap", team.report.gap);
+  Value& missed = fields.set("missed", Value::list());
+  std::vector<std::vector<int>> walks;
+  for (const TourObject& tour : team.tours) walks.push_back(tour.walk);
+  if (!team.tours.empty())
+    for (const int number : pinned_views_missed(*team.tours.front().work, walks))
+      missed.push_back(std::int64_t{number});
   return push_field(state, "a team", field, fields, kTeamFields);
 }
 
@@ -154,9 +161,11 @@ int solve_team_of_run(lua_State* state) {
     if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     team.report = result.report;
     team.reachable = problem.reachable();
+    take_out_pinned(*work, result.walks, team.reachable, team.report);
     for (std::size_t i = 0; i < result.walks.size(); ++i) {
       const TourProblem& tour = problem.tour(static_cast<int>(i));
       TourReport report = report_of_tour(team.report, tour, result.walks[i], problem.size());
+      take_out_pinned(*work, {result.walks[i]}, tour.reachable(), report);
       team.tours.push_back(
           {work, chosen.type, tour.budget(), std::move(report), std::move(result.walks[i])});
     }

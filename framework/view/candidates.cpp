@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/view/candidates.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -244,8 +245,9 @@ class Generator {
   void look_around() {
     looks_.assign(places_.size(), {});
     for (int k = 0; k < made_.given; ++k) looks_[static_cast<std::size_t>(k)].push_back(k);
-    std::vector<std::size_t> open(places_.size());
-    std::iota(open.begin(), open.end(), std::size_t{0});
+    std::vector<std::size_t> open;
+    for (std::size_t place = 0; place < places_.size(); ++place)
+      if (!is_viewless(s_.viewless, places_[place])) open.push_back(place);
     for (int round = 0; !open.empty() && !full(); ++round) {
       std::vector<std::size_t> still;
       for (const std::size_t place : open) {
@@ -287,7 +289,7 @@ class Generator {
       const Vector3d p(random_.uniform(low.x(), high.x()), random_.uniform(low.y(), high.y()),
                        random_.uniform(low.z(), high.z()));
       const Viewpoint viewpoint = looking_from(p);
-      bool taken = !allowed(p);
+      bool taken = !allowed(p) || is_viewless(s_.viewless, p);
       for (std::size_t k = 0; k < made_.viewpoints.size() && !taken; ++k)
         taken = (made_.viewpoints[k].position - p).norm() < s_.distance_apart &&
                 angle_between(made_.viewpoints[k], viewpoint) < s_.angle_apart;
@@ -351,6 +353,12 @@ class Generator {
 };
 
 }  // namespace
+
+bool is_viewless(const std::vector<ViewlessBall>& balls, const Vector3d& place) {
+  return std::any_of(balls.begin(), balls.end(), [&](const ViewlessBall& ball) {
+    return (place - ball.middle).norm() <= ball.radius;
+  });
+}
 
 Candidates generate_candidates(const FreeSpace& space, const std::vector<Viewpoint>& given,
                                const CandidateSettings& settings, std::uint64_t seed,

@@ -18,6 +18,12 @@ struct ViewAim {
   double share = 1;  // above 0, in any unit
 };
 
+// Where no view is taken.
+struct ViewlessBall {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  double radius = 1;  // m
+};
+
 struct CandidateSettings {
   Eigen::AlignedBox3d region;          // of interest, all of it
   std::vector<ViewAim> aims = {};      // empty: views look at all of the region
@@ -31,6 +37,7 @@ struct CandidateSettings {
   // The camera's own limits (thesis: a gimbal that does not look up).
   double pitch_min = -1.5707963267948966, pitch_max = 0;  // rad
   int most = 5000;
+  std::vector<ViewlessBall> viewless = {};  // the given viewpoints may lie there
   int directions = 3;             // of each place, where there is room for so many within `most`
   int least = 0;                  // where growing finds fewer, free places are drawn as well
   int most_failed_draws = 10000;  // of those, in a row
@@ -51,6 +58,9 @@ struct Candidates {
 // normal error as wide as half the angle that its box takes. A pitch beyond the camera's limits is
 // drawn again. The same seed gives the same candidates.
 //
+// Whether a place lies in one of the balls.
+bool is_viewless(const std::vector<ViewlessBall>& balls, const Eigen::Vector3d& place);
+
 // InputError: no given viewpoint, one whose box is not free or lies outside `allowed` (naming it),
 // an empty region, settings that make no sense. Cancelled when told to stop.
 Candidates generate_candidates(const FreeSpace& space, const std::vector<Viewpoint>& given,

@@ -149,6 +149,51 @@ ViewScore additive_score(std::span<const double> scores) {
   return result;
 }
 
+namespace {
+
+// Voxels of this capacity, that one view alone tells of, are its bonus.
+constexpr Amount kBonusCapacity = Amount{1} << 30;
+
+std::size_t bonus_voxels(const ViewScore& score) {
+  const double total = std::accumulate(score.capacities().begin(), score.capacities().end(), 0.0);
+  return static_cast<std::size_t>(total / kBonusCapacity) + 1;
+}
+
+}  // namespace
+
+double bonus_over(const ViewScore& score) {
+  return static_cast<double>(bonus_voxels(score)) * kBonusCapacity * score.unit();
+}
+
+ViewScore with_bonus(const ViewScore& score, std::span<const int> views) {
+  const std::size_t each = bonus_voxels(score);
+  ViewScore result;
+  result.unit_ = score.unit_;
+  result.capacities_ = score.capacities_;
+  result.capacities_.resize(score.voxels() + each * views.size(), kBonusCapacity);
+  result.voxels_.reserve(score.voxels_.size() + each * views.size());
+  result.amounts_.reserve(result.voxels_.capacity());
+  std::size_t next = 0;
+  for (int view = 0; view < score.views(); ++view) {
+    const auto voxels = score.voxels_of(view);
+    const auto amounts = score.amounts_of(view);
+    result.voxels_.insert(result.voxels_.end(), voxels.begin(), voxels.end());
+    result.amounts_.insert(result.amounts_.end(), amounts.begin(), amounts.end());
+    std::int64_t alone = score.alone_[static_cast<std::size_t>(view)];
+    if (next < views.size() && views[next] == view) {
+      for (std::size_t k = 0; k < each; ++k) {
+        result.voxels_.push_back(static_cast<std::uint32_t>(score.voxels() + each * next + k));
+        result.amounts_.push_back(kBonusCapacity);
+        alone += kBonusCapacity;
+      }
+      ++next;
+    }
+    result.first_.push_back(result.voxels_.size());
+    result.alone_.push_back(alone);
+  }
+  return result;
+}
+
 ScoreState::ScoreState(const ViewScore& score)
     : score_(&score), seen_(score.voxels(), 0), included_(score.views(), 0) {}
 

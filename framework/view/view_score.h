@@ -44,6 +44,7 @@ class ViewScore {
  private:
   friend class ViewScoreBuilder;
   friend ViewScore additive_score(std::span<const double> scores);
+  friend ViewScore with_bonus(const ViewScore& score, std::span<const int> views);
   std::vector<std::size_t> first_{0};
   std::vector<std::uint32_t> voxels_;
   std::vector<Amount> amounts_;
@@ -81,6 +82,11 @@ class ViewScoreBuilder {
 // A score per view that does not depend on the others: at least 0 and finite; whole numbers below
 // 2^30 stay exact.
 ViewScore additive_score(std::span<const double> scores);
+
+// The same, but that each of `views`, ascending, counts more than everything that there is to see: a
+// set that holds one more of them is always better. What one counts more is `bonus_over`.
+ViewScore with_bonus(const ViewScore& score, std::span<const int> views);
+double bonus_over(const ViewScore& score);
 
 // The score of a growing and shrinking set of views, evaluated step by step. Every look at a view's
 // voxels counts as one evaluation: a gain, a loss, an adding, a removing. Copyable.

@@ -25,6 +25,7 @@ local tiles = require "mission.scan_tiles"
 local tours = require "mission.scan_tours"
 local usable = require "mission.scan_usable"
 local views = require "mission.scan_views"
+local wishes = require "mission.scan_wishes"
 local words = require "mission.scan_words"
 local zones = require "mission.scan_zones"
 local DECLARATIONS = require "mission.scan_options"
@@ -76,7 +77,7 @@ local function graph_of(run, known, vehicle, starts, finish)
   graph.needed = (o.start or o.finish or #o.fleet.starts > 0 or o.exploration.images > 0) and finish
     or 0
   graph.fixed = o.start ~= nil or #o.fleet.starts > 0 or o.exploration.images > 0
-  return run:scan_graph(views.settle(run, graph))
+  return run:scan_graph(wishes.settle(run, views.settle(run, graph)))
 end
 
 -- What the mission was asked for, and what could have been had.
@@ -108,6 +109,7 @@ local function solved(run, graph, finish, budget)
     if run:cancelled() and initial then return initial, spent end
     refuse(run, graph, tour, budget)
   end
+  wishes.require_all(run, tour, graph, string.format("of %.4g s", budget))
   return tour, spent + tour.evaluations
 end
 
@@ -153,6 +155,7 @@ local function planned(run)
   local in_passing = smooth.check(run, vehicle)
   passing.check(run, vehicle, in_passing)
   views.check(run, in_passing)
+  wishes.check(run, in_passing)
   exploration.check(run)
   fleet.check(run, vehicle, in_passing)
   tiles.check(run, in_passing)

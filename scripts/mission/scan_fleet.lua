@@ -6,6 +6,7 @@ local first = require "mission.scan_first"
 local patterns = require "mission.scan_patterns"
 local space = require "mission.scan_space"
 local tours = require "mission.scan_tours"
+local wishes = require "mission.scan_wishes"
 local words = require "mission.scan_words"
 local zones = require "mission.scan_zones"
 
@@ -223,6 +224,7 @@ function M.plan(run, graph, vehicle, known, explored, begin)
       return solved(run, graph, budget, count)
     end, batteries)
     batteries = #team.tours
+    wishes.require_all(run, team, graph, string.format("of %d of %.4g s", batteries, budget))
     local plans, drones, longest = flown(run, vehicle, team, asked, begin, shared)
     shared = plans[1]
     -- Corners and rests may take a little more than the legs one by one.

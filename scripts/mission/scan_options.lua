@@ -8,6 +8,7 @@ local regions = require "mission.scan_regions"
 local site = require "mission.scan_site"
 local tiles = require "mission.scan_tiles"
 local views = require "mission.scan_views"
+local wishes = require "mission.scan_wishes"
 local zones = require "mission.scan_zones"
 
 local function number(name, default, unit, summary, more)
@@ -186,7 +187,8 @@ local DECLARATIONS = {
         "solver whose tour local_search improves, or none; absent: cost_benefit" } } },
 }
 
-for _, list in ipairs { regions.DECLARATIONS, zones.DECLARATIONS, fleet.DECLARATIONS } do
+for _, list in ipairs { regions.DECLARATIONS, zones.DECLARATIONS, wishes.DECLARATIONS,
+                        fleet.DECLARATIONS } do
   table.move(list, 1, #list, #DECLARATIONS + 1, DECLARATIONS)
 end
 
