@@ -51,6 +51,27 @@ TEST(Candidates, AreFreeAllowedApartAndLookDown) {
   }
 }
 
+// A ball without views is grown through all the same.
+TEST(Candidates, NoneLieWhereViewsAreForbidden) {
+  CandidateSettings s = candidate_settings();
+  const auto in_ball = [](const Candidates& made) {
+    int count = 0;
+    for (const Viewpoint& v : made.viewpoints)
+      count += (v.position - Vector3d(0, 0, 5)).norm() <= 4;
+    return count;
+  };
+  EXPECT_GT(in_ball(generate(s)), 5);
+  s.viewless = {{Vector3d(0, 0, 5), 4}};
+  const Candidates made = generate(s);
+  EXPECT_EQ(in_ball(made), 0);
+  int beyond = 0;
+  for (const Viewpoint& v : made.viewpoints) beyond += v.position.x() > 6;
+  EXPECT_GT(beyond, 20);
+  // The one to begin with stays.
+  s.viewless = {{kStart[0].position, 1}};
+  EXPECT_EQ(generate(s).viewpoints[0].position, kStart[0].position);
+}
+
 TEST(Candidates, BehindTheWallAreReachedRoundIt) {
   int behind = 0;
   for (const Viewpoint& v : generate(candidate_settings()).viewpoints) behind += v.position.x() > 6;
