@@ -15,6 +15,10 @@ const options = ["--config", "scan/small", "--set", "resolution=1", "--set", "to
 // What the page says must be what the run says.
 const words = (page) => page.$eval("#scan-words", (e) => e.textContent);
 
+// Whether the plan has a view there.
+const taken = (page, place) => page.evaluate((at) => window.lapwing.views.some((view) =>
+  Math.hypot(...view.position.map((v, i) => v - at[i])) < 1e-3), place);
+
 export const scan = (browser, shot) => served(browser, shot, {
   name: "a scan with the studio's own server", picture: "scan",
   script: "examples/scan/church.lua", options,
@@ -89,6 +93,47 @@ export const scan = (browser, shot) => served(browser, shot, {
   const world = await centreOf(page, "#world");
   await page.mouse.click(world.x, world.y);
   await page.waitForFunction(() => /image|region/.test(document.querySelector("#notes").textContent));
+  // A view is pinned, and dragged by keyboard; another one is forbidden.
+  const next = (await studioState(page)).revision;
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("Home");
+  await page.keyboard.press("]");
+  assert.match(await page.$eval("#view-words", (e) => e.textContent), /^View 2 of/);
+  await page.click("#view-pin");
+  await waitRevision(page, next + 1);
+  const [pin] = (await studioState(page)).document.pinned;
+  assert.equal(pin.position.length, 3);
+  await waitGrade(page, "certified", PLANNED);
+  assert.ok(await taken(page, pin.position), "the plan takes the pinned view");
+  await page.click('#site-list [data-key="pinned-0"]');
+  await page.keyboard.press("ArrowRight");
+  await waitRevision(page, next + 2);
+  const [moved] = (await studioState(page)).document.pinned;
+  assert.ok(Math.abs(moved.position[0] - pin.position[0] - 0.5) < 1e-9);
+  await waitGrade(page, "certified", PLANNED);
+  assert.ok(await taken(page, moved.position), "the plan takes it where it was dragged to");
+  await picture("scan_06_pinned");
+  await page.keyboard.press("Escape");
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("End");
+  await page.click("#view-forbid");
+  await waitRevision(page, next + 3);
+  assert.equal((await studioState(page)).document.forbidden.length, 1);
+  await page.click("#undo");
+  await waitRevision(page, next + 4);
+  // Two batteries: two tours, and the second is looked at.
+  await type(page, '#flights [data-key="batteries"]', "2");
+  await waitRevision(page, next + 5);
+  await waitGrade(page, "certified", PLANNED);
+  assert.equal((await page.$$("#tour-list .tour")).length, 2);
+  const shown = await page.$eval("#view-words", (e) => e.textContent);
+  await page.click('#tour-list [data-key="tour-1"]');
+  await page.waitForFunction((was) => document.querySelector("#view-words").textContent !== was, {}, shown);
+  await picture("scan_07_tours");
+  await page.click("#undo");
+  await waitRevision(page, next + 6);
+  await waitGrade(page, "certified", PLANNED);
+  assert.ok(await page.$eval("#tours", (e) => e.hidden));
   // The report is the run's, to the digit.
   await page.click("#report");
   await page.waitForFunction(() => /Written/.test(document.querySelector("#notes").textContent),

@@ -15,11 +15,13 @@ import type { Notices } from "./panel/notices";
 import { remember } from "./panel/notices";
 import type { PaintingPanel } from "./panel/painting_panel";
 import type { RaceGamePanel } from "./panel/race_game";
+import type { ScanPanel } from "./panel/scan_panel";
 
 export interface Parts {
   exploration: ExplorationPanel;
   painting: PaintingPanel;
   game: RaceGamePanel;
+  scan: ScanPanel;
   studio: Studio;
   selected: Selected;
   list: FilmList;
@@ -88,7 +90,7 @@ export class Actions {
       undo: "undo", redo: "redo", fly: "fly", export: "export", report: "report", theme: "theme",
       help: "help", place: "place", insert: "insert", "add-subject": "subject", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
       frame: "frame", play: "play", cut: "cut", draw: "draw", margins: "margins", compare: "compare",
-      "map": "map", "place-gate": "place", "add-gate": "insert", "race-it": "race",
+      "map": "map", "place-gate": "place", "add-gate": "insert", "race-it": "race", "place-start": "place",
     };
     for (const [id, action] of Object.entries(simple)) {
       byId(id).addEventListener("click", () => this.run(action, ""));
@@ -136,7 +138,9 @@ export class Actions {
       case "ends": studio.seek(key === "Home" ? 0 : studio.duration); return true;
       case "speed": studio.setRate({ 1: 0.5, 2: 1, 3: 2 }[key] as Rate); return true;
       case "choose":
-        if (!parts.exploration.step(key === "[" ? -1 : 1)) this.choose(key === "[" ? -1 : 1);
+        if (!parts.exploration.step(key === "[" ? -1 : 1) && !parts.scan.step(key === "[" ? -1 : 1)) {
+          this.choose(key === "[" ? -1 : 1);
+        }
         return true;
       case "move": return this.arrow(key, size, shift);
       case "lift": return this.moveSelected([0, 0, key === "PageUp" ? size : -size]);

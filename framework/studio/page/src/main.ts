@@ -162,7 +162,7 @@ const painting = new PaintingPanel(studio);
 const game = new RaceGamePanel(studio, new RaceView(studio, stage));
 const selected = new Selected(studio);
 new Actions({
-  studio, selected, list, notices, exploration, painting, game, exports: new ExportDialog(studio),
+  studio, selected, list, notices, exploration, painting, game, scan, exports: new ExportDialog(studio),
   flying: new FlyDialog(studio), help: new HelpDialog(), compare: new CompareDialog(studio),
   frame: () => navigation.frame(bounds()),
   keyframeHere: () => keyframeHere(studio, stage, pick),
@@ -314,6 +314,7 @@ Object.defineProperty(window, "lapwing", {
     onCurve: (time: number) => timeline.curvePlace(time),
     get eye() { return stage.worldCamera.position.toArray(); },
     get surface() { return scanned.triangles; },
+    get views() { return session.world.scan?.views ?? []; },
     get grown() { return explored.count; },
     get game() { return game.figures; },
     get farthest() { return stage.worldCamera.far; },

@@ -6,7 +6,7 @@ import { applied, valueAt } from "../src/state/document";
 import { addedCorner, corneredItem, deleted, entryOf, moved, nameOf, placeOfItem, type Edit } from
   "../src/state/edits";
 import { figuresInWords, predictionIn, shadeOf } from "../src/state/prediction";
-import { addedPolygon, aroundSite, frustum, prismLines, rectangle, regionsOf } from "../src/state/site";
+import { forbiddenView, pinnedView, pinOf, viewAtTime, viewsOf, addedPolygon, aroundSite, frustum, prismLines, rectangle, regionsOf } from "../src/state/site";
 import type { JsonObject, ScanWorld, Vec3 } from "../src/state/types";
 import { itemsOf } from "../src/view/pins";
 
@@ -36,6 +36,47 @@ test("polygons, ends and places have pins, and names", () => {
   assert.equal(nameOf(site, { kind: "place", index: 1 }), "home");
   assert.deepEqual(placeOfItem(site, { kind: "place", index: 0 }), [1, 2, 20]);
   assert.equal(entryOf(bare, { kind: "place", index: 0 }), null);
+});
+
+const views = [0, 10, 20].map((time) => ({ time, position: [time, 1.23456, 5] as Vec3, yaw: -Math.PI / 2,
+                                         pitch: -0.5, matching: false }));
+
+test("a view is pinned as the plan has it, moved, let go, or forbidden", () => {
+  const [view] = views;
+  assert.ok(view);
+  assert.equal(pinOf(site, view), -1);
+  const pinned = after(site, pinnedView(site, view));
+  assert.deepEqual(pinned.pinned, [{ position: [0, 1.235, 5], yaw_deg: -90, pitch_deg: -28.648 }]);
+  assert.equal(pinOf(pinned, view), 0);
+  const item = { kind: "pinned", index: 0 } as const;
+  assert.equal(nameOf(pinned, item), "pinned view 1");
+  assert.deepEqual(placeOfItem(pinned, item), [0, 1.235, 5]);
+  assert.ok(itemsOf(pinned, null).some(({ kind }) => kind === "pinned"));
+  const dragged = after(pinned, moved(pinned, item, [2, 2, 6]));
+  assert.deepEqual(valueAt(dragged, "pinned[1].position"), [2, 2, 6]);
+  assert.equal(pinOf(dragged, view), -1);
+  assert.deepEqual(after(pinned, pinnedView(pinned, view)).pinned, []);
+  assert.deepEqual(after(pinned, deleted(pinned, item)).pinned, []);
+  // What is forbidden is not pinned any more.
+  const without = after(pinned, forbiddenView(pinned, view));
+  assert.deepEqual([without.pinned, without.forbidden], [[], [{ position: [0, 1.235, 5], within: 1 }]]);
+});
+
+test("views are those of one tour, by the play head", () => {
+  const fleet = { views: [...views, ...views.map((view) => ({ ...view, tour: 1 }))] } as unknown as ScanWorld;
+  assert.equal(viewsOf(fleet, 1).length, 3);
+  assert.equal(viewsOf(fleet).length, 3);
+  assert.equal(viewAtTime(views, 0), 0);
+  assert.equal(viewAtTime(views, 12), 1);
+  assert.equal(viewAtTime([], 3), -1);
+});
+
+test("the start of an exploration is a place", () => {
+  const world: JsonObject = { lookahead: 1, start: [0, -30, 8] };
+  const start = { kind: "place", index: 0 } as const;
+  assert.deepEqual(itemsOf(world, null).filter(({ kind }) => kind === "place"), [start]);
+  assert.deepEqual(after(world, moved(world, start, [1, 2, 9])).start, [1, 2, 9]);
+  assert.equal(entryOf(world, { kind: "place", index: 1 }), null);
 });
 
 test("a region moves with both ends of its heights, by their own names", () => {

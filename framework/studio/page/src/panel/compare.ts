@@ -20,7 +20,7 @@ export class CompareDialog {
       const { kept, document } = studio;
       if (kept) studio.edit({ label: "Back to the kept version", patch: backTo(document, kept.document) });
     });
-    studio.on(["standing", "document", "kept"], () => { if (this.box.open) this.show(); });
+    studio.on(["standing", "document", "kept", "world"], () => { if (this.box.open) this.show(); });
   }
 
   // Keeps the film as it is now, the first time.
@@ -32,15 +32,16 @@ export class CompareDialog {
   }
 
   private keep(): void {
-    const { document, standing, plan } = this.studio;
-    this.studio.keep({ document, plan, certificate: standing.certificate,
+    const { document, standing, plan, session } = this.studio;
+    this.studio.keep({ document, plan, certificate: standing.certificate, world: session.world,
                        grade: standing.grade });
   }
 
   private show(): void {
-    const { kept, document, plan, standing } = this.studio;
+    const { kept, document, plan, standing, session } = this.studio;
     if (!kept) return;
-    const now: Version = { document, plan, certificate: standing.certificate };
+    const now: Version =
+      { document, plan, certificate: standing.certificate, world: session.world };
     const before = figuresOf(kept), after = figuresOf(now);
     const row = (figure: Figure, i: number): HTMLElement => el("tr", {},
       el("th", { scope: "row" }, figure.name), el("td", {}, told(figure)),

@@ -37,6 +37,10 @@ export class ExplorationPanel {
       if (time !== undefined) this.seek(time);
     });
     studio.on(["world", "time", "document"], () => this.show());
+    studio.on(["kept"], () => {
+      this.drawn = null;
+      this.show();
+    });
   }
 
   step(by: -1 | 1): boolean {
@@ -73,7 +77,9 @@ export class ExplorationPanel {
   }
 
   private chart(told: ExplorationWorld): void {
-    const most = Math.max(1, ...told.oracle, ...told.images.map((i) => i.observed));
+    const other = this.studio.kept?.world?.exploration;
+    const kept = other && other !== told ? other.images.map((i) => i.observed) : [];
+    const most = Math.max(1, ...told.oracle, ...kept, ...told.images.map((i) => i.observed));
     const images = Math.max(1, told.images.length);
     const curve = (values: number[], name: string): SVGElement => svg("polyline", {
       class: name, fill: "none",
@@ -83,6 +89,7 @@ export class ExplorationPanel {
     const chart = byId("growth-chart");
     chart.replaceChildren(
       ...(told.oracle.length > 0 ? [curve(told.oracle, "oracle")] : []),
+      ...(kept.length > 0 ? [curve(kept, "kept")] : []),
       curve(told.images.map((i) => i.observed), "observed"), this.head);
   }
 }

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scan as a list: regions, zones, where flights begin; and what its images will show, in the
 // figures of `lapwing run --json`.
-import { nameOf, corneredItem, sameItem, type Item } from "../state/edits";
+import { nameOf, corneredItem, sameItem, type Edit, type Item } from "../state/edits";
 import { isObject } from "../state/document";
 import { entries } from "../state/film";
 import { figureNames, type Figure } from "../state/prediction";
 import { pathOf } from "../state/samples";
-import { addedPolygon, aroundSite, boxOf, isSite, placeNames, placeOf, siteLists,
-         type PolygonKind } from "../state/site";
+import { addedPolygon, aroundSite, boxOf, forbiddenView, isSite, pinnedView, pinOf, placeNames, placeOf,
+         siteLists, viewAtTime, viewsOf, type PolygonKind } from "../state/site";
+import { fieldsOf } from "../state/schema";
 import { show } from "../state/units";
-import type { FleetTour, Json, ScanWorld, SurfaceHole, Vec3 } from "../state/types";
+import type { FleetTour, Json, JsonObject, ScanWorld, SurfaceHole, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import { byId, el, refill } from "../view/dom";
+import { Form } from "./form";
 
 const whys: Record<SurfaceHole["why"], string> = {
   not_chosen: "not chosen: no time left", zone: "only views that zones forbid",
@@ -21,6 +23,11 @@ const layers = ["views", "candidates", "first"] as const;
 
 export class ScanPanel {
   private shown = "";
+  private readonly flights = new Form((field, value) => {
+    const { path, label } = field;
+    this.studio.edit({ label: `Change ${label.toLowerCase()}`,
+                       patch: [value === null ? { path, remove: true } : { path, value }] });
+  });
   private tours: FleetTour[] = [];
   private tour = 0;
   // Where to look at, from the list of holes.
@@ -48,6 +55,13 @@ export class ScanPanel {
     }
     studio.on(["document", "selection", "world", "mode", "look"], () => this.show());
     studio.on(["document", "standing"], () => this.showTours());
+    studio.on(["document", "standing", "world", "time"], () => this.showView());
+    byId("view-back").addEventListener("click", () => this.step(-1));
+    byId("view-on").addEventListener("click", () => this.step(1));
+    byId("view-pin").addEventListener("click", () => this.wish(pinnedView));
+    byId("view-forbid").addEventListener("click", () => this.wish(forbiddenView));
+    byId("flights").append(this.flights.root);
+    studio.on(["document"], () => this.showFlights());
   }
 
   private get scan(): ScanWorld | undefined {
@@ -80,7 +94,8 @@ export class ScanPanel {
                                         String(studio.mode === "outline" && studio.outlined === kind));
     }
     const text = JSON.stringify([studio.selection, document.regions, document.region,
-      document.no_fly_zones, document.flight_zones, document.start ?? null, document.home ?? null,
+      document.no_fly_zones, document.flight_zones, document.pinned ?? null,
+      document.forbidden ?? null, document.start ?? null, document.home ?? null,
       this.scan?.prediction, this.scan?.areas, studio.look.figure]);
     if (text === this.shown) return;
     this.shown = text;
@@ -102,6 +117,10 @@ export class ScanPanel {
     }
     list("closed", "\u2298");
     list("zone", "\u25a1");
+    for (const [kind, mark] of [["pinned", "\u2691"], ["forbidden", "\u2715"]] as const) {
+      entries(document, kind).forEach((entry, index) => rows.push(this.row({ kind, index }, mark,
+        Array.isArray(entry.position) ? entry.position.map((v) => show(Number(v))).join(", ") : "")));
+    }
     placeNames.forEach((name, index) => {
       const place = placeOf(document, index);
       if (place) {
@@ -140,6 +159,48 @@ export class ScanPanel {
       this.hole(hole as unknown as SurfaceHole)));
   }
 
+  // What is flown with: how long, how often, by how many.
+  private showFlights(): void {
+    const { session, document } = this.studio;
+    if (!isSite(document)) return;
+    const asked = ["tour.budget", "batteries", "drones", "accuracy"];
+    this.flights.show(fieldsOf(session.schema, document).filter(({ path }) => asked.includes(path))
+      .map((field) => (field.path === "tour.budget" ? { ...field, label: "Seconds a tour" } : field))
+      .sort((a, b) => asked.indexOf(a.path) - asked.indexOf(b.path)));
+  }
+
+  // The view at the play head.
+  private get views(): ScanWorld["views"] {
+    return viewsOf(this.scan, this.studio.which.tour);
+  }
+
+  step(by: -1 | 1): boolean {
+    const { studio, views } = this;
+    if (views.length === 0) return false;
+    const at = viewAtTime(views, studio.time) + by;
+    studio.play(false);
+    studio.seek(views[Math.min(Math.max(at, 0), views.length - 1)]?.time ?? 0);
+    return true;
+  }
+
+  private wish(edit: (document: JsonObject, view: ScanWorld["views"][number]) => Edit): void {
+    const view = this.views[viewAtTime(this.views, this.studio.time)];
+    if (view) this.studio.edit(edit(this.studio.document, view));
+  }
+
+  private showView(): void {
+    const { studio, views } = this;
+    if (!isSite(studio.document)) return;
+    const at = viewAtTime(views, studio.time), view = views[at];
+    byId("view-now").hidden = !view;
+    if (!view) return;
+    byId("view-words").textContent = `View ${at + 1} of ${views.length}, ${
+      view.matching ? "there to match images" : "chosen for what it shows"}: ${
+      view.position.map((v) => show(v)).join(", ")} m, heading ${
+      show((view.yaw * 180) / Math.PI)}\u00b0, pitch ${show((view.pitch * 180) / Math.PI)}\u00b0`;
+    byId("view-pin").textContent = pinOf(studio.document, view) >= 0 ? "Let it go" : "Pin it";
+  }
+
   private showTours(): void {
     const { studio } = this;
     const { tours } = studio.session.standing();
@@ -153,11 +214,11 @@ export class ScanPanel {
   private tourRow({ name, start, plan }: FleetTour, k: number): HTMLElement {
     const { studio } = this;
     const views = (this.scan?.views ?? []).filter((view) => view.tour === k).length;
-    const more = `${views} images, ${show(start / 60)}\u2013${
-      show((start + (plan?.duration ?? 0)) / 60)} min`;
+    const time = `${show(start / 60)}\u2013${
+      show((start + (plan?.duration ?? 0)) / 60)} min`, more = `${views} images`;
     return el("li", {}, el("button", {
       type: "button", class: "item tour", "aria-pressed": String(k === studio.which.tour),
-      "data-key": `tour-${k}`, "aria-label": `${name}: ${more}`, title: "Show this tour",
+      "data-key": `tour-${k}`, "aria-label": `${name}: ${more}, ${time}`, title: `Show this tour: ${time} after the fleet begins`,
       onclick: () => studio.showTour(k),
     }, el("span", { class: "badge" }, String(k + 1)), el("span", { class: "what" }, name),
     el("span", { class: "when" }, more)));

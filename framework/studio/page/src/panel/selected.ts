@@ -74,6 +74,12 @@ export class Selected {
     const path = pathOfItem(document, item) ?? `subjects[${item.index + 1}]`;
     const place = placeOfItem(document, item);
     const fields = place ? placeFields(path, place) : [];
+    if (item.kind === "pinned" || item.kind === "forbidden") {
+      const declared = session.schema.find((o) => o.name === item.kind)?.table ?? [];
+      return [...fields, ...declared.filter((option) => option.type === "number").map((option): Field =>
+        ({ path: `${item.kind}[${item.index + 1}].${option.name}`, label: labelOf(option.name), option,
+           value: entry[option.name] ?? option.default, stated: entry[option.name] !== undefined }))];
+    }
     if (item.kind === "gate") {
       const declared = session.schema.find((o) => o.name === "gates")?.table ?? [];
       return [...fields, ...gateFields(item.index, entry, declared)];

@@ -2,13 +2,14 @@
 // Two versions of a film side by side: what is told of each.
 import { equal } from "./document";
 import { pathOf } from "./samples";
-import type { Certificate, JsonObject, Patch, Plan } from "./types";
+import type { Certificate, JsonObject, Patch, Plan, World } from "./types";
 import { distance } from "./vector";
 
 export interface Version {
   document: JsonObject;
   plan: Plan;
   certificate: Certificate | null;
+  world?: World;                // what it was planned on, of scans and explorations
 }
 
 export interface Figure {
@@ -22,7 +23,27 @@ const most = (list: number[]): number | null => {
   return known.length > 0 ? Math.max(...known) : null;
 };
 
-export function figuresOf({ plan, certificate }: Version): Figure[] {
+// Of what was seen.
+function seenBy({ scan, exploration }: World): Figure[] {
+  const figures: Figure[] = [];
+  if (exploration) {
+    const { images, surface, efficiency } = exploration;
+    const found = images[images.length - 1]?.observed ?? 0;
+    figures.push({ name: "Images", unit: "", value: images.length },
+                 { name: "Surface found", unit: "%", value: surface > 0 ? (100 * found) / surface : null },
+                 { name: "Efficiency", unit: "", value: efficiency });
+  }
+  if (scan) {
+    const area = (name: string): number | null =>
+      (typeof scan.areas[name] === "number" ? scan.areas[name] : null);
+    figures.push({ name: "Images", unit: "", value: scan.views.length },
+                 { name: "Surface seen", unit: "m\u00b2", value: area("seen") },
+                 { name: "Score", unit: "", value: scan.score[scan.score.length - 1] ?? null });
+  }
+  return figures;
+}
+
+export function figuresOf({ plan, certificate, world = {} }: Version): Figure[] {
   const c = plan.columns;
   const path = pathOf(c);
   const way = path.reduce((sum, p, i) => sum + (i > 0 ? distance(p, path[i - 1] as typeof p) : 0), 0);
@@ -32,6 +53,7 @@ export function figuresOf({ plan, certificate }: Version): Figure[] {
   const cost = plan.objective?.reduce((sum, part) => sum + part.cost, 0);
   const failed = certificate?.checks.filter((one) => !one.passed && one.required && !one.skipped);
   return [
+    ...seenBy(world),
     { name: "Duration", unit: "s", value: plan.duration },
     { name: "Way flown", unit: "m", value: way },
     { name: "Speed across", unit: "m/s", value: most(across("vx", "vy")) },

@@ -4,7 +4,7 @@
 import { entries, filmOf } from "./film";
 import { endNames, isCourse } from "./course";
 import { freeGround, lifted } from "./room";
-import { levelsOf, placeNames, placeOf, placePaths, polygonNames, prismOf, siteLists, isSite, boxOf, type PolygonKind } from "./site";
+import { levelsOf, placeNames, placeOf, placePaths, polygonNames, prismOf, siteLists, isSite, boxOf, isExplored, wishLists, wishNames, type PolygonKind, type WishKind } from "./site";
 import { cornersOf, flatCorners, handleOf, movedObstacle } from "./shapes";
 import type { Json, JsonObject, Patch, Vec3 } from "./types";
 import { add, minus, mix, rounded, vec } from "./vector";
@@ -15,7 +15,7 @@ export interface Edit {
 }
 
 export type Item =
-  | { kind: "keyframe" | "look" | "subject" | "obstacle" | PolygonKind | "gate"; index: number }
+  | { kind: "keyframe" | "look" | "subject" | "obstacle" | PolygonKind | WishKind | "gate"; index: number }
   | { kind: "end"; index: 0 | 1 }                 // where a race starts and finishes
   | { kind: "place"; index: number }              // where the flights of a scan begin, home
   | { kind: "extent"; index: 0 | 1 }              // the ends of the box that is scanned
@@ -34,9 +34,11 @@ const isSingle = (item: Item): item is Extract<Item, { kind: Single }> =>
 const extentNames = ["lower", "upper"] as const;
 const isPolygon = (kind: string): kind is PolygonKind => kind in siteLists;
 
+const isWish = (kind: string): kind is WishKind => kind in wishLists;
+
 const listNames: Record<Exclude<Item["kind"], "corner" | Single>, string> = {
   keyframe: "keyframes", look: "keyframes", subject: "subjects", obstacle: "obstacles",
-  track: "subjects", gate: "gates", ...siteLists,
+  track: "subjects", gate: "gates", ...siteLists, ...wishLists,
 };
 
 const listOf = (item: Exclude<Item, { kind: Single }>): string =>
@@ -49,7 +51,8 @@ export function entryOf(document: JsonObject, item: Item): JsonObject | null {
     return position && { position };
   }
   if (item.kind === "place") {
-    const position = isSite(document) ? placeOf(document, item.index) : null;
+    const placed = isSite(document) || (isExplored(document) && item.index === 0);
+    const position = placed ? placeOf(document, item.index) : null;
     return position && { position };
   }
   if (item.kind === "extent") {
@@ -79,6 +82,8 @@ export function nameOf(document: JsonObject, item: Item): string {
     case "place": return placeNames[item.index] ?? "place";
     case "extent": return `${extentNames[item.index]} end of the region`;
     case "gate": return name ? `gate ${name}` : `gate ${n}`;
+    case "pinned":
+    case "forbidden": return `${wishNames[item.kind]} ${n}`;
     case "keyframe": return `keyframe ${n}`;
     case "look": return `look-at point of keyframe ${n}`;
     case "subject": return name ? `subject ${name}` : `subject ${n}`;
@@ -100,7 +105,9 @@ export function pathOfItem(document: JsonObject, item: Item): string | null {
   if (item.kind === "place") return placePaths[item.index] ?? null;
   if (item.kind === "extent") return `region.${extentNames[item.index]}`;
   const list = `${listOf(item)}[${item.index + 1}]`;
-  if (item.kind === "keyframe" || item.kind === "gate") return `${list}.position`;
+  if (item.kind === "keyframe" || item.kind === "gate" || isWish(item.kind)) {
+    return `${list}.position`;
+  }
   if (item.kind === "look") return `${list}.look_at`;
   if (item.kind === "track") return `${list}.track[${item.point + 1}].position`;
   if (item.kind === "subject") {
@@ -112,7 +119,7 @@ export function pathOfItem(document: JsonObject, item: Item): string | null {
 export function placeOfItem(document: JsonObject, item: Item): Vec3 | null {
   const entry = entryOf(document, item);
   if (!entry) return null;
-  if (item.kind === "keyframe" || item.kind === "gate" || isSingle(item)) {
+  if (item.kind === "keyframe" || item.kind === "gate" || isWish(item.kind) || isSingle(item)) {
     return vec(entry.position);
   }
   if (item.kind === "look") return vec(entry.look_at);

@@ -14,7 +14,7 @@ export const bindings: Binding[] = [
   { group: "Play", keys: ["Home", "End"], action: "ends", text: "To the start, to the end" },
   { group: "Play", keys: ["1", "2", "3"], action: "speed", text: "Half, real, double speed" },
   { group: "Keyframes", keys: ["[", "]"], action: "choose",
-    text: "Select the keyframe or gate before, after; of an exploration: the image" },
+    text: "Select the keyframe or gate before, after; of an exploration: the image, of a scan: the view" },
   { group: "Keyframes", keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], action: "move",
     text: "Move what is selected west, east, north, south (Shift: small steps)" },
   { group: "Keyframes", keys: ["PageUp", "PageDown"], action: "lift",

@@ -23,6 +23,10 @@ export const levelsOf = (kind: PolygonKind): [string, string] =>
 export const placePaths = ["start", "home.position"] as const;
 export const placeNames = ["start", "home"] as const;
 
+// A world that is explored from a start.
+export const isExplored = (document: JsonObject): boolean =>
+  typeof document.lookahead === "number" && vec(document.start) !== null;
+
 export const isSite = (document: JsonObject): boolean => Array.isArray(document.regions);
 
 export function placeOf(document: JsonObject, index: number): Vec3 | null {
@@ -35,6 +39,66 @@ export function boxOf(document: JsonObject): { lower: Vec3; upper: Vec3 } | null
   if (!isObject(document.region)) return null;
   const lower = vec(document.region.lower), upper = vec(document.region.upper);
   return lower && upper ? { lower, upper } : null;
+}
+
+// ---- single views --------------------------------------------------------------------------------
+
+// Lists of what is wanted of single views.
+export const wishLists = { pinned: "pinned", forbidden: "forbidden" } as const;
+export type WishKind = keyof typeof wishLists;
+export const wishNames: Record<WishKind, string> =
+  { pinned: "pinned view", forbidden: "place without views" };
+
+type View = ScanWorld["views"][number];
+const SAME = 2e-3;      // m, and degrees
+
+const degrees = (radians: number): number => {
+  const turn = Math.round((radians * 180_000) / Math.PI) / 1000;
+  return turn > 180 ? turn - 360 : turn;
+};
+
+// The wish that a view is pinned by, or -1.
+export function pinOf(document: JsonObject, view: View): number {
+  return entries(document, "pinned").findIndex((entry) => {
+    const place = vec(entry.position);
+    return place !== null && Math.hypot(...place.map((v, i) => v - (view.position[i] as number))) < SAME &&
+      Math.abs(Number(entry.yaw_deg) - degrees(view.yaw)) < SAME &&
+      Math.abs(Number(entry.pitch_deg) - degrees(view.pitch)) < SAME;
+  });
+}
+
+// A view as the plan has it becomes a wish, or is one no more.
+export function pinnedView(document: JsonObject, view: View): Edit {
+  const list = entries(document, "pinned"), had = pinOf(document, view);
+  if (had >= 0) {
+    return { label: "Let the view go",
+             patch: [{ path: "pinned", value: list.filter((_, i) => i !== had) }] };
+  }
+  return { label: "Pin the view", patch: [{ path: "pinned", value: [...list, {
+    position: view.position.map((v) => Math.round(v * ROUND) / ROUND),
+    yaw_deg: degrees(view.yaw), pitch_deg: degrees(view.pitch) }] }] };
+}
+
+// No view is taken within a metre of it any more; a pin there would contradict.
+export function forbiddenView(document: JsonObject, view: View): Edit {
+  const had = pinOf(document, view);
+  const patch: Patch = [{ path: "forbidden", value: [...entries(document, "forbidden"), {
+    position: view.position.map((v) => Math.round(v * ROUND) / ROUND), within: 1 }] }];
+  if (had >= 0) {
+    patch.push({ path: "pinned", value: entries(document, "pinned").filter((_, i) => i !== had) });
+  }
+  return { label: "Take no view there", patch };
+}
+
+// The views of a tour in their order, and the one that was taken last at a time.
+export function viewsOf(scan: ScanWorld | undefined, tour?: number): View[] {
+  return (scan?.views ?? []).filter((view) => (view.tour ?? 0) === (tour ?? 0));
+}
+
+export function viewAtTime(views: View[], time: number): number {
+  let at = 0;
+  views.forEach((view, k) => { if (view.time <= time + 0.05) at = k; });
+  return views.length > 0 ? at : -1;
 }
 
 // As a prism of the world, with open ends left out; null where the page cannot know its corners.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clicks in the world: on the path, on an obstacle, on the ground, by the mode of the page.
 import * as THREE from "three";
-import { appended, inserted, lookedAt } from "../state/edits";
+import { appended, inserted, lookedAt, moved, placeOfItem, type Item } from "../state/edits";
 import { entries } from "../state/film";
-import { addedPolygon, rectangle } from "../state/site";
+import { addedPolygon, isExplored, rectangle } from "../state/site";
 import { withStroke } from "../state/shots";
 import { pathOf, positionAt } from "../state/samples";
 import type { Vec3 } from "../state/types";
@@ -188,6 +188,15 @@ export class Pick {
     const hit = this.surfaceAt(event);
     if (!hit) return;
     if (studio.course) return this.onGate?.(hit);
+    if (isExplored(studio.document)) {
+      const start: Item = { kind: "place", index: 0 };
+      const height = placeOfItem(studio.document, start)?.[2] ?? HEIGHT;
+      studio.setMode("orbit");
+      if (studio.edit(moved(studio.document, start, [hit[0], hit[1], Math.max(height, hit[2] + HEIGHT)]))) {
+        studio.select(start);
+      }
+      return;
+    }
     const last = studio.film.keyframes[studio.film.keyframes.length - 1];
     const at: Vec3 = [hit[0], hit[1], last ? last.position[2] : HEIGHT];
     if (hit[2] > at[2] - 1) at[2] = hit[2] + HEIGHT;

@@ -6,7 +6,7 @@ import { corneredItem, entryOf, moved, nameOf, placeOfItem, sameItem, type Item 
   "../state/edits";
 import { isObject } from "../state/document";
 import { entries } from "../state/film";
-import { isSite, siteLists, type PolygonKind } from "../state/site";
+import { isExplored, isSite, siteLists, wishLists, type PolygonKind, type WishKind } from "../state/site";
 import { cornersOf } from "../state/shapes";
 import type { JsonObject, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
@@ -37,6 +37,10 @@ export function itemsOf(document: JsonObject, selection: Item | null): Item[] {
   for (const kind of ["region", "closed"] as const) {
     entries(document, siteLists[kind]).forEach((_, index) => items.push({ kind, index }));
   }
+  for (const kind of Object.keys(wishLists) as WishKind[]) {
+    entries(document, wishLists[kind]).forEach((_, index) => items.push({ kind, index }));
+  }
+  if (isExplored(document)) items.push({ kind: "place", index: 0 });
   if (isSite(document)) {
     for (const index of [0, 1] as const) {
       items.push({ kind: "place", index });
@@ -69,7 +73,7 @@ const keyOfItem = (item: Item): string => `${item.kind}-${item.index}${
 const glyphs: Record<Item["kind"], string> = {
   keyframe: "", look: "\u25ce", subject: "\u25b2", obstacle: "\u25a0", track: "\u2022",
   zone: "\u25a1", corner: "\u25c6", gate: "", end: "", region: "\u25a3", closed: "\u2298",
-  place: "", extent: "\u25c7",
+  place: "", extent: "\u25c7", pinned: "\u2691", forbidden: "\u2715",
 };
 
 const textOf = (item: Item): string =>

@@ -5,7 +5,7 @@ import * as THREE from "three";
 import { figuresInWords, predictionIn, shadeOf, type Prediction } from "../state/prediction";
 import { baked } from "./solids";
 import { pathOf } from "../state/samples";
-import { frustum, isSite, prismLines, regionsOf } from "../state/site";
+import { frustum, isSite, prismLines, regionsOf, viewAtTime, viewsOf } from "../state/site";
 import type { ScanWorld, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import { Ribbon } from "./ribbon";
@@ -19,6 +19,7 @@ export class ScanView {
   private readonly region = new Ribbon("solid", 2);
   private readonly views = new Ribbon("thin", 3);
   private readonly first = new Ribbon("dotted", 2);
+  private readonly now = new Ribbon("solid", 3);     // the view at the play head
   private readonly others = new Ribbon("thin", 2);   // tours beside the one that is shown
   private readonly candidates = new THREE.Points(
     new THREE.BufferGeometry(),
@@ -33,7 +34,7 @@ export class ScanView {
   onSurface: () => void = () => undefined;
 
   constructor(private readonly studio: Studio, private readonly stage: Stage) {
-    for (const ribbon of [this.region, this.views, this.first, this.others]) {
+    for (const ribbon of [this.region, this.views, this.first, this.others, this.now]) {
       stage.tools.add(ribbon.mesh);
       stage.onResize((width, height) => ribbon.resize(width, height));
     }
@@ -45,6 +46,7 @@ export class ScanView {
     studio.on(["document", "world", "look"], () => this.draw());
     studio.on(["look"], () => this.paint());
     studio.on(["standing"], () => this.drawTours());
+    studio.on(["standing", "world", "time", "look"], () => this.drawNow());
     this.paint();
   }
 
@@ -87,6 +89,7 @@ export class ScanView {
     this.views.paint(palette.ink, 0.8);
     this.first.paint(palette.step);
     this.others.paint(palette.converged, 0.7);
+    this.now.paint(palette.chosen);
     this.candidates.material.color.set(palette.guess);
     this.tint();
     this.stage.invalidate();
@@ -110,6 +113,16 @@ export class ScanView {
         Float32Array.from(scan.candidates.flat()), 3));
     }
     this.fetch(scan?.surface ?? "");
+    this.stage.invalidate();
+  }
+
+  private drawNow(): void {
+    const { scan, studio } = this;
+    const views = viewsOf(scan, studio.which.tour);
+    const view = views[viewAtTime(views, studio.time)];
+    const size = this.bounds().getSize(new THREE.Vector3()).length();
+    this.now.setRuns(scan && view && studio.look.views
+      ? frustum(view.position, view.yaw, view.pitch, scan.image, 1.5 * DEEP * size) : [], 1);
     this.stage.invalidate();
   }
 
