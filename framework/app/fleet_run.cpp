@@ -45,10 +45,9 @@ JudgedRun judge_run(MissionResult& result, bool cancelled, const Judges& judges)
     members.push_back(
         {&fleet.tours[t].plan, &judged.certificates[t], fleet.document.tours[t].sha256});
   const ConfigurationComparison compared = compare_fleet(fleet.document, plans_of(fleet));
-  judged.certificate = verify_fleet(fleet.document, members, nullptr,
-                                    {.folder = result.obstacle_folder,
-                                     .cancellation = judges.cancellation},
-                                    compared.faults);
+  judged.certificate = verify_fleet(
+      fleet.document, members, nullptr,
+      {.folder = result.obstacle_folder, .cancellation = judges.cancellation}, compared.faults);
   fleet.document.certificate = judged.certificate.to_value();
   judged.status = status_of(result, judged.certificate, cancelled);
   if (judged.status == "cancelled") fleet.document.solver.set("cancelled", true);
@@ -179,7 +178,7 @@ ExitStatus finish_fleet(const FleetOutcome& outcome, const Invocation& invocatio
   outcome.progress.begin("certificate");
   const JudgedRun judged =
       judge_run(outcome.result, outcome.cancellation.cancelled(),
-                  {.progress = &outcome.progress, .controllers = controllers_of(invocation)});
+                {.progress = &outcome.progress, .controllers = controllers_of(invocation)});
   outcome.progress.begin("files");
   outcome.progress.report(-1, "");
   write_files(outcome, judged, registry, capture);

@@ -14,13 +14,18 @@ namespace {
 
 // Options of the first flight, of candidates, which the views replace, and of several batteries:
 // the rest is one tour.
-const std::set<std::string> kLeftOut{
-    "scene",   "scene_seed", "scene_districts", "input",          "ground",  "unit",   "up",
-    "prior",   "flights",    "noise",           "exploration",    "utility", "folder", "images",
-    "colmap",  "cloud",      "terrain",         "surface",        "rounds",  "start",  "candidates",
-    "motions", "resolution", "passing",         "views",          "region",  "finish", "batteries",
-    "drones",  "fleet",      "accuracy",        "accuracy_share", "city",    "tiles",
-    "pinned",  "forbidden"};
+const std::set<std::string> kLeftOut{"scene",     "scene_seed",     "scene_districts",
+                                     "input",     "ground",         "unit",
+                                     "up",        "prior",          "flights",
+                                     "noise",     "exploration",    "utility",
+                                     "folder",    "images",         "colmap",
+                                     "cloud",     "terrain",        "surface",
+                                     "rounds",    "start",          "candidates",
+                                     "motions",   "resolution",     "passing",
+                                     "views",     "region",         "finish",
+                                     "batteries", "drones",         "fleet",
+                                     "accuracy",  "accuracy_share", "city",
+                                     "tiles",     "pinned",         "forbidden"};
 const std::set<std::string> kKeywords{"and",   "break", "do",       "else", "elseif", "end",
                                       "false", "for",   "function", "goto", "if",     "in",
                                       "local", "nil",   "not",      "or",   "repeat", "return",

@@ -26,9 +26,9 @@ struct FleetObject {
   std::vector<PlanObject> plans;
   SolveReport report;
   std::string solver;
-  std::vector<std::string> notes;  // sentences for the user
-  std::vector<std::string> told;   // likewise, that stand in no plan
-  Value block;                     // figures, for --json
+  std::vector<std::string> notes;               // sentences for the user
+  std::vector<std::string> told;                // likewise, that stand in no plan
+  Value block;                                  // figures, for --json
   std::shared_ptr<const ScanRecord> scan = {};  // of all tours together
   // Of the report, once the mission has ended.
   std::function<std::vector<Section>()> late_sections;

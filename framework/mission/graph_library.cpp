@@ -145,8 +145,8 @@ ParameterTable flight_table() {
 
 ParameterTable ball_table() {
   ParameterTable table;
-  table.required_numbers("position", 3, "m", "middle, world").number("within", 1, "m", "radius",
-                                                                      above(0));
+  table.required_numbers("position", 3, "m", "middle, world")
+      .number("within", 1, "m", "radius", above(0));
   return table;
 }
 
@@ -155,7 +155,8 @@ ParameterTable graph_table() {
   table.table("region", region_table(), "region of interest")
       .table("allowed", box_table(), "box for the centre of the vehicle")
       .tables("pinned", viewpoint_table(), "views that every tour is to take; each must be free")
-      .tables("viewless", ball_table(), "balls where no view is taken; the needed starts may lie there")
+      .tables("viewless", ball_table(),
+              "balls where no view is taken; the needed starts may lie there")
       .tables("starts", viewpoint_table(), "places from which candidates grow, if they are free",
               true)
       .boolean("fixed", true,
@@ -408,8 +409,8 @@ int scan_graph_of_run(lua_State* state) {
   const ScanGraph& graph = work->graph;
   work->islands = ViewIslands(graph.candidates.viewpoints.size(), graph.motions.motions);
   if (!given.boolean("fixed"))
-    work->home = work->islands.best_start(graph.candidates.given -
-                                          static_cast<int>(work->pinned.size()));
+    work->home =
+        work->islands.best_start(graph.candidates.given - static_cast<int>(work->pinned.size()));
   log_graph("candidates", graph);
   new_object(state, kGraphType, GraphObject{made.work});
   return 1;

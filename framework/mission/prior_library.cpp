@@ -404,9 +404,10 @@ int reconstruct(lua_State* state) {
   points.insert(points.end(), prior.earlier.begin(), prior.earlier.end());
   if (points.empty()) {
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "the first flight saw no surface within range = %.4g m: raise range, or fly lower",
-                  prior.fusion_options.range);
+    std::snprintf(
+        text, sizeof text,
+        "the first flight saw no surface within range = %.4g m: raise range, or fly lower",
+        prior.fusion_options.range);
     throw InputError(given.origin(), text);
   }
   TriangleMesh mesh;

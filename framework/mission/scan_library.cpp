@@ -53,8 +53,8 @@ void take_out_pinned(const ScanWork& work, const std::vector<std::vector<int>>& 
   report.reachable_score = std::max(0.0, report.reachable_score - (all - far) * bonus);
   // Tours that leave out a pinned view are none: of those that take all, this many are counted.
   if (std::isfinite(report.upper_bound))
-    report.upper_bound = std::max(report.score, std::min(report.upper_bound - (all - far) * bonus,
-                                                         report.reachable_score));
+    report.upper_bound = std::max(
+        report.score, std::min(report.upper_bound - (all - far) * bonus, report.reachable_score));
   report.gap = report.upper_bound > 0 && std::isfinite(report.upper_bound)
                    ? (report.upper_bound - report.score) / report.upper_bound
                    : 0;

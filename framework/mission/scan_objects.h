@@ -98,7 +98,8 @@ struct GraphObject {
 };
 
 // Of the pinned views those that no walk takes, by their numbers in `pinned`, from 1.
-std::vector<int> pinned_views_missed(const ScanWork& work, const std::vector<std::vector<int>>& walks);
+std::vector<int> pinned_views_missed(const ScanWork& work,
+                                     const std::vector<std::vector<int>>& walks);
 // Takes what pinned views count more out of a report about these walks.
 void take_out_pinned(const ScanWork& work, const std::vector<std::vector<int>>& walks,
                      const std::vector<int>& reachable, TourReport& report);

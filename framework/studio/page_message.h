@@ -31,8 +31,8 @@ const char* to_string(PageMessageType type);
 
 struct PageMessage {
   PageMessageType type = PageMessageType::hello;
-  std::string token, tab;               // hello
-  std::uint64_t seen = 0;               // hello
+  std::string token, tab;  // hello
+  std::uint64_t seen = 0;  // hello
   // Of gesture and what follows it one each; of `stick` that of its `race`.
   std::string id, label;
   std::uint64_t base = 0;               // revision
@@ -51,7 +51,7 @@ struct PageMessage {
   bool uncertified = false;
   Value players = Value::list();                   // race: names and numbers of each
   std::vector<std::array<double, 2>> sticks = {};  // of stick: forward and left, -1 to 1
-  std::size_t bytes = 0;  // of its text
+  std::size_t bytes = 0;                           // of its text
 };
 
 // Of a picture, each way.

@@ -251,8 +251,11 @@ void StudioSession::deliver(const Frame& frame) {
 // Keeps what may be flown, drawn and exported.
 void StudioSession::settle(const Frame& frame) {
   if (frame.parts.size() < 3 || frame.parts[2].empty()) return;
-  Settled settled{frame.parts[2], solve_->frame.header.at("layer"),
-                  solve_->revision.value_or(solve_->base), folder_of(frame), {}};
+  Settled settled{frame.parts[2],
+                  solve_->frame.header.at("layer"),
+                  solve_->revision.value_or(solve_->base),
+                  folder_of(frame),
+                  {}};
   for (std::size_t i = 8; i < frame.parts.size(); i += 3) settled.further.push_back(frame.parts[i]);
   if (solve_->revision) {
     settled_ = settled;

@@ -279,8 +279,7 @@ class StudioWorker {
       if (const std::string own = all_failures(verdict.tours[t]); !own.empty())
         failures += (failures.empty() ? "" : "; ") + name_of_tour(result.fleet->document.tours[t]) +
                     ": " + own;
-    tell_tours(result, &verdict,
-               failures.empty() ? AnswerGrade::certified : AnswerGrade::rejected,
+    tell_tours(result, &verdict, failures.empty() ? AnswerGrade::certified : AnswerGrade::rejected,
                failures.empty() ? notes : failures);
   }
 

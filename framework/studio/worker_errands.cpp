@@ -342,8 +342,7 @@ Frame WorkerErrands::save_report(const Frame& asked) const {
   const fs::path first = folder / (fleet ? fleet_plan_name(0) : "plan.json");
   Value files = Value::list(), loss = Value::list();
   // Both were planned by the same script from the beginning.
-  if (!asked.parts.empty() &&
-      trajectory_text(plan_in(asked)) != trajectory_text(read_plan(first)))
+  if (!asked.parts.empty() && trajectory_text(plan_in(asked)) != trajectory_text(read_plan(first)))
     loss.push_back(
         "the flight that was saved is another than the one on display: the script or a file that "
         "it "

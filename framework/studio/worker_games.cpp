@@ -123,8 +123,8 @@ Frame WorkerGames::begin(const Frame& asked, Plan plan) {
 
 Frame WorkerGames::stick(const Frame& asked) {
   const std::string& id = asked.header.at("id").as_text();
-  const auto found = std::find_if(games_.begin(), games_.end(),
-                                  [&](const Game& game) { return game.id == id; });
+  const auto found =
+      std::find_if(games_.begin(), games_.end(), [&](const Game& game) { return game.id == id; });
   if (found == games_.end())
     throw InputError("this game is gone: the process that flew it ended; race again");
   if (found->saved) throw InputError("this game is over");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Races that are flown by hand in a page: the working process flies them, stick by stick. Internal to
-// this room.
+// Races that are flown by hand in a page: the working process flies them, stick by stick. Internal
+// to this room.
 #pragma once
 
 #include <deque>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A race that is flown now: the sticks come piece by piece, and `lapwing race` makes the same flights
-// and scores of the logs that are left of them.
+// A race that is flown now: the sticks come piece by piece, and `lapwing race` makes the same
+// flights and scores of the logs that are left of them.
 #pragma once
 
 #include <vector>
@@ -16,15 +16,15 @@ struct RacePlayer {
 
 class LiveRace {
  public:
-  // Everyone at the start, sticks in the middle. Throws InputError as fly_race does, and where nobody
-  // flies by hand.
+  // Everyone at the start, sticks in the middle. Throws InputError as fly_race does, and where
+  // nobody flies by hand.
   LiveRace(const Trajectory& course, const std::vector<GateTask>& gates, const Vehicle& vehicle,
            std::vector<RacePlayer> players, const RaceRules& rules = {});
 
   // Flies everyone to `time`, s from the start, the sticks moving evenly to where they are then.
   // `sticks`: forward and left, -1 to 1, of each player who flies by hand. Throws InputError, and
-  // flies nothing, for a time that does not rise, a gap above StickLog::kLongestGap, another number of
-  // sticks, a stick beyond 1.
+  // flies nothing, for a time that does not rise, a gap above StickLog::kLongestGap, another number
+  // of sticks, a stick beyond 1.
   void advance(double time, const std::vector<Eigen::Vector2d>& sticks);
 
   double time() const { return time_; }

@@ -261,8 +261,8 @@ const Pilot& checked(const Pilot& pilot) {
 
 }  // namespace
 
-RaceInProgress::RaceInProgress(const Trajectory& course, const Vehicle& vehicle,
-                               const Pilot& pilot, const RaceFlightLimits& limits)
+RaceInProgress::RaceInProgress(const Trajectory& course, const Vehicle& vehicle, const Pilot& pilot,
+                               const RaceFlightLimits& limits)
     : inside_(std::make_unique<Inside>(course, vehicle, checked(pilot), limits)) {}
 RaceInProgress::~RaceInProgress() = default;
 RaceInProgress::RaceInProgress(RaceInProgress&&) noexcept = default;

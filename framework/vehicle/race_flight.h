@@ -89,10 +89,10 @@ class RaceInProgress {
   RaceInProgress& operator=(RaceInProgress&&) noexcept;
 
   bool ended() const;
-  double time() const;            // s, of the step that comes next
+  double time() const;             // s, of the step that comes next
   const BodyState& state() const;  // at that time
-  double progress() const;        // s, the plan's time of the place that was reached
-  double deviation() const;       // m, from it
+  double progress() const;         // s, the plan's time of the place that was reached
+  double deviation() const;        // m, from it
   // Flies one step with the stick as it is at its beginning; after the end nothing.
   void step(const StickSource& stick);
   // What was flown so far, the share of saturated time left out before the end.

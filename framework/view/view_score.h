@@ -83,8 +83,8 @@ class ViewScoreBuilder {
 // 2^30 stay exact.
 ViewScore additive_score(std::span<const double> scores);
 
-// The same, but that each of `views`, ascending, counts more than everything that there is to see: a
-// set that holds one more of them is always better. What one counts more is `bonus_over`.
+// The same, but that each of `views`, ascending, counts more than everything that there is to see:
+// a set that holds one more of them is always better. What one counts more is `bonus_over`.
 ViewScore with_bonus(const ViewScore& score, std::span<const int> views);
 double bonus_over(const ViewScore& score);
 

@@ -20,9 +20,8 @@ class Wishing : public Scanning {
     return places;
   }
   static int near(const std::vector<Eigen::Vector3d>& places, const Eigen::Vector3d& p, double m) {
-    return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const auto& place) {
-      return (place - p).norm() <= m;
-    }));
+    return static_cast<int>(std::count_if(
+        places.begin(), places.end(), [&](const auto& place) { return (place - p).norm() <= m; }));
   }
 };
 
@@ -32,9 +31,9 @@ const Eigen::Vector3d kPinned(7, 3.3, 9);
 TEST_F(Wishing, EverySolverTakesAPinnedViewAndSaysItsOwnScore) {
   EXPECT_EQ(near(planned(""), kPinned, 1e-6), 0);
   for (const char* solver : {"local_search", "recursive_greedy", "milp"}) {
-    const std::string by = "--set tour.solver=" + std::string(solver) + " --set tour.guard=5 " +
-                           (std::string(solver) == "local_search" ? "--set tour.iterations=60 "
-                                                                  : "");
+    const std::string by =
+        "--set tour.solver=" + std::string(solver) + " --set tour.guard=5 " +
+        (std::string(solver) == "local_search" ? "--set tour.iterations=60 " : "");
     // Their own options do not fit the others.
     write_file_atomically(folder_ / "hut.lua", [&] {
       std::string text = read_file(folder_ / "hut.lua");
@@ -59,8 +58,9 @@ TEST_F(Wishing, NoViewIsTakenWhereTheyAreForbidden) {
   ASSERT_GT(before.size(), 2u);
   const Eigen::Vector3d middle = before[before.size() / 2];
   char ball[160];
-  std::snprintf(ball, sizeof ball, "--set 'forbidden=[{position: [%.17g, %.17g, %.17g], within: 3}]'",
-                middle.x(), middle.y(), middle.z());
+  std::snprintf(ball, sizeof ball,
+                "--set 'forbidden=[{position: [%.17g, %.17g, %.17g], within: 3}]'", middle.x(),
+                middle.y(), middle.z());
   const std::vector<Eigen::Vector3d> after = planned(ball);
   // The start may lie there.
   EXPECT_LE(near({after.begin() + 1, after.end()}, middle, 3), near({after[0]}, middle, 3));
@@ -79,8 +79,7 @@ TEST_F(Wishing, WhatCannotBeIsSaid) {
               HasSubstr("views are given"));
   EXPECT_THAT(refused("--set 'pinned=[{position: [7, 3.3, 9], yaw_deg: 205}]'"),
               HasSubstr("pitch_deg: missing"));
-  EXPECT_THAT(refused("--set 'forbidden=[{position: [7, 3, 9], within: 0}]'"),
-              HasSubstr("within"));
+  EXPECT_THAT(refused("--set 'forbidden=[{position: [7, 3, 9], within: 0}]'"), HasSubstr("within"));
 }
 
 }  // namespace

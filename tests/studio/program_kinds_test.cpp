@@ -82,8 +82,7 @@ TEST_F(StudioKinds, AScanOfTwoBatteriesTellsBothTours) {
   const double first = answer.at("plan").at("duration").as_number();
   EXPECT_GE(tours[1].at("start").as_number(), first);  // one drone
   EXPECT_GT(tours[1].at("plan").at("duration").as_number(), 0);
-  for (const Value& tour : tours)
-    EXPECT_EQ(tour.at("certificate").at("passed"), Value(true));
+  for (const Value& tour : tours) EXPECT_EQ(tour.at("certificate").at("passed"), Value(true));
   const auto has_check = [](const Value& certificate, const char* name) {
     for (const Value& check : certificate.at("checks").as_list())
       if (check.at("name") == Value(name)) return true;
@@ -164,8 +163,8 @@ TEST_F(StudioKinds, AnExplorationTellsHowItsMapGrew) {
   EXPECT_EQ(from_json(text, "map info").at("occupied"), Value(std::int64_t{count}));
 }
 
-// Two players fly it, one on the straight way and one aside; of the logs that are left `lapwing race`
-// says the same.
+// Two players fly it, one on the straight way and one aside; of the logs that are left `lapwing
+// race` says the same.
 TEST_F(StudioKinds, ARaceIsFlownByHandAndAgainFromItsLogs) {
   use("racing/round_course.lua");
   const StudioAddress address = serve();
@@ -180,9 +179,9 @@ TEST_F(StudioKinds, ARaceIsFlownByHandAndAgainFromItsLogs) {
   const std::string players =
       R"({"type": "race", "id": "g", "players": [{"name": "Anna", "weight": 0.3},
           {"name": "Ben", "speed": 0.8}, {"name": "Plan", "weight": 0, "by_hand": false}]})";
-  EXPECT_EQ(raced(R"({"type": "race", "id": "x", "players": [{"name": "A", "speed": 9}]})")
-                .at("type"),
-            Value("failed"));
+  EXPECT_EQ(
+      raced(R"({"type": "race", "id": "x", "players": [{"name": "A", "speed": 9}]})").at("type"),
+      Value("failed"));
   EXPECT_EQ(raced(R"({"type": "stick", "id": "x", "time": 0.1, "sticks": [[0, 0]]})").at("type"),
             Value("failed"));
   Value state = raced(players);
@@ -190,9 +189,9 @@ TEST_F(StudioKinds, ARaceIsFlownByHandAndAgainFromItsLogs) {
   EXPECT_EQ(state.at("players").as_list().size(), 3u);
   EXPECT_EQ(state.at("time"), Value(0.0));
   // A stick that comes too late flies nothing.
-  EXPECT_EQ(raced(R"({"type": "stick", "id": "g", "time": 9, "sticks": [[0, 0], [0, 0]]})")
-                .at("type"),
-            Value("failed"));
+  EXPECT_EQ(
+      raced(R"({"type": "stick", "id": "g", "time": 9, "sticks": [[0, 0], [0, 0]]})").at("type"),
+      Value("failed"));
   for (int k = 1; !state.find("result"); ++k) {
     ASSERT_LT(k, 2000);
     state = raced(R"({"type": "stick", "id": "g", "sticks": [[0.2, 0.05], [-0.1, 0]], "time": )" +
@@ -206,8 +205,8 @@ TEST_F(StudioKinds, ARaceIsFlownByHandAndAgainFromItsLogs) {
   const std::string words = read_file(plan.parent_path() / "again.sh");
   const std::string command = words.substr(words.find("lapwing race"));
   const std::string again = "cd '" + plan.parent_path().string() + "' && '" + kProgram + "'" +
-                            command.substr(7, command.find(" \"$@\"") - 7) +
-                            " --json > '" + (folder_ / "again.json").string() + "'";
+                            command.substr(7, command.find(" \"$@\"") - 7) + " --json > '" +
+                            (folder_ / "again.json").string() + "'";
   EXPECT_LE(WEXITSTATUS(std::system(again.c_str())), 1);
   const Value game = from_json(read_file(folder_ / "again.json"), "again").at("game");
   int compared = 0;
@@ -226,9 +225,9 @@ TEST_F(StudioKinds, ARaceIsFlownByHandAndAgainFromItsLogs) {
   const Value& last = state.at("players").as_list()[0];
   EXPECT_EQ(last.at("end"), Value("finished"));
   // It is over.
-  EXPECT_EQ(raced(R"({"type": "stick", "id": "g", "time": 300, "sticks": [[0, 0], [0, 0]]})")
-                .at("type"),
-            Value("failed"));
+  EXPECT_EQ(
+      raced(R"({"type": "stick", "id": "g", "time": 300, "sticks": [[0, 0], [0, 0]]})").at("type"),
+      Value("failed"));
 }
 
 TEST_F(StudioKinds, ALightPaintingTellsStrokesAndLightsAndIsExposed) {

@@ -65,8 +65,8 @@ TEST_F(LiveRaceTest, FlownFromTheLogsItIsTheSameToTheBit) {
     const RacedPilot& one = raced[k];
     Pilot again = one.pilot;
     again.log = parse_stick_log(stick_log_text(one.pilot.log), "again");
-    const RaceFlight flight = fly_race(plan.trajectory, reference_vehicle(), again,
-                                       race_limits(plan.trajectory, gates));
+    const RaceFlight flight =
+        fly_race(plan.trajectory, reference_vehicle(), again, race_limits(plan.trajectory, gates));
     EXPECT_EQ(flight.end, one.flight.end);
     EXPECT_EQ(flight.time, one.flight.time);
     EXPECT_EQ(flight.deviation_mean, one.flight.deviation_mean);

@@ -17,8 +17,7 @@ ViewScore random_score(std::size_t voxels, int views, std::uint64_t seed) {
   for (int view = 0; view < views; ++view) {
     std::vector<ViewScore::Contribution> told;
     for (std::uint32_t v = 0; v < voxels; ++v)
-      if (random.uniform(0, 1) < 0.2)
-        told.push_back({v, static_cast<float>(random.uniform(0, 2))});
+      if (random.uniform(0, 1) < 0.2) told.push_back({v, static_cast<float>(random.uniform(0, 2))});
     builder.add_view(told);
   }
   return std::move(builder).take();
