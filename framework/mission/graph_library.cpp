@@ -5,6 +5,7 @@
 
 #include <lua.hpp>
 
+#include "framework/core/json.h"
 #include "framework/core/log.h"
 #include "framework/core/parallel.h"
 #include "framework/core/units.h"
@@ -570,10 +571,62 @@ void open_graph_type(lua_State* state) {
   note_fields(state, kGraphType, kGraphFields);
 }
 
+namespace {
+
+constexpr BoundField kKeptObjects[] = {{"graph?", "lapwing.scan_graph", "graph to be kept"}};
+ParameterTable kept_table() {
+  ParameterTable table;
+  table.required_text("without", "options that the graph does not depend on, apart by spaces")
+      .text("also", "", "what else it depends on");
+  return table;
+}
+
+// All that a graph depends on.
+std::string memory_key(const MissionRun& run, const Parameters& given) {
+  Value options = run.configuration;
+  const std::string without = " " + given.text("without") + " ";
+  std::erase_if(options.as_map(), [&](const auto& entry) {
+    return without.find(" " + entry.first + " ") != std::string::npos;
+  });
+  return to_json(options, -1) + "\n" + given.text("also") + "\n" +
+         std::to_string(run.settings.seed);
+}
+
+// run:kept_graph{without =, also =}: graph and prior of the plan before, or nil. With `graph` that
+// one is kept from now on.
+int kept_graph_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, kept_table(), "kept_graph", kKeptObjects);
+  if (!run.settings.scan_memory) return 0;
+  ScanMemory& memory = *run.settings.scan_memory;
+  std::string key = memory_key(run, given);
+  lua_getfield(state, 2, "graph");
+  if (const auto* graph = test_object<GraphObject>(state, -1, kGraphType)) {
+    memory = {std::move(key), graph->work};
+    return 0;
+  }
+  if (!memory.work || memory.key != key) {
+    if (run.settings.observe_estimate) throw Cancelled();
+    memory = {};  // its room is needed for the next one
+    return 0;
+  }
+  begin_planning(run);
+  new_object(state, kGraphType, GraphObject{memory.work});
+  new_object(state, kPriorType, PriorObject{memory.work->prior});
+  return 2;
+}
+
+}  // namespace
+
 std::span<const Binding> graph_methods_of_run() {
   static const Binding methods[] = {
       {"scan_graph", &guarded<scan_graph_of_run>, "(settings: @): lapwing.scan_graph",
        "candidate views of a region, and motions between them", &graph_table, kGraphObjects},
+      {"kept_graph", &guarded<kept_graph_of_run>,
+       "(settings: @): lapwing.scan_graph?, lapwing.prior?",
+       "graph and prior of the plan before, if it was made from the same options; nil where plans "
+       "are made once. With `graph`, that one is kept",
+       &kept_table, kKeptObjects},
       {"tile_views", &guarded<tile_views_of_run>, "(settings: @): table[]",
        "views of one tour over a part of a large region: {position, yaw, pitch}; none where "
        "nothing is free, or nothing is seen",

@@ -36,6 +36,12 @@ struct ScanWork;           // scan_objects.h
 struct TourDefinition;
 class MeshScene;
 
+// The graph of views of the last scan that was planned, for a program that plans again and again.
+struct ScanMemory {
+  std::string key;  // what it was made from, as text
+  std::shared_ptr<const ScanWork> work;
+};
+
 struct MissionSettings {
   SandboxLimits limits;
   std::uint64_t seed = 1;
@@ -60,6 +66,12 @@ struct MissionSettings {
   // problem before it is solved; for studies of scans. What they throw ends the plan. May be null.
   std::function<void(std::shared_ptr<const MeshScene>)> observe_surface;
   std::function<void(const ScanWork&, const TourDefinition&)> observe_tour;
+  // Hears what a scan comes to, once its tours are solved; the plan then ends with Cancelled, and
+  // where a graph would have to be made it ends before. For estimates; may be null.
+  std::function<void(const Value&)> observe_estimate = nullptr;
+  // Where scans keep their graph and find it again; null: nowhere. Whoever keeps it clears it when
+  // the script, or a file that a mission has read, changes.
+  std::shared_ptr<ScanMemory> scan_memory = nullptr;
 };
 
 // A problem being stated, then solved; Lua holds one or more references to it.

@@ -8,6 +8,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/mission/scan_record.h"
 
 namespace lapwing {
 
@@ -171,6 +172,48 @@ int solve_tour_of_run(lua_State* state) {
   return 1;
 }
 
+constexpr BoundField kEstimateObjects[] = {{"tours", "lapwing.tour[]", "solved tours of one graph"}};
+ParameterTable estimate_table() {
+  return {};
+}
+
+// run:estimate{tours =}: where only that is asked for, plans end here.
+int estimate_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  table_argument(state, 2, estimate_table(), "estimate", kEstimateObjects);
+  if (!run.settings.observe_estimate) return 0;
+  std::vector<int> views;
+  double seconds = 0;
+  std::int64_t flown = 0;
+  std::shared_ptr<const ScanWork> work;
+  lua_getfield(state, 2, "tours");
+  const int list = lua_gettop(state);
+  for (lua_Integer k = 1; k <= luaL_len(state, list); ++k) {
+    lua_rawgeti(state, list, k);
+    const TourObject& tour = object_argument<TourObject>(state, -1, kTourType);
+    if (TourProblem::images_of(tour.walk) > 1) {
+      work = tour.work;
+      views.insert(views.end(), tour.walk.begin(), tour.walk.end());
+      seconds += tour.report.seconds_used;
+      ++flown;
+    }
+    lua_pop(state, 1);
+  }
+  if (!work) throw InputError("estimate: no tour takes an image");
+  std::sort(views.begin(), views.end());
+  views.erase(std::unique(views.begin(), views.end()), views.end());
+  const Sandbox::ClockPause pause(Sandbox::of(state));
+  const SurfaceAreas areas = areas_seen(*work, views, run.settings.threads);
+  Value told = Value::map();
+  told.set("tours", flown);
+  told.set("images", static_cast<std::int64_t>(views.size()));
+  told.set("seconds", seconds);
+  told.set("known", areas.known);
+  told.set("seen", areas.seen);
+  run.settings.observe_estimate(told);
+  throw Cancelled();
+}
+
 }  // namespace
 
 void open_scan_library(lua_State* state) {
@@ -184,7 +227,11 @@ void open_scan_library(lua_State* state) {
 std::span<const Binding> scan_methods_of_run() {
   static const Binding own[] = {{"solve_tour", &guarded<solve_tour_of_run>,
                                  "(settings: @): lapwing.tour", "a tour of views within a budget",
-                                 &tour_table, kTourObjects}};
+                                 &tour_table, kTourObjects},
+                                {"estimate", &guarded<estimate_of_run>, "(of: @)",
+                                 "tells what solved tours come to, where only that is asked for: "
+                                 "there the plan ends",
+                                 &estimate_table, kEstimateObjects}};
   static const std::vector<Binding> all = [] {
     std::vector<Binding> list;
     for (const std::span<const Binding> part :

@@ -116,6 +116,19 @@ void add_progress(const TourObject& tour, ScanRecord& record) {
   record.upper_bound = tour.report.upper_bound;
 }
 
+}  // namespace
+
+SurfaceAreas areas_seen(const ScanWork& work, const std::vector<int>& views, int threads) {
+  const TriangleMesh& mesh = work.prior->mesh->mesh();
+  const InterestRegion& region = work.visible->settings().region;
+  return areas_of(mesh,
+                  shares_of_triangles(mesh, region, work.prior->mapping.map->grid(),
+                                      coverage_of(work, views, threads)),
+                  region);
+}
+
+namespace {
+
 // What the views show.
 void add_coverage(const ScanWork& work, const std::vector<int>& views, double pixel_error,
                   int threads, ScanRecord& record) {

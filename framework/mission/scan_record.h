@@ -33,6 +33,9 @@ void tell_scan(const ScanRecord& record, MissionRun& run, const ToldScan& result
 ScanPrediction prediction_of_scan(const ScanWork& work, const std::vector<int>& views,
                                   std::vector<char> counted, double pixel_error, int threads);
 
+// What images at the graph's `views` see of the prior mesh.
+SurfaceAreas areas_seen(const ScanWork& work, const std::vector<int>& views, int threads);
+
 // m^2 of the prior mesh in the region, and of it what images at the graph's `views` locate with a
 // standard deviation of at most `accuracy` (m) in the worst direction.
 struct AccurateArea {

@@ -264,6 +264,7 @@ void StudioSession::heard(WorkerRole role, Frame frame) {
     if (what == "answer") answered(std::move(frame));
     if (what == "world") world(frame);
     if (what == "progress") progress(frame);
+    if (what == "estimate") estimated(frame);
     return;
   }
   if (role == WorkerRole::errands) return errand_done(std::move(frame));

@@ -287,6 +287,20 @@ void StudioSession::progress(const Frame& frame) {
   tell_all(to_json(message, -1), true);
 }
 
+// What a drag of a scan comes to; then the next move's turn has come.
+void StudioSession::estimated(const Frame& frame) {
+  if (!solve_ || solve_->revision || frame.header.at("serial") != Value(solve_->serial)) return;
+  Value message = Value::map();
+  message.set("type", "estimate");
+  message.set("edit", static_cast<std::int64_t>(solve_->edit));
+  message.set("tab", solve_->tab);
+  for (const char* key : {"tours", "images", "seconds", "known", "seen"})
+    message.set(key, frame.header.at(key));
+  tell_all(to_json(message, -1), true);
+  solve_->rank = std::max(solve_->rank, 0);
+  drag_on();
+}
+
 // ---- errands ------------------------------------------------------------------------------------
 
 void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {

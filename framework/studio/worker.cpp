@@ -3,10 +3,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -14,6 +16,7 @@
 #include "framework/config/read_note.h"
 #include "framework/core/json.h"
 #include "framework/mission/environment_source.h"
+#include "framework/studio/file_look.h"
 #include "framework/studio/plan_message.h"
 #include "framework/studio/worker_errands.h"
 #include "framework/studio/worker_link.h"
@@ -200,6 +203,7 @@ class StudioWorker {
       }
     }
     std::optional<Trajectory> before;
+    if (kind_ == "scan" && !settled) return estimate(layer);
     if (kind_ != "film" && !settled) return;  // planned when it is let go of
     if (kind_ == "film") {
       if (settled && drawn) tell(*drawn_last_);
@@ -214,18 +218,41 @@ class StudioWorker {
     if (!whole_->cancelled()) plan_whole(layer, before);
   }
 
+  // What a drag of budget or batteries comes to: its tours on the graph of the plan before. A drag
+  // that needs another graph is planned when it is let go of.
+  void estimate(const Value& layer) {
+    if (!scan_memory()->work) return;
+    MissionSettings settings = settings_;
+    settings.cancellation = whole_.get();
+    settings.scan_memory = scan_memory_;
+    settings.observe_estimate = [this](const Value& told) {
+      Frame frame;
+      frame.header = told;
+      frame.header.set("said", "estimate");
+      send(std::move(frame), serial_);
+    };
+    configured_mission(script_, settings, layer)->plan();
+  }
+
   // As `lapwing run` does: what is settled, and what is no problem by itself (times that are
   // sought, missions of other kinds), which is drawn when it is done. `before`: what is drawn of it
   // already.
   void plan_whole(const Value& layer, const std::optional<Trajectory>& before) {
     reads_.clear();
     const ReadListener listener(
-        [this](const std::filesystem::path& file) { reads_.insert(file.string()); });
+        [this](const std::filesystem::path& file) {
+          reads_.insert(file.string());
+          memory_reads_.try_emplace(file.string(), look_of(file));
+        });
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
     WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
     settings.progress = &progress;
     settings.record_growth = true;
+    settings.scan_memory = scan_memory();
+    settings.observe_script = [this](const std::filesystem::path& file) {
+      memory_reads_.try_emplace(file.string(), look_of(file));
+    };
     const std::shared_ptr<Mission> mission = configured_mission(script_, settings, layer);
     MissionResult result = mission->plan();
     if (whole_->cancelled()) return;
@@ -265,6 +292,18 @@ class StudioWorker {
     if (!before || moved > kSameWay) editor_.begin_at(edited.plan->trajectory);
     drawn_last_.reset();
     tell(edited);
+  }
+
+  // Of the plan before, as long as the script and all that it has read are as they were.
+  std::shared_ptr<ScanMemory> scan_memory() {
+    const bool changed = std::any_of(memory_reads_.begin(), memory_reads_.end(), [](const auto& read) {
+      return look_of(read.first) != read.second;
+    });
+    if (changed) {
+      *scan_memory_ = {};
+      memory_reads_.clear();
+    }
+    return scan_memory_;
   }
 
   // Several batteries: told as they are planned, then with what was judged.
@@ -396,6 +435,8 @@ class StudioWorker {
   DrawnSurfaces drawn_;
   std::deque<std::shared_ptr<Mission>> planned_;  // of other kinds than films, the newest last
   std::string told_world_;
+  std::shared_ptr<ScanMemory> scan_memory_ = std::make_shared<ScanMemory>();
+  std::map<std::string, std::string> memory_reads_;  // for it, and what they looked like
   std::set<std::string> reads_;  // of the mission planned last
 
   std::mutex mutex_;  // of what follows

@@ -14,6 +14,7 @@ local few = require "mission.scan_few"
 local first = require "mission.scan_first"
 local fleet = require "mission.scan_fleet"
 local images = require "mission.scan_images"
+local memory = require "mission.scan_memory"
 local meshing = require "mission.scan_meshing"
 local passing = require "mission.scan_passing"
 local phases = require "mission.scan_phases"
@@ -122,6 +123,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
   for round = 1, TIGHTER do
     begin("tour")
     local tour, evaluations = solved(run, graph, finish, budget)
+    run:estimate { tours = { tour } }
     local notes = words.notes(run, known, explored, string.format(
       "%d candidates, %d motions", graph.candidates, graph.motions))
     local little = words.little_used(run, tour, budget)
@@ -161,11 +163,17 @@ local function planned(run)
   tiles.check(run, in_passing)
   local seconds = exploration.seconds(run, vehicle, tours.budget(run))
   phases.expect(run, tours.budget(run) * math.max(o.batteries, o.drones), in_passing)
-  local known, poses, surface, explored =
-    first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
-  local starts, finish
-  poses = views.poses(run, known, poses)
-  if not in_passing then starts, finish = fleet.starts(run, poses) end
+  local kept, known = memory.recall(run, in_passing)
+  local poses, surface, explored, starts, finish
+  if kept then
+    first.remind(run)
+    finish = o.finish and 2 or 1
+  else
+    known, poses, surface, explored =
+      first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
+    poses = views.poses(run, known, poses)
+    if not in_passing then starts, finish = fleet.starts(run, poses) end
+  end
   local plan
   for round = 1, o.rounds do
     local function begin(phase) run:phase(phases.named(run, phase, round)) end
@@ -173,7 +181,8 @@ local function planned(run)
       plan = passing.plan(run, vehicle, known, tours.budget(run), begin)
     else
       begin("views")
-      local graph = graph_of(run, known, vehicle, starts, finish)
+      local graph = kept or graph_of(run, known, vehicle, starts, finish)
+      if not kept then memory.keep(run, in_passing, graph) end
       local last = o.finish and finish or graph.home  -- a loop, unless said otherwise
       if fleet.wanted(run) then
         plan = fleet.plan(run, graph, vehicle, known, explored, begin)

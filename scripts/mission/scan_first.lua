@@ -168,6 +168,15 @@ local function surveyed(run, air)
   return known, poses
 end
 
+-- What is to be known of a simulated first flight, whether it is flown or was.
+function M.remind(run)
+  local o, files = run.options, space.prior_files(run)
+  if not (o.scene or o.input) or files and #o.flights == 0 then return end
+  if not files then warnings[run] = check_range(run) end
+  sparse[run] = space.sparse(run)
+  if sparse[run] then print("note: " .. sparse[run]) end
+end
+
 -- The prior with its mesh, the poses of the first flights, the simulated surface or nil, and the
 -- exploration or nil, which has at most `seconds`. `air` is a box that is free above the safe
 -- height as well.
@@ -201,9 +210,7 @@ function M.knowledge(run, seconds, vehicle, air)
                  range = space.range(run) }
   end
   if surface and not (files and #o.flights == 0) then
-    if not files then warnings[run] = check_range(run) end
-    sparse[run] = space.sparse(run)
-    if sparse[run] then print("note: " .. sparse[run]) end
+    M.remind(run)
     run:phase("first flight")
     open_air(run, known, surface, poses, air)
     M.look(run, known, surface, poses)

@@ -224,6 +224,7 @@ function M.plan(run, graph, vehicle, known, explored, begin)
       return solved(run, graph, budget, count)
     end, batteries)
     batteries = #team.tours
+    run:estimate { tours = team.tours }
     wishes.require_all(run, team, graph, string.format("of %d of %.4g s", batteries, budget))
     local plans, drones, longest = flown(run, vehicle, team, asked, begin, shared)
     shared = plans[1]

@@ -66,6 +66,106 @@ TEST_F(StudioKinds, AScanTellsWhatItsRunWrites) {
             std::string::npos);
 }
 
+// An edit of the budget keeps the views of the plan before, and is the plan of the run all the same;
+// a drag of it tells what that plan will come to.
+TEST_F(StudioKinds, ABudgetIsEstimatedWhileItIsDraggedAndPlannedOnTheSameViews) {
+  use("scan/church.lua");
+  const std::vector<std::string> options{"--config", "scan/small", "--set", "resolution=1"};
+  const StudioAddress address = serve(options);
+  PageClient page(address, "a");
+  const auto begun = std::chrono::steady_clock::now();
+  const std::int64_t revision = told(page).second.at("revision").as_integer();
+  const auto first = std::chrono::steady_clock::now() - begun;
+  page.send_text(R"({"type": "preview", "edit": 7,
+                     "patch": [{"path": "tour.budget", "value": 150}]})");
+  const Value estimate = page.until([](const Value& m) {
+    return m.at("type") == Value("estimate") || m.at("type") == Value("refused");
+  });
+  ASSERT_EQ(estimate.at("type"), Value("estimate")) << to_json(estimate);
+  EXPECT_EQ(estimate.at("edit"), Value(std::int64_t{7}));
+  EXPECT_EQ(estimate.at("tab"), Value("a"));
+  // A drag that needs other views is not estimated; it is planned when it is let go of.
+  page.send_text(R"({"type": "preview", "edit": 8,
+                     "patch": [{"path": "candidates.most", "value": 90}]})");
+  const auto began = std::chrono::steady_clock::now();
+  page.send_text(R"({"type": "gesture", "id": "g", "label": "budget",
+                     "patch": [{"path": "tour.budget", "value": 150}], "base": )" +
+                 std::to_string(revision) + "}");
+  Value world, answer;
+  page.until([&](const Value& m) {
+    if (m.at("type") == Value("world")) world = m;
+    if (m.at("type") == Value("answer")) answer = m;
+    EXPECT_NE(m.at("type"), Value("estimate"));
+    return m.at("type") == Value("answer") && m.at("revision") == Value(revision + 1) &&
+           m.at("grade") == Value("certified");
+  });
+  EXPECT_LT(std::chrono::steady_clock::now() - began, first);
+  std::vector<std::string> words{"run", script_.string(), "-o", "flown", "--json", "--set",
+                                 "tour.budget=150"};
+  words.insert(words.end(), options.begin(), options.end());
+  EXPECT_EQ(run(words), 0) << errors_;
+  const Plan plan = read_plan(folder_ / "flown/plan.json");
+  const Value& drawn = answer.at("plan");
+  EXPECT_NEAR(drawn.at("duration").as_number(), plan.trajectory.duration(), 1e-6);
+  const Value::List& views = world.at("scan").at("views").as_list();
+  ASSERT_EQ(views.size(), plan.task.scan->views.size());
+  for (std::size_t k = 0; k < views.size(); ++k)
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_EQ(views[k].at("position").as_list()[i].as_number(),
+                plan.task.scan->views[k].position[static_cast<Eigen::Index>(i)]);
+  EXPECT_EQ(blob(address, world.at("scan").at("surface")),
+            read_file(folder_ / "flown/prediction.ply"));
+  // Within a tenth of what was estimated.
+  const auto near = [](const Value& said, double is) {
+    EXPECT_NEAR(said.as_number(), is, 0.1 * is);
+  };
+  std::set<std::vector<double>> places;
+  for (const PlannedView& view : plan.task.scan->views)
+    places.insert({view.position.x(), view.position.y(), view.position.z(), view.yaw, view.pitch});
+  near(estimate.at("images"), static_cast<double>(places.size()));
+  near(estimate.at("seconds"), plan.trajectory.duration());
+  near(estimate.at("seen"), world.at("scan").at("areas").at("seen").as_number());
+}
+
+// A file that the mission reads changes: nothing of the plan before is kept.
+TEST_F(StudioKinds, ViewsOfThePlanBeforeGoWithTheFilesThatTheyAreOf) {
+  fs::create_directories(folder_ / "scene");
+  const auto write_scene = [&](const char* height) {
+    write_file_atomically(folder_ / "scene/hut.lua", std::string(R"(
+return function(options)
+  local scene = lapwing.scene { name = "hut", seed = options.seed }
+  scene:quad({-30, -30, 0}, {30, -30, 0}, {30, 30, 0}, {-30, 30, 0})
+  scene:box({-4, -3, 0}, {4, 3, )") + height + R"(})
+  scene:region({-6, -5, -0.4}, {6, 5, 7})
+  return scene
+end
+)");
+  };
+  write_scene("4");
+  script_ = "hut.lua";
+  write_file_atomically(folder_ / script_, R"(
+return require("mission.scan").of_scene {
+  name = "hut", scene = "hut", resolution = 0.5, range = 30, reach = 8,
+  tour = { budget = 60, iterations = 60 }, usable = { range = 30 },
+  camera = { width = 80, height = 60, focal = 46 }, safe_height = 9,
+  surface = { spacing = 0.8, cell = 1, trim = 2 },
+  candidates = { most = 60, step = 2.5, distance_apart = 2 },
+  motions = { alpha = 0.3, coarse = 40 },
+}
+)");
+  const StudioAddress address = serve();
+  PageClient page(address, "a");
+  const Value low = told(page).first.at("scan").at("areas");
+  write_scene("6");
+  Value areas;
+  page.until([&](const Value& m) {
+    if (m.at("type") == Value("world")) areas = m.at("scan").at("areas");
+    return !areas.is_null() && m.at("type") == Value("answer") &&
+           m.at("grade") == Value("certified") && areas.at("known") != low.at("known");
+  });
+  EXPECT_GT(areas.at("known").as_number(), low.at("known").as_number());
+}
+
 // Two batteries: two tours, each with its certificate, and the fleet's over both; each can be flown
 // and exported, and the report is that of the fleet.
 TEST_F(StudioKinds, AScanOfTwoBatteriesTellsBothTours) {

@@ -6,7 +6,7 @@ import { isObject } from "../state/document";
 import { entries } from "../state/film";
 import { figureNames, type Figure } from "../state/prediction";
 import { pathOf } from "../state/samples";
-import { addedPolygon, aroundSite, boxOf, forbiddenView, isSite, pinnedView, pinOf, placeNames, placeOf,
+import { addedPolygon, aroundSite, boxOf, estimateInWords, forbiddenView, isSite, pinnedView, pinOf, placeNames, placeOf,
          siteLists, viewAtTime, viewsOf, type PolygonKind } from "../state/site";
 import { fieldsOf } from "../state/schema";
 import { show } from "../state/units";
@@ -61,7 +61,8 @@ export class ScanPanel {
     byId("view-pin").addEventListener("click", () => this.wish(pinnedView));
     byId("view-forbid").addEventListener("click", () => this.wish(forbiddenView));
     byId("flights").append(this.flights.root);
-    studio.on(["document"], () => this.showFlights());
+    this.wireBudget();
+    studio.on(["document", "standing"], () => this.showFlights());
   }
 
   private get scan(): ScanWorld | undefined {
@@ -159,13 +160,45 @@ export class ScanPanel {
       this.hole(hole as unknown as SurfaceHole)));
   }
 
+  // A drag tells what the tours would come to; let go, they are planned.
+  private wireBudget(): void {
+    const { studio } = this;
+    const slider = byId<HTMLInputElement>("budget"), said = byId("estimate");
+    const edit = (): Edit => ({ label: "Change seconds a tour",
+                                patch: [{ path: "tour.budget", value: slider.valueAsNumber }] });
+    slider.addEventListener("input", () => {
+      byId("budget-value").textContent = `${slider.value} s`;
+      studio.drag(edit());
+    });
+    slider.addEventListener("change", () => studio.edit(edit()));
+    studio.session.on(({ what, message }) => {
+      if (what === "estimate" && message?.type === "estimate") {
+        said.textContent = estimateInWords(message);
+      }
+    });
+    studio.on(["standing"], () => {
+      if (studio.standing.grade !== "guess") said.textContent = "";
+    });
+  }
+
+  private showBudget(): void {
+    const { document, standing } = this.studio;
+    const slider = byId<HTMLInputElement>("budget");
+    if (this.studio.session.dragging) return;
+    const tour = isObject(document.tour) ? document.tour : {};
+    const most = standing.plan?.limits?.flight_time;
+    slider.max = String(typeof most === "number" ? Math.round(most) : 1200);
+    slider.value = String(typeof tour.budget === "number" ? tour.budget : 300);
+    byId("budget-value").textContent = `${slider.value} s`;
+  }
+
   // What is flown with: how long, how often, by how many.
   private showFlights(): void {
     const { session, document } = this.studio;
     if (!isSite(document)) return;
-    const asked = ["tour.budget", "batteries", "drones", "accuracy"];
+    this.showBudget();
+    const asked = ["batteries", "drones", "accuracy"];
     this.flights.show(fieldsOf(session.schema, document).filter(({ path }) => asked.includes(path))
-      .map((field) => (field.path === "tour.budget" ? { ...field, label: "Seconds a tour" } : field))
       .sort((a, b) => asked.indexOf(a.path) - asked.indexOf(b.path)));
   }
 

@@ -303,6 +303,9 @@ export class Session {
       case "flown": return this.tell({ what: "flown", message });
       case "picture": return this.tell({ what: "picture", message });
       case "wrote": return this.tell({ what: "wrote", message });
+      case "estimate":
+        if (message.tab !== this.parts.tab || message.edit !== this.drag?.edit) return;
+        return this.tell({ what: "estimate", message });
       case "raced": return this.tell({ what: "raced", message });
       case "worker": return this.tell({ what: "worker", message });
       case "remark": return this.tell({ what: "note", text: message.message });

@@ -6,7 +6,8 @@ import { isObject } from "./document";
 import type { Edit } from "./edits";
 import { entries } from "./film";
 import { cornersOf, flatCorners } from "./shapes";
-import type { JsonObject, Patch, ScanWorld, SitePrism, Vec3 } from "./types";
+import { show } from "./units";
+import type { Estimate, JsonObject, Patch, ScanWorld, SitePrism, Vec3 } from "./types";
 import { vec } from "./vector";
 
 // Lists of polygons, by the kind of their items.
@@ -99,6 +100,12 @@ export function viewAtTime(views: View[], time: number): number {
   let at = 0;
   views.forEach((view, k) => { if (view.time <= time + 0.05) at = k; });
   return views.length > 0 ? at : -1;
+}
+
+export function estimateInWords({ tours, images, seconds, known, seen }: Estimate): string {
+  const share = known > 0 ? `${show((100 * seen) / known)} % of the known surface` : "";
+  return `About ${images} images in ${show(seconds / 60)} min${
+    tours > 1 ? ` of ${tours} tours` : ""}${share ? `, ${share}` : ""}`;
 }
 
 // As a prism of the world, with open ends left out; null where the page cannot know its corners.

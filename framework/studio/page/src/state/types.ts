@@ -241,6 +241,18 @@ export interface Flown {
   worst?: { position_error: number; time?: number; limit?: number; mean?: number } | null;
 }
 
+// What a drag of a scan comes to.
+export interface Estimate {
+  type: "estimate";
+  edit: number;
+  tab: string;
+  tours: number;
+  images: number;
+  seconds: number;           // of all tours
+  known: number;             // m^2 of surface
+  seen: number;
+}
+
 // Of a race that is flown by hand.
 export interface Raced {
   type: "raced";
@@ -269,6 +281,7 @@ export type ServerMessage =
   | Answer
   | Flown
   | Raced
+  | Estimate
   | ({ type: "world" } & World)
   | { type: "refused"; id?: string; edit?: number; why: string }
   | { type: "failed"; id?: string; edit?: number; why: string }
